@@ -1,0 +1,1 @@
+#include "rfsmooth/pipeline/denoise.h"

@@ -1,0 +1,28 @@
+#include "rfsmooth/rfs_mesh/parallel.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+namespace rfsmooth {
+
+void in_arena(const Context& context, const std::function<void()>& body) {
+  tbb::task_arena arena(context.threads > 0 ? context.threads : tbb::task_arena::automatic);
+  arena.execute(body);
+}
+
+void for_blocks(const Context& context, std::size_t n, std::size_t grain,
+                const std::function<void(std::size_t, std::size_t)>& body) {
+  const std::size_t blocks = (n + grain - 1) / grain;
+  const auto run = [&](std::size_t block) {
+    context.check_stop();
+    body(block * grain, std::min(n, (block + 1) * grain));
+  };
+  if (blocks == 1) return run(0);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, blocks, 1),
+                    [&](const tbb::blocked_range<std::size_t>& r) {
+                      for (std::size_t block = r.begin(); block != r.end(); ++block) run(block);
+                    });
+}
+
+}  // namespace rfsmooth

@@ -1,0 +1,82 @@
+/// Data and file failures as values: a Result holds what was asked for, or an Error that says what, where and
+/// what to do. Broken preconditions (a caller's bug) are exceptions derived from std instead; there is no
+/// third channel.
+#pragma once
+
+#include <new>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <variant>
+
+namespace rfsmooth {
+
+/// Why something could not be done. The numbers are the exit codes of the command (README, "Exit codes").
+enum class ErrorCode {
+  internal = 1,          ///< a bug of ours
+  usage = 2,             ///< an option or argument outside its range
+  input_unreadable = 3,  ///< a file that is not what it says it is
+  no_usable_points = 4,  ///< no finite point to work on
+  cannot_write = 5,      ///< the target cannot be created, replaced or completed
+  out_of_memory = 6,     ///< not enough memory, estimated before starting or met on the way
+  cancelled = 130,       ///< the caller asked to stop
+};
+
+/// One clear line: what is wrong, where (file, byte or line, point index), and what to do about it.
+struct Error {
+  ErrorCode code = ErrorCode::internal;
+  std::string message;
+};
+
+/// A T, or the Error that kept it from being made. Check `ok()` before `value()`.
+template <class T>
+class [[nodiscard]] Result {
+ public:
+  Result(T value) : state_(std::move(value)) {}      // NOLINT(google-explicit-constructor): reads as a return
+  Result(Error error) : state_(std::move(error)) {}  // NOLINT(google-explicit-constructor)
+
+  bool ok() const { return state_.index() == 0; }
+  explicit operator bool() const { return ok(); }
+
+  /// \throw std::logic_error if this holds an error: asking is the caller's bug.
+  T& value() & { return checked(); }
+  const T& value() const& { return const_cast<Result*>(this)->checked(); }
+  T&& value() && { return std::move(checked()); }
+
+  /// \throw std::logic_error if this holds a value.
+  const Error& error() const {
+    if (ok()) throw std::logic_error("Result::error() of a success");
+    return std::get<1>(state_);
+  }
+
+ private:
+  T& checked() {
+    if (!ok()) throw std::logic_error("Result::value() of a failure: " + std::get<1>(state_).message);
+    return std::get<0>(state_);
+  }
+  std::variant<T, Error> state_;
+};
+
+/// What a step without a value returns.
+struct Done {};
+
+/// Thrown inside the library to unwind to the front door; never leaves it (see `guarded`).
+struct Failure : std::runtime_error {
+  explicit Failure(Error e) : std::runtime_error(e.message), error(std::move(e)) {}
+  Error error;
+};
+
+/// Runs `body` (returning T) behind a front door: a Failure becomes its Error, running out of memory becomes
+/// ErrorCode::out_of_memory. Exceptions that say "the caller broke a precondition" pass through.
+template <class Body>
+auto guarded(Body&& body) -> Result<decltype(body())> {
+  try {
+    return body();
+  } catch (const Failure& failure) {
+    return failure.error;
+  } catch (const std::bad_alloc&) {
+    return Error{ErrorCode::out_of_memory, "not enough memory; use a machine with more, or a smaller cloud"};
+  }
+}
+
+}  // namespace rfsmooth

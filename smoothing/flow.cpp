@@ -1,0 +1,1 @@
+#include "rfsmooth/smoothing/flow.h"
