@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds, and runs every test: bash tests/run.sh
+# Installs what is missing, builds, and runs every test: bash tests/run.sh [PRESET]   (dev by default; asan)
 set -euo pipefail
 cd "$(dirname "$0")/.."
 . tests/packages.sh
 install_missing $core_packages $test_packages
 
-cmake --preset dev > /dev/null
-cmake --build --preset dev
-ctest --preset dev -j "$(nproc)"
+preset=${1:-dev}
+cmake --preset "$preset" > /dev/null
+cmake --build --preset "$preset"
+ctest --preset "$preset" -j "$(nproc)"

@@ -5,7 +5,6 @@
 
 #include <gtest/gtest.h>
 
-using rfsmooth::Context;
 using rfsmooth::ErrorCode;
 using rfsmooth::kNone;
 using rfsmooth::rfs_mesh::make_working_cloud;
