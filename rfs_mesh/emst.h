@@ -1,0 +1,29 @@
+/// The Euclidean minimum spanning tree (EMST) of a cloud: exact, parallel, deterministic.
+///
+/// The first stage of Vollmer et al. section 7 (after Mencl): the tree of n - 1 edges of least total length
+/// that connects all points. Boruvka's rounds: every component picks its shortest edge to another one; the
+/// picked edges join the components. A point first looks along its list of nearest neighbours. Only where all
+/// of them have joined its own component, and the last one is nearer than the component's best edge so far,
+/// is the tree searched, with that edge as the bound and skipping subtrees that lie in the component.
+///
+/// Ties are broken by (length^2, min id, max id), a total order in which both ends of an edge agree, so the
+/// tree is unique: the same edges for any number of threads. Coincident points are joined by edges of length
+/// zero.
+#pragma once
+
+#include <vector>
+
+#include "rfsmooth/rfs_mesh/context.h"
+#include "rfsmooth/rfs_mesh/mesh.h"
+#include "rfsmooth/rfs_mesh/neighbors.h"
+
+namespace rfsmooth::rfs_mesh {
+
+/// The n - 1 edges {a < b} of the EMST of the index's points, ascending by (length^2, a, b); none for n < 2.
+std::vector<Edge> emst(const SpatialIndex& index, const Context& context);
+
+/// The same tree from a table of the index's nearest neighbours that is there already (any k >= 1): saves
+/// most of the time.
+std::vector<Edge> emst(const SpatialIndex& index, const NeighborTable& nearest, const Context& context);
+
+}  // namespace rfsmooth::rfs_mesh

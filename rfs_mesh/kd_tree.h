@@ -1,0 +1,80 @@
+/// The kd-tree under SpatialIndex: buckets of eight points, tight boxes, no pointers.
+///
+/// The points are partitioned at medians of the widest axis into leaves of exactly kLeaf points (the last may
+/// be short). Nodes lie in preorder; which leaves a node covers follows from the number of leaves alone: the
+/// node over the leaves [first, last) has its left child right behind it and its right child behind the left
+/// subtree. A leaf keeps its coordinates by axis, so that a scan of it is a few vector instructions.
+///
+/// Exactness: squared distances to points and to boxes are both evaluated as (dx^2 + dy^2) + dz^2 without
+/// contraction; rounding is monotone, so the distance to a box never exceeds that of a point in it.
+///
+/// O(n log n) to build, in parallel; the same tree for any number of threads. 43 bytes a point. Read-only
+/// once built: any number of threads may search it.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "rfsmooth/rfs_mesh/context.h"
+#include "rfsmooth/rfs_mesh/points.h"
+
+namespace rfsmooth::rfs_mesh {
+
+class KdTree {
+ public:
+  static constexpr std::uint32_t kLeaf = 8;  ///< points in a leaf
+
+  /// Coordinates by axis; the missing points of a short leaf lie at infinity and have the id kNone.
+  struct Leaf {
+    double x[kLeaf], y[kLeaf], z[kLeaf];
+    Index id[kLeaf];
+  };
+
+  struct Node {
+    Eigen::Vector3d low, high;  ///< tight box
+    Index least_id;             ///< smallest id in it: decides ties of distance
+  };
+
+  /// A node and the leaves [first, last) that it covers.
+  struct Cursor {
+    std::uint32_t node, first, last;
+    bool is_leaf() const { return last - first == 1; }
+    std::uint32_t middle() const { return first + (last - first) / 2; }
+    Cursor left() const { return {node + 1, first, middle()}; }
+    Cursor right() const { return {node + 2 * (middle() - first), middle(), last}; }
+  };
+
+  /// \throw std::invalid_argument if a coordinate is not finite or squares of lengths overflow.
+  KdTree(const Positions& points, const Context& context);
+
+  bool empty() const { return leaves_.empty(); }
+  Cursor root() const { return {0, 0, std::uint32_t(leaves_.size())}; }
+  const Node& node(std::uint32_t i) const { return nodes_[i]; }
+  const Leaf& leaf(std::uint32_t i) const { return leaves_[i]; }
+  std::size_t node_count() const { return nodes_.size(); }
+  std::size_t leaf_count() const { return leaves_.size(); }
+
+  /// Squared distance from q to the box of a node, 0 inside.
+  double squared_distance(const Eigen::Vector3d& q, std::uint32_t i) const {
+    const Node& box = nodes_[i];
+    double d[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      const double below = box.low[axis] - q[axis], above = q[axis] - box.high[axis];
+      const double outside = below > above ? below : above;
+      d[axis] = outside > 0 ? outside : 0;
+    }
+    return (d[0] * d[0] + d[1] * d[1]) + d[2] * d[2];
+  }
+
+ private:
+  std::vector<Node> nodes_;   // preorder
+  std::vector<Leaf> leaves_;  // left to right
+};
+
+/// Squared length as the tree evaluates it (bit for bit).
+inline double squared_distance(const Eigen::Vector3d& p, const Eigen::Vector3d& q) {
+  const double x = p[0] - q[0], y = p[1] - q[1], z = p[2] - q[2];
+  return (x * x + y * y) + z * z;
+}
+
+}  // namespace rfsmooth::rfs_mesh

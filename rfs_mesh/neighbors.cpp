@@ -1,0 +1,129 @@
+#include "rfsmooth/rfs_mesh/neighbors.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "rfsmooth/rfs_mesh/parallel.h"
+
+namespace rfsmooth::rfs_mesh {
+
+namespace {
+
+using Eigen::Vector3d;
+
+struct Pending {
+  KdTree::Cursor cursor;
+  double squared_distance;
+};
+
+constexpr std::size_t kMaxDepth = 64;  // 2^32 points make 29 levels, one pending node each
+
+/// The k best candidates so far, sorted.
+class Nearest {
+ public:
+  Nearest(std::size_t k, std::vector<Neighbor>& storage) : list_(storage) {
+    list_.assign(k, Neighbor{kNone, std::numeric_limits<double>::infinity()});
+  }
+  const Neighbor& worst() const { return list_.back(); }
+  void offer(const Neighbor& candidate) {
+    std::size_t i = list_.size() - 1;
+    for (; i > 0 && candidate < list_[i - 1]; --i) list_[i] = list_[i - 1];
+    list_[i] = candidate;
+  }
+
+ private:
+  std::vector<Neighbor>& list_;
+};
+
+/// Visits the leaves that may hold something better than `worst()`, nearer ones first; `scan(leaf)`.
+template <class Worst, class Scan>
+void search(const KdTree& tree, const Vector3d& q, Worst&& worst, Scan&& scan) {
+  if (tree.empty()) return;
+  Pending stack[kMaxDepth];
+  std::size_t top = 0;
+  stack[top++] = {tree.root(), tree.squared_distance(q, 0)};
+  while (top > 0) {
+    Pending at = stack[--top];
+    for (;;) {
+      if (worst() < Neighbor{tree.node(at.cursor.node).least_id, at.squared_distance}) break;
+      if (at.cursor.is_leaf()) {
+        scan(tree.leaf(at.cursor.first));
+        break;
+      }
+      Pending near = {at.cursor.left(), 0}, far = {at.cursor.right(), 0};
+      near.squared_distance = tree.squared_distance(q, near.cursor.node);
+      far.squared_distance = tree.squared_distance(q, far.cursor.node);
+      if (Neighbor{tree.node(far.cursor.node).least_id, far.squared_distance} <
+          Neighbor{tree.node(near.cursor.node).least_id, near.squared_distance})
+        std::swap(near, far);
+      stack[top++] = far;
+      at = near;
+    }
+  }
+}
+
+void squared_distances(const KdTree::Leaf& leaf, const Vector3d& q, double* d2) {
+  for (std::uint32_t i = 0; i < KdTree::kLeaf; ++i) {
+    const double x = leaf.x[i] - q[0], y = leaf.y[i] - q[1], z = leaf.z[i] - q[2];
+    d2[i] = (x * x + y * y) + z * z;
+  }
+}
+
+/// The k nearest of q except the point `self`.
+void find_nearest(const KdTree& tree, const Vector3d& q, Index self, std::size_t k,
+                  std::vector<Neighbor>& out) {
+  Nearest best(k, out);
+  search(
+      tree, q, [&]() -> const Neighbor& { return best.worst(); },
+      [&](const KdTree::Leaf& leaf) {
+        double d2[KdTree::kLeaf];
+        squared_distances(leaf, q, d2);
+        for (std::uint32_t i = 0; i < KdTree::kLeaf; ++i)
+          if (const Neighbor candidate = {leaf.id[i], d2[i]}; candidate < best.worst() && leaf.id[i] != self)
+            best.offer(candidate);
+      });
+}
+
+}  // namespace
+
+SpatialIndex::SpatialIndex(const Positions& points, const Context& context)
+    : points_(points), tree_(points, context) {}
+
+NeighborTable SpatialIndex::nearest(int k, const Context& context) const {
+  NeighborTable table;
+  if (points_.size() < 2 || k < 1) return table;
+  table.k = int(std::min(std::size_t(k), points_.size() - 1));
+  const auto width = std::size_t(table.k);
+  table.items.resize(points_.size() * width);
+  for_blocks(context, points_.size(), 256, [&](std::size_t begin, std::size_t end) {
+    std::vector<Neighbor> found;
+    for (std::size_t i = begin; i < end; ++i) {
+      find_nearest(tree_, points_[i], Index(i), width, found);
+      for (std::size_t j = 0; j < width; ++j) table.items[i * width + j] = found[j].index;
+    }
+  });
+  return table;
+}
+
+void SpatialIndex::nearest(const Vector3d& query, int k, std::vector<Neighbor>& out) const {
+  out.clear();
+  if (k < 1 || points_.empty()) return;
+  find_nearest(tree_, query, kNone, std::min(std::size_t(k), points_.size()), out);
+}
+
+void SpatialIndex::within(const Vector3d& query, double radius, std::vector<Neighbor>& out) const {
+  out.clear();
+  if (!(radius >= 0)) return;
+  const Neighbor limit = {kNone, radius * radius};
+  search(
+      tree_, query, [&]() -> const Neighbor& { return limit; },
+      [&](const KdTree::Leaf& leaf) {
+        double d2[KdTree::kLeaf];
+        squared_distances(leaf, query, d2);
+        for (std::uint32_t i = 0; i < KdTree::kLeaf; ++i)
+          if (leaf.id[i] != kNone && d2[i] <= limit.squared_distance) out.push_back({leaf.id[i], d2[i]});
+      });
+  std::sort(out.begin(), out.end());
+}
+
+}  // namespace rfsmooth::rfs_mesh

@@ -1,0 +1,66 @@
+/// The k nearest and the radius neighbours of points in space, exact, ties by index.
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "rfsmooth/rfs_mesh/context.h"
+#include "rfsmooth/rfs_mesh/kd_tree.h"
+#include "rfsmooth/rfs_mesh/mesh.h"
+#include "rfsmooth/rfs_mesh/points.h"
+
+namespace rfsmooth::rfs_mesh {
+
+struct Neighbor {
+  Index index;
+  double squared_distance;
+  /// The order of every list: by distance, ties by index.
+  friend bool operator<(const Neighbor& a, const Neighbor& b) {
+    return a.squared_distance != b.squared_distance ? a.squared_distance < b.squared_distance
+                                                    : a.index < b.index;
+  }
+  friend bool operator==(const Neighbor& a, const Neighbor& b) {
+    return a.squared_distance == b.squared_distance && a.index == b.index;
+  }
+};
+
+/// The k nearest of every point: n x k.
+struct NeighborTable {
+  int k = 0;                 ///< as asked for, but at most n - 1: every row is full
+  std::vector<Index> items;  ///< row i: ascending by (distance, index), without i itself
+
+  std::size_t size() const { return k == 0 ? 0 : items.size() / std::size_t(k); }
+  Adjacency::Row operator[](std::size_t i) const {
+    const Index* const first = items.data() + i * std::size_t(k);
+    return {first, first + k};
+  }
+};
+
+/// A kd-tree over points that stay where they are. The points may be in any order and may coincide; they are
+/// fastest along a Morton curve, as in the working cloud.
+/// O(n log n) to build, O(log n + k) a query. Thread safe once built.
+class SpatialIndex {
+ public:
+  /// Keeps a reference to `points` (n x 3, finite): they must outlive the index and not move meanwhile.
+  SpatialIndex(const Positions& points, const Context& context);
+
+  const Positions& points() const { return points_; }
+  const KdTree& tree() const { return tree_; }
+
+  /// The k nearest other points of every point (a coincident one counts, at distance 0). Parallel.
+  NeighborTable nearest(int k, const Context& context) const;
+
+  /// The k nearest points of any query (fewer if there are fewer), ascending by (distance, index). A point of
+  /// the cloud at the query is part of the answer. Replaces `out`.
+  void nearest(const Eigen::Vector3d& query, int k, std::vector<Neighbor>& out) const;
+
+  /// All points with |point - query| <= radius, ascending by (distance, index). Replaces `out`.
+  void within(const Eigen::Vector3d& query, double radius, std::vector<Neighbor>& out) const;
+
+ private:
+  const Positions& points_;
+  KdTree tree_;
+};
+
+}  // namespace rfsmooth::rfs_mesh

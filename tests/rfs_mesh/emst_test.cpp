@@ -1,0 +1,114 @@
+#include "rfsmooth/rfs_mesh/emst.h"
+
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "rfsmooth/rfs_mesh/parallel.h"
+
+#include "support/awkward_clouds.h"
+
+using rfsmooth::Context;
+using rfsmooth::Index;
+using rfsmooth::Positions;
+using rfsmooth::rfs_mesh::Edge;
+using rfsmooth::rfs_mesh::emst;
+using rfsmooth::rfs_mesh::SpatialIndex;
+using rfsmooth::test::AwkwardCloud;
+
+namespace {
+
+double total_length(const Positions& points, const std::vector<Edge>& edges) {
+  double sum = 0;
+  for (const Edge& e : edges) sum += (points[e[0]] - points[e[1]]).norm();
+  return sum;
+}
+
+/// O(n^2) Prim.
+double prim_length(const Positions& points) {
+  if (points.empty()) return 0;
+  std::vector<double> distance(points.size(), std::numeric_limits<double>::infinity());
+  std::vector<char> done(points.size(), 0);
+  double sum = 0;
+  std::size_t at = 0;
+  for (std::size_t step = 1; step < points.size(); ++step) {
+    done[at] = 1;
+    std::size_t best = at;
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::size_t j = 0; j < points.size(); ++j) {
+      if (done[j]) continue;
+      distance[j] = std::min(distance[j], (points[j] - points[at]).norm());
+      if (distance[j] < nearest) nearest = distance[best = j];
+    }
+    sum += nearest;
+    at = best;
+  }
+  return sum;
+}
+
+/// Components of the graph, by union-find.
+std::size_t component_count(std::size_t n, const std::vector<Edge>& edges) {
+  std::vector<std::size_t> parent(n);
+  for (std::size_t i = 0; i < n; ++i) parent[i] = i;
+  const auto find = [&](std::size_t i) {
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+  };
+  for (const Edge& e : edges)
+    if (find(e[0]) != find(e[1])) {
+      parent[find(e[0])] = find(e[1]);
+      --n;
+    }
+  return n;
+}
+
+class Emst : public testing::TestWithParam<AwkwardCloud> {};
+INSTANTIATE_TEST_SUITE_P(Clouds, Emst, testing::ValuesIn(rfsmooth::test::awkward_clouds(2000)),
+                         rfsmooth::test::name_of_cloud);
+
+TEST_P(Emst, IsASpanningTreeOfLeastTotalLength) {
+  const Positions points = GetParam().points;
+  const SpatialIndex index(points, {});
+  const std::vector<Edge> edges = emst(index, {});
+  ASSERT_EQ(edges.size(), points.empty() ? 0 : points.size() - 1);
+  EXPECT_EQ(component_count(points.size(), edges), points.empty() ? 0u : 1u);
+  const double expected = prim_length(points);
+  EXPECT_NEAR(total_length(points, edges), expected, 1e-10 * expected);
+}
+
+TEST_P(Emst, EdgesAreOrderedByLengthThenIds) {
+  const Positions points = GetParam().points;
+  const std::vector<Edge> edges = emst(SpatialIndex(points, {}), {});
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    EXPECT_LT(edges[e][0], edges[e][1]);
+    if (e == 0) continue;
+    const double before =
+        rfsmooth::rfs_mesh::squared_distance(points[edges[e - 1][0]], points[edges[e - 1][1]]);
+    const double now = rfsmooth::rfs_mesh::squared_distance(points[edges[e][0]], points[edges[e][1]]);
+    EXPECT_TRUE(before < now || (before == now && edges[e - 1] < edges[e]));
+  }
+}
+
+TEST_P(Emst, AnySeedTableGivesTheSameTree) {
+  const Positions points = GetParam().points;
+  const SpatialIndex index(points, {});
+  const std::vector<Edge> edges = emst(index, {});
+  for (const int k : {1, 3, 20}) EXPECT_EQ(emst(index, index.nearest(k, {}), {}), edges) << k;
+}
+
+TEST_P(Emst, SameEdgesForAnyNumberOfThreads) {
+  const Positions points = GetParam().points;
+  std::vector<Edge> first;
+  for (const int threads : {1, 2, 4, 7}) {
+    Context context;
+    context.threads = threads;
+    rfsmooth::in_arena(context, [&] {
+      const std::vector<Edge> edges = emst(SpatialIndex(points, context), context);
+      if (threads == 1) first = edges;
+      EXPECT_EQ(edges, first) << threads;
+    });
+  }
+}
+
+}  // namespace

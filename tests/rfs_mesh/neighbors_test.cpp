@@ -1,0 +1,109 @@
+#include "rfsmooth/rfs_mesh/neighbors.h"
+
+#include <algorithm>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "rfsmooth/rfs_mesh/parallel.h"
+
+#include "support/awkward_clouds.h"
+
+using rfsmooth::Context;
+using rfsmooth::Index;
+using rfsmooth::kNone;
+using rfsmooth::Positions;
+using rfsmooth::rfs_mesh::Neighbor;
+using rfsmooth::rfs_mesh::NeighborTable;
+using rfsmooth::rfs_mesh::SpatialIndex;
+using rfsmooth::test::AwkwardCloud;
+
+namespace {
+
+/// Every point but `self`, ascending by (distance, index).
+std::vector<Neighbor> all_sorted(const Positions& points, const Eigen::Vector3d& q, Index self) {
+  std::vector<Neighbor> all;
+  for (Index j = 0; j < points.size(); ++j) {
+    const Eigen::Vector3d d = points[j] - q;
+    if (j != self) all.push_back({j, (d[0] * d[0] + d[1] * d[1]) + d[2] * d[2]});
+  }
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+class Neighbors : public testing::TestWithParam<AwkwardCloud> {};
+INSTANTIATE_TEST_SUITE_P(Clouds, Neighbors, testing::ValuesIn(rfsmooth::test::awkward_clouds(700)),
+                         rfsmooth::test::name_of_cloud);
+
+TEST_P(Neighbors, NearestOfEveryPointMatchBruteForceIncludingTies) {
+  const Positions points = GetParam().points;
+  const SpatialIndex index(points, {});
+  for (const int k : {1, 8, 33}) {
+    const NeighborTable table = index.nearest(k, {});
+    ASSERT_EQ(table.k, points.size() < 2 ? 0 : std::min(k, int(points.size()) - 1));
+    if (table.k == 0) continue;
+    ASSERT_EQ(table.size(), points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const std::vector<Neighbor> expected = all_sorted(points, points[i], Index(i));
+      const auto row = table[i];
+      for (std::size_t j = 0; j < row.size(); ++j)
+        ASSERT_EQ(row[j], expected[j].index) << "k " << k << " point " << i << " place " << j;
+    }
+  }
+}
+
+TEST_P(Neighbors, QueriesAnywhereMatchBruteForce) {
+  const Positions points = GetParam().points;
+  const SpatialIndex index(points, {});
+  std::mt19937_64 engine(7);
+  std::normal_distribution<double> normal;
+  std::vector<Neighbor> found;
+  for (int trial = 0; trial < 200; ++trial) {
+    Eigen::Vector3d q(normal(engine), normal(engine), normal(engine));
+    if (!points.empty()) q = points[engine() % points.size()] + (trial % 3) * 0.1 * q;
+    std::vector<Neighbor> expected = all_sorted(points, q, kNone);
+    const double radius =
+        expected.empty()
+            ? 1
+            : std::sqrt(expected[std::min<std::size_t>(20, expected.size() - 1)].squared_distance);
+    index.within(q, radius, found);
+    const auto outside = [&](const Neighbor& e) { return e.squared_distance > radius * radius; };
+    EXPECT_EQ(found, std::vector<Neighbor>(expected.begin(),
+                                           std::find_if(expected.begin(), expected.end(), outside)));
+    index.nearest(q, 12, found);
+    expected.resize(std::min<std::size_t>(expected.size(), 12));
+    EXPECT_EQ(found, expected);
+  }
+}
+
+TEST(Neighbors, SameTableForAnyNumberOfThreads) {
+  const Positions points = rfsmooth::test::noisy_sphere(30000, 0.01, 1);
+  std::vector<Index> first;
+  for (const int threads : {1, 2, 4, 7}) {
+    Context context;
+    context.threads = threads;
+    rfsmooth::in_arena(context, [&] {
+      const std::vector<Index> items = SpatialIndex(points, context).nearest(8, context).items;
+      if (first.empty()) first = items;
+      EXPECT_EQ(items, first) << threads;
+    });
+  }
+}
+
+TEST(Neighbors, NonFinitePointsAreRefused) {
+  Positions points = rfsmooth::test::noisy_sphere(100, 0, 1);
+  points[50][1] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(SpatialIndex(points, {}), std::invalid_argument);
+}
+
+TEST(Neighbors, CancelStopsTheSearch) {
+  const Positions points = rfsmooth::test::noisy_sphere(1000, 0, 1);
+  const SpatialIndex index(points, {});
+  const std::atomic<bool> stop{true};
+  Context context;
+  context.stop = &stop;
+  EXPECT_THROW(index.nearest(8, context), rfsmooth::Failure);
+  EXPECT_THROW(SpatialIndex(points, context), rfsmooth::Failure);
+}
+
+}  // namespace
