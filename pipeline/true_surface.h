@@ -1,0 +1,152 @@
+/// Exact distances to a triangle mesh and to a cloud: what `compare` measures with.
+///
+/// Both use one tree of axis-aligned boxes, searched best first, and are exact up to rounding. The sign of a
+/// distance comes from angle-weighted pseudo-normals (Baerentzen & Aanaes 2005, "Signed distance computation
+/// using the angle weighted pseudonormal"), which are right on edges and corners too. Building: O(n log n). A
+/// query: O(log n) typically. Queries are const and may run in parallel.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "rfsmooth/rfs_mesh/mesh.h"
+#include "rfsmooth/rfs_mesh/points.h"
+
+namespace rfsmooth::pipeline {
+
+struct Box {
+  Eigen::Vector3d lower, upper;
+  double squared_distance(const Eigen::Vector3d& p) const;
+  double squared_distance(const Box& other) const;
+};
+
+/// Boxes of items, halved along the longest axis. The same tree for the same items, whatever the machine.
+class BoxTree {
+ public:
+  BoxTree() = default;
+  explicit BoxTree(const std::vector<Box>& items);
+
+  /// Calls `visit(item)` for every item that may be nearer than `best` (a squared distance that `visit`
+  /// lowers). `bound(box)` must not exceed the squared distance to anything inside the box. Items at exactly
+  /// `best` are visited too, so that `visit` can decide ties by index.
+  template <class Bound, class Visit>
+  void search(Bound&& bound, Visit&& visit, double& best) const;
+
+ private:
+  struct Node {
+    Box box;
+    Index first = 0;  ///< leaf: its first item in order_; inner: its left child (the right one is next to it)
+    Index count = 0;  ///< items of a leaf, 0 for an inner node
+  };
+  void split(std::size_t node, std::size_t first, std::size_t last, const std::vector<Box>& items);
+  std::vector<Node> nodes_;
+  std::vector<Index> order_;
+};
+
+/// The nearest point of a cloud.
+class PointTree {
+ public:
+  struct Hit {
+    Index point = kNone;
+    double squared = 0;
+  };
+  explicit PointTree(Positions points);
+  const Positions& points() const { return points_; }
+
+  /// The nearest point, ties by index; not `skip`. `point` is kNone if there is none.
+  Hit nearest(const Eigen::Vector3d& query, Index skip = kNone) const;
+
+  /// Squared distance from a triangle (as a filled piece of plane) to the nearest point.
+  double squared_distance_from(const std::array<Eigen::Vector3d, 3>& triangle) const;
+
+ private:
+  Positions points_;
+  BoxTree tree_;
+};
+
+/// The point of a triangle that is nearest to `query`. `feature`: 0 inside, 1 2 3 the edge opposite of corner
+/// 0 1 2, 4 5 6 corner 0 1 2. Degenerate triangles are their longest edge or point.
+struct TrianglePoint {
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();
+  int feature = 0;
+};
+TrianglePoint nearest_on_triangle(const Eigen::Vector3d& query,
+                                  const std::array<Eigen::Vector3d, 3>& triangle);
+
+/// A triangle mesh as a surface to measure against. Corners at bit-equal positions count as one vertex, so an
+/// unindexed soup works.
+class TrueSurface {
+ public:
+  struct Hit {
+    Index face = kNone;
+    double squared = 0;
+    Eigen::Vector3d point = Eigen::Vector3d::Zero();
+    int feature = 0;  ///< as in TrianglePoint
+  };
+
+  /// \throw std::invalid_argument if a face names a vertex that does not exist or there is no face.
+  TrueSurface(Positions vertices, std::vector<rfs_mesh::Face> faces);
+
+  Hit nearest(const Eigen::Vector3d& query) const;
+
+  /// Negative inside, for a closed surface, whichever way its faces are wound; for an open one the side is
+  /// the one its normals point away from.
+  double signed_distance(const Eigen::Vector3d& query) const {
+    return signed_distance(query, nearest(query));
+  }
+  double signed_distance(const Eigen::Vector3d& query, const Hit& hit) const;  ///< `hit` = nearest(query)
+
+  std::size_t face_count() const { return faces_.size(); }
+  std::array<Eigen::Vector3d, 3> corners(std::size_t face) const;
+  /// Unit length, zero for a degenerate face; out of a closed surface whichever way its faces are wound.
+  Eigen::Vector3d outward_normal(std::size_t face) const { return side_ * face_normal(face); }
+
+  /// Every edge has two faces that run along it in opposite directions.
+  bool closed() const { return closed_; }
+  double area() const { return area_; }
+  double volume() const { return volume_; }  ///< of a closed surface, positive; 0 for an open one
+
+ private:
+  Eigen::Vector3d face_normal(std::size_t face) const;
+  void weld();
+  void make_pseudo_normals();
+  Positions vertices_;
+  std::vector<rfs_mesh::Face> faces_;
+  std::vector<Eigen::Vector3d> vertex_normals_;
+  std::vector<std::array<Eigen::Vector3d, 3>> edge_normals_;  ///< per face: of the edge opposite of corner k
+  BoxTree tree_;
+  bool closed_ = false;
+  double area_ = 0, volume_ = 0, side_ = 1;  ///< side_: -1 where the faces of a closed surface look inward
+};
+
+template <class Bound, class Visit>
+void BoxTree::search(Bound&& bound, Visit&& visit, double& best) const {
+  if (nodes_.empty()) return;
+  struct Entry {
+    Index node;
+    double bound;
+  };
+  std::array<Entry, 128> stack;  // two per level; halving keeps the depth below 64
+  std::size_t size = 0;
+  stack[size++] = {0, bound(nodes_[0].box)};
+  while (size > 0) {
+    const Entry entry = stack[--size];
+    if (entry.bound > best) continue;
+    const Node& node = nodes_[entry.node];
+    if (node.count > 0) {
+      for (Index k = node.first; k < node.first + node.count; ++k) visit(order_[k]);
+      continue;
+    }
+    Entry near{node.first, bound(nodes_[node.first].box)};
+    Entry far{node.first + 1, bound(nodes_[node.first + 1].box)};
+    if (far.bound < near.bound) std::swap(near, far);
+    stack[size++] = far;
+    stack[size++] = near;
+  }
+}
+
+}  // namespace rfsmooth::pipeline
