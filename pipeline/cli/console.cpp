@@ -1,0 +1,102 @@
+#include "rfsmooth/pipeline/cli/console.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "rfsmooth/pipeline/cli/stop.h"
+
+namespace rfsmooth::cli {
+
+namespace {
+constexpr auto kRedraw = std::chrono::milliseconds(100);
+constexpr int kBarWidth = 28;
+}  // namespace
+
+Console::Console(const TalkOptions& options)
+    : quiet_(options.quiet), verbose_(options.verbose && !options.quiet) {
+  const bool terminal = isatty(STDERR_FILENO) == 1;
+  const char* type = std::getenv("TERM");
+  const bool dumb = type != nullptr && std::string_view(type) == "dumb";
+  const char* no_colour = std::getenv("NO_COLOR");  // no-color.org: set and not empty
+  bar_ = terminal && !dumb && !quiet_;
+  colour_ = terminal && !dumb && (no_colour == nullptr || *no_colour == '\0');
+}
+
+Console::~Console() {
+  clear_bar();
+}
+
+void Console::print(const char* colour, const char* label, const std::string& line) {
+  clear_bar();
+  if (colour_ && *label != '\0')
+    fmt::print(stderr, "rfsmooth: {}{}\x1b[0m{}\n", colour, label, line);
+  else
+    fmt::print(stderr, "rfsmooth: {}{}\n", label, line);
+}
+
+void Console::say(const std::string& line) {
+  if (!quiet_) print("", "", line);
+}
+void Console::detail(const std::string& line) {
+  if (verbose_) print("", "", line);
+}
+void Console::warn(const std::string& line) {
+  if (!quiet_) print("\x1b[33m", "warning: ", line);
+}
+void Console::error(const std::string& line) {
+  print("\x1b[31m", "error: ", line);
+}
+
+Context Console::context(int threads) {
+  Context context;
+  context.threads = threads;
+  context.stop = &stop_flag();
+  context.progress = [this](std::string_view stage, double fraction) {
+    draw(stage, fraction);
+    return true;  // Ctrl-C arrives through `stop`
+  };
+  context.log = [this](LogLevel level, const std::string& text) {
+    if (level == LogLevel::warning)
+      warn(text);
+    else
+      detail(text);
+  };
+  return context;
+}
+
+void Console::draw(std::string_view stage, double fraction) {
+  if (!bar_) return;
+  const auto now = Clock::now();
+  if (stage != stage_) {
+    stage_ = stage;
+    stage_start_ = now;
+    last_draw_ = {};
+  }
+  if (now - last_draw_ < kRedraw) return;
+  last_draw_ = now;
+  fraction = std::clamp(fraction, 0.0, 1.0);
+  const double elapsed = std::chrono::duration<double>(now - stage_start_).count();
+  const int filled = int(fraction * kBarWidth);
+  std::string line = fmt::format("{:<12.12} [{}{}] {:3.0f} %", stage_, std::string(std::size_t(filled), '#'),
+                                 std::string(std::size_t(kBarWidth - filled), '.'), 100 * fraction);
+  if (fraction > 0 && elapsed > 0.2) {
+    if (points_ > 0) line += fmt::format("  {:.3g} points/s", double(points_) * fraction / elapsed);
+    line += fmt::format("  {:.0f} s left", elapsed * (1 - fraction) / fraction);
+  }
+  fmt::print(stderr, "\r\x1b[K{}", line);
+  std::fflush(stderr);
+  drawn_ = true;
+}
+
+void Console::clear_bar() {
+  if (!drawn_) return;
+  fmt::print(stderr, "\r\x1b[K");
+  std::fflush(stderr);
+  drawn_ = false;
+}
+
+}  // namespace rfsmooth::cli

@@ -1,0 +1,58 @@
+/// What the command says while it works: log lines, warnings and a progress bar, all on stderr. stdout is for
+/// data and JSON only.
+#pragma once
+
+#include <chrono>
+#include <string>
+#include <string_view>
+
+#include "rfsmooth/rfs_mesh/context.h"
+#include "rfsmooth/rfs_mesh/options.h"
+
+namespace rfsmooth::cli {
+
+/// Options that every working sub-command has.
+struct TalkOptions {
+  bool quiet = false;
+  bool verbose = false;
+
+  template <class Self, class Visit>
+  static void describe(Self& self, Visit&& visit) {
+    visit(OptionInfo{"quiet", "only errors on stderr; no warnings, summary or progress", ""}, self.quiet);
+    visit(OptionInfo{"verbose", "say more on stderr about what is done", ""}, self.verbose);
+  }
+};
+
+class Console {
+ public:
+  /// A bar is drawn, and colours are used, only if stderr is a terminal; NO_COLOR turns colours off.
+  explicit Console(const TalkOptions& options);
+  ~Console();
+  Console(const Console&) = delete;
+  Console& operator=(const Console&) = delete;
+
+  void say(const std::string& line);     ///< a summary line; dropped by --quiet
+  void detail(const std::string& line);  ///< only with --verbose
+  void warn(const std::string& line);
+  void error(const std::string& line);  ///< always
+
+  /// Number of points, for the rate beside the bar.
+  void set_points(std::size_t points) { points_ = points; }
+
+  /// A Context that logs and reports here and stops on Ctrl-C.
+  Context context(int threads);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  void draw(std::string_view stage, double fraction);
+  void clear_bar();
+  void print(const char* colour, const char* label, const std::string& line);
+
+  bool quiet_, verbose_, bar_, colour_;
+  bool drawn_ = false;
+  std::size_t points_ = 0;
+  std::string stage_;
+  Clock::time_point stage_start_, last_draw_;
+};
+
+}  // namespace rfsmooth::cli

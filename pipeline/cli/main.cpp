@@ -1,0 +1,69 @@
+/// The rfsmooth command: takes argv apart, runs one sub-command, turns every failure into one line and an
+/// exit code.
+#include <cstdio>
+#include <exception>
+#include <new>
+
+#include <fmt/format.h>
+
+#include "rfsmooth/pipeline/cli/command.h"
+#include "rfsmooth/pipeline/cli/console.h"
+#include "rfsmooth/pipeline/cli/help.h"
+#include "rfsmooth/pipeline/cli/parse.h"
+#include "rfsmooth/pipeline/cli/stop.h"
+
+namespace rfsmooth::cli {
+
+namespace {
+
+/// stdout is checked when it is closed: a full disk or a closed pipe must not end in exit code 0.
+int close_stdout(int code) {
+  if (std::fclose(stdout) == 0 || code != 0) return code;
+  Console({}).error("cannot write to standard output");
+  return int(ErrorCode::cannot_write);
+}
+
+int print(const std::string& text) {
+  std::fputs(text.c_str(), stdout);
+  return 0;
+}
+
+int run(int argc, const char* const* argv) {
+  const std::vector<Command> commands = all_commands();
+  const Parsed parsed = parse(argc, argv, commands);
+  const Invocation& typed = parsed.invocation;
+  if (parsed.command == nullptr) {
+    if (typed.version) return print("rfsmooth " RFSMOOTH_VERSION "\n");
+    if (typed.short_help || typed.long_help) return print(overview(commands, typed.long_help));
+    fmt::print(stderr, "{}", overview(commands, false));
+    return int(ErrorCode::usage);
+  }
+  const Command& command = *parsed.command;
+  if (typed.short_help || typed.long_help) return print(help_of(command, typed.long_help));
+  std::vector<CommandOption> options = command.options;
+  for (const auto& [name, text] : typed.options) assign(*find_option(options, name), text);
+  return command.run(typed);
+}
+
+}  // namespace
+
+}  // namespace rfsmooth::cli
+
+int main(int argc, char** argv) {
+  using namespace rfsmooth;
+  int code = int(ErrorCode::internal);
+  try {
+    cli::catch_signals();
+    code = cli::run(argc, argv);
+  } catch (const Failure& failure) {
+    code = int(failure.error.code);
+    cli::Console({}).error(failure.error.message);
+    if (failure.error.code == ErrorCode::usage) fmt::print(stderr, "see: rfsmooth --help\n");
+  } catch (const std::bad_alloc&) {
+    code = int(ErrorCode::out_of_memory);
+    cli::Console({}).error("not enough memory");
+  } catch (const std::exception& bug) {
+    cli::Console({}).error(fmt::format("internal error, please report it: {}", bug.what()));
+  }
+  return cli::close_stdout(code);
+}

@@ -1,0 +1,18 @@
+/// "Did you mean ...?" for misspelt options and values.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace rfsmooth::cli {
+
+/// The candidate nearest to `word` by edit distance (insert, delete, replace, swap of neighbours; ties: the
+/// first), if it is near enough to be a misspelling: at most a third of the letters, at least one.
+std::optional<std::string> nearest(std::string_view word, const std::vector<std::string>& candidates);
+
+/// "; did you mean 'x'?" or "".
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates);
+
+}  // namespace rfsmooth::cli
