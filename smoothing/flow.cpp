@@ -1,1 +1,127 @@
 #include "rfsmooth/smoothing/flow.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include <fmt/format.h>
+
+#include "rfsmooth/rfs_mesh/parallel.h"
+
+namespace rfsmooth::smoothing {
+
+#define RFSMOOTH_FLOW(name) FlowEntry flow_##name();
+#include "rfsmooth/smoothing/flows.inc"
+#undef RFSMOOTH_FLOW
+
+const std::vector<FlowEntry>& flows() {
+  static const std::vector<FlowEntry> all = {
+#define RFSMOOTH_FLOW(name) flow_##name(),
+#include "rfsmooth/smoothing/flows.inc"
+#undef RFSMOOTH_FLOW
+  };
+  return all;
+}
+
+namespace {
+
+/// Levenshtein distance, for "did you mean".
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0]++;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t up = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, diagonal + (a[i - 1] == b[j - 1] ? 0 : 1)});
+      diagonal = up;
+    }
+  }
+  return row.back();
+}
+
+/// The addresses of the optional fields in the table's order, to walk two structs side by side.
+struct Fields {
+  std::vector<const void*> at;
+  template <class T>
+  void operator()(const OptionInfo&, const std::optional<T>& value) {
+    at.push_back(&value);
+  }
+  template <class T>
+  void operator()(const OptionInfo&, const T&) {}
+};
+
+struct FillEmpty {
+  const FlowEntry& entry;
+  std::vector<const void*> defaults;
+  std::size_t next = 0;
+  template <class T>
+  void operator()(const OptionInfo& info, std::optional<T>& value) {
+    const auto& standard = *static_cast<const std::optional<T>*>(defaults[next++]);
+    const auto& used = entry.parameters;
+    if (value && std::find(used.begin(), used.end(), info.name) == used.end())
+      throw Failure({ErrorCode::usage, fmt::format("--{} has no meaning for the flow '{}', which uses: {}",
+                                                   info.name, entry.name, fmt::join(used, ", "))});
+    if (!value) value = standard;
+  }
+  template <class T>
+  void operator()(const OptionInfo&, T&) {}
+};
+
+}  // namespace
+
+Result<const FlowEntry*> find_flow(std::string_view name) {
+  const FlowEntry* nearest = &flows().front();
+  for (const FlowEntry& entry : flows()) {
+    if (entry.name == name) return &entry;
+    if (edit_distance(entry.name, name) < edit_distance(nearest->name, name)) nearest = &entry;
+  }
+  return Error{ErrorCode::usage,
+               fmt::format("there is no flow '{}'; did you mean '{}'? `rfsmooth flows` lists them all", name,
+                           nearest->name)};
+}
+
+Result<FlowOptions> complete(const FlowOptions& options) {
+  const auto entry = find_flow(options.flow);
+  if (!entry.ok()) return entry.error();
+  if (const auto valid = validate(options); !valid.ok()) return valid.error();
+  return guarded([&] {
+    FlowOptions full = options;
+    Fields defaults;
+    FlowOptions::describe(entry.value()->defaults, defaults);
+    FlowOptions::describe(full, FillEmpty{*entry.value(), defaults.at});
+    return full;
+  });
+}
+
+Result<std::unique_ptr<Flow>> make_flow(const rfs_mesh::Mesh& mesh, const FlowOptions& options,
+                                        const Context& context) {
+  const auto full = complete(options);
+  if (!full.ok()) return full.error();
+  return guarded([&] { return find_flow(options.flow).value()->make(mesh, full.value(), context); });
+}
+
+Result<FlowReport> smooth(rfs_mesh::Mesh& mesh, const FlowOptions& options, const Context& context) {
+  const auto full = complete(options);
+  if (!full.ok()) return full.error();
+  const Positions original = mesh.positions;
+  auto result = guarded([&] {
+    FlowReport report;
+    in_arena(context, [&] {
+      auto flow = make_flow(mesh, full.value(), context);
+      if (!flow.ok()) throw Failure(flow.error());
+      const int steps = *full.value().iterations;
+      for (; report.steps < steps; ++report.steps) {
+        context.report(options.flow, double(report.steps) / steps);
+        flow.value()->step(mesh, context);
+      }
+      report.solver_iterations = flow.value()->solver_iterations();
+      for (std::size_t i = 0; i < original.size(); ++i)
+        report.largest_move = std::max(report.largest_move, (mesh.positions[i] - original[i]).norm());
+    });
+    return report;
+  });
+  if (!result.ok()) mesh.positions = original;
+  return result;
+}
+
+}  // namespace rfsmooth::smoothing

@@ -16,23 +16,46 @@
 
 namespace rfsmooth::smoothing {
 
-/// Parameters of all flows; each flow uses those its registry entry names and has its own defaults for the
-/// empty ones.
+/// Parameters of all flows. Every field is optional: each flow uses those its registry entry names and has
+/// its own defaults for the empty ones; giving one that the flow does not use is an error.
 struct FlowOptions {
-  std::string flow = "hc";        ///< a name from `flows()`
-  std::optional<int> iterations;  ///< steps; empty = the flow's default
-  std::optional<double> lambda;   ///< step length of explicit flows, dimensionless
-  std::optional<double> alpha;    ///< HC, Laplacian variants: weight of the original point, in [0, 1]
-  std::optional<double> beta;  ///< HC: weight of a vertex's own difference against its neighbours', in [0, 1]
+  std::string flow = "hc";            ///< a name from `flows()`
+  std::optional<int> iterations;      ///< steps
+  std::optional<double> lambda;       ///< step length of explicit flows, dimensionless
+  std::optional<double> alpha;        ///< HC: weight of the original point against the current one, in [0, 1]
+  std::optional<double> beta;         ///< HC: a vertex's own difference against its neighbours', in [0, 1]
+  std::optional<std::string> anchor;  ///< Laplacian: the point that is averaged with the neighbours' mean
+  std::optional<std::string> weights;  ///< neighbours' weights of the umbrella
+  std::optional<std::string> update;   ///< all vertices at once, or each seeing its predecessors' new places
 
   template <class Self, class Visit>
   static void describe(Self& self, Visit&& visit) {
     visit(OptionInfo{"flow", "how the mesh is smoothed (see `rfsmooth flows`)", ""}, self.flow);
     visit(OptionInfo{"iterations", "number of steps", "steps", 0, 1000000}, self.iterations);
     visit(OptionInfo{"lambda", "step length of explicit flows", "", 0, 1}, self.lambda);
-    visit(OptionInfo{"alpha", "weight of the original point", "", 0, 1}, self.alpha);
+    visit(OptionInfo{"alpha", "weight of the original (or centre) point", "", 0, 1}, self.alpha);
     visit(OptionInfo{"beta", "HC: own difference against the neighbours' mean", "", 0, 1}, self.beta);
+    visit(OptionInfo{"anchor",
+                     "point averaged with the neighbours' mean, with weight alpha",
+                     "",
+                     -kNoLimit,
+                     kNoLimit,
+                     {"none", "centre", "original"}},
+          self.anchor);
+    visit(
+        OptionInfo{"weights", "neighbours' weights", "", -kNoLimit, kNoLimit, {"equal", "inverse-distance"}},
+        self.weights);
+    visit(OptionInfo{"update",
+                     "all vertices at once, or one after the other in index order",
+                     "",
+                     -kNoLimit,
+                     kNoLimit,
+                     {"simultaneous", "sequential"}},
+          self.update);
   }
+
+ private:
+  static constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 };
 
 /// What a run did.
@@ -50,11 +73,15 @@ class Flow {
   Flow(const Flow&) = delete;
   Flow& operator=(const Flow&) = delete;
 
-  /// One step: writes mesh.positions, leaves the connectivity. Deterministic; parallel over vertices.
+  /// One step: writes mesh.positions, leaves the connectivity. Deterministic; parallel over vertices. Given
+  /// finite positions it leaves finite positions, whatever the mesh.
   virtual void step(rfs_mesh::Mesh& mesh, const Context& context) = 0;
 
   /// Told that the connectivity changed (edge swaps) while the vertices stayed the same.
   virtual void connectivity_changed(const rfs_mesh::Mesh&, const Context&) {}
+
+  /// Conjugate gradient iterations of all steps so far; 0 for explicit flows.
+  virtual int solver_iterations() const { return 0; }
 };
 
 /// One line of the registry.
@@ -63,7 +90,7 @@ struct FlowEntry {
   std::string_view summary;                  ///< one line for `rfsmooth flows` and the README
   std::string_view source;                   ///< paper and section
   std::vector<std::string_view> parameters;  ///< the FlowOptions it uses, by option name
-  int default_iterations = 1;
+  FlowOptions defaults;                      ///< its values for empty options; `iterations` always has one
   std::unique_ptr<Flow> (*make)(const rfs_mesh::Mesh& mesh, const FlowOptions& options,
                                 const Context& context);
 };
@@ -73,6 +100,10 @@ const std::vector<FlowEntry>& flows();
 
 /// The entry called `name`; an Error (usage) with the nearest name if there is none.
 Result<const FlowEntry*> find_flow(std::string_view name);
+
+/// The options with the flow's own defaults in the empty fields, validated: what `make_flow` will use. Read
+/// the number of steps here: `*complete(options).value().iterations`. Errors: usage.
+Result<FlowOptions> complete(const FlowOptions& options);
 
 /// Starts a flow on `mesh`, whose current positions are the original points. Validates the options.
 Result<std::unique_ptr<Flow>> make_flow(const rfs_mesh::Mesh& mesh, const FlowOptions& options,
