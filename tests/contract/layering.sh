@@ -26,6 +26,7 @@ find_except() {
 
 forbid "rfs_mesh knows nothing above it" 'rfsmooth/(smoothing|pipeline|pcl|open3d|cgal)/' rfs_mesh
 forbid "smoothing knows only rfs_mesh" 'rfsmooth/(pipeline|pcl|open3d|cgal)/' smoothing
+forbid "the library does not know its sample clouds" 'rfsmooth/clouds/' rfs_mesh smoothing pipeline
 forbid "PCL, Open3D and CGAL stay in their adapters" '(pcl|open3d|CGAL)/' rfs_mesh smoothing $(find_except pipeline pcl open3d cgal)
 forbid "each adapter sees its own library" '(open3d|CGAL)/' pipeline/pcl
 forbid "each adapter sees its own library" '(pcl|CGAL)/' pipeline/open3d
