@@ -9,11 +9,13 @@
 #include <stdexcept>
 
 #include <Eigen/Geometry>
+#include <unistd.h>
+
+#include "rfsmooth/clouds/random.h"
+#include "rfsmooth/clouds/sampling.h"
+#include "rfsmooth/clouds/shapes.h"
 
 #include "closest.h"
-#include "poisson_disk.h"
-#include "random.h"
-#include "solids.h"
 
 namespace rfsmooth::bench {
 namespace {
@@ -24,11 +26,14 @@ namespace fs = std::filesystem;
 constexpr int kSampleVersion = 1;
 constexpr std::uint64_t kSampleSeed = 20;
 
+/// Surfaces of our own. Curved ones as facets far finer than any sampling here: within 1e-5 of the radius.
 const std::map<std::string, std::function<rfs_mesh::Mesh()>>& solids() {
   static const std::map<std::string, std::function<rfs_mesh::Mesh()>> table = {
-      {"cube", [] { return box(1, 1, 1); }},    {"l-part", [] { return l_part(); }},
-      {"sphere", [] { return sphere(); }},      {"torus", [] { return torus(1, 0.35); }},
-      {"plate", [] { return box(1, 1, 0.1); }},
+      {"cube", [] { return clouds::make_cube()->mesh(2); }},
+      {"l-part", [] { return clouds::make_l_part()->mesh(2); }},
+      {"sphere", [] { return clouds::make_sphere()->mesh(0.008); }},
+      {"torus", [] { return clouds::make_torus()->mesh(0.005); }},
+      {"plate", [] { return clouds::make_plate(0.2)->mesh(2); }},
   };
   return table;
 }
@@ -55,13 +60,6 @@ rfs_mesh::Mesh read_off(const fs::path& file) {
   return mesh;
 }
 
-double mean_spacing(const Positions& points) {
-  const ClosestTree tree(points);
-  double sum = 0;
-  for (std::size_t i = 0; i < points.size(); ++i) sum += std::sqrt(tree.nearest(points[i], Index(i)).squared);
-  return points.empty() ? 0 : sum / double(points.size());
-}
-
 std::shared_ptr<const Sample> normalised(const std::string& name, rfs_mesh::Mesh mesh, Positions points) {
   Eigen::Vector3d low = points.at(0), high = low;
   for (const auto& p : points) {
@@ -77,7 +75,7 @@ std::shared_ptr<const Sample> normalised(const std::string& name, rfs_mesh::Mesh
   for (auto& p : points) p = (p - center) / radius;
   sample->mesh = std::move(mesh);
   sample->clean = std::move(points);
-  sample->spacing = mean_spacing(sample->clean);
+  sample->spacing = clouds::mean_spacing(sample->clean);
   return sample;
 }
 
@@ -153,7 +151,7 @@ rfs_mesh::Mesh load_shape(const std::string& shape) {
 
 std::shared_ptr<const Sample> make_sample(const std::string& name, const rfs_mesh::Mesh& mesh,
                                           std::size_t n) {
-  return normalised(name, mesh, poisson_disk(mesh, n, kSampleSeed));
+  return normalised(name, mesh, clouds::sample(mesh, n, kSampleSeed));
 }
 
 std::shared_ptr<const Sample> load_sample(const std::string& shape, std::size_t n, const fs::path& cache) {
@@ -166,9 +164,9 @@ std::shared_ptr<const Sample> load_sample(const std::string& shape, std::size_t 
   const auto bytes = std::streamsize(n * sizeof(Eigen::Vector3d));
   std::ifstream in(file, std::ios::binary);
   if (!in.read(reinterpret_cast<char*>(points.data()), bytes)) {
-    points = poisson_disk(mesh, n, kSampleSeed);
+    points = clouds::sample(mesh, n, kSampleSeed);
     fs::create_directories(folder);
-    const fs::path partial = file.string() + ".part" + std::to_string(std::random_device{}());
+    const fs::path partial = file.string() + ".part" + std::to_string(getpid());
     std::ofstream(partial, std::ios::binary).write(reinterpret_cast<const char*>(points.data()), bytes);
     fs::rename(partial, file);
   }
@@ -180,7 +178,7 @@ Case make_case(std::shared_ptr<const Sample> sample, const Noise& noise, std::ui
   result.name = sample->shape + " " + std::to_string(sample->clean.size()) + " " + noise.name();
   result.noise = noise;
   result.noisy = sample->clean;
-  Random random(mixed(seed, result.name));
+  clouds::Random random(mixed(seed, result.name));
   if (noise.kind == NoiseKind::gaussian) {
     for (auto& p : result.noisy) p += noise.sigma * random.normal3();
   } else {
@@ -200,9 +198,7 @@ Case make_case(std::shared_ptr<const Sample> sample, const Noise& noise, std::ui
   const Eigen::Vector3d center = (low + high) / 2, half = 1.1 * (high - low) / 2;
   const auto strays = std::size_t(std::lround(noise.outliers * double(sample->clean.size())));
   for (std::size_t i = 0; i < strays; ++i) {
-    Eigen::Vector3d at;
-    for (int axis = 0; axis < 3; ++axis) at[axis] = random.uniform(-half[axis], half[axis]);
-    result.noisy.push_back(center + at);
+    result.noisy.push_back(random.in_box(center - half, center + half));
   }
   result.truth = std::move(sample);
   return result;

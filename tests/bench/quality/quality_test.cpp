@@ -3,12 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include "rfsmooth/clouds/random.h"
+#include "rfsmooth/clouds/shapes.h"
+
 #include "closest.h"
 #include "dataset.h"
 #include "measure.h"
-#include "poisson_disk.h"
-#include "random.h"
-#include "solids.h"
 
 namespace rfsmooth::bench {
 namespace {
@@ -22,10 +22,17 @@ double squared_to_mesh(const rfs_mesh::Mesh& mesh, const Eigen::Vector3d& p) {
   return best;
 }
 
+rfs_mesh::Mesh unit_square() {
+  rfs_mesh::Mesh mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+  mesh.faces = {{0, 1, 2}, {0, 2, 3}};
+  return mesh;
+}
+
 TEST(ClosestTree, AgreesWithLookingAtEveryTriangle) {
-  const auto mesh = sheet(2, 12);
+  const auto mesh = clouds::make_wavy_sheet()->mesh(0.2);
   const ClosestTree tree(mesh);
-  Random random(1);
+  clouds::Random random(1);
   for (int i = 0; i < 200; ++i) {
     const Eigen::Vector3d p = 2 * random.normal3();
     const auto hit = tree.nearest(p);
@@ -35,7 +42,7 @@ TEST(ClosestTree, AgreesWithLookingAtEveryTriangle) {
 }
 
 TEST(ClosestTree, KNearestAgreesWithSorting) {
-  Random random(2);
+  clouds::Random random(2);
   Positions points(500);
   for (auto& p : points) p = random.normal3();
   const ClosestTree tree(points);
@@ -63,25 +70,8 @@ TEST(ClosestTree, ATriangleOfEveryRegion) {
   EXPECT_EQ(closest_on_triangle({5, 0, 0}, a, a, a), a);
 }
 
-TEST(PoissonDisk, ExactCountOnTheSurfaceAndApart) {
-  const auto mesh = box(1, 1, 1);
-  const std::size_t n = 600;
-  const Positions points = poisson_disk(mesh, n, 3);
-  ASSERT_EQ(points.size(), n);
-  const ClosestTree surface(mesh), tree(points);
-  const double widest = std::sqrt(6.0 / (2 * std::sqrt(3.0) * double(n)));  // radius of the densest packing
-  for (std::size_t i = 0; i < n; ++i) {
-    EXPECT_LT(surface.nearest(points[i]).squared, 1e-24);
-    // Uniform points come as close as a hundredth of this; the paper reports 0.8 of 2 x radius on flat
-    // ground.
-    EXPECT_GT(std::sqrt(tree.nearest(points[i], Index(i)).squared), 0.5 * 2 * widest);
-  }
-  EXPECT_EQ(poisson_disk(mesh, n, 3), points);
-  EXPECT_NE(poisson_disk(mesh, n, 4), points);
-}
-
 TEST(Dataset, NormalisedToTheUnitSphere) {
-  const auto sample = make_sample("box", box(3, 1, 0.5), 500);
+  const auto sample = make_sample("plate", clouds::make_plate(0.3)->mesh(1), 500);
   Eigen::Vector3d low = sample->clean[0], high = low;
   double radius = 0;
   for (const auto& p : sample->clean) {
@@ -94,7 +84,7 @@ TEST(Dataset, NormalisedToTheUnitSphere) {
 }
 
 TEST(Dataset, NoiseHasTheStatedSizeAndDirection) {
-  const auto sample = make_sample("sphere", sphere(), 2000);
+  const auto sample = make_sample("sphere", clouds::make_sphere()->mesh(0.05), 2000);
   const Case gaussian = make_case(sample, {NoiseKind::gaussian, 0.02, 0.01});
   const Case ray = make_case(sample, {NoiseKind::ray, 0.02, 0});
   ASSERT_EQ(gaussian.noisy.size(), 2020u);
@@ -114,13 +104,7 @@ TEST(Dataset, NoiseHasTheStatedSizeAndDirection) {
 }
 
 TEST(Measure, ACleanCloudHasNoErrorAndALiftedOneItsLift) {
-  const auto sample = make_sample(
-      "plane",
-      [] {
-        auto flat = sheet(2, 1);  // its four corners have z = 0
-        return flat;
-      }(),
-      800);
+  const auto sample = make_sample("square", unit_square(), 800);
   const Truth truth(sample);
   const auto clean = truth.measure(sample->clean, {}, {});
   EXPECT_EQ(clean.chamfer, 0);
@@ -139,18 +123,18 @@ TEST(Measure, ACleanCloudHasNoErrorAndALiftedOneItsLift) {
 }
 
 TEST(Measure, EdgesOfABoxAreItsEdges) {
-  const auto sample = make_sample("box", box(1, 1, 1), 2000);
+  const auto sample = make_sample("cube", clouds::make_cube()->mesh(2), 2000);
   const Truth truth(sample);
   const auto at = truth.measure(sample->clean, {}, {});
   // Two strips of two spacings along each of twelve edges; the facets' diagonals are no edges.
-  const double edge = (sample->mesh.positions[1] - sample->mesh.positions[0]).norm();
+  const double edge = sample->clean[0].cwiseAbs().maxCoeff() * 2;  // every point lies on a face
   const double inner = edge - 4 * sample->spacing;
   const double share = 1 - inner * inner / (edge * edge);
   EXPECT_NEAR(double(at.edge_points) / 2000, share, 0.02);
 }
 
 TEST(Measure, PlantedPointsAndUnknownRowsAreHandled) {
-  const auto sample = make_sample("box", box(1, 1, 1), 400);
+  const auto sample = make_sample("cube", clouds::make_cube()->mesh(2), 400);
   const Truth truth(sample);
   const auto direct = truth.measure(sample->clean, {}, {});
   Positions shuffled(sample->clean.rbegin(), sample->clean.rend());
