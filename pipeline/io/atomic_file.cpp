@@ -1,0 +1,152 @@
+#include "rfsmooth/pipeline/io/atomic_file.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <optional>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace rfsmooth::pipeline::io {
+namespace {
+
+// Between polls for a cancel.
+constexpr std::size_t kChunk = std::size_t{16} << 20;
+
+[[noreturn]] void refuse(const std::filesystem::path& target, const std::string& why) {
+  throw Failure({ErrorCode::cannot_write, fmt::format("{}: {}", target.string(), why)});
+}
+
+// The file that a chain of symbolic links ends at, which need not exist.
+std::filesystem::path follow_links(const std::filesystem::path& target) {
+  constexpr int kMostLinks = 40;  // as Linux
+  std::filesystem::path path = target;
+  std::error_code error;
+  for (int k = 0; k < kMostLinks; ++k) {
+    if (!std::filesystem::is_symlink(std::filesystem::symlink_status(path, error))) return path;
+    const std::filesystem::path next = std::filesystem::read_symlink(path, error);
+    if (error) refuse(target, error.message());
+    path = next.is_absolute() ? next : path.parent_path() / next;
+  }
+  refuse(target, "too many symbolic links");
+}
+
+std::filesystem::path folder_of(const std::filesystem::path& target) {
+  const std::filesystem::path folder = target.parent_path();
+  return folder.empty() ? std::filesystem::path(".") : folder;
+}
+
+std::optional<struct stat> status_of(const std::filesystem::path& path) {
+  struct stat info {};
+  if (::stat(path.c_str(), &info) == 0) return info;
+  return std::nullopt;
+}
+
+// Refuses what cannot be a target; returns what stands there now.
+std::optional<struct stat> check(const std::filesystem::path& shown, const std::filesystem::path& target,
+                                 bool replace) {
+  const auto folder = status_of(folder_of(target));
+  if (!folder)
+    refuse(shown, fmt::format("cannot write: the folder '{}': {}", folder_of(target).string(),
+                              std::strerror(errno)));
+  if (!S_ISDIR(folder->st_mode))
+    refuse(shown, fmt::format("cannot write: '{}' is not a folder", folder_of(target).string()));
+  if (!target.has_filename()) refuse(shown, "cannot write: expected a file name, found a folder");
+  const auto present = status_of(target);
+  if (!present && errno != ENOENT) refuse(shown, fmt::format("cannot write: {}", std::strerror(errno)));
+  if (present && S_ISDIR(present->st_mode)) refuse(shown, "cannot write: is a folder, expected a file name");
+  if (present && S_ISREG(present->st_mode) && !replace) refuse(shown, "exists already; --force replaces it");
+  if ((!present || S_ISREG(present->st_mode)) && ::access(folder_of(target).c_str(), W_OK) != 0)
+    refuse(shown, fmt::format("cannot write: the folder '{}': {}", folder_of(target).string(),
+                              std::strerror(errno)));
+  return present;
+}
+
+}  // namespace
+
+void check_target(const std::filesystem::path& target, bool replace) {
+  check(target, follow_links(target), replace);
+}
+
+AtomicFile::AtomicFile(const std::filesystem::path& target, bool replace, const Context& context)
+    : shown_(target), target_(follow_links(target)), replace_(replace), context_(context) {
+  const auto present = check(shown_, target_, replace_);
+  if (present && !S_ISREG(present->st_mode)) {
+    file_ = ::open(target_.c_str(), O_WRONLY | O_CLOEXEC);
+    if (file_ < 0) fail("cannot write", errno);
+    return;
+  }
+  // The name is hidden and tells what it is if a crash leaves it behind.
+  const std::string stem =
+      "." + target_.filename().string().substr(0, 200) + ".part-" + std::to_string(::getpid());
+  for (int k = 0; file_ < 0; ++k) {
+    temporary_ = folder_of(target_) / fmt::format("{}-{}", stem, k);
+    file_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (file_ < 0 && errno != EEXIST) {
+      const int error = errno;
+      temporary_.clear();
+      fail("cannot write", error);
+    }
+  }
+  // A file system without permissions keeps its own.
+  if (present) static_cast<void>(::fchmod(file_, present->st_mode & 07777));
+}
+
+AtomicFile::~AtomicFile() {
+  if (file_ >= 0) ::close(file_);
+  if (!temporary_.empty()) ::unlink(temporary_.c_str());
+}
+
+void AtomicFile::write(std::string_view bytes) {
+  while (!bytes.empty()) {
+    context_.check_stop();
+    const ssize_t put = ::write(file_, bytes.data(), std::min(bytes.size(), kChunk));
+    if (put < 0 && errno == EINTR) continue;
+    if (put < 0) fail("cannot write", errno);
+    bytes.remove_prefix(std::size_t(put));
+  }
+}
+
+void AtomicFile::commit(bool sync) {
+  context_.check_stop();
+  if (sync && !temporary_.empty() && ::fsync(file_) != 0 && errno != EINVAL && errno != ENOTSUP)
+    fail("cannot write", errno);
+  const int closed = ::close(file_);
+  file_ = -1;
+  if (closed != 0) fail("cannot write", errno);
+  if (temporary_.empty()) return;
+  if (replace_) {
+    if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail("cannot write", errno);
+    temporary_.clear();
+  } else if (::renameat2(AT_FDCWD, temporary_.c_str(), AT_FDCWD, target_.c_str(), RENAME_NOREPLACE) == 0) {
+    temporary_.clear();
+  } else if (errno == EEXIST) {
+    refuse(shown_, "exists already; --force replaces it");
+  } else {
+    // File systems without that call: a hard link refuses an existing name as well; some have neither.
+    if (::link(temporary_.c_str(), target_.c_str()) != 0) {
+      if (errno == EEXIST) refuse(shown_, "exists already; --force replaces it");
+      if (status_of(target_)) refuse(shown_, "exists already; --force replaces it");
+      if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail("cannot write", errno);
+      temporary_.clear();
+    }
+  }
+  if (!temporary_.empty()) ::unlink(temporary_.c_str());
+  temporary_.clear();
+  if (!sync) return;
+  // The folder's entry is synced too; where that is not possible the file itself is safe already.
+  const int folder = ::open(folder_of(target_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (folder < 0) return;
+  static_cast<void>(::fsync(folder));
+  ::close(folder);
+}
+
+void AtomicFile::fail(const std::string& what, int error) const {
+  refuse(shown_, fmt::format("{}: {}", what, std::strerror(error)));
+}
+
+}  // namespace rfsmooth::pipeline::io

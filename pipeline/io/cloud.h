@@ -1,0 +1,93 @@
+/// A cloud (or mesh) file in memory, lossless: what is read and not changed is written back byte for byte.
+///
+/// Only coordinates, and fields a caller adds or removes, change. Everything else - field order, types and
+/// names, rows with NaN, other PLY elements, comments, width x height, viewpoint - travels along.
+/// Not thread-safe for writing; distinct clouds are independent.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "rfsmooth/pipeline/io/table.h"
+#include "rfsmooth/rfs_mesh/context.h"
+#include "rfsmooth/rfs_mesh/result.h"
+
+namespace rfsmooth::pipeline::io {
+
+enum class Format { ply, pcd, xyz, off };
+enum class Encoding { ascii, binary_little_endian, binary_big_endian, binary_compressed };
+
+std::string_view name_of(Format format);      ///< "ply", "pcd", "xyz", "off"
+std::string_view name_of(Encoding encoding);  ///< as PLY and PCD headers write them ("binary_little_endian")
+
+/// A comment or obj_info line of a header, without its line end, and where it stands: before property `field`
+/// of element `element`; field 0 = before the element's own line, so that property k is field k + 1. Element
+/// kBeforeFormat: before PLY's format line.
+struct Note {
+  static constexpr std::size_t kBeforeFormat = std::size_t(-1);
+  std::string line;
+  std::size_t element = 0;
+  std::size_t field = 0;
+};
+
+struct Cloud {
+  Format format = Format::ply;
+  Encoding encoding = Encoding::binary_little_endian;
+
+  std::vector<Table> elements;       ///< in file order; PCD and XYZ have the points only
+  std::size_t vertex = 0;            ///< which of them holds the points
+  std::array<std::size_t, 3> xyz{};  ///< the fields x, y, z of the points
+
+  std::size_t width = 0, height = 1;        ///< width x height = points; height 1 = unorganised
+  std::string viewpoint = "0 0 0 1 0 0 0";  ///< PCD: translation and quaternion (w x y z), as written
+  std::vector<Note> notes;                  ///< comments and obj_info, in file order
+
+  // How the file was written, so that an unchanged one comes back the same.
+  std::string newline = "\n";
+  std::string original_header;  ///< verbatim
+  std::string
+      original_canonical;  ///< what we would have written for it: as long as that stays, so does the original
+  std::string tail;        ///< bytes after the last row
+
+  Table& points() { return elements[vertex]; }
+  const Table& points() const { return elements[vertex]; }
+  std::size_t size() const { return points().count; }
+  bool organised() const { return height > 1; }
+
+  /// The element of that name, or null.
+  const Table* element(std::string_view name) const;
+};
+
+/// The coordinates, n x 3 row-major, as doubles (of text: what the text says, whatever the type). O(n),
+/// parallel.
+std::vector<double> positions(const Cloud& cloud, const Context& context = {});
+
+/// Writes n x 3 coordinates back, each in its own type, floats rounded to nearest. A coordinate equal to the
+/// present one keeps its bytes or text. Integer coordinates are rounded to whole numbers and a warning is
+/// logged.
+void set_positions(Cloud& cloud, const double* xyz, const Context& context = {});
+
+/// The field of the points with that name (the first of several), or none.
+std::optional<std::size_t> find_field(const Cloud& cloud, std::string_view name);
+
+/// A plain field of the points, one double per point. \throw std::invalid_argument if it is a list or an
+/// array.
+std::vector<double> field_values(const Cloud& cloud, std::size_t field, const Context& context = {});
+
+/// Writes a field of the points: replaces the plain one of that name (keeping its type) or appends a new one
+/// of `type`.
+void set_field(Cloud& cloud, const std::string& name, Scalar type, const std::vector<double>& values,
+               const Context& context = {});
+
+/// Keeps the points `rows` (ascending or in any order); the result is unorganised unless all are kept in
+/// order. Other elements that name points by index (lists called vertex_indices or vertex_index, vertex1,
+/// vertex2) would be wrong and are dropped with a warning.
+void select_points(Cloud& cloud, const std::vector<std::size_t>& rows, const Context& context = {});
+
+/// A cloud of n points with fields x, y, z of `type` and nothing else.
+Cloud make_cloud(const double* xyz, std::size_t n, Scalar type = Scalar::float64);
+
+}  // namespace rfsmooth::pipeline::io

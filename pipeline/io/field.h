@@ -1,0 +1,38 @@
+/// One property of a point (or of a face, an edge): its name and type as the file has them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace rfsmooth::pipeline::io {
+
+/// The number types of PLY and PCD.
+enum class Scalar { int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64 };
+
+std::size_t size_of(Scalar type);       ///< bytes
+bool is_float(Scalar type);             ///< float32 or float64
+std::string_view name_of(Scalar type);  ///< "float32", "uint8", ...
+
+struct Field {
+  std::string name;
+  Scalar type = Scalar::float32;
+  std::size_t count = 1;                  ///< values per row (PCD COUNT); 1 for lists
+  std::optional<Scalar> list_count = {};  ///< PLY list: the type of the count in front of each row's values
+  std::string spelling = {};  ///< PLY: the type's words as the file has them ("float32" or "float",
+                              ///< "list uchar int"); empty = the usual ones
+
+  bool is_list() const { return list_count.has_value(); }
+  bool is_plain() const { return !is_list() && count == 1; }  ///< one value per row
+};
+
+/// Reads the `type` at `p` (unaligned, little-endian) as a double (64-bit integers are rounded to nearest).
+double load(Scalar type, const char* p);
+
+/// Writes `value` at `p` as `type`: floats rounded to nearest; integers rounded to nearest, clamped to their
+/// range, NaN as 0.
+void store(Scalar type, char* p, double value);
+
+}  // namespace rfsmooth::pipeline::io

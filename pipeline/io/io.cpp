@@ -1,0 +1,127 @@
+#include "rfsmooth/pipeline/io/io.h"
+
+#include <algorithm>
+#include <cctype>
+
+#include <fmt/format.h>
+
+#include "rfsmooth/pipeline/io/atomic_file.h"
+#include "rfsmooth/pipeline/io/detect.h"
+#include "rfsmooth/pipeline/io/pcd.h"
+#include "rfsmooth/pipeline/io/ply.h"
+
+namespace rfsmooth::pipeline::io {
+namespace {
+
+Cloud read(const Source& source, const ReadOptions& options, const Context& context) {
+  switch (options.format ? *options.format : detect_format(source, context)) {
+    case Format::ply:
+      return read_ply(source, context);
+    case Format::pcd:
+      return read_pcd(source, context);
+    case Format::xyz:
+    case Format::off:
+      source.fail("XYZ and OFF cannot be read yet");
+  }
+  throw std::invalid_argument("read: not a Format");
+}
+
+void write(const Cloud& cloud, Format format, const WriteOptions& options, Sink& sink,
+           const Context& context) {
+  if (format != cloud.format) throw Failure({ErrorCode::usage, "conversion is not there yet"});
+  const Encoding encoding = options.encoding.value_or(cloud.encoding);
+  switch (format) {
+    case Format::ply:
+      return write_ply(cloud, encoding, sink, context);
+    case Format::pcd:
+      return write_pcd(cloud, encoding, sink, context);
+    case Format::xyz:
+    case Format::off:
+      break;
+  }
+}
+
+Format target_format(const Cloud& cloud, const std::filesystem::path& path, const WriteOptions& options) {
+  if (options.format) return *options.format;
+  if (const auto format = format_of_extension(path)) return *format;
+  if (!path.has_extension()) return cloud.format;
+  throw Failure({ErrorCode::usage,
+                 fmt::format("{}: the extension '{}' stands for no format we write (ply, pcd, xyz, off); "
+                             "choose one with --format",
+                             path.string(), path.extension().string())});
+}
+
+}  // namespace
+
+Result<Cloud> read_cloud(const std::filesystem::path& path, const ReadOptions& options,
+                         const Context& context) {
+  return guarded([&] { return read(Source(path, context), options, context); });
+}
+
+Result<Cloud> parse_cloud(std::string_view bytes, const std::string& name, const ReadOptions& options,
+                          const Context& context) {
+  return guarded([&] { return read(Source(bytes, name), options, context); });
+}
+
+Result<Done> write_cloud(const Cloud& cloud, const std::filesystem::path& path, const WriteOptions& options,
+                         const Context& context) {
+  return guarded([&] {
+    const Format format = target_format(cloud, path, options);
+    AtomicFile file(path, options.force, context);
+    write(cloud, format, options, file, context);
+    file.commit(options.sync);
+    return Done{};
+  });
+}
+
+Result<std::string> serialize_cloud(const Cloud& cloud, const WriteOptions& options, const Context& context) {
+  return guarded([&] {
+    BufferSink sink;
+    write(cloud, options.format.value_or(cloud.format), options, sink, context);
+    return std::move(sink.buffer);
+  });
+}
+
+Result<Done> check_output(const std::filesystem::path& path, const WriteOptions& options) {
+  return guarded([&] {
+    target_format(Cloud{}, path, options);
+    check_target(path, options.force);
+    return Done{};
+  });
+}
+
+Result<Done> write_bytes(std::string_view bytes, const std::filesystem::path& path, bool force,
+                         const Context& context) {
+  return guarded([&] {
+    AtomicFile file(path, force, context);
+    file.write(bytes);
+    file.commit(true);
+    return Done{};
+  });
+}
+
+std::optional<Format> format_of_extension(const std::filesystem::path& path) {
+  std::string e = path.extension().string();
+  std::transform(e.begin(), e.end(), e.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  if (e == ".ply") return Format::ply;
+  if (e == ".pcd") return Format::pcd;
+  if (e == ".off") return Format::off;
+  if (e == ".xyz" || e == ".txt" || e == ".asc" || e == ".csv" || e == ".pts") return Format::xyz;
+  return std::nullopt;
+}
+
+std::optional<Format> format_by_name(std::string_view name) {
+  for (const Format f : {Format::ply, Format::pcd, Format::xyz, Format::off})
+    if (name_of(f) == name) return f;
+  return std::nullopt;
+}
+
+std::optional<Encoding> encoding_by_name(std::string_view name) {
+  if (name == "binary") return Encoding::binary_little_endian;
+  for (const Encoding e : {Encoding::ascii, Encoding::binary_little_endian, Encoding::binary_big_endian,
+                           Encoding::binary_compressed})
+    if (name_of(e) == name) return e;
+  return std::nullopt;
+}
+
+}  // namespace rfsmooth::pipeline::io

@@ -1,0 +1,68 @@
+/// The front door of files: read and write clouds and meshes, PLY, PCD, XYZ and OFF, without losing anything.
+///
+///     auto cloud = read_cloud("scan.ply", {}, context);             // the format is told by the content
+///     std::vector<double> xyz = positions(cloud.value());           // n x 3
+///     ...                                                           // NaN rows stay where they are
+///     set_positions(cloud.value(), xyz.data());                     // only what moved changes
+///     write_cloud(cloud.value(), "out.ply", {}, context);           // by extension; complete or not at all
+///
+/// Errors: input_unreadable with the line or byte, what was expected and what was found; cannot_write; usage
+/// for a target that cannot carry what the cloud has. Reading and writing need memory for one copy of the
+/// file.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "rfsmooth/pipeline/io/cloud.h"
+#include "rfsmooth/rfs_mesh/result.h"
+
+namespace rfsmooth::pipeline::io {
+
+struct ReadOptions {
+  std::optional<Format> format;  ///< empty: told by the content
+};
+
+struct WriteOptions {
+  std::optional<Format> format;      ///< empty: told by the extension of the path, else the cloud's own
+  std::optional<Encoding> encoding;  ///< empty: the cloud's own, or the target format's nearest to it
+  bool force = false;                ///< replace an existing file
+  bool drop_unsupported = false;     ///< leave out what the target format cannot carry, instead of refusing
+  bool sync = true;                  ///< wait until the file is safe on the disk
+};
+
+/// Reads a file. Pipes and devices ("/dev/stdin") are read to their end.
+Result<Cloud> read_cloud(const std::filesystem::path& path, const ReadOptions& options,
+                         const Context& context);
+
+/// Reads a buffer, standard input's say; `name` is what errors call it.
+Result<Cloud> parse_cloud(std::string_view bytes, const std::string& name, const ReadOptions& options,
+                          const Context& context);
+
+/// Writes a file: to a temporary name beside it, synced, renamed. An existing file is refused without
+/// `force`. A symbolic link is written through. On an error or cancel nothing is left behind and nothing has
+/// changed.
+Result<Done> write_cloud(const Cloud& cloud, const std::filesystem::path& path, const WriteOptions& options,
+                         const Context& context);
+
+/// Writes to a buffer, for standard output say.
+Result<std::string> serialize_cloud(const Cloud& cloud, const WriteOptions& options, const Context& context);
+
+/// What write_cloud would refuse about the path, told before the work is done; creates nothing.
+Result<Done> check_output(const std::filesystem::path& path, const WriteOptions& options);
+
+/// Any bytes (a report, a picture) written in the same way: complete or not at all.
+Result<Done> write_bytes(std::string_view bytes, const std::filesystem::path& path, bool force,
+                         const Context& context);
+
+/// The format a path's extension stands for (.ply; .pcd; .xyz .txt .asc .csv .pts; .off), if any.
+std::optional<Format> format_of_extension(const std::filesystem::path& path);
+
+/// The format of that name ("ply", "pcd", "xyz", "off"), if any; likewise encodings ("binary" is
+/// little-endian).
+std::optional<Format> format_by_name(std::string_view name);
+std::optional<Encoding> encoding_by_name(std::string_view name);
+
+}  // namespace rfsmooth::pipeline::io

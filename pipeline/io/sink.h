@@ -1,0 +1,21 @@
+/// Where written bytes go: a file or a buffer.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace rfsmooth::pipeline::io {
+
+class Sink {
+ public:
+  virtual ~Sink() = default;
+  virtual void write(std::string_view bytes) = 0;
+};
+
+class BufferSink : public Sink {
+ public:
+  void write(std::string_view bytes) override { buffer.append(bytes); }
+  std::string buffer;
+};
+
+}  // namespace rfsmooth::pipeline::io

@@ -1,0 +1,46 @@
+/// Where bytes come from: an open file or a buffer. Sizes are known before anything is allocated.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "rfsmooth/pipeline/io/bytes.h"
+#include "rfsmooth/rfs_mesh/context.h"
+#include "rfsmooth/rfs_mesh/result.h"
+
+namespace rfsmooth::pipeline::io {
+
+class Source {
+ public:
+  /// Opens a file; what has no size (a pipe, a terminal) is read into memory first.
+  /// \throw Failure (input_unreadable): missing, a directory, not readable.
+  Source(const std::filesystem::path& path, const Context& context);
+
+  /// Reads from a buffer that outlives the source.
+  Source(std::string_view bytes, std::string name);
+
+  ~Source();
+  Source(const Source&) = delete;
+  Source& operator=(const Source&) = delete;
+
+  const std::string& name() const { return name_; }
+  std::uint64_t size() const { return size_; }
+
+  /// Reads `n` bytes at `offset` (both inside the file). \throw Failure if the file shrank or cannot be read.
+  void read(std::uint64_t offset, char* out, std::size_t n, const Context& context) const;
+  Bytes read(std::uint64_t offset, std::size_t n, const Context& context) const;
+
+  /// \throw Failure (input_unreadable), "NAME: message".
+  [[noreturn]] void fail(const std::string& message) const;
+
+ private:
+  std::string name_;
+  std::uint64_t size_ = 0;
+  int file_ = -1;
+  Bytes held_;
+  std::string_view bytes_;
+};
+
+}  // namespace rfsmooth::pipeline::io
