@@ -1,6 +1,7 @@
 #include "rfsmooth/rfs_mesh/mesh.h"
 
 #include <algorithm>
+#include <atomic>
 
 #include <fmt/format.h>
 
@@ -10,18 +11,47 @@ namespace rfsmooth::rfs_mesh {
 
 namespace {
 
-/// Rows from (row, item) pairs: `visit` calls its argument once per pair, the same way each time it is
-/// called.
+/// Adds up start[1..n] in place, blocks in parallel.
+void prefix_sum(std::vector<Index>& start, const Context& context) {
+  constexpr std::size_t kBlock = std::size_t{1} << 16;
+  const std::size_t n = start.size() - 1;
+  std::vector<Index> total((n + kBlock - 1) / kBlock + 1, 0);
+  for_blocks(context, n, kBlock, [&](std::size_t b, std::size_t e) {
+    for (std::size_t i = b + 1; i < e; ++i) start[i + 1] += start[i];
+    total[b / kBlock + 1] = start[e];
+  });
+  for (std::size_t b = 1; b < total.size(); ++b) total[b] += total[b - 1];
+  for_blocks(context, n, kBlock, [&](std::size_t b, std::size_t e) {
+    for (std::size_t i = b; i < e; ++i) start[i + 1] += total[b / kBlock];
+  });
+}
+
+/// Rows of n from (row, item) pairs: `visit(s, emit)` passes the pairs of source s to `emit`, the same way
+/// each time. Threads take places in a row in any order, so the rows come out right only once sorted.
 template <class Visit>
-Adjacency rows_of(std::size_t n, Visit&& visit) {
+Adjacency unsorted_rows(std::size_t n, std::size_t sources, const Context& context, Visit&& visit) {
   Adjacency rows;
   rows.start.assign(n + 1, 0);
-  visit([&](Index row, Index) { ++rows.start[row + 1]; });
-  for (std::size_t i = 0; i < n; ++i) rows.start[i + 1] += rows.start[i];
+  std::vector<std::atomic<Index>> place(n);
+  for_each_index(context, sources, [&](std::size_t s) {
+    visit(s, [&](Index row, Index) { place[row].fetch_add(1, std::memory_order_relaxed); });
+  });
+  for_each_index(context, n, [&](std::size_t i) { rows.start[i + 1] = place[i].load(); });
+  prefix_sum(rows.start, context);
+  for_each_index(context, n, [&](std::size_t i) { place[i].store(rows.start[i]); });
   rows.items.resize(rows.start[n]);
-  std::vector<Index> next(rows.start.begin(), rows.start.end() - 1);
-  visit([&](Index row, Index item) { rows.items[next[row]++] = item; });
+  for_each_index(context, sources, [&](std::size_t s) {
+    visit(s, [&](Index row, Index item) {
+      rows.items[place[row].fetch_add(1, std::memory_order_relaxed)] = item;
+    });
+  });
   return rows;
+}
+
+void sort_rows(Adjacency& rows, const Context& context) {
+  for_each_index(context, rows.size(), [&](std::size_t i) {
+    std::sort(rows.items.begin() + rows.start[i], rows.items.begin() + rows.start[i + 1]);
+  });
 }
 
 /// Sorts every row and drops repeated items.
@@ -32,11 +62,12 @@ void sort_unique(Adjacency& rows, const Context& context) {
     std::sort(first, last);
     kept[i + 1] = Index(std::unique(first, last) - first);
   });
-  for (std::size_t i = 0; i < rows.size(); ++i) kept[i + 1] += kept[i];
-  for (std::size_t i = 0; i < rows.size(); ++i)  // forwards and in place: rows only move towards the front
-    std::copy_n(rows.items.begin() + rows.start[i], kept[i + 1] - kept[i], rows.items.begin() + kept[i]);
-  rows.items.resize(kept.back());
-  rows.items.shrink_to_fit();
+  prefix_sum(kept, context);
+  std::vector<Index> items(kept.back());
+  for_each_index(context, rows.size(), [&](std::size_t i) {
+    std::copy_n(rows.items.begin() + rows.start[i], kept[i + 1] - kept[i], items.begin() + kept[i]);
+  });
+  rows.items = std::move(items);
   rows.start = std::move(kept);
 }
 
@@ -50,27 +81,37 @@ void both_ways(Index a, Index b, Emit&& emit) {
 }  // namespace
 
 Adjacency make_adjacency(std::size_t n, const std::vector<Edge>& edges, const Context& context) {
-  Adjacency rows = rows_of(n, [&](auto&& emit) {
-    for (const Edge& e : edges) both_ways(e[0], e[1], emit);
+  Adjacency rows = unsorted_rows(n, edges.size(), context, [&](std::size_t s, auto&& emit) {
+    both_ways(edges[s][0], edges[s][1], emit);
   });
   sort_unique(rows, context);
   return rows;
 }
 
 void rebuild_adjacency(Mesh& mesh, const Context& context) {
-  mesh.one_ring = rows_of(mesh.positions.size(), [&](auto&& emit) {
-    for (const Face& f : mesh.faces)
-      for (int k = 0; k < 3; ++k) both_ways(f[k], f[(k + 1) % 3], emit);
-    for (const Edge& e : mesh.loose_edges) both_ways(e[0], e[1], emit);
-  });
+  const std::size_t faces = mesh.faces.size();
+  mesh.one_ring = unsorted_rows(mesh.positions.size(), faces + mesh.loose_edges.size(), context,
+                                [&](std::size_t s, auto&& emit) {
+                                  if (s >= faces) {
+                                    const Edge& e = mesh.loose_edges[s - faces];
+                                    return both_ways(e[0], e[1], emit);
+                                  }
+                                  const Face& f = mesh.faces[s];
+                                  for (int k = 0; k < 3; ++k) both_ways(f[k], f[(k + 1) % 3], emit);
+                                });
   sort_unique(mesh.one_ring, context);
 }
 
-Adjacency vertex_faces(const Mesh& mesh, const Context&) {
-  return rows_of(mesh.positions.size(), [&](auto&& emit) {
-    for (Index f = 0; f < mesh.faces.size(); ++f)
-      for (const Index v : mesh.faces[f]) emit(v, f);
+Adjacency vertex_faces(std::size_t n, const std::vector<Face>& faces, const Context& context) {
+  Adjacency rows = unsorted_rows(n, faces.size(), context, [&](std::size_t f, auto&& emit) {
+    for (const Index v : faces[f]) emit(v, Index(f));
   });
+  sort_rows(rows, context);
+  return rows;
+}
+
+Adjacency vertex_faces(const Mesh& mesh, const Context& context) {
+  return vertex_faces(mesh.positions.size(), mesh.faces, context);
 }
 
 std::vector<std::string> check(const Mesh& mesh) {

@@ -56,6 +56,9 @@ void rebuild_adjacency(Mesh& mesh, const Context& context);
 /// The faces around each vertex: rows of face indices, ascending.
 Adjacency vertex_faces(const Mesh& mesh, const Context& context);
 
+/// The same for bare faces over n vertices.
+Adjacency vertex_faces(std::size_t n, const std::vector<Face>& faces, const Context& context);
+
 /// What is wrong with the mesh's invariants, one line each; empty if nothing is.
 std::vector<std::string> check(const Mesh& mesh);
 

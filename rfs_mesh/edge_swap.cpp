@@ -1,0 +1,236 @@
+#include "rfsmooth/rfs_mesh/edge_swap.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cstring>
+#include <optional>
+
+#include <Eigen/Geometry>
+
+#include "rfsmooth/rfs_mesh/collect.h"
+#include "rfsmooth/rfs_mesh/measure.h"
+#include "rfsmooth/rfs_mesh/parallel.h"
+
+namespace rfsmooth::rfs_mesh {
+
+namespace {
+
+using Eigen::Vector3d;
+
+/// Faces f = abc and g = bad become adc and dbc (wound as f is, where f runs a -> b).
+struct Swap {
+  Index a, b, c, d;
+  Index f, g;
+  std::array<Index, 4> outer;  ///< faces across bc, ca, ad, db; kNone at a rim
+  float gain;
+};
+
+/// Exactly ordered by gain, then by the lower edge number; larger wins.
+std::uint64_t priority(float gain, std::size_t candidate) {
+  std::uint32_t bits = 0;  // positive floats compare like their bits
+  std::memcpy(&bits, &gain, sizeof bits);
+  return std::uint64_t(bits) << 32 | (0xffffffffu - std::uint32_t(candidate));
+}
+
+Index third(const Face& f, Index a, Index b) {
+  for (const Index v : f)
+    if (v != a && v != b) return v;
+  return kNone;
+}
+
+class Swapper {
+ public:
+  Swapper(const Mesh& mesh, const std::vector<Face>& faces, const SwapOptions& options,
+          const Context& context)
+      : at_(mesh.positions),
+        mesh_(mesh),
+        faces_(faces),
+        options_(options),
+        around_(vertex_faces(at_.size(), faces, context)) {}
+
+  /// The swaps of edges from a to higher vertices that pay.
+  template <class Emit>
+  void propose(Index a, Emit&& emit) const {
+    for (const Index f : around_[a])
+      for (const Index b : faces_[f]) {
+        if (b <= a) continue;
+        const Sides sides = faces_at(a, b);
+        if (sides.count != 2 || sides.face[0] != f) continue;  // each edge once: from its lower face
+        if (const auto swap = consider(a, b, f, sides.face[1])) emit(*swap);
+      }
+  }
+
+ private:
+  struct Sides {
+    std::array<Index, 2> face{kNone, kNone};
+    int count = 0;
+  };
+
+  Sides faces_at(Index a, Index b) const {
+    Sides sides;
+    for (const Index f : around_[a]) {
+      const Face& v = faces_[f];
+      if (v[0] != b && v[1] != b && v[2] != b) continue;
+      if (sides.count < 2) sides.face[std::size_t(sides.count)] = f;
+      ++sides.count;
+    }
+    return sides;
+  }
+
+  bool connected(Index c, Index d) const {
+    return std::any_of(around_[c].begin(), around_[c].end(),
+                       [&](Index f) {
+                         const Face& v = faces_[f];
+                         return v[0] == d || v[1] == d || v[2] == d;
+                       }) ||
+           is_loose(c, d);
+  }
+
+  bool is_loose(Index a, Index b) const {
+    return std::binary_search(mesh_.loose_edges.begin(), mesh_.loose_edges.end(),
+                              Edge{std::min(a, b), std::max(a, b)});
+  }
+
+  double angle(Index p, Index q, Index r, Index s) const {
+    return dihedral_angle(at_[p], at_[q], at_[r], at_[s]);
+  }
+
+  std::optional<Swap> consider(Index a, Index b, Index f, Index g) const {
+    const Index c = third(faces_[f], a, b), d = third(faces_[g], a, b);
+    if (c == d || connected(c, d) || is_loose(a, b)) return std::nullopt;
+    if (!keeps_shape(a, b, c, d)) return std::nullopt;
+    Swap swap{a, b, c, d, f, g, {}, 0};
+    double gain = angle(c, d, a, b) - angle(a, b, c, d);
+    // The four outer edges, the corner of the pair across each before and after.
+    const std::array<std::array<Index, 4>, 4> outer = {
+        {{b, c, a, d}, {c, a, b, d}, {a, d, b, c}, {d, b, a, c}}};
+    for (std::size_t k = 0; k < 4; ++k) {
+      const auto [p, q, before, after] = outer[k];
+      const Sides sides = faces_at(p, q);
+      if (sides.count > 2) return std::nullopt;
+      const Index own = k < 2 ? f : g;
+      swap.outer[k] = sides.count < 2 ? kNone : sides.face[sides.face[0] == own];
+      if (swap.outer[k] == kNone) continue;
+      const Index across = third(faces_[swap.outer[k]], p, q);
+      gain += angle(p, q, after, across) - angle(p, q, before, across);
+    }
+    swap.gain = float(gain);
+    if (!(gain > options_.least_gain)) return std::nullopt;
+    return swap;
+  }
+
+  /// Quality, and normals: neither new face may turn over against the old pair.
+  bool keeps_shape(Index a, Index b, Index c, Index d) const {
+    const Vector3d &A = at_[a], &B = at_[b], &C = at_[c], &D = at_[d];
+    const double old_quality = std::min(face_quality(A, B, C), face_quality(B, A, D));
+    const double new_quality = std::min(face_quality(A, D, C), face_quality(D, B, C));
+    if (new_quality < std::min(options_.quality, old_quality)) return false;
+    const Vector3d old_normal = (B - A).cross(C - A) + (A - B).cross(D - B);
+    return (D - A).cross(C - A).dot(old_normal) > 0 && (B - D).cross(C - D).dot(old_normal) > 0;
+  }
+
+  const Positions& at_;
+  const Mesh& mesh_;
+  const std::vector<Face>& faces_;
+  const SwapOptions& options_;
+  Adjacency around_;
+};
+
+template <class Body>
+void for_footprint(const Swap& swap, Body&& body) {
+  body(swap.f);
+  body(swap.g);
+  for (const Index o : swap.outer)
+    if (o != kNone) body(o);
+}
+
+void raise(std::atomic<std::uint64_t>& best, std::uint64_t to) {
+  std::uint64_t now = best.load(std::memory_order_relaxed);
+  while (now < to && !best.compare_exchange_weak(now, to, std::memory_order_relaxed)) {
+  }
+}
+
+/// The swaps that are the best one on all of their faces: no two share a face.
+std::vector<Swap> independent(const std::vector<Swap>& swaps, std::size_t faces, const Context& context) {
+  std::vector<std::atomic<std::uint64_t>> best(faces);
+  for_each_index(context, swaps.size(), [&](std::size_t s) {
+    for_footprint(swaps[s], [&](Index f) { raise(best[f], priority(swaps[s].gain, s)); });
+  });
+  return collect<Swap>(context, swaps.size(), [&](std::size_t s, auto&& emit) {
+    bool wins = true;
+    for_footprint(swaps[s], [&](Index f) { wins = wins && best[f].load() == priority(swaps[s].gain, s); });
+    if (wins) emit(swaps[s]);
+  });
+}
+
+/// Two swaps far apart in the list of faces may want the same new edge; the first keeps it.
+void drop_repeated_diagonals(std::vector<Swap>& swaps, const Context& context) {
+  struct Diagonal {
+    Edge edge;
+    std::size_t swap;
+  };
+  std::vector<Diagonal> diagonals(swaps.size());
+  for (std::size_t s = 0; s < swaps.size(); ++s)
+    diagonals[s] = {{std::min(swaps[s].c, swaps[s].d), std::max(swaps[s].c, swaps[s].d)}, s};
+  parallel_sort(context, diagonals, [](const Diagonal& x, const Diagonal& y) {
+    return x.edge != y.edge ? x.edge < y.edge : x.swap < y.swap;
+  });
+  std::vector<char> repeated(swaps.size(), 0);
+  for (std::size_t k = 1; k < diagonals.size(); ++k)
+    repeated[diagonals[k].swap] = diagonals[k].edge == diagonals[k - 1].edge;
+  std::size_t kept = 0;
+  for (std::size_t s = 0; s < swaps.size(); ++s)
+    if (!repeated[s]) swaps[kept++] = swaps[s];
+  swaps.resize(kept);
+}
+
+/// Replaces corner `from` by `to`, keeping the place and so the winding.
+void replace_corner(Face& face, Index from, Index to) {
+  *std::find(face.begin(), face.end(), from) = to;
+}
+
+void apply(const std::vector<Swap>& swaps, std::vector<Face>& faces, const Context& context) {
+  for_each_index(context, swaps.size(), [&](std::size_t s) {
+    const Swap& swap = swaps[s];
+    Face first = faces[swap.f], second = first;
+    replace_corner(first, swap.b, swap.d);   // abc -> adc
+    replace_corner(second, swap.a, swap.d);  // abc -> dbc
+    faces[swap.f] = first;
+    faces[swap.g] = second;
+  });
+}
+
+}  // namespace
+
+std::size_t swap_edges(Mesh& mesh, const SwapOptions& options, const Context& context) {
+  std::vector<Face> faces = mesh.faces;
+  std::size_t made = 0;
+  for (int round = 0; round < options.rounds; ++round) {
+    const Swapper swapper(mesh, faces, options, context);
+    const auto candidates = collect<Swap>(
+        context, mesh.positions.size(), [&](std::size_t a, auto&& emit) { swapper.propose(Index(a), emit); },
+        256);
+    auto swaps = independent(candidates, faces.size(), context);
+    drop_repeated_diagonals(swaps, context);
+    if (swaps.empty()) break;
+    apply(swaps, faces, context);
+    made += swaps.size();
+  }
+  if (made == 0) return 0;
+  Mesh swapped;
+  swapped.faces = std::move(faces);
+  swapped.positions.swap(mesh.positions);
+  swapped.loose_edges.swap(mesh.loose_edges);
+  try {
+    rebuild_adjacency(swapped, context);
+  } catch (...) {
+    swapped.positions.swap(mesh.positions);
+    swapped.loose_edges.swap(mesh.loose_edges);
+    throw;
+  }
+  mesh = std::move(swapped);
+  return made;
+}
+
+}  // namespace rfsmooth::rfs_mesh

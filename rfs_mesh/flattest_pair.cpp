@@ -1,0 +1,195 @@
+#include "rfsmooth/rfs_mesh/flattest_pair.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <tuple>
+
+#include "rfsmooth/rfs_mesh/collect.h"
+#include "rfsmooth/rfs_mesh/measure.h"
+#include "rfsmooth/rfs_mesh/parallel.h"
+
+namespace rfsmooth::rfs_mesh {
+
+namespace {
+
+/// Rounds of mark-then-delete: the first decides nearly everything, the next two give room that freed edges
+/// leave back to faces that lost only to deleted ones.
+constexpr int kRounds = 3;
+
+/// Dihedral angles count as equal within this step (10 degrees): on a smooth surface the flattest of several
+/// pairs is an accident of sampling, and votes and quality choose better.
+constexpr double kAngleStep = 0.17453292519943295;
+
+enum class State : std::uint8_t { contender, kept, out };
+
+/// A face at an edge: across it lies `opposite`.
+struct Wing {
+  Index other_end, face, opposite;
+};
+
+/// How good it is to have a pair of faces (or one face) at an edge; larger is better.
+struct Merit {
+  int flatness = std::numeric_limits<int>::min();  ///< 0 = flat, -1, -2 ... ever more folded
+  int votes = 0;
+  double quality = 0;
+  Index first = kNone, second = kNone;  // the lower indices win the last tie
+  friend bool operator<(const Merit& a, const Merit& b) {
+    return std::tie(a.flatness, a.votes, a.quality, b.first, b.second) <
+           std::tie(b.flatness, b.votes, b.quality, a.first, a.second);
+  }
+};
+
+class Chooser {
+ public:
+  Chooser(const Positions& at, const ProposedFaces& proposed, const Context& context)
+      : at_(at),
+        proposed_(proposed),
+        context_(context),
+        around_(vertex_faces(at.size(), proposed.faces, context)),
+        quality_(proposed.faces.size()),
+        state_(proposed.faces.size(), State::contender),
+        lost_(proposed.faces.size()) {
+    for_each_index(context, quality_.size(), [&](std::size_t f) {
+      const Face& v = proposed.faces[f];
+      quality_[f] = float(face_quality(at[v[0]], at[v[1]], at[v[2]]));
+    });
+  }
+
+  void round() {
+    for_blocks(context_, at_.size(), 512, [&](std::size_t begin, std::size_t end) {
+      std::vector<Wing> wings;
+      for (std::size_t a = begin; a < end; ++a) decide_edges_of(Index(a), wings);
+    });
+    for_each_index(context_, state_.size(), [&](std::size_t f) {
+      const std::uint8_t lost = lost_[f].exchange(0, std::memory_order_relaxed);
+      if (state_[f] != State::contender) return;
+      state_[f] = lost == 0 ? State::kept : lost == kNoRoom ? State::out : State::contender;
+    });
+  }
+
+  bool kept(std::size_t f) const { return state_[f] == State::kept; }
+
+ private:
+  static constexpr std::uint8_t kBeaten = 1, kNoRoom = 2;
+
+  /// Every edge from a to a higher index.
+  void decide_edges_of(Index a, std::vector<Wing>& wings) {
+    wings.clear();
+    for (const Index f : around_[a]) {
+      if (state_[f] == State::out) continue;
+      const Face& v = proposed_.faces[f];
+      for (int k = 0; k < 3; ++k) {
+        const Index b = v[std::size_t(k)], c = v[std::size_t(k + 1) % 3], d = v[std::size_t(k + 2) % 3];
+        if (b == a) {
+          if (c > a) wings.push_back({c, f, d});
+          if (d > a) wings.push_back({d, f, c});
+        }
+      }
+    }
+    std::sort(wings.begin(), wings.end(), [](const Wing& x, const Wing& y) {
+      return std::tie(x.other_end, x.face) < std::tie(y.other_end, y.face);
+    });
+    for (std::size_t first = 0, last = 0; first < wings.size(); first = last) {
+      while (last < wings.size() && wings[last].other_end == wings[first].other_end) ++last;
+      if (last - first > 2) decide_edge(a, wings.data() + first, last - first);
+    }
+  }
+
+  void decide_edge(Index a, const Wing* wings, std::size_t count) {
+    std::size_t kept_count = 0;
+    const Wing* kept_wing = nullptr;
+    for (std::size_t i = 0; i < count; ++i)
+      if (kept(wings[i].face)) {
+        ++kept_count;
+        kept_wing = &wings[i];
+      }
+    const auto [first, second] = kept_count == 0   ? best_pair(a, wings, count)
+                                 : kept_count == 1 ? best_with(a, *kept_wing, wings, count)
+                                                   : std::pair<Index, Index>{kNone, kNone};
+    const std::uint8_t mark = kept_count >= 2 ? kNoRoom : kBeaten;
+    for (std::size_t i = 0; i < count; ++i) {
+      const Index f = wings[i].face;
+      if (f != first && f != second && !kept(f)) raise(lost_[f], mark);
+    }
+  }
+
+  /// Marks only grow, so the order in which threads raise them does not matter.
+  static void raise(std::atomic<std::uint8_t>& mark, std::uint8_t to) {
+    std::uint8_t now = mark.load(std::memory_order_relaxed);
+    while (now < to && !mark.compare_exchange_weak(now, to, std::memory_order_relaxed)) {
+    }
+  }
+
+  Merit merit(Index a, const Wing& x, const Wing& y) const {
+    const double angle = dihedral_angle(at_[a], at_[x.other_end], at_[x.opposite], at_[y.opposite]);
+    return {-int((M_PI - angle) / kAngleStep), proposed_.votes[x.face] + proposed_.votes[y.face],
+            double(quality_[x.face]) + double(quality_[y.face]), std::min(x.face, y.face),
+            std::max(x.face, y.face)};
+  }
+
+  std::pair<Index, Index> best_pair(Index a, const Wing* wings, std::size_t count) const {
+    Merit best;
+    for (std::size_t i = 0; i < count; ++i)
+      for (std::size_t j = i + 1; j < count; ++j)
+        if (const Merit m = merit(a, wings[i], wings[j]); best < m) best = m;
+    return {best.first, best.second};
+  }
+
+  std::pair<Index, Index> best_with(Index a, const Wing& kept_wing, const Wing* wings,
+                                    std::size_t count) const {
+    Merit best;
+    for (std::size_t i = 0; i < count; ++i)
+      if (wings[i].face != kept_wing.face)
+        if (const Merit m = merit(a, kept_wing, wings[i]); best < m) best = m;
+    return {best.first, best.second};
+  }
+
+  const Positions& at_;
+  const ProposedFaces& proposed_;
+  const Context& context_;
+  Adjacency around_;
+  std::vector<float> quality_;
+  std::vector<State> state_;
+  std::vector<std::atomic<std::uint8_t>> lost_;
+};
+
+}  // namespace
+
+ProposedFaces proposed_faces(const std::vector<Umbrella>& umbrellas, const Context& context) {
+  struct Vote {
+    Face face;
+    std::uint8_t votes;
+  };
+  const auto votes = collect<Vote>(context, umbrellas.size(), [&](std::size_t i, auto&& emit) {
+    const Index v = Index(i);
+    const Umbrella& umbrella = umbrellas[i];
+    for (int k = 0; k < umbrella.count; ++k) {
+      if (!umbrella.spans(k)) continue;
+      const Index a = umbrella.ribs[std::size_t(k)], b = umbrella.next(k);
+      const bool by_a = umbrellas[a].spans(v, b), by_b = umbrellas[b].spans(v, a);
+      if ((by_a && a < v) || (by_b && b < v)) continue;  // a lower corner speaks for this face
+      emit({{v, a, b}, std::uint8_t(1 + by_a + by_b)});
+    }
+  });
+  ProposedFaces proposed;
+  proposed.faces.resize(votes.size());
+  proposed.votes.resize(votes.size());
+  for_each_index(context, votes.size(), [&](std::size_t f) {
+    proposed.faces[f] = votes[f].face;
+    proposed.votes[f] = votes[f].votes;
+  });
+  return proposed;
+}
+
+std::vector<Face> keep_flattest_pairs(const Positions& at, const ProposedFaces& proposed,
+                                      const Context& context) {
+  Chooser chooser(at, proposed, context);
+  for (int round = 0; round < kRounds; ++round) chooser.round();
+  return collect<Face>(context, proposed.faces.size(), [&](std::size_t f, auto&& emit) {
+    if (chooser.kept(f)) emit(proposed.faces[f]);
+  });
+}
+
+}  // namespace rfsmooth::rfs_mesh

@@ -1,0 +1,60 @@
+/// The surface as one point sees it: a robust local quadric, and from it the normal, the curvature, how far
+/// the points scatter about it, and the point's shadow on it.
+///
+/// In the frame (t1, t2, n) at point p the neighbours d_j = x_j - p are fitted by
+///     z = c0 + c1 u + c2 v + c3 u^2 + c4 u v + c5 v^2,
+/// weighted by (1 - (|d|/R)^2)^2 (R a little beyond the farthest neighbour) and, in a second and third round,
+/// by Tukey's biweight of the residuals, so that a second sheet, a mixed pixel or a stray does not tilt it.
+/// Paper: none; Vollmer et al. (section 7) test angles and face quality on the points themselves, which fails
+/// once noise exceeds about half the spacing. The shadow is what the connectivity tests then look at.
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "rfsmooth/rfs_mesh/context.h"
+#include "rfsmooth/rfs_mesh/neighbors.h"
+#include "rfsmooth/rfs_mesh/points.h"
+
+namespace rfsmooth::rfs_mesh {
+
+struct LocalSurface {
+  Eigen::Vector3d normal;  ///< unit; its side is arbitrary
+  Eigen::Vector3d shadow;  ///< the point moved along the normal onto its quadric, same frame as the points
+  double curvature = 0;    ///< the larger absolute principal curvature, 1 / world unit
+  double residual = 0;     ///< sqrt(weighted RSS / degrees of freedom): local noise, world units
+};
+
+/// Spacing and noise of a cloud.
+struct NoiseLevel {
+  double spacing = 0;         ///< h: mean distance to the nearest neighbour, world units
+  double sigma = 0;           ///< standard deviation of the noise along the normal, world units
+  std::vector<double> field;  ///< n: each point's own residual, unsmoothed, world units
+};
+
+/// Fits at `p` to `count` neighbours (p itself counts as one more and is added here). With fewer than 8
+/// neighbours the quadric becomes a plane; with fewer than 3, or collinear ones, the normal is some unit
+/// vector perpendicular to what there is and the shadow is p. O(count).
+LocalSurface fit_local_surface(const Positions& points, const Eigen::Vector3d& p, const Index* neighbours,
+                               std::size_t count);
+
+/// n local surfaces from the rows of `near`. O(n k), parallel, deterministic.
+std::vector<LocalSurface> local_surfaces(const Positions& points, const NeighborTable& near,
+                                         const Context& context);
+
+/// n local surfaces from the `count` nearest neighbours of each point, found on the way: for neighbourhoods
+/// too wide to keep in a table.
+std::vector<LocalSurface> wide_local_surfaces(const Positions& points, const SpatialIndex& index,
+                                              std::size_t count, const Context& context);
+
+/// Mean distance to the nearest neighbour; 0 for fewer than two points.
+double mean_spacing(const Positions& points, const NeighborTable& near, const Context& context);
+
+/// The noise of the whole cloud: residuals of quadrics through m = 24, 48, ... 384 neighbours at up to 1,000
+/// points spread over the cloud, the lower quartile of them (the flat places), at the smallest m whose answer
+/// the next does not raise by more than a fifth. A neighbourhood narrower than the noise is a ball inside a
+/// thick slab and tells too little, so its answer grows with m. O(1) in n after the index.
+double noise_sigma(const Positions& points, const SpatialIndex& index, const Context& context);
+
+}  // namespace rfsmooth::rfs_mesh

@@ -1,0 +1,64 @@
+/// What a mesh measures: areas, volume, edge lengths, angles. All in world units (squared, cubed) and
+/// radians.
+///
+/// Every function reads the mesh it is given and nothing else; degenerate faces count as zero area and have a
+/// zero normal. Parallel, the same bits for any number of threads; O(n + m). Safe to call concurrently.
+/// Precondition of all of them: `check(mesh)` is empty.
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "rfsmooth/rfs_mesh/context.h"
+#include "rfsmooth/rfs_mesh/mesh.h"
+
+namespace rfsmooth::rfs_mesh {
+
+/// (b - a) x (c - a) of one face: twice its area, along its normal by the right-hand rule.
+Eigen::Vector3d face_cross(const Positions& at, const Face& face);
+
+/// Bank & Smith's face quality 4 sqrt(3) A / (l1^2 + l2^2 + l3^2): 1 for the equilateral triangle, 0 for a
+/// degenerate one; the same at every scale.
+double face_quality(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c);
+
+/// The angle in [0, pi] at edge pq between the half planes that hold r and s: pi where the two faces are
+/// flat, small where they fold onto each other. It needs no orientation. 0 if a face is degenerate.
+double dihedral_angle(const Eigen::Vector3d& p, const Eigen::Vector3d& q, const Eigen::Vector3d& r,
+                      const Eigen::Vector3d& s);
+
+/// m areas.
+std::vector<double> face_areas(const Mesh& mesh, const Context& context);
+
+/// m unit normals by the right-hand rule; zero for degenerate faces.
+Positions face_normals(const Mesh& mesh, const Context& context);
+
+/// n unit normals: the mean of the incident faces' normals, weighted by area; zero where there are none or
+/// they cancel. They agree across the mesh only if the faces' orientations do (orient.h).
+Positions vertex_normals(const Mesh& mesh, const Context& context);
+
+/// The total area of the faces.
+double surface_area(const Mesh& mesh, const Context& context);
+
+/// sum over faces of a . (b x c) / 6, about the centroid of the positions: the volume enclosed by a closed
+/// mesh with faces oriented outward (negative if inward). Meaningless on an open or unoriented mesh.
+double signed_volume(const Mesh& mesh, const Context& context);
+
+/// Mean length of the edges of the one-ring (faces' and loose edges); 0 without edges.
+double mean_edge_length(const Mesh& mesh, const Context& context);
+
+/// The sum of `dihedral_angle` over the edges with exactly two faces: what an edge swap never lowers
+/// (Vollmer et al. section 7).
+double dihedral_angle_sum(const Mesh& mesh, const Context& context);
+
+/// How the faces meet at the edges.
+struct EdgeCensus {
+  std::size_t loose = 0;     ///< edges of the one-ring without a face
+  std::size_t rim = 0;       ///< edges with one face
+  std::size_t inner = 0;     ///< edges with two faces
+  std::size_t crowded = 0;   ///< edges with more: none in an RFS-mesh
+  std::size_t faceless = 0;  ///< vertices without a face
+};
+EdgeCensus edge_census(const Mesh& mesh, const Context& context);
+
+}  // namespace rfsmooth::rfs_mesh

@@ -1,0 +1,73 @@
+/// The room's front door: from points to the RFS-mesh ("replacement for surface"), the rough mesh on which
+/// the noise is smoothed away (Vollmer et al. section 7):
+///
+///   points -> neighbours, local surfaces, noise -> EMST -> SDG -> umbrellas -> faces -> RFS-mesh
+///
+/// "The only requirement is that the neighbourhoods on the reconstructed mesh are about the same as they are
+/// on the underlying real surface": faces may cross and overlap, there may be holes; the mesh is not manifold
+/// and is not meant to be. At most two faces meet at an edge, and no edge is without a face, except the SDG
+/// edges of vertices that no face reaches (`Mesh::loose_edges`).
+///
+/// Differs from the paper: connectivity is tested on the shadow of the cloud (local_surface.h) where noise
+/// exceeds a share of the spacing, or on positions the caller gives; thresholds are ours (SdgOptions,
+/// UmbrellaOptions).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "rfsmooth/rfs_mesh/context.h"
+#include "rfsmooth/rfs_mesh/local_surface.h"
+#include "rfsmooth/rfs_mesh/mesh.h"
+#include "rfsmooth/rfs_mesh/options.h"
+#include "rfsmooth/rfs_mesh/sdg.h"
+#include "rfsmooth/rfs_mesh/umbrella.h"
+
+namespace rfsmooth::rfs_mesh {
+
+struct ConnectOptions {
+  int neighbours = 24;       ///< nearest neighbours looked at; about two and a half rings of a surface mesh
+  double shadow_from = 0.3;  ///< noise / spacing from which tests are made on the shadow
+  SdgOptions sdg;
+  UmbrellaOptions umbrella;
+
+  template <class Self, class Visit>
+  static void describe(Self& self, Visit&& visit) {
+    visit(OptionInfo{"connect-neighbours", "nearest neighbours looked at", "points", 6, 200},
+          self.neighbours);
+    visit(OptionInfo{"connect-shadow-from", "noise from which connectivity is tested on the shadow",
+                     "x spacing", 0, 1e9},
+          self.shadow_from);
+    SdgOptions::describe(self.sdg, visit);
+    UmbrellaOptions::describe(self.umbrella, visit);
+  }
+};
+
+/// How long a step took.
+struct Seconds {
+  std::string stage;
+  double seconds = 0;
+};
+
+/// Everything the stages made. All of it refers to the points by index.
+struct Connection {
+  Mesh mesh;                           ///< the RFS-mesh over the points as given
+  std::vector<Edge> emst;              ///< n - 1, ascending by length
+  std::vector<Edge> sdg;               ///< ascending; without the bridges
+  std::vector<Edge> bridges;           ///< tree edges that are not neighbourhood: not in mesh.one_ring
+  std::vector<LocalSurface> surfaces;  ///< n; the shadow of point i is surfaces[i].shadow
+  NoiseLevel noise;
+  std::size_t faceless = 0;      ///< vertices without a face
+  bool on_shadow = false;        ///< whether the tests were made on the shadow
+  std::vector<Seconds> seconds;  ///< in the order done
+};
+
+/// Connects n points (finite, in any frame; distinct where `make_working_cloud` made them, but coincident
+/// ones do no harm). With `guide`, n smoothed positions of the same points: all tests, the EMST too, are made
+/// on them, taken as free of noise; the mesh still has `points` as its positions. Any n, zero too, has a
+/// result. Errors: usage (options), out_of_memory, cancelled. \throw std::invalid_argument if `guide` has
+/// another size. O(n log n); parallel, the same bytes for any number of threads. Thread safe.
+Result<Connection> connect(const Positions& points, const ConnectOptions& options, const Context& context,
+                           const Positions* guide = nullptr);
+
+}  // namespace rfsmooth::rfs_mesh

@@ -1,0 +1,161 @@
+#include "rfsmooth/rfs_mesh/umbrella.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "rfsmooth/rfs_mesh/measure.h"
+#include "rfsmooth/rfs_mesh/parallel.h"
+#include "rfsmooth/rfs_mesh/tangent_plane.h"
+
+namespace rfsmooth::rfs_mesh {
+
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr std::size_t kMostCandidates = 96;  ///< SDG neighbours and nearest ones together
+
+struct Candidate {
+  Index point;
+  double squared_length;
+  friend bool operator<(const Candidate& a, const Candidate& b) {
+    return a.squared_length != b.squared_length ? a.squared_length < b.squared_length : a.point < b.point;
+  }
+  friend bool operator==(const Candidate& a, const Candidate& b) { return a.point == b.point; }
+};
+
+struct Candidates {
+  std::array<Candidate, kMostCandidates> items;
+  std::size_t count = 0;
+  void add(Index point, double squared_length) {
+    if (count < items.size()) items[count++] = {point, squared_length};
+  }
+  auto begin() { return items.begin(); }
+  auto end() { return items.begin() + std::ptrdiff_t(count); }
+  void sort_unique() {
+    std::sort(begin(), end());
+    count = std::size_t(std::unique(begin(), end()) - begin());
+  }
+};
+
+class Opener {
+ public:
+  Opener(const Terrain& terrain, const Adjacency& graph, const UmbrellaOptions& options)
+      : terrain_(terrain),
+        at_(terrain.at),
+        graph_(graph),
+        options_(options),
+        cos_normal_(std::cos(radians(options.normal_angle))) {}
+
+  Umbrella open(Index v) const {
+    Umbrella umbrella = choose_ribs(v);
+    span_faces(v, umbrella);
+    return umbrella;
+  }
+
+ private:
+  double squared(Index a, Index b) const { return (at_[a] - at_[b]).squaredNorm(); }
+
+  /// The 90th percentile of the SDG edges of v and of its neighbours.
+  double long_edge(Index v) const {
+    std::array<double, kMostCandidates> lengths;
+    std::size_t count = 0;
+    const auto add = [&](Index a, Index b) {
+      if (count < lengths.size()) lengths[count++] = squared(a, b);
+    };
+    for (const Index a : graph_[v]) {
+      add(v, a);
+      for (const Index b : graph_[a])
+        if (b != v) add(a, b);
+    }
+    if (count == 0) return 0;
+    const auto nth = lengths.begin() + std::ptrdiff_t(count * 9 / 10);
+    std::nth_element(lengths.begin(), nth, lengths.begin() + std::ptrdiff_t(count));
+    return std::sqrt(*nth);
+  }
+
+  /// The SDG neighbours of v and k_v nearest ones, nearest first.
+  Candidates candidates(Index v) const {
+    Candidates found;
+    for (const Index q : graph_[v]) found.add(q, squared(v, q));
+    const double radius = options_.fill * long_edge(v);
+    int nearest = 0;
+    for (const Index q : terrain_.near[v]) {
+      const double d = squared(v, q);
+      if (nearest >= options_.most || (nearest >= options_.fewest && d > radius * radius)) break;
+      found.add(q, d);
+      ++nearest;
+    }
+    found.sort_unique();
+    return found;
+  }
+
+  bool steep(Index v, const Vector3d& d) const {
+    const double rise = std::abs(terrain_.surfaces[v].normal.dot(d));
+    const double run = std::sqrt(std::max(0.0, d.squaredNorm() - rise * rise));
+    return rise > options_.steepness * run + terrain_.noise;
+  }
+
+  bool along_surface(Index v, Index q) const {
+    const Vector3d d = at_[q] - at_[v];
+    return std::abs(terrain_.surfaces[v].normal.dot(terrain_.surfaces[q].normal)) >= cos_normal_ &&
+           !steep(v, d) && !steep(q, d);
+  }
+
+  Umbrella choose_ribs(Index v) const {
+    const TangentPlane plane(terrain_.surfaces[v].normal);
+    struct Rib {
+      double angle;
+      Index point;
+    };
+    std::array<Rib, kMostRibs> ribs;
+    std::size_t count = 0;
+    const double apart = radians(options_.rib_angle);
+    for (const Candidate& c : candidates(v)) {
+      if (count == ribs.size()) break;
+      if (!(c.squared_length > 0) || !along_surface(v, c.point)) continue;
+      const double angle = plane.angle(at_[c.point] - at_[v]);
+      const bool taken = std::any_of(ribs.begin(), ribs.begin() + std::ptrdiff_t(count),
+                                     [&](const Rib& r) { return between(r.angle, angle) < apart; });
+      if (!taken) ribs[count++] = {angle, c.point};
+    }
+    std::sort(ribs.begin(), ribs.begin() + std::ptrdiff_t(count), [](const Rib& a, const Rib& b) {
+      return a.angle != b.angle ? a.angle < b.angle : a.point < b.point;
+    });
+    Umbrella umbrella;
+    umbrella.count = std::uint8_t(count);
+    for (std::size_t k = 0; k < count; ++k) umbrella.ribs[k] = ribs[k].point;
+    return umbrella;
+  }
+
+  void span_faces(Index v, Umbrella& umbrella) const {
+    if (umbrella.count < 2) return;
+    const TangentPlane plane(terrain_.surfaces[v].normal);
+    const double widest = radians(options_.face_angle);
+    for (int k = 0; k < umbrella.count; ++k) {
+      const Index a = umbrella.ribs[std::size_t(k)], b = umbrella.next(k);
+      const double gap = turn(plane.angle(at_[a] - at_[v]), plane.angle(at_[b] - at_[v]));
+      if (gap > 0 && gap <= widest && face_quality(at_[v], at_[a], at_[b]) >= options_.quality)
+        umbrella.faces = std::uint16_t(umbrella.faces | 1u << k);
+    }
+  }
+
+  const Terrain& terrain_;
+  const Positions& at_;
+  const Adjacency& graph_;
+  const UmbrellaOptions& options_;
+  double cos_normal_;
+};
+
+}  // namespace
+
+std::vector<Umbrella> open_umbrellas(const Terrain& terrain, const Adjacency& graph,
+                                     const UmbrellaOptions& options, const Context& context) {
+  std::vector<Umbrella> umbrellas(terrain.at.size());
+  const Opener opener(terrain, graph, options);
+  for_each_index(
+      context, umbrellas.size(), [&](std::size_t v) { umbrellas[v] = opener.open(Index(v)); }, 256);
+  return umbrellas;
+}
+
+}  // namespace rfsmooth::rfs_mesh

@@ -1,0 +1,187 @@
+#include "rfsmooth/rfs_mesh/rfs_mesh.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include "rfsmooth/rfs_mesh/measure.h"
+
+#include "support/awkward_clouds.h"
+#include "support/shapes.h"
+
+using namespace rfsmooth;
+using namespace rfsmooth::rfs_mesh;
+
+namespace {
+
+Connection connected(const Positions& points, int threads = 0) {
+  Context context;
+  context.threads = threads;
+  return connect(points, ConnectOptions{}, context).value();
+}
+
+/// What holds of every connection, whatever the points.
+void expect_sound(const Connection& c, std::size_t n) {
+  EXPECT_EQ(c.mesh.positions.size(), n);
+  EXPECT_TRUE(check(c.mesh).empty());
+  EXPECT_EQ(c.emst.size(), n == 0 ? 0 : n - 1);
+  EXPECT_EQ(c.surfaces.size(), n);
+  EXPECT_TRUE(std::is_sorted(c.sdg.begin(), c.sdg.end()));
+  const EdgeCensus census = edge_census(c.mesh, {});
+  EXPECT_EQ(census.crowded, 0u) << "an edge has more than two faces";
+  EXPECT_EQ(census.loose, c.mesh.loose_edges.size()) << "an edge without a face is not listed as loose";
+  EXPECT_EQ(census.faceless, c.faceless);
+  for (const LocalSurface& s : c.surfaces) {
+    ASSERT_TRUE(s.normal.allFinite() && s.shadow.allFinite() && std::isfinite(s.residual));
+    ASSERT_NEAR(s.normal.norm(), 1, 1e-9);
+  }
+}
+
+/// Whether edges join all n vertices.
+bool joins_all(std::size_t n, const std::vector<Edge>& edges, const std::vector<Edge>& more) {
+  std::vector<Index> root(n);
+  std::iota(root.begin(), root.end(), 0);
+  const auto find = [&](Index v) {
+    while (root[v] != v) v = root[v] = root[root[v]];
+    return v;
+  };
+  std::size_t components = n;
+  for (const auto* list : {&edges, &more})
+    for (const Edge& e : *list)
+      if (const Index a = find(e[0]), b = find(e[1]); a != b) {
+        root[a] = b;
+        --components;
+      }
+  return components <= 1;
+}
+
+class CleanShape : public testing::TestWithParam<test::Shape> {};
+
+void expect_papers_proportions(const test::Shape& shape, const Positions& points) {
+  const Connection c = connected(points);
+  expect_sound(c, points.size());
+  const double n = double(points.size());
+  EXPECT_TRUE(joins_all(points.size(), c.sdg, c.bridges));
+  EXPECT_GE(double(c.sdg.size()), 1.4 * n);
+  EXPECT_LE(double(c.sdg.size()), 2.8 * n);
+  EXPECT_GE(double(c.mesh.faces.size()), 1.6 * n);
+  EXPECT_LE(double(c.mesh.faces.size()), 2.4 * n);
+  // A rim costs edges: even a valid triangulation of an open sheet has fewer than three per point.
+  EXPECT_GE(double(c.mesh.edge_count()), (shape.name == "plane" ? 2.9 : 3.0) * n);
+  EXPECT_LE(double(c.mesh.edge_count()), 5.0 * n);
+  EXPECT_LT(double(c.faceless), 0.01 * n);
+}
+
+TEST_P(CleanShape, ProportionsOfThePaperOnRandomPoints) {
+  expect_papers_proportions(GetParam(), test::random_points(GetParam(), 8000, 3));
+}
+
+TEST_P(CleanShape, ProportionsOfThePaperOnPoissonDiskPoints) {
+  expect_papers_proportions(GetParam(), test::poisson_points(GetParam(), 8000, 3));
+}
+
+TEST_P(CleanShape, SameBytesForAnyNumberOfThreads) {
+  const Positions points = test::random_points(GetParam(), 4000, 5);
+  const Connection one = connected(points, 1);
+  for (const int threads : {2, 4, 7}) {
+    const Connection many = connected(points, threads);
+    EXPECT_EQ(one.mesh.faces, many.mesh.faces);
+    EXPECT_EQ(one.mesh.loose_edges, many.mesh.loose_edges);
+    EXPECT_EQ(one.mesh.one_ring.items, many.mesh.one_ring.items);
+    EXPECT_EQ(one.sdg, many.sdg);
+    EXPECT_EQ(one.noise.sigma, many.noise.sigma);
+    EXPECT_EQ(one.noise.spacing, many.noise.spacing);
+    for (std::size_t i = 0; i < points.size(); ++i)
+      ASSERT_TRUE(one.surfaces[i].shadow == many.surfaces[i].shadow);
+  }
+}
+
+double share_in_common(const std::vector<Face>& a, const std::vector<Face>& b) {
+  const auto sorted = [](std::vector<Face> faces) {
+    for (Face& f : faces) std::sort(f.begin(), f.end());
+    std::sort(faces.begin(), faces.end());
+    return faces;
+  };
+  const auto x = sorted(a), y = sorted(b);
+  std::vector<Face> both;
+  std::set_intersection(x.begin(), x.end(), y.begin(), y.end(), std::back_inserter(both));
+  return double(both.size()) / double(std::max(x.size(), y.size()));
+}
+
+TEST_P(CleanShape, RigidMotionAndScaleMakeTheSameMesh) {
+  const Positions points = test::random_points(GetParam(), 4000, 7);
+  const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()).matrix();
+  Positions moved = points;
+  for (auto& p : moved) p = 250 * (turn * p) + Eigen::Vector3d(10, -20, 30);
+  const Connection here = connected(points), there = connected(moved);
+  EXPECT_NEAR(there.noise.spacing, 250 * here.noise.spacing, 1e-6 * there.noise.spacing);
+  // Rounding may decide where two faces or two distances all but tie, and only there.
+  EXPECT_GT(share_in_common(here.mesh.faces, there.mesh.faces), 0.99);
+  std::vector<Edge> both;
+  std::set_intersection(here.sdg.begin(), here.sdg.end(), there.sdg.begin(), there.sdg.end(),
+                        std::back_inserter(both));
+  EXPECT_GT(double(both.size()), 0.99 * double(here.sdg.size()));
+}
+
+INSTANTIATE_TEST_SUITE_P(Shapes, CleanShape, testing::ValuesIn(test::clean_shapes()), test::name_of_shape);
+
+class AwkwardConnection : public testing::TestWithParam<test::AwkwardCloud> {};
+
+TEST_P(AwkwardConnection, IsSound) {
+  const Positions& points = GetParam().points;
+  const auto c = connect(points, ConnectOptions{}, Context{});
+  ASSERT_TRUE(c.ok()) << c.error().message;
+  expect_sound(c.value(), points.size());
+  EXPECT_TRUE(joins_all(points.size(), c.value().sdg, c.value().bridges));
+}
+
+INSTANTIATE_TEST_SUITE_P(Clouds, AwkwardConnection, testing::ValuesIn(test::awkward_clouds(3000)),
+                         test::name_of_cloud);
+
+TEST(Connection, TwoSheetsApartAreJoinedByBridgesOnly) {
+  // Two parallel squares three spacings apart: neighbourhood may cross at the rim, nowhere else.
+  Positions points;
+  for (const double z : {0.0, 0.06})
+    for (Eigen::Vector3d p : test::poisson_points(test::plane(), 2500, z == 0 ? 1 : 2)) {
+      p[2] = z;
+      points.push_back(p);
+    }
+  const Connection c = connected(points);
+  for (const Face& f : c.mesh.faces)
+    EXPECT_TRUE(points[f[0]][2] == points[f[1]][2] && points[f[1]][2] == points[f[2]][2]);
+}
+
+TEST(Connection, GuideDecidesConnectivityAndPointsStay) {
+  const Positions clean = test::poisson_points(test::unit_sphere(), 3000, 1);
+  Positions noisy = clean;
+  std::mt19937_64 engine(4);
+  std::normal_distribution<double> normal(0, 0.1);
+  for (auto& p : noisy) p += Eigen::Vector3d(normal(engine), normal(engine), normal(engine));
+  const Connection guided = connect(noisy, ConnectOptions{}, Context{}, &clean).value();
+  const Connection ideal = connected(clean);
+  EXPECT_GT(share_in_common(guided.mesh.faces, ideal.mesh.faces), 0.95);
+  EXPECT_TRUE(guided.mesh.positions == noisy);
+}
+
+TEST(Connection, SaysWhatItCannotDo) {
+  ConnectOptions options;
+  options.umbrella.quality = 2;
+  const auto c = connect(Positions(3, Eigen::Vector3d::Zero()), options, Context{});
+  ASSERT_FALSE(c.ok());
+  EXPECT_EQ(c.error().code, ErrorCode::usage);
+  const Positions guide(2, Eigen::Vector3d::Zero());
+  EXPECT_THROW((void)connect(Positions(3, Eigen::Vector3d::Zero()), {}, {}, &guide), std::invalid_argument);
+}
+
+TEST(Connection, CanBeCancelled) {
+  std::atomic<bool> stop{true};
+  Context context;
+  context.stop = &stop;
+  const auto c = connect(test::random_points(test::plane(), 1000, 1), {}, context);
+  ASSERT_FALSE(c.ok());
+  EXPECT_EQ(c.error().code, ErrorCode::cancelled);
+}
+
+}  // namespace
