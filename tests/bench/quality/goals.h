@@ -1,0 +1,20 @@
+/// The project's goals for quality, each measured and printed with its limit.
+#pragma once
+
+#include "ours.h"
+#include "tables.h"
+
+namespace rfsmooth::bench {
+
+/// Ratios of means to the best peer's: all cells, without equalizing, along the ray, outliers, and at edges.
+void print_ratios(const Plan& plan, const Results& results, const std::string& ours,
+                  const std::string& without_equalizing);
+
+/// Runs on data of their own, after printing what each asks for.
+void print_no_harm(const Plan& plan, Cases& cases, const Variant& variant);  ///< clean clouds stay
+void print_thin_plate(const Plan& plan, const Variant& variant);             ///< two sides stay apart
+void print_open_sheet(const Plan& plan, const Variant& variant);             ///< the rim does not shrink
+void print_repeatability(const Plan& plan, Cases& cases,
+                         const Variant& variant);  ///< same bytes; cleaned stays
+
+}  // namespace rfsmooth::bench
