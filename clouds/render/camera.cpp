@@ -1,0 +1,67 @@
+#include "rfsmooth/clouds/render/camera.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+
+namespace rfsmooth::render {
+
+using Eigen::Vector3d;
+
+namespace {
+
+/// A look at the broad side, turned a little so that depth shows.
+Vector3d broadside(const Positions& points) {
+  Vector3d mean = Vector3d::Zero();
+  for (const Vector3d& p : points) mean += p / double(points.size());
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (const Vector3d& p : points) spread += (p - mean) * (p - mean).transpose() / double(points.size());
+  const Eigen::Matrix3d axes = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors();
+  Vector3d thin = axes.col(0), middle = axes.col(1), wide = axes.col(2);
+  // Eigenvectors have no sign: look from above and from the front (-y).
+  const Vector3d preferred(0.2, -0.5, 1);
+  for (Vector3d* axis : {&thin, &middle, &wide})
+    if (axis->dot(preferred) < 0) *axis = -*axis;
+  return -(thin + 0.45 * middle + 0.3 * wide).normalized();
+}
+
+std::pair<double, double> range_without_strays(std::vector<double> values) {
+  const auto cut = std::ptrdiff_t(values.size() / 500);
+  const auto low = values.begin() + cut, high = values.end() - 1 - cut;
+  std::nth_element(values.begin(), low, values.end());
+  const double least = *low;
+  std::nth_element(values.begin(), high, values.end());
+  return {least, *high};
+}
+
+}  // namespace
+
+Camera::Camera(const Positions& points, const CameraOptions& options, int width, int height)
+    : middle_(0.5 * width, 0.5 * height) {
+  toward_ = -options.direction.value_or(points.empty() ? Vector3d(0, 1, 0) : broadside(points)).normalized();
+  Vector3d up = options.up.value_or(std::abs(toward_[2]) > 0.98 ? Vector3d::UnitY() : Vector3d::UnitZ());
+  if (up.cross(toward_).norm() < 1e-6 * up.norm()) up = toward_.unitOrthogonal();
+  right_ = up.cross(toward_).normalized();
+  up_ = toward_.cross(right_);
+  if (points.empty()) return;
+  const auto range = [&](const Vector3d& axis) {
+    std::vector<double> along(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) along[i] = axis.dot(points[i]);
+    return range_without_strays(std::move(along));
+  };
+  const auto [left, right] = range(right_);
+  const auto [bottom, top] = range(up_);
+  const auto [back, front] = range(toward_);
+  constexpr double kMargin = 1.08;
+  const double wide = std::max(right - left, 1e-12), tall = std::max(top - bottom, 1e-12);
+  const double full = std::min(width / (kMargin * wide), height / (kMargin * tall));
+  scale_ = full * options.zoom;
+  const double x = 0.5 * (left + right) + (options.centre_x - 0.5) * width / full;
+  const double y = 0.5 * (bottom + top) - (options.centre_y - 0.5) * height / full;
+  centre_ = x * right_ + y * up_ + 0.5 * (back + front) * toward_;
+}
+
+}  // namespace rfsmooth::render

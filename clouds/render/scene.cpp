@@ -1,0 +1,146 @@
+#include "rfsmooth/clouds/render/scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+
+#include "rfsmooth/clouds/render/rasterizer.h"
+#include "rfsmooth/pipeline/io/mesh_file.h"
+#include "rfsmooth/rfs_mesh/neighbors.h"
+#include "rfsmooth/rfs_mesh/parallel.h"
+
+namespace rfsmooth::render {
+
+using Eigen::Vector3d;
+namespace io = pipeline::io;
+
+namespace {
+const Color kClay(0.93F, 0.89F, 0.83F);
+const Color kBackground(1, 1, 1);
+const Color kLine(0.16F, 0.20F, 0.28F);
+}  // namespace
+
+Scene make_scene(const io::Cloud& cloud, const Vector3d& origin, const Context& context) {
+  const std::vector<double> xyz = io::positions(cloud, context);
+  Scene scene;
+  std::vector<Index> index(xyz.size() / 3, kNone);
+  for (std::size_t i = 0; i < index.size(); ++i) {
+    const Vector3d p = Eigen::Map<const Vector3d>(xyz.data() + 3 * i);
+    if (!p.allFinite()) continue;
+    index[i] = Index(scene.points.size());
+    scene.points.push_back(p - origin);
+    scene.row.push_back(Index(i));
+  }
+  if (scene.points.empty()) throw Failure({ErrorCode::no_usable_points, "there is no finite point to draw"});
+  for (const rfs_mesh::Face& f : io::faces_of(cloud, context))
+    if (index[f[0]] != kNone && index[f[1]] != kNone && index[f[2]] != kNone)
+      scene.faces.push_back({index[f[0]], index[f[1]], index[f[2]]});
+  for (const rfs_mesh::Edge& e : io::edges_of(cloud, context))
+    if (index[e[0]] != kNone && index[e[1]] != kNone) scene.edges.push_back({index[e[0]], index[e[1]]});
+  scene.colors.assign(scene.points.size(), kClay);
+  return scene;
+}
+
+void estimate_surfels(Scene& scene, int neighbors, const Context& context) {
+  const std::size_t n = scene.points.size();
+  scene.normals.assign(n, Vector3d::UnitZ());
+  scene.reach.assign(n, 0);
+  const rfs_mesh::SpatialIndex index(scene.points, context);
+  const rfs_mesh::NeighborTable nearest = index.nearest(neighbors, context);
+  if (nearest.k < 3) return;
+  const auto sixth = std::size_t(std::min(nearest.k, 6) - 1);
+  for_each_index(context, n, [&](std::size_t i) {
+    const auto row = nearest[i];
+    Vector3d mean = scene.points[i];
+    for (const Index j : row) mean += scene.points[j];
+    mean /= double(row.size() + 1);
+    const auto product = [&](const Vector3d& p) -> Eigen::Matrix3d {
+      return (p - mean) * (p - mean).transpose();
+    };
+    Eigen::Matrix3d spread = product(scene.points[i]);
+    for (const Index j : row) spread += product(scene.points[j]);
+    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
+    solver.computeDirect(spread);
+    scene.normals[i] = solver.eigenvectors().col(0);
+    scene.reach[i] = 0.8 * (scene.points[row[sixth]] - scene.points[i]).norm();
+  });
+  std::vector<double> sorted = scene.reach;
+  std::nth_element(sorted.begin(), sorted.begin() + std::ptrdiff_t(n / 2), sorted.end());
+  const double median = sorted[n / 2];
+  for (double& r : scene.reach) r = r > 3 * median ? median : r;
+}
+
+void color_by(Scene& scene, const std::vector<double>& values, const ColorRange& range) {
+  const double span = range.high > range.low ? range.high - range.low : 1;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    scene.colors[i] = scale_color((values[i] - range.low) / span);
+}
+
+ColorRange usual_range(std::vector<double> values) {
+  values.erase(std::remove_if(values.begin(), values.end(), [](double v) { return !std::isfinite(v); }),
+               values.end());
+  if (values.empty()) return {};
+  std::sort(values.begin(), values.end());
+  const std::size_t cut = values.size() / 50;
+  return {values[cut], values[values.size() - 1 - cut]};
+}
+
+bool color_by_file(Scene& scene, const io::Cloud& cloud) {
+  const auto set = [&](auto&& color_of_row) {
+    for (std::size_t i = 0; i < scene.points.size(); ++i) scene.colors[i] = color_of_row(scene.row[i]);
+  };
+  const auto red = io::find_field(cloud, "red"), green = io::find_field(cloud, "green"),
+             blue = io::find_field(cloud, "blue");
+  if (red && green && blue) {
+    const std::vector<double> r = io::field_values(cloud, *red), g = io::field_values(cloud, *green),
+                              b = io::field_values(cloud, *blue);
+    const float full = io::is_float(cloud.points().fields[*red].type) ? 1.0F : 255.0F;
+    set([&](std::size_t i) { return Color(Color(float(r[i]), float(g[i]), float(b[i])) / full); });
+    return true;
+  }
+  for (const char* name : {"rgb", "rgba"}) {
+    const auto packed = io::find_field(cloud, name);
+    if (!packed) continue;
+    const bool as_float = cloud.points().fields[*packed].type == io::Scalar::float32;
+    const std::vector<double> values = io::field_values(cloud, *packed);
+    set([&](std::size_t i) {
+      auto bits = std::uint32_t(as_float ? 0 : values[i]);
+      const auto f = float(values[i]);
+      if (as_float) std::memcpy(&bits, &f, sizeof bits);
+      return Color(Color(float(bits >> 16 & 255), float(bits >> 8 & 255), float(bits & 255)) / 255.0F);
+    });
+    return true;
+  }
+  return false;
+}
+
+Image draw(const Scene& scene, const Camera& camera, int width, int height, const DrawOptions& options) {
+  constexpr int kSuper = 2;  // drawn at twice the size, for smooth edges
+  Rasterizer raster(kSuper * width, kSuper * height, kBackground);
+  Positions at(scene.points.size());
+  for (std::size_t i = 0; i < at.size(); ++i) at[i] = kSuper * camera.project(scene.points[i]);
+  const auto segment = [&](Index a, Index b, const Color& color) {
+    raster.line(at[a], at[b], kSuper * options.thickness, color);
+  };
+  for (const rfs_mesh::Face& f : scene.faces) {
+    const Vector3d normal =
+        (scene.points[f[1]] - scene.points[f[0]]).cross(scene.points[f[2]] - scene.points[f[0]]);
+    if (normal.squaredNorm() == 0) continue;
+    const Color color = (scene.colors[f[0]] + scene.colors[f[1]] + scene.colors[f[2]]) / 3;
+    raster.triangle(at[f[0]], at[f[1]], at[f[2]], shade(color, camera.turn(normal.normalized())));
+    if (!options.edges) continue;
+    for (std::size_t k = 0; k < 3; ++k) segment(f[k], f[(k + 1) % 3], kLine);
+  }
+  for (const rfs_mesh::Edge& e : scene.edges) segment(e[0], e[1], kLine);
+  for (std::size_t i = 0; i < scene.normals.size(); ++i) {
+    const Vector3d normal = camera.turn(scene.normals[i]);
+    raster.splat(at[i], normal, kSuper * camera.scale() * scene.reach[i] * options.splat_scale,
+                 shade(scene.colors[i], normal));
+  }
+  return shrink(raster.image(), kSuper);
+}
+
+}  // namespace rfsmooth::render

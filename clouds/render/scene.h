@@ -1,0 +1,58 @@
+/// What is drawn: a cloud or a mesh from a file, with what its colours and shading need.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "rfsmooth/clouds/render/camera.h"
+#include "rfsmooth/clouds/render/image.h"
+#include "rfsmooth/pipeline/io/cloud.h"
+#include "rfsmooth/rfs_mesh/context.h"
+#include "rfsmooth/rfs_mesh/mesh.h"
+
+namespace rfsmooth::render {
+
+struct Scene {
+  Positions points;        ///< the finite points around `origin`
+  std::vector<Index> row;  ///< of each point in the file
+  std::vector<rfs_mesh::Face> faces;
+  std::vector<rfs_mesh::Edge> edges;
+  Positions normals;  ///< per point: of the plane through its nearest neighbours; empty where faces are drawn
+  std::vector<double> reach;  ///< per point: radius of its splat, world units
+  std::vector<Color> colors;  ///< per point
+  bool is_mesh() const { return !faces.empty() || !edges.empty(); }
+};
+
+/// Finite points, faces and edges of a file, relative to `origin`. \throw Failure if there is no finite
+/// point.
+Scene make_scene(const pipeline::io::Cloud& cloud, const Eigen::Vector3d& origin, const Context& context);
+
+/// Normals from the `neighbors` nearest points each: few, so that noise shows as grain instead of being
+/// averaged away. Splats reach about as far as the sixth neighbour, at most three times the median (strays
+/// stay small).
+void estimate_surfels(Scene& scene, int neighbors, const Context& context);
+
+/// What a value means in a picture: `low` is dark blue, `high` yellow.
+struct ColorRange {
+  double low = 0, high = 1;
+};
+
+/// Colours from one value per point.
+void color_by(Scene& scene, const std::vector<double>& values, const ColorRange& range);
+
+/// The range of `values` without the outermost 2 % on either side.
+ColorRange usual_range(std::vector<double> values);
+
+/// The file's own colours (red green blue, or PCL's rgb / rgba); false if it has none.
+bool color_by_file(Scene& scene, const pipeline::io::Cloud& cloud);
+
+struct DrawOptions {
+  bool edges = false;      ///< draw the edges of faces too
+  double splat_scale = 1;  ///< of every splat's radius
+  double thickness = 1;    ///< of lines, pixels
+};
+
+/// Draws the scene as seen by `camera` in a picture of width x height.
+Image draw(const Scene& scene, const Camera& camera, int width, int height, const DrawOptions& options);
+
+}  // namespace rfsmooth::render

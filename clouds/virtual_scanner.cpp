@@ -1,0 +1,151 @@
+/// virtual_scanner: raw scans, even clouds and true meshes of shapes that are known exactly.
+#include <cstdio>
+#include <string>
+
+#include "rfsmooth/clouds/arguments.h"
+#include "rfsmooth/clouds/sampling.h"
+#include "rfsmooth/clouds/scan_files.h"
+#include "rfsmooth/clouds/scanner.h"
+#include "rfsmooth/pipeline/io/io.h"
+#include "rfsmooth/pipeline/io/mesh_file.h"
+
+namespace {
+
+using namespace rfsmooth;
+using namespace rfsmooth::clouds;
+namespace io = rfsmooth::pipeline::io;
+
+struct SampleOptions {
+  int points = 10000;
+  std::string sampling = "poisson_disk";
+  double noise = 0;
+
+  template <class Self, class Visit>
+  static void describe(Self& self, Visit&& visit) {
+    visit(OptionInfo{"points", "how many", "", 2, 1e7}, self.points);
+    visit(OptionInfo{"sampling", "even or at random", "", 0, 0, {"poisson_disk", "uniform"}}, self.sampling);
+    visit(OptionInfo{"noise", "isotropic Gaussian, standard deviation per coordinate", "x spacing", 0, 100},
+          self.noise);
+  }
+};
+
+struct TruthOptions {
+  double edge = 0.05;
+
+  template <class Self, class Visit>
+  static void describe(Self& self, Visit&& visit) {
+    visit(OptionInfo{"edge", "length of the mesh's edges", "world units", 1e-4, 10}, self.edge);
+  }
+};
+
+void must(const Result<Done>& result) {
+  if (!result) throw Failure(result.error());
+}
+
+struct Files {
+  std::string shape, out, truth;
+  std::string encoding;
+  bool force = false;
+
+  void write(const io::Cloud& cloud, const std::string& path) const {
+    io::WriteOptions options;
+    options.force = force;
+    options.encoding = io::encoding_by_name(encoding);
+    if (!encoding.empty() && !options.encoding)
+      throw Failure({ErrorCode::usage,
+                     "--encoding is '" + encoding +
+                         "'; it must be one of: ascii, binary, binary_big_endian, binary_compressed"});
+    must(io::write_cloud(cloud, path, options, {}));
+    std::printf("%s: %zu points\n", path.c_str(), cloud.size());
+  }
+};
+
+std::unique_ptr<Shape> find_shape(const std::string& name) {
+  std::unique_ptr<Shape> shape = make_shape(name);
+  if (shape != nullptr) return shape;
+  std::string message = "there is no shape '" + name + "'; there are:";
+  for (const std::string_view known : shape_names()) message += " " + std::string(known);
+  throw Failure({ErrorCode::usage, message});
+}
+
+void run_scan(const Files& files, const ScannerOptions& options, std::uint64_t seed, bool organised) {
+  Context context;
+  context.seed = seed;
+  const std::vector<Return> returns = scan(*find_shape(files.shape), options, context);
+  files.write(measured_cloud(returns, options, organised), files.out);
+  if (!files.truth.empty()) files.write(true_cloud(returns, options, organised), files.truth);
+}
+
+void run_sample(const Files& files, const SampleOptions& options, std::uint64_t seed) {
+  must(validate(options));
+  const Sampling sampling = options.sampling == "uniform" ? Sampling::uniform : Sampling::poisson_disk;
+  const Positions clean = sample(*find_shape(files.shape), std::size_t(options.points), seed, sampling);
+  Positions noisy = clean;
+  add_noise(noisy, options.noise * mean_spacing(clean), seed + 1);
+  files.write(plain_cloud(noisy), files.out);
+  if (!files.truth.empty()) files.write(plain_cloud(clean), files.truth);
+}
+
+void run_truth(const Files& files, const TruthOptions& options) {
+  must(validate(options));
+  const rfs_mesh::Mesh mesh = find_shape(files.shape)->mesh(options.edge);
+  files.write(io::make_mesh_file(mesh.positions, mesh.faces, {}), files.out);
+}
+
+int run(int argc, char** argv) {
+  CLI::App app("Raw scans, even clouds and true meshes of shapes that are known exactly.");
+  app.require_subcommand(1);
+  Files files;
+  std::uint64_t seed = 1;
+  bool organised = false;
+  ScannerOptions scanner;
+  SampleOptions sampler;
+  TruthOptions truth;
+
+  const auto command = [&](const std::string& name, const std::string& help, bool cloud) {
+    CLI::App* sub = app.add_subcommand(name, help);
+    sub->add_option("SHAPE", files.shape,
+                    "sphere, torus, cube, l_part, plate, wavy_sheet or two_density_sphere")
+        ->required();
+    sub->add_option("OUT", files.out, cloud ? "cloud to write: .ply, .pcd or .xyz" : "mesh to write: .ply")
+        ->required();
+    sub->add_flag("--force", files.force, "replace existing files");
+    if (!cloud) return sub;
+    sub->add_option("--truth", files.truth, "also write the clean cloud, in the same order");
+    sub->add_option("--seed", seed, "of the random numbers: the same seed gives the same bytes")
+        ->capture_default_str();
+    sub->add_option("--encoding", files.encoding, "ascii | binary | binary_big_endian | binary_compressed");
+    return sub;
+  };
+  CLI::App* scan_command =
+      command("scan", "Scan a shape from several viewpoints, with all that goes wrong.", true);
+  bind(*scan_command, scanner);
+  scan_command->add_flag("--organised", organised, "keep the grid of rays, NaN where nothing was hit");
+  CLI::App* sample_command = command("sample", "Spread points over a shape and add isotropic noise.", true);
+  bind(*sample_command, sampler);
+  CLI::App* truth_command = command("truth", "Write the shape itself as a mesh.", false);
+  bind(*truth_command, truth);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : int(ErrorCode::usage);
+  }
+  if (*scan_command) run_scan(files, scanner, seed, organised);
+  if (*sample_command) run_sample(files, sampler, seed);
+  if (*truth_command) run_truth(files, truth);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const rfsmooth::Failure& failure) {
+    std::fprintf(stderr, "virtual_scanner: %s\n", failure.what());
+    return int(failure.error.code);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "virtual_scanner: %s\n", error.what());
+    return 1;
+  }
+}
