@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "rfsmooth/rfs_mesh/leaf_neighbors.h"
 #include "rfsmooth/rfs_mesh/parallel.h"
 
 namespace rfsmooth::rfs_mesh {
@@ -95,11 +96,21 @@ NeighborTable SpatialIndex::nearest(int k, const Context& context) const {
   table.k = int(std::min(std::size_t(k), points_.size() - 1));
   const auto width = std::size_t(table.k);
   table.items.resize(points_.size() * width);
-  for_blocks(context, points_.size(), 256, [&](std::size_t begin, std::size_t end) {
+  constexpr std::size_t kGrain = 64;  // leaves
+  for_blocks(context, tree_.leaf_count(), kGrain, [&](std::size_t begin, std::size_t end) {
+    LeafNeighbors together(tree_, width);
     std::vector<Neighbor> found;
-    for (std::size_t i = begin; i < end; ++i) {
-      find_nearest(tree_, points_[i], Index(i), width, found);
-      for (std::size_t j = 0; j < width; ++j) table.items[i * width + j] = found[j].index;
+    for (std::size_t l = begin; l < end; ++l) {
+      const KdTree::Leaf& leaf = tree_.leaf(std::uint32_t(l));
+      const bool prepared = together.prepare(std::uint32_t(l));
+      for (std::uint32_t slot = 0; slot < KdTree::kLeaf && leaf.id[slot] != kNone; ++slot) {
+        const Index i = leaf.id[slot];
+        Index* const row = table.items.data() + i * width;
+        if (prepared && together.find(slot, row)) continue;
+        find_nearest(tree_, points_[i], i, width, found);
+        for (std::size_t j = 0; j < width; ++j) row[j] = found[j].index;
+        together.expect(found.back().squared_distance);
+      }
     }
   });
   return table;
