@@ -121,4 +121,21 @@ KdTree::KdTree(const Positions& points, const Context& context) {
   Builder(items, nodes_, leaves_).build(root(), context);
 }
 
+std::vector<KdTree::Cursor> KdTree::subtrees(std::uint32_t leaves) const {
+  std::vector<Cursor> found;
+  if (empty()) return found;
+  std::vector<Cursor> stack = {root()};
+  while (!stack.empty()) {
+    const Cursor c = stack.back();
+    stack.pop_back();
+    if (c.last - c.first <= leaves) {
+      found.push_back(c);
+    } else {
+      stack.push_back(c.right());
+      stack.push_back(c.left());
+    }
+  }
+  return found;
+}
+
 }  // namespace rfsmooth::rfs_mesh

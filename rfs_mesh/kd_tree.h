@@ -54,17 +54,8 @@ class KdTree {
   std::size_t node_count() const { return nodes_.size(); }
   std::size_t leaf_count() const { return leaves_.size(); }
 
-  /// Squared distance from q to the box of a node, 0 inside.
-  double squared_distance(const Eigen::Vector3d& q, std::uint32_t i) const {
-    const Node& box = nodes_[i];
-    double d[3];
-    for (int axis = 0; axis < 3; ++axis) {
-      const double below = box.low[axis] - q[axis], above = q[axis] - box.high[axis];
-      const double outside = below > above ? below : above;
-      d[axis] = outside > 0 ? outside : 0;
-    }
-    return (d[0] * d[0] + d[1] * d[1]) + d[2] * d[2];
-  }
+  /// The largest subtrees of at most that many leaves, left to right: work for parallel loops.
+  std::vector<Cursor> subtrees(std::uint32_t leaves) const;
 
  private:
   std::vector<Node> nodes_;   // preorder
@@ -75,6 +66,28 @@ class KdTree {
 inline double squared_distance(const Eigen::Vector3d& p, const Eigen::Vector3d& q) {
   const double x = p[0] - q[0], y = p[1] - q[1], z = p[2] - q[2];
   return (x * x + y * y) + z * z;
+}
+
+/// Squared distance between two boxes, 0 if they meet.
+inline double squared_distance(const KdTree::Node& a, const KdTree::Node& b) {
+  double d[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    const double below = a.low[axis] - b.high[axis], above = b.low[axis] - a.high[axis];
+    const double apart = below > above ? below : above;
+    d[axis] = apart > 0 ? apart : 0;
+  }
+  return (d[0] * d[0] + d[1] * d[1]) + d[2] * d[2];
+}
+
+/// Squared distance from a point to a box, 0 inside.
+inline double squared_distance(const Eigen::Vector3d& q, const KdTree::Node& box) {
+  double d[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    const double below = box.low[axis] - q[axis], above = q[axis] - box.high[axis];
+    const double outside = below > above ? below : above;
+    d[axis] = outside > 0 ? outside : 0;
+  }
+  return (d[0] * d[0] + d[1] * d[1]) + d[2] * d[2];
 }
 
 }  // namespace rfsmooth::rfs_mesh

@@ -33,26 +33,6 @@ constexpr std::size_t kLanes = 4;
 typedef float Keys __attribute__((vector_size(kLanes * sizeof(float))));
 typedef std::int32_t Counts __attribute__((vector_size(kLanes * sizeof(std::int32_t))));
 
-double between(const KdTree::Node& a, const KdTree::Node& b) {
-  double d[3];
-  for (int axis = 0; axis < 3; ++axis) {
-    const double below = a.low[axis] - b.high[axis], above = b.low[axis] - a.high[axis];
-    const double apart = below > above ? below : above;
-    d[axis] = apart > 0 ? apart : 0;
-  }
-  return (d[0] * d[0] + d[1] * d[1]) + d[2] * d[2];
-}
-
-double to_box(const Vector3d& q, const KdTree::Node& box) {
-  double d[3];
-  for (int axis = 0; axis < 3; ++axis) {
-    const double below = box.low[axis] - q[axis], above = q[axis] - box.high[axis];
-    const double outside = below > above ? below : above;
-    d[axis] = outside > 0 ? outside : 0;
-  }
-  return (d[0] * d[0] + d[1] * d[1]) + d[2] * d[2];
-}
-
 void squared_distances(const KdTree::Leaf& leaf, const Vector3d& q, double* __restrict d2) {
   const double x0 = q[0], y0 = q[1], z0 = q[2];
   for (std::uint32_t i = 0; i < kLeaf; ++i) {
@@ -71,7 +51,7 @@ void LeafNeighbors::list_leaves(const KdTree::Node& box, double squared_bound) {
   stack[top++] = tree_.root();
   while (top > 0) {
     KdTree::Cursor at = stack[--top];
-    while (between(box, tree_.node(at.node)) <= squared_bound) {
+    while (squared_distance(box, tree_.node(at.node)) <= squared_bound) {
       if (at.is_leaf()) {
         list_.push_back(at.first);
         boxes_.push_back(tree_.node(at.node));
@@ -109,7 +89,7 @@ void LeafNeighbors::keep_within(const Vector3d& q, Index self, double squared_bo
   std::size_t near = 0;
   for (std::size_t l = 0; l < list_.size(); ++l) {
     near_[near] = list_[l];
-    near += std::size_t(to_box(q, boxes_[l]) <= squared_bound);
+    near += std::size_t(squared_distance(q, boxes_[l]) <= squared_bound);
   }
   distance_.resize((near + 1) * kLeaf);
   id_.resize((near + 1) * kLeaf);

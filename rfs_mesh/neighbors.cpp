@@ -42,7 +42,7 @@ void search(const KdTree& tree, const Vector3d& q, Worst&& worst, Scan&& scan) {
   if (tree.empty()) return;
   Pending stack[kMaxDepth];
   std::size_t top = 0;
-  stack[top++] = {tree.root(), tree.squared_distance(q, 0)};
+  stack[top++] = {tree.root(), squared_distance(q, tree.node(0))};
   while (top > 0) {
     Pending at = stack[--top];
     for (;;) {
@@ -52,8 +52,8 @@ void search(const KdTree& tree, const Vector3d& q, Worst&& worst, Scan&& scan) {
         break;
       }
       Pending near = {at.cursor.left(), 0}, far = {at.cursor.right(), 0};
-      near.squared_distance = tree.squared_distance(q, near.cursor.node);
-      far.squared_distance = tree.squared_distance(q, far.cursor.node);
+      near.squared_distance = squared_distance(q, tree.node(near.cursor.node));
+      far.squared_distance = squared_distance(q, tree.node(far.cursor.node));
       if (Neighbor{tree.node(far.cursor.node).least_id, far.squared_distance} <
           Neighbor{tree.node(near.cursor.node).least_id, near.squared_distance})
         std::swap(near, far);
