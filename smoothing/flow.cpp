@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "rfsmooth/rfs_mesh/parallel.h"
+#include "rfsmooth/smoothing/constraint.h"
 
 namespace rfsmooth::smoothing {
 
@@ -94,20 +95,29 @@ Result<FlowOptions> complete(const FlowOptions& options) {
 }
 
 Result<std::unique_ptr<Flow>> make_flow(const rfs_mesh::Mesh& mesh, const FlowOptions& options,
-                                        const Context& context) {
+                                        const Context& context, const Constraints& constraints) {
   const auto full = complete(options);
   if (!full.ok()) return full.error();
-  return guarded([&] { return find_flow(options.flow).value()->make(mesh, full.value(), context); });
+  return guarded([&] {
+    AllowedMoves allowed(constraints, mesh.positions.size());
+    const FlowEntry& entry = *find_flow(options.flow).value();
+    std::unique_ptr<Flow> flow = entry.make(mesh, full.value(), constraints, context);
+    const bool constrained = !constraints.hard.empty() || !constraints.strength.empty();
+    if (constrained && !flow->applies_constraints())
+      flow = make_constrained(std::move(flow), std::move(allowed));
+    return flow;
+  });
 }
 
-Result<FlowReport> smooth(rfs_mesh::Mesh& mesh, const FlowOptions& options, const Context& context) {
+Result<FlowReport> smooth(rfs_mesh::Mesh& mesh, const FlowOptions& options, const Context& context,
+                          const Constraints& constraints) {
   const auto full = complete(options);
   if (!full.ok()) return full.error();
   const Positions original = mesh.positions;
   auto result = guarded([&] {
     FlowReport report;
     in_arena(context, [&] {
-      auto flow = make_flow(mesh, full.value(), context);
+      auto flow = make_flow(mesh, full.value(), context, constraints);
       if (!flow.ok()) throw Failure(flow.error());
       const int steps = *full.value().iterations;
       for (; report.steps < steps; ++report.steps) {

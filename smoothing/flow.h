@@ -22,40 +22,57 @@ struct FlowOptions {
   std::string flow = "hc";            ///< a name from `flows()`
   std::optional<int> iterations;      ///< steps
   std::optional<double> lambda;       ///< step length of explicit flows, dimensionless
+  std::optional<double> mu;           ///< Taubin: length of the inflating step, > lambda
+  std::optional<double> dt;           ///< time step of implicit flows, dimensionless, any size
   std::optional<double> alpha;        ///< HC: weight of the original point against the current one, in [0, 1]
   std::optional<double> beta;         ///< HC: a vertex's own difference against its neighbours', in [0, 1]
   std::optional<std::string> anchor;  ///< Laplacian: the point that is averaged with the neighbours' mean
   std::optional<std::string> weights;  ///< neighbours' weights of the umbrella
   std::optional<std::string> update;   ///< all vertices at once, or each seeing its predecessors' new places
+  std::optional<std::string> op;       ///< implicit flows: the Laplacian
+  std::optional<int> order;            ///< implicit flows: its power
+  std::optional<double> mixture;       ///< implicit flows: share of the first power beside the order-th
+  std::optional<bool> keep_weights;    ///< implicit flows: weights of the first mesh for all steps
+  std::optional<bool> normalised;      ///< curvature flow: divided by the sum of the cotangents
+  std::optional<double> tolerance;     ///< implicit flows: residual to stop at, relative
+  std::optional<std::string> norm;     ///< implicit flows: of the residual
 
   template <class Self, class Visit>
   static void describe(Self& self, Visit&& visit) {
+    const auto words = [](std::string_view name, std::string_view help,
+                          std::vector<std::string_view> choices) {
+      OptionInfo info{name, help, ""};
+      info.choices = std::move(choices);
+      return info;
+    };
     visit(OptionInfo{"flow", "how the mesh is smoothed (see `rfsmooth flows`)", ""}, self.flow);
     visit(OptionInfo{"iterations", "number of steps", "steps", 0, 1000000}, self.iterations);
     visit(OptionInfo{"lambda", "step length of explicit flows", "", 0, 1}, self.lambda);
+    visit(OptionInfo{"mu", "Taubin: length of the inflating step", "", 0, 2}, self.mu);
+    visit(OptionInfo{"dt", "time step of implicit flows", "", 0, 1e9}, self.dt);
     visit(OptionInfo{"alpha", "weight of the original (or centre) point", "", 0, 1}, self.alpha);
     visit(OptionInfo{"beta", "HC: own difference against the neighbours' mean", "", 0, 1}, self.beta);
-    visit(OptionInfo{"anchor",
-                     "point averaged with the neighbours' mean, with weight alpha",
-                     "",
-                     -kNoLimit,
-                     kNoLimit,
-                     {"none", "centre", "original"}},
+    visit(words("anchor", "point averaged with the neighbours' mean, with weight alpha",
+                {"none", "centre", "original"}),
           self.anchor);
-    visit(
-        OptionInfo{"weights", "neighbours' weights", "", -kNoLimit, kNoLimit, {"equal", "inverse-distance"}},
-        self.weights);
-    visit(OptionInfo{"update",
-                     "all vertices at once, or one after the other in index order",
-                     "",
-                     -kNoLimit,
-                     kNoLimit,
-                     {"simultaneous", "sequential"}},
+    visit(words("weights", "neighbours' weights", {"equal", "inverse-distance"}), self.weights);
+    visit(words("update", "all vertices at once, or one after the other in index order",
+                {"simultaneous", "sequential"}),
           self.update);
+    visit(words("operator", "implicit flows: the Laplacian",
+                {"umbrella", "inverse-distance", "scale-dependent", "curvature"}),
+          self.op);
+    visit(OptionInfo{"order", "implicit flows: power of the operator", "", 1, 4}, self.order);
+    visit(OptionInfo{"mixture", "implicit flows: share of the first power; negative enhances", "", -1, 1},
+          self.mixture);
+    visit(OptionInfo{"keep-weights", "implicit flows: weights of the first mesh for all steps", ""},
+          self.keep_weights);
+    visit(OptionInfo{"normalised", "curvature flow: divided by the sum of the cotangents", ""},
+          self.normalised);
+    visit(OptionInfo{"tolerance", "implicit flows: relative residual to stop at", "", 1e-14, 1},
+          self.tolerance);
+    visit(words("norm", "implicit flows: norm of the residual", {"l2", "linf"}), self.norm);
   }
-
- private:
-  static constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 };
 
 /// What a run did.
@@ -63,6 +80,20 @@ struct FlowReport {
   int steps = 0;
   int solver_iterations = 0;  ///< implicit flows: conjugate gradient iterations, all steps together
   double largest_move = 0;    ///< world units
+};
+
+/// A vertex that may not move freely.
+struct HardConstraint {
+  enum class Kind { fixed, axis, plane };
+  Index vertex = 0;
+  Kind kind = Kind::fixed;
+  Eigen::Vector3d direction = Eigen::Vector3d::Zero();  ///< along the axis, or the plane's normal; any length
+};
+
+/// Constraints relative to the places the vertices have at the start.
+struct Constraints {
+  std::vector<HardConstraint> hard;  ///< at most one per vertex
+  std::vector<double> strength;      ///< n, in [0, 1]: 0 = stays, 1 = smoothed fully; empty = all 1
 };
 
 /// A running flow: remembers what it needs between steps (original positions, frozen weights).
@@ -82,6 +113,9 @@ class Flow {
 
   /// Conjugate gradient iterations of all steps so far; 0 for explicit flows.
   virtual int solver_iterations() const { return 0; }
+
+  /// Whether the flow heeds the constraints it was made with itself; if not, `make_flow` wraps it.
+  virtual bool applies_constraints() const { return false; }
 };
 
 /// One line of the registry.
@@ -92,7 +126,7 @@ struct FlowEntry {
   std::vector<std::string_view> parameters;  ///< the FlowOptions it uses, by option name
   FlowOptions defaults;                      ///< its values for empty options; `iterations` always has one
   std::unique_ptr<Flow> (*make)(const rfs_mesh::Mesh& mesh, const FlowOptions& options,
-                                const Context& context);
+                                const Constraints& constraints, const Context& context);
 };
 
 /// All flows, in the order of the README's table.
@@ -106,10 +140,12 @@ Result<const FlowEntry*> find_flow(std::string_view name);
 Result<FlowOptions> complete(const FlowOptions& options);
 
 /// Starts a flow on `mesh`, whose current positions are the original points. Validates the options.
+/// Errors: usage. \throw std::invalid_argument for constraints that do not fit the mesh.
 Result<std::unique_ptr<Flow>> make_flow(const rfs_mesh::Mesh& mesh, const FlowOptions& options,
-                                        const Context& context);
+                                        const Context& context, const Constraints& constraints = {});
 
 /// Runs a flow for its number of steps. On an error or cancel the mesh is untouched.
-Result<FlowReport> smooth(rfs_mesh::Mesh& mesh, const FlowOptions& options, const Context& context);
+Result<FlowReport> smooth(rfs_mesh::Mesh& mesh, const FlowOptions& options, const Context& context,
+                          const Constraints& constraints = {});
 
 }  // namespace rfsmooth::smoothing

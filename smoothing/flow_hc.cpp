@@ -5,6 +5,7 @@
 /// Vollmer, Mencl, Mueller 1999, section 4. Converges for alpha > 0 and beta > 0.5 (theorem 5.2). With alpha
 /// = 0 one step is x - (1 - beta) L^2 x. The paper lists the simultaneous version; in the sequential one the
 /// Laplacian half updates in index order and the push-back follows.
+#include "rfsmooth/smoothing/constraint.h"
 #include "rfsmooth/smoothing/pushback.h"
 #include "rfsmooth/smoothing/umbrella_speed.h"
 
@@ -12,10 +13,14 @@ namespace rfsmooth::smoothing {
 
 namespace {
 
-std::unique_ptr<Flow> make(const rfs_mesh::Mesh& mesh, const FlowOptions& options, const Context&) {
+std::unique_ptr<Flow> make(const rfs_mesh::Mesh& mesh, const FlowOptions& options,
+                           const Constraints& constraints, const Context&) {
   const Update update = *options.update == "sequential" ? Update::sequential : Update::simultaneous;
-  return make_pushback(make_explicit(make_umbrella_speed(false), 1, update), mesh, *options.alpha,
-                       *options.beta);
+  auto laplacian = make_explicit(make_umbrella_speed(false), 1, update);
+  if (!constraints.hard.empty())  // so that the difference of a fixed vertex is zero, as in the paper
+    laplacian =
+        make_constrained(std::move(laplacian), AllowedMoves({constraints.hard, {}}, mesh.positions.size()));
+  return make_pushback(std::move(laplacian), mesh, *options.alpha, *options.beta);
 }
 
 }  // namespace

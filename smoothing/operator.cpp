@@ -1,5 +1,10 @@
 #include "rfsmooth/smoothing/operator.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+
 #include "rfsmooth/rfs_mesh/parallel.h"
 
 namespace rfsmooth::smoothing {
@@ -24,29 +29,54 @@ void apply(const rfs_mesh::Adjacency& rows, const Operator& op, const Positions&
   });
 }
 
-Operator umbrella(const rfs_mesh::Mesh& mesh, const Context& context) {
-  Operator op;
-  op.mass.resize(mesh.positions.size());
-  for_each_index(context, op.mass.size(), [&](std::size_t i) {
-    op.mass[i] = double(std::max<std::size_t>(1, mesh.one_ring.degree(i)));
+std::vector<double> weight_sums(const rfs_mesh::Adjacency& rows, const Operator& op, const Context& context) {
+  std::vector<double> sums(rows.size());
+  for_each_index(context, sums.size(), [&](std::size_t i) {
+    if (op.weight.empty()) {
+      sums[i] = double(rows.degree(i));
+      return;
+    }
+    for (Index k = rows.start[i]; k < rows.start[i + 1]; ++k) sums[i] += std::abs(op.weight[k]);
   });
-  return op;
+  return sums;
 }
 
-Operator inverse_distance(const rfs_mesh::Mesh& mesh, const Context& context) {
-  Operator op;
-  op.mass.resize(mesh.positions.size());
-  op.weight.resize(mesh.one_ring.items.size());
-  for_each_index(context, op.mass.size(), [&](std::size_t i) {
-    double total = 0;
-    for (Index k = mesh.one_ring.start[i]; k < mesh.one_ring.start[i + 1]; ++k) {
-      const double length = (mesh.positions[i] - mesh.positions[mesh.one_ring.items[k]]).norm();
-      op.weight[k] = length > 0 ? 1 / length : 0;
-      total += op.weight[k];
-    }
-    op.mass[i] = total > 0 ? total : 1;
+double mean_edge_length(const rfs_mesh::Mesh& mesh, const Context& context) {
+  const double total = sum_over(context, mesh.positions.size(), 0.0, [&](std::size_t i) {
+    double sum = 0;
+    for (const Index j : mesh.one_ring[i]) sum += (mesh.positions[i] - mesh.positions[j]).norm();
+    return sum;
   });
-  return op;
+  return total > 0 ? total / double(mesh.one_ring.items.size()) : 1;
+}
+
+OperatorSource::OperatorSource(std::string_view name, bool frozen) : name_(name), frozen_(frozen) {
+  const std::array<std::string_view, 5> known = {"umbrella", "inverse-distance", "scale-dependent",
+                                                 "curvature", "curvature-normalised"};
+  if (std::find(known.begin(), known.end(), name) == known.end())
+    throw std::invalid_argument("unknown operator " + name_);
+}
+
+const Operator& OperatorSource::on(const rfs_mesh::Mesh& mesh, const Context& context) {
+  const bool fixed_weights = frozen_ || name_ == "umbrella";
+  if (ready_ && fixed_weights) return op_;
+  if (name_ == "umbrella") {
+    op_ = umbrella(mesh, context);
+  } else if (name_ == "inverse-distance") {
+    op_ = inverse_distance(mesh, context);
+  } else if (name_ == "scale-dependent") {
+    op_ = scale_dependent(mesh, context);
+  } else {
+    if (!ready_) faces_ = vertex_faces(mesh, context);
+    op_ = curvature(mesh, faces_, context);
+    if (name_ == "curvature-normalised") op_ = normalised(mesh.one_ring, std::move(op_), context);
+  }
+  ready_ = true;
+  return op_;
+}
+
+void OperatorSource::connectivity_changed() {
+  ready_ = false;
 }
 
 }  // namespace rfsmooth::smoothing
