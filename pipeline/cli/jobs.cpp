@@ -1,0 +1,105 @@
+#include "rfsmooth/pipeline/cli/jobs.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+
+#include <fmt/format.h>
+
+namespace rfsmooth::cli {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+[[noreturn]] void fail(ErrorCode code, const std::string& message) {
+  throw Failure({code, message});
+}
+
+/// Makes the folder if its name ends in '/' and nothing is there; its parent must exist.
+void need_folder(const std::string& folder) {
+  std::error_code error;
+  const fs::file_status status = fs::status(folder, error);
+  if (fs::is_directory(status)) return;
+  if (fs::exists(status)) fail(ErrorCode::cannot_write, fmt::format("{}: is not a folder", folder));
+  if (!fs::create_directory(folder, error))
+    fail(ErrorCode::cannot_write, fmt::format("{}: cannot make the folder: {}", folder, error.message()));
+}
+
+std::string joined(const std::string& folder, const std::string& name) {
+  return (fs::path(folder) / name).string();
+}
+
+std::vector<Job> into_folder(const std::vector<std::string>& inputs, const std::string& folder) {
+  std::map<std::string, std::string> taken;
+  std::vector<Job> jobs;
+  for (const std::string& input : inputs) {
+    if (input == "-")
+      fail(ErrorCode::usage,
+           "standard input (-) cannot go into a folder: it has no name; give -o a file name");
+    const std::string name = fs::path(input).filename().string();
+    const auto [it, is_new] = taken.emplace(name, input);
+    if (!is_new)
+      fail(ErrorCode::usage,
+           fmt::format("{} and {} would both be written to {}", it->second, input, joined(folder, name)));
+    jobs.push_back({input, joined(folder, name)});
+  }
+  need_folder(folder);
+  return jobs;
+}
+
+}  // namespace
+
+std::vector<Job> plan_jobs(const std::vector<std::string>& arguments,
+                           const std::optional<std::string>& output) {
+  for (const std::string& argument : arguments)
+    if (argument.empty()) fail(ErrorCode::usage, "a file name is empty");
+  if (!output) {
+    if (arguments.size() == 2) return {{arguments[0], arguments[1]}};
+    fail(
+        ErrorCode::usage,
+        fmt::format("{} given, but without -o exactly two are needed: IN OUT (with -o every one is an input)",
+                    arguments.empty()       ? "no file name"
+                    : arguments.size() == 1 ? "one file name"
+                                            : fmt::format("{} file names", arguments.size())));
+  }
+  if (arguments.empty()) fail(ErrorCode::usage, "no input given");
+  std::error_code error;
+  const bool slash = !output->empty() && output->back() == '/';
+  if (*output != "-" && (slash || fs::is_directory(*output, error))) return into_folder(arguments, *output);
+  if (arguments.size() == 1) return {{arguments[0], *output}};
+  if (fs::exists(*output, error))
+    fail(ErrorCode::cannot_write, fmt::format("{}: is not a folder, and there are several inputs", *output));
+  fail(ErrorCode::usage,
+       fmt::format("several inputs need a folder: write -o {}/", *output == "-" ? "FOLDER" : *output));
+}
+
+int run_jobs(const std::vector<Job>& jobs, Console& console,
+             const std::function<JobOutcome(const Job&)>& run) {
+  std::vector<JobOutcome> outcomes;
+  std::optional<int> code;
+  for (const Job& job : jobs) {
+    outcomes.push_back(run(job));
+    const auto& error = outcomes.back().error;
+    if (!error) continue;
+    console.error(error->message);
+    code = !code || *code == int(error->code) ? int(error->code) : int(ErrorCode::internal);
+    if (error->code == ErrorCode::cancelled) {
+      code = int(ErrorCode::cancelled);
+      break;
+    }
+  }
+  if (jobs.size() > 1) {
+    std::size_t width = 5, done = 0;
+    for (const Job& job : jobs) width = std::max(width, job.input.size());
+    for (std::size_t i = 0; i < outcomes.size(); ++i) {
+      done += !outcomes[i].error;
+      console.say(fmt::format("{:<{}}  {}", jobs[i].input, width,
+                              outcomes[i].error ? "FAILED" : outcomes[i].summary));
+    }
+    console.say(fmt::format("{} of {} done", done, jobs.size()));
+  }
+  return code.value_or(0);
+}
+
+}  // namespace rfsmooth::cli

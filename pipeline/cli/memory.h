@@ -1,0 +1,19 @@
+/// How much memory there is, so that a job that cannot fit is refused before it starts.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string_view>
+
+#include "rfsmooth/rfs_mesh/result.h"
+
+namespace rfsmooth::cli {
+
+/// Bytes this process may still take: the least of what the machine has free, what its control group allows
+/// and what the address-space limit leaves. Nothing if none is known.
+std::optional<std::size_t> available_memory();
+
+/// An Error (out_of_memory) with both figures if `needed` bytes are not there.
+std::optional<Error> refuse_without_memory(std::string_view input, std::size_t needed);
+
+}  // namespace rfsmooth::cli

@@ -1,0 +1,29 @@
+/// Runs the real binary and says what it did: exit code, stdout, stderr, time.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace rfsmooth::test {
+
+struct Ran {
+  int code = -1;  ///< exit code; 128 + signal if it was killed
+  std::string out, err;
+};
+
+struct RunSetup {
+  std::string input;                     ///< given on standard input
+  std::string folder;                    ///< working folder; empty: the test's own
+  std::vector<std::string> environment;  ///< "NAME=value", added
+  std::size_t address_space = 0;         ///< bytes; 0 = no limit
+  int interrupt_after_ms = -1;           ///< sends SIGINT then; -1 = never
+};
+
+/// `arguments` do not include the program. A run of more than four minutes is killed (code 137).
+Ran rfsmooth(const std::vector<std::string>& arguments, const RunSetup& setup = {});
+
+/// The same for any program.
+Ran run_program(const std::string& program, const std::vector<std::string>& arguments,
+                const RunSetup& setup = {});
+
+}  // namespace rfsmooth::test
