@@ -1,1 +1,152 @@
 #include "rfsmooth/pipeline/denoise.h"
+
+#include <chrono>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "rfsmooth/rfs_mesh/parallel.h"
+#include "rfsmooth/rfs_mesh/points.h"
+
+namespace rfsmooth::pipeline {
+
+namespace {
+
+template <class T>
+T value_or_fail(Result<T> result) {
+  if (!result.ok()) throw Failure(result.error());
+  return std::move(result).value();
+}
+
+/// Adds the time since it was made to the stage's entry.
+class Stopwatch {
+ public:
+  Stopwatch(std::vector<StageTime>& stages, std::string_view name) {
+    for (StageTime& stage : stages)
+      if (stage.name == name) stage_ = &stage;
+    if (stage_ == nullptr) stage_ = &stages.emplace_back(StageTime{std::string(name), 0});
+  }
+  ~Stopwatch() {
+    stage_->seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+  Stopwatch(const Stopwatch&) = delete;
+  Stopwatch& operator=(const Stopwatch&) = delete;
+
+ private:
+  StageTime* stage_ = nullptr;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+/// Smooths the mesh, alternating steps and swaps.
+void alternate(rfs_mesh::Mesh& mesh, const DenoiseOptions& options, DenoiseReport& report,
+               const Context& context) {
+  const int steps = *options.flow.iterations;
+  const auto flow = value_or_fail(smoothing::make_flow(mesh, options.flow, context));
+  for (int step = 0; step < steps; ++step) {
+    context.report("smooth", double(step) / steps);
+    {
+      const Stopwatch watch(report.seconds, "smooth");
+      flow->step(mesh, context);
+    }
+    // The positions after the last step are the result: connectivity no longer matters.
+    if (!options.swap || step + 1 == steps) continue;
+    const Stopwatch watch(report.seconds, "swap");
+    const std::size_t swaps = rfs_mesh::swap_edges(mesh, options.swaps, context);
+    report.swaps += swaps;
+    if (swaps > 0) flow->connectivity_changed(mesh, context);
+  }
+  context.report("smooth", 1);
+}
+
+/// How far every working point moved. \throw Failure if a flow left the realm of numbers.
+Positions displacements(const Positions& from, const Positions& to, const DenoiseOptions& options,
+                        const Context& context) {
+  Positions moved(from.size());
+  for_each_index(context, from.size(), [&](std::size_t i) {
+    moved[i] = to[i] - from[i];
+    if (!moved[i].allFinite())
+      throw Failure(
+          {ErrorCode::usage, fmt::format("the flow '{}' diverges with these options; smaller steps or "
+                                         "fewer iterations are needed",
+                                         options.flow.flow)});
+  });
+  return moved;
+}
+
+/// Adds each row's displacement to the row; the only place that writes to the caller's array, and it cannot
+/// fail or be cancelled.
+void commit(double* xyz, std::size_t n, const rfs_mesh::WorkingCloud& cloud, const Positions& moved,
+            DenoiseReport& report) {
+  double square_sum = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Index p = cloud.of_input[i];
+    if (p == kNone) continue;
+    bool changed = false;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double before = xyz[3 * i + std::size_t(axis)], after = before + moved[p][axis];
+      if (after == before) continue;  // keeps -0 and whatever bits the caller had
+      xyz[3 * i + std::size_t(axis)] = after;
+      changed = true;
+    }
+    report.moved += changed;
+    const double square = moved[p].squaredNorm();
+    square_sum += square;
+    report.largest_move = std::max(report.largest_move, std::sqrt(square));
+  }
+  if (report.finite > 0) report.rms_move = std::sqrt(square_sum / double(report.finite));
+}
+
+DenoiseReport run(double* xyz, std::size_t n, const DenoiseOptions& options, const Context& context) {
+  DenoiseReport report;
+  report.points = n;
+  report.effective = options;
+  rfs_mesh::WorkingCloud cloud;
+  {
+    const Stopwatch watch(report.seconds, "prepare");
+    context.report("prepare", 0);
+    cloud = value_or_fail(rfs_mesh::make_working_cloud(xyz, n, context));
+    report.finite = cloud.finite();
+    report.distinct = cloud.points.size();
+  }
+
+  auto connection = value_or_fail(rfs_mesh::connect(cloud.points, options.connect, context));
+  for (auto& stage : connection.seconds) report.seconds.push_back({std::move(stage.stage), stage.seconds});
+  report.spacing = connection.noise.spacing;
+  report.noise = connection.noise.sigma;
+  report.sdg_edges = connection.sdg.size();
+  report.bridges = connection.bridges.size();
+  report.faceless = connection.faceless;
+  rfs_mesh::Mesh mesh = std::move(connection.mesh);
+  connection = {};  // the tree, the graph and the surfaces are not needed while smoothing
+  report.faces = mesh.faces.size();
+  report.edges = mesh.edge_count();
+
+  alternate(mesh, options, report, context);
+  const Positions moved = displacements(cloud.points, mesh.positions, options, context);
+  context.check_stop();
+  commit(xyz, n, cloud, moved, report);
+  return report;
+}
+
+}  // namespace
+
+Result<DenoiseReport> denoise(double* xyz, std::size_t n, const DenoiseOptions& options,
+                              const Context& context) {
+  if (const auto valid = validate(options); !valid.ok()) return valid.error();
+  DenoiseOptions effective = options;
+  auto flow = smoothing::complete(options.flow);
+  if (!flow.ok()) return flow.error();
+  effective.flow = std::move(flow).value();
+  return guarded([&] {
+    DenoiseReport report;
+    in_arena(context, [&] { report = run(xyz, n, effective, context); });
+    return report;
+  });
+}
+
+std::size_t denoise_memory(std::size_t n) {
+  constexpr std::size_t kBytesPerPoint = 1500, kFixed = std::size_t{20} << 20;
+  return kFixed + n * kBytesPerPoint;
+}
+
+}  // namespace rfsmooth::pipeline

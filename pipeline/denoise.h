@@ -1,4 +1,9 @@
 /// The main entry: a cloud in, the same cloud without the noise out.
+///
+///     working cloud -> connect (EMST -> SDG -> RFS-mesh) -> { smooth one step -> swap edges } x iterations
+///
+/// Vollmer, Mencl, Mueller 1999, section 7: "after each smoothing step" the dihedral angles are improved by
+/// edge swaps, so that the rough mesh and the smooth positions find each other.
 #pragma once
 
 #include <cstddef>
@@ -7,7 +12,9 @@
 #include <vector>
 
 #include "rfsmooth/rfs_mesh/context.h"
+#include "rfsmooth/rfs_mesh/edge_swap.h"
 #include "rfsmooth/rfs_mesh/options.h"
+#include "rfsmooth/rfs_mesh/rfs_mesh.h"
 #include "rfsmooth/smoothing/flow.h"
 
 namespace rfsmooth::pipeline {
@@ -15,11 +22,15 @@ namespace rfsmooth::pipeline {
 struct DenoiseOptions {
   smoothing::FlowOptions flow;
   bool swap = true;  ///< alternate each step with a pass of dihedral edge swaps (Vollmer 7)
+  rfs_mesh::ConnectOptions connect;
+  rfs_mesh::SwapOptions swaps;
 
   template <class Self, class Visit>
   static void describe(Self& self, Visit&& visit) {
     smoothing::FlowOptions::describe(self.flow, visit);
     visit(OptionInfo{"swap", "alternate each step with dihedral edge swaps", ""}, self.swap);
+    rfs_mesh::ConnectOptions::describe(self.connect, visit);
+    rfs_mesh::SwapOptions::describe(self.swaps, visit);
   }
 };
 
@@ -29,23 +40,31 @@ struct StageTime {
 };
 
 struct DenoiseReport {
+  DenoiseOptions effective;  ///< the options with every automatically chosen value filled in; gives the same
+                             ///< bytes when used again
   std::size_t points = 0;    ///< rows given
   std::size_t finite = 0;    ///< rows worked on
   std::size_t distinct = 0;  ///< distinct positions among them
   std::size_t moved = 0;     ///< rows whose coordinates changed
-  double spacing = 0;        ///< mean distance to the nearest neighbour, world units
-  double largest_move = 0;   ///< world units
-  double rms_move = 0;       ///< world units
+  double spacing = 0;  ///< mean distance to the nearest neighbour, world units; 0 with fewer than 2 points
+  double noise = 0;    ///< standard deviation along the normal, as measured before; world units
+  double largest_move = 0;  ///< world units
+  double rms_move = 0;      ///< over the finite rows, world units
   std::size_t faces = 0, edges = 0, sdg_edges = 0, bridges = 0, faceless = 0, swaps = 0;
-  std::vector<StageTime> seconds;
+  std::vector<StageTime> seconds;  ///< in the order first done
 };
 
 /// Smooths n points in place: `xyz` is n x 3, row-major, world units. Rows with a NaN or infinite coordinate
 /// stay as they are and influence nothing; rows that share a position move together. Only moved coordinates
-/// are written. On an error or cancel `xyz` is untouched. Same bytes out for any number of threads and any
-/// order of the rows. Errors: usage, no_usable_points, out_of_memory, cancelled. Thread-safe on distinct
-/// arrays.
+/// are written: a row gets its own value plus the displacement of its working point. On an error or cancel
+/// `xyz` is untouched. Same bytes out for any number of threads and any order of the rows.
+/// Errors: usage, no_usable_points, out_of_memory, cancelled. O(n log n + steps n).
+/// Thread-safe on distinct arrays.
 Result<DenoiseReport> denoise(double* xyz, std::size_t n, const DenoiseOptions& options,
                               const Context& context);
+
+/// Bytes that `denoise` takes at its peak for n points, the caller's array not counted (an upper bound for
+/// scans; measured, see denoise.cpp).
+std::size_t denoise_memory(std::size_t n);
 
 }  // namespace rfsmooth::pipeline

@@ -37,6 +37,10 @@ Command flows_command();
 Command man_command();
 Command completion_command();
 
+/// Gives options their one-letter names and --flow its words, and marks the tuning of the connecting stages
+/// as advanced.
+void polish(Command& command);
+
 /// All of them, in the order of the overview.
 std::vector<Command> all_commands();
 

@@ -1,9 +1,21 @@
 #include "rfsmooth/pipeline/cli/command.h"
+#include "rfsmooth/smoothing/flow.h"
 
 namespace rfsmooth::cli {
 
+void polish(Command& command) {
+  for (CommandOption& option : command.options) {
+    for (const auto& [name, letter] : {std::pair("output", 'o'), {"quiet", 'q'}, {"verbose", 'v'}})
+      if (option.name == name) option.short_name = letter;
+    for (const char* family : {"connect-", "sdg-", "umbrella-", "swap-"})
+      if (option.name.rfind(family, 0) == 0) option.advanced = true;
+    if (option.name == "flow")
+      for (const auto& flow : smoothing::flows()) option.choices.emplace_back(flow.name);
+  }
+}
+
 std::vector<Command> all_commands() {
-  return {man_command(), completion_command()};
+  return {denoise_command(), flows_command(), man_command(), completion_command()};
 }
 
 }  // namespace rfsmooth::cli

@@ -1,5 +1,6 @@
 #include "rfsmooth/pipeline/cli/config.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>

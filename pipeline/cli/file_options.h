@@ -11,6 +11,7 @@ namespace rfsmooth::cli {
 struct FileOptions {
   std::optional<std::string> output;
   std::optional<std::string> format;
+  std::optional<std::string> encoding;
   bool force = false;
   bool drop_unsupported = false;
 
@@ -18,9 +19,13 @@ struct FileOptions {
   static void describe(Self& self, Visit&& visit) {
     visit(OptionInfo{"output", "write here: a file for one input, a folder (NAME/) for many", "file"},
           self.output);
-    OptionInfo format{"format", "format of the output; auto: by the output's extension", ""};
-    format.choices = {"ply", "ply-ascii", "ply-be", "pcd", "pcd-ascii", "pcd-compressed", "xyz"};
+    OptionInfo format{"format", "format of the output; auto: by the output's extension, else as the input",
+                      ""};
+    format.choices = {"ply", "pcd", "xyz", "off"};
     visit(format, self.format);
+    OptionInfo encoding{"encoding", "how values are stored in the output; auto: as in the input", ""};
+    encoding.choices = {"ascii", "binary", "binary_big_endian", "binary_compressed"};
+    visit(encoding, self.encoding);
     visit(OptionInfo{"force", "replace existing files", ""}, self.force);
     visit(OptionInfo{"drop-unsupported", "leave out what the output format cannot hold, with a warning", ""},
           self.drop_unsupported);

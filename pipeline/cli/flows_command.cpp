@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "rfsmooth/pipeline/cli/command.h"
+#include "rfsmooth/pipeline/cli/json_values.h"
 #include "rfsmooth/smoothing/flow.h"
 
 namespace rfsmooth::cli {
@@ -21,24 +22,34 @@ struct FlowsOptions {
   }
 };
 
+/// The flow's own values, by option name, as they would be typed.
+std::vector<std::pair<std::string, std::string>> defaults_of(const smoothing::FlowEntry& flow) {
+  smoothing::FlowOptions values = flow.defaults;
+  std::vector<CommandOption> options;
+  collect(values, options);
+  std::vector<std::pair<std::string, std::string>> defaults;
+  for (const auto parameter : flow.parameters)
+    if (const CommandOption* option = find_option(options, std::string(parameter)))
+      defaults.emplace_back(option->name, option->get().value_or("auto"));
+  return defaults;
+}
+
 void print_table() {
   for (const smoothing::FlowEntry& flow : smoothing::flows()) {
-    fmt::print("{:<16} {}\n{:16} {}; options: --iterations ({})", flow.name, flow.summary, "", flow.source,
-               flow.default_iterations);
-    for (const auto parameter : flow.parameters)
-      if (parameter != "iterations") fmt::print(", --{}", parameter);
+    fmt::print("{:<16} {} ({})\n{:16}", flow.name, flow.summary, flow.source, "");
+    for (const auto& [name, value] : defaults_of(flow)) fmt::print(" --{} {}", name, value);
     fmt::print("\n");
   }
 }
 
 void print_json() {
-  nlohmann::ordered_json list = nlohmann::ordered_json::array();
-  for (const smoothing::FlowEntry& flow : smoothing::flows())
-    list.push_back({{"name", flow.name},
-                    {"summary", flow.summary},
-                    {"source", flow.source},
-                    {"parameters", flow.parameters},
-                    {"default_iterations", flow.default_iterations}});
+  auto list = nlohmann::ordered_json::array();
+  for (const smoothing::FlowEntry& flow : smoothing::flows()) {
+    auto defaults = nlohmann::ordered_json::object();
+    for (const auto& [name, value] : defaults_of(flow)) defaults[name] = json_value(value);
+    list.push_back(
+        {{"name", flow.name}, {"summary", flow.summary}, {"source", flow.source}, {"options", defaults}});
+  }
   fmt::print("{}\n", list.dump(2));
 }
 

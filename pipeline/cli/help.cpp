@@ -109,6 +109,7 @@ std::string help_of(const Command& command, bool complete) {
   if (complete) out += '\n' + wrapped(command.description, 0) + '\n';
   out += "\noptions:\n";
   for (const CommandOption& o : command.options) {
+    if (o.advanced && !complete) continue;
     const std::string limits = complete ? option_limits(o) : "";
     std::string help = o.on_by_default ? "do not " + o.help : o.help;
     if (!limits.empty()) help += " (" + limits + ")";

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "rfsmooth/pipeline/cli/command.h"
+#include "rfsmooth/pipeline/cli/config.h"
 #include "rfsmooth/pipeline/cli/console.h"
 #include "rfsmooth/pipeline/cli/help.h"
 #include "rfsmooth/pipeline/cli/parse.h"
@@ -28,6 +29,25 @@ int print(const std::string& text) {
   return 0;
 }
 
+/// Assigns the options: those of --config first, then what was typed. The files come from the config if none
+/// were typed.
+Invocation with_config(const Command& command, Invocation typed) {
+  std::vector<CommandOption> options = command.options;
+  const auto assign_all = [&](const auto& values) {
+    for (const auto& [name, text] : values) assign(*find_option(options, name), text);
+  };
+  bool output_typed = false;
+  for (const auto& [name, text] : typed.options) {
+    output_typed = output_typed || name == "output";
+    if (name != "config") continue;
+    Config config = read_config(text, command);
+    assign_all(config.options);
+    if (typed.arguments.empty() && !output_typed) typed.arguments = std::move(config.arguments);
+  }
+  assign_all(typed.options);
+  return typed;
+}
+
 int run(int argc, const char* const* argv) {
   const std::vector<Command> commands = all_commands();
   const Parsed parsed = parse(argc, argv, commands);
@@ -40,9 +60,7 @@ int run(int argc, const char* const* argv) {
   }
   const Command& command = *parsed.command;
   if (typed.short_help || typed.long_help) return print(help_of(command, typed.long_help));
-  std::vector<CommandOption> options = command.options;
-  for (const auto& [name, text] : typed.options) assign(*find_option(options, name), text);
-  return command.run(typed);
+  return command.run(with_config(command, typed));
 }
 
 }  // namespace

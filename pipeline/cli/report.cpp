@@ -1,0 +1,37 @@
+#include "rfsmooth/pipeline/cli/report.h"
+
+#include <fmt/format.h>
+
+#include "rfsmooth/pipeline/io/io.h"
+
+namespace rfsmooth::cli {
+
+Report::Report(std::string command, const std::optional<std::string>& path, bool force)
+    : command_(std::move(command)), path_(path.value_or("")), force_(force) {
+  if (!wanted() || path_ == "-") return;
+  pipeline::io::WriteOptions options;
+  options.force = force_;
+  if (const auto fine = pipeline::io::check_output(path_, options); !fine.ok()) throw Failure(fine.error());
+}
+
+void Report::write() const {
+  if (!wanted()) return;
+  nlohmann::ordered_json all = {{"rfsmooth", RFSMOOTH_VERSION}, {"command", command_}};
+  if (files_.size() == 1)
+    all.update(files_[0]);
+  else
+    all["files"] = files_;
+  const std::string text = all.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
+  if (path_ == "-")
+    fmt::print("{}", text);
+  else if (const auto done = pipeline::io::write_bytes(text, path_, force_, {}); !done.ok())
+    throw Failure(done.error());
+}
+
+nlohmann::ordered_json json_of(const std::vector<pipeline::StageTime>& stages) {
+  auto object = nlohmann::ordered_json::object();
+  for (const auto& stage : stages) object[stage.name] = stage.seconds;
+  return object;
+}
+
+}  // namespace rfsmooth::cli

@@ -1,0 +1,34 @@
+/// --report: what was done, as JSON. A report of one file can be given to --config to do it again.
+#pragma once
+
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "rfsmooth/pipeline/cli/jobs.h"
+#include "rfsmooth/pipeline/denoise.h"
+
+namespace rfsmooth::cli {
+
+class Report {
+ public:
+  /// \throw Failure (cannot_write) if `path` exists and `force` is not set: told before any work is done.
+  Report(std::string command, const std::optional<std::string>& path, bool force);
+
+  bool wanted() const { return !path_.empty(); }
+
+  /// Adds what one file gave; `entry` should have "input", "output", "options", ...
+  void add(nlohmann::ordered_json entry) { files_.push_back(std::move(entry)); }
+
+  /// Writes it: one file as an object, several under "files". \throw Failure (cannot_write).
+  void write() const;
+
+ private:
+  std::string command_, path_;
+  bool force_;
+  nlohmann::ordered_json files_ = nlohmann::ordered_json::array();
+};
+
+nlohmann::ordered_json json_of(const std::vector<pipeline::StageTime>& stages);
+
+}  // namespace rfsmooth::cli

@@ -1,0 +1,265 @@
+#include "rfsmooth/pipeline/denoise.h"
+
+#include <atomic>
+#include <cmath>
+#include <cstring>
+#include <random>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "support/awkward_clouds.h"
+
+namespace rfsmooth::pipeline {
+namespace {
+
+using Flat = std::vector<double>;
+
+Flat flat(const Positions& points, const Eigen::Vector3d& origin = Eigen::Vector3d::Zero()) {
+  Flat xyz;
+  for (const auto& p : points)
+    for (int axis = 0; axis < 3; ++axis) xyz.push_back(p[axis] + origin[axis]);
+  return xyz;
+}
+
+Flat sphere(std::size_t n = 3000) {
+  return flat(test::noisy_sphere(n, 0.01, 3));
+}
+
+DenoiseOptions hc(int iterations = 5) {
+  DenoiseOptions options;
+  options.flow.flow = "hc";
+  options.flow.iterations = iterations;
+  return options;
+}
+
+DenoiseReport run(Flat& xyz, const DenoiseOptions& options, const Context& context = {}) {
+  auto result = denoise(xyz.data(), xyz.size() / 3, options, context);
+  EXPECT_TRUE(result.ok()) << result.error().message;
+  return std::move(result).value();
+}
+
+bool same_bits(const Flat& a, const Flat& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
+}
+
+double mean_square_off_sphere(const Flat& xyz) {
+  double sum = 0;
+  for (std::size_t i = 0; i < xyz.size(); i += 3) {
+    const double off = std::hypot(xyz[i], xyz[i + 1], xyz[i + 2]) - 1;
+    sum += off * off;
+  }
+  return sum / double(xyz.size() / 3);
+}
+
+double largest_difference(const Flat& a, const Flat& b) {
+  double largest = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, std::abs(a[i] - b[i]));
+  return largest;
+}
+
+TEST(Denoise, TakesNoiseOffASphere) {
+  Flat xyz = sphere();
+  const double before = mean_square_off_sphere(xyz);
+  run(xyz, hc(10));
+  EXPECT_LT(mean_square_off_sphere(xyz), 0.5 * before);
+}
+
+TEST(Denoise, ZeroStepsChangeNothing) {
+  const Flat original = sphere();
+  Flat xyz = original;
+  const DenoiseReport report = run(xyz, hc(0));
+  EXPECT_TRUE(same_bits(xyz, original));
+  EXPECT_EQ(report.moved, 0u);
+  EXPECT_EQ(report.largest_move, 0);
+}
+
+TEST(Denoise, NonFiniteRowsStayAndInfluenceNothing) {
+  const Flat clean = sphere();
+  Flat alone = clean;
+  run(alone, hc());
+  const double nan = std::nan("7");
+  Flat mixed = {nan, 1, 2, 0.5, -INFINITY, nan};
+  mixed.insert(mixed.end(), clean.begin(), clean.end());
+  mixed.insert(mixed.end(), {INFINITY, nan, -0.0});
+  const Flat before = mixed;
+  const DenoiseReport report = run(mixed, hc());
+  EXPECT_EQ(report.finite, clean.size() / 3);
+  EXPECT_EQ(std::memcmp(mixed.data(), before.data(), 6 * sizeof(double)), 0);
+  EXPECT_EQ(std::memcmp(&mixed[mixed.size() - 3], &before[before.size() - 3], 3 * sizeof(double)), 0);
+  EXPECT_EQ(std::memcmp(&mixed[6], alone.data(), alone.size() * sizeof(double)), 0);
+}
+
+TEST(Denoise, RowsThatShareAPositionMoveTogether) {
+  const Flat once = sphere(800);
+  Flat twice = once;
+  twice.insert(twice.end(), once.begin(), once.end());
+  const DenoiseReport report = run(twice, hc());
+  EXPECT_EQ(report.distinct, 800u);
+  for (std::size_t i = 0; i < once.size(); ++i) EXPECT_EQ(twice[i], twice[i + once.size()]);
+}
+
+TEST(Denoise, OrderOfRowsDoesNotMatter) {
+  const Flat xyz = sphere();
+  const std::size_t n = xyz.size() / 3;
+  std::vector<std::size_t> order(n);
+  for (std::size_t i = 0; i < n; ++i) order[i] = i;
+  std::shuffle(order.begin(), order.end(), std::mt19937_64(5));
+  Flat straight = xyz, shuffled(xyz.size());
+  for (std::size_t i = 0; i < n; ++i) std::copy_n(&xyz[3 * order[i]], 3, &shuffled[3 * i]);
+  run(straight, hc());
+  run(shuffled, hc());
+  for (std::size_t i = 0; i < n; ++i)
+    EXPECT_EQ(std::memcmp(&shuffled[3 * i], &straight[3 * order[i]], 3 * sizeof(double)), 0);
+}
+
+TEST(Denoise, SameBytesForAnyNumberOfThreads) {
+  Flat one = sphere(20000);
+  const Flat original = one;
+  Context context;
+  context.threads = 1;
+  run(one, hc(), context);
+  for (const int threads : {2, 3, 4, 7}) {
+    Flat other = original;
+    context.threads = threads;
+    run(other, hc(), context);
+    EXPECT_TRUE(same_bits(one, other)) << threads << " threads";
+  }
+}
+
+TEST(Denoise, FarFromTheOriginTheSameDisplacements) {
+  const Eigen::Vector3d utm(500000, 4649776, 130);
+  const Positions points = test::noisy_sphere(2000, 0.01, 3);
+  Flat near = flat(points), far = flat(points, utm);
+  run(near, hc());
+  run(far, hc());
+  // One ulp at 4.6e6 is 1e-9: the input is rounded to it, the output once more.
+  for (std::size_t i = 0; i < near.size(); ++i) EXPECT_NEAR(far[i] - utm[int(i % 3)], near[i], 1e-7);
+}
+
+TEST(Denoise, CancelledAtAnyReportLeavesTheCloudAsItWas) {
+  const Flat original = sphere(500);
+  int reports = 0;
+  Context counting;
+  counting.progress = [&](std::string_view, double) { return ++reports > 0; };
+  Flat all = original;
+  run(all, hc(3), counting);
+  ASSERT_GT(reports, 3);
+  for (int stop_at = 1; stop_at <= reports; ++stop_at) {
+    Flat xyz = original;
+    int seen = 0;
+    Context context;
+    context.progress = [&](std::string_view, double) { return ++seen < stop_at; };
+    const auto result = denoise(xyz.data(), xyz.size() / 3, hc(3), context);
+    ASSERT_FALSE(result.ok()) << stop_at;
+    EXPECT_EQ(result.error().code, ErrorCode::cancelled);
+    EXPECT_TRUE(same_bits(xyz, original));
+  }
+}
+
+TEST(Denoise, StopFlagIsSeen) {
+  const Flat original = sphere(500);
+  Flat xyz = original;
+  const std::atomic<bool> stop{true};
+  Context context;
+  context.stop = &stop;
+  const auto result = denoise(xyz.data(), xyz.size() / 3, hc(), context);
+  ASSERT_FALSE(result.ok());
+  EXPECT_EQ(result.error().code, ErrorCode::cancelled);
+  EXPECT_TRUE(same_bits(xyz, original));
+}
+
+TEST(Denoise, ProgressNeverFallsWithinAStageAndIsInRange) {
+  Flat xyz = sphere(500);
+  std::string stage;
+  double last = 0;
+  Context context;
+  context.progress = [&](std::string_view name, double fraction) {
+    if (name != stage) last = 0;
+    stage = name;
+    EXPECT_GE(fraction, last);
+    EXPECT_LE(fraction, 1);
+    last = fraction;
+    return true;
+  };
+  run(xyz, hc(), context);
+}
+
+TEST(Denoise, WrongOptionsAreNamed) {
+  Flat xyz = sphere(10);
+  DenoiseOptions options = hc();
+  options.flow.alpha = 2;
+  auto result = denoise(xyz.data(), 10, options, {});
+  ASSERT_FALSE(result.ok());
+  EXPECT_EQ(result.error().code, ErrorCode::usage);
+  EXPECT_THAT(result.error().message, ::testing::HasSubstr("alpha"));
+  options = hc();
+  options.flow.flow = "hcc";
+  result = denoise(xyz.data(), 10, options, {});
+  ASSERT_FALSE(result.ok());
+  EXPECT_THAT(result.error().message, ::testing::HasSubstr("'hc'"));
+}
+
+TEST(Denoise, NothingUsableIsAnError) {
+  EXPECT_EQ(denoise(nullptr, 0, hc(), {}).error().code, ErrorCode::no_usable_points);
+  Flat xyz(6, std::nan(""));
+  EXPECT_EQ(denoise(xyz.data(), 2, hc(), {}).error().code, ErrorCode::no_usable_points);
+}
+
+TEST(Denoise, EffectiveOptionsGiveTheSameBytesAgain) {
+  const Flat original = sphere(1000);
+  Flat first = original, second = original;
+  DenoiseOptions automatic;
+  automatic.flow.flow = "hc";
+  const DenoiseReport report = run(first, automatic);
+  EXPECT_TRUE(report.effective.flow.iterations.has_value());
+  run(second, report.effective);
+  EXPECT_TRUE(same_bits(first, second));
+}
+
+TEST(Denoise, FewPointsAndDegenerateOnesStayWhereTheyAre) {
+  const std::vector<std::pair<const char*, Flat>> clouds = {
+      {"one", {1, 2, 3}},
+      {"two coincident", {1, 2, 3, 1, 2, 3}},
+      {"a hundred coincident", Flat(300, 0.25)},
+  };
+  for (const auto& [name, original] : clouds) {
+    SCOPED_TRACE(name);
+    Flat xyz = original;
+    const DenoiseReport report = run(xyz, hc(10));
+    EXPECT_TRUE(same_bits(xyz, original));
+    EXPECT_EQ(report.moved, 0u);
+  }
+}
+
+/// Every point of an umbrella step stays in the hull of the cloud; HC's push-back may leave it by less than
+/// what the step took: never by more than the cloud's own extent.
+TEST(Denoise, NeverThrowsAPointFar) {
+  auto clouds = test::awkward_clouds(400);
+  clouds.push_back({"two", {{0, 0, 0}, {1, 0, 0}}});
+  clouds.push_back({"three", {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}});
+  clouds.push_back({"four", {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}});
+  for (const auto& cloud : clouds)
+    for (const char* flow : {"hc", "laplacian"}) {
+      SCOPED_TRACE(cloud.name + std::string(" ") + flow);
+      const Flat original = flat(cloud.points);
+      double low = INFINITY, high = -INFINITY;
+      for (const double v : original) {
+        low = std::min(low, v);
+        high = std::max(high, v);
+      }
+      Flat xyz = original;
+      DenoiseOptions options = hc(10);
+      options.flow.flow = flow;
+      const auto result = denoise(xyz.data(), xyz.size() / 3, options, {});
+      if (!result.ok()) {
+        EXPECT_EQ(result.error().code, ErrorCode::no_usable_points) << result.error().message;
+        continue;
+      }
+      EXPECT_LE(largest_difference(xyz, original), high - low);
+      for (const double v : xyz) EXPECT_TRUE(std::isfinite(v));
+    }
+}
+
+}  // namespace
+}  // namespace rfsmooth::pipeline
