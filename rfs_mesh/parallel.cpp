@@ -1,13 +1,16 @@
 #include "rfsmooth/rfs_mesh/parallel.h"
 
 #include <tbb/blocked_range.h>
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 namespace rfsmooth {
 
 void in_arena(const Context& context, const std::function<void()>& body) {
-  tbb::task_arena arena(context.threads > 0 ? context.threads : tbb::task_arena::automatic);
+  // More threads than cores gain nothing, and TBB would print a warning.
+  const int threads = std::min(context.threads, tbb::info::default_concurrency());
+  tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
   arena.execute(body);
 }
 
