@@ -11,6 +11,7 @@ Report::Report(std::string command, const std::optional<std::string>& path, bool
   if (!wanted() || path_ == "-") return;
   pipeline::io::WriteOptions options;
   options.force = force_;
+  options.format = pipeline::io::Format::ply;  // any: the extension of a report stands for no cloud
   if (const auto fine = pipeline::io::check_output(path_, options); !fine.ok()) throw Failure(fine.error());
 }
 
