@@ -1,5 +1,6 @@
 #include "rfsmooth/rfs_mesh/emst.h"
 
+#include <atomic>
 #include <cmath>
 #include <limits>
 
@@ -109,6 +110,43 @@ TEST_P(Emst, SameEdgesForAnyNumberOfThreads) {
       EXPECT_EQ(edges, first) << threads;
     });
   }
+}
+
+TEST(EmstOfMany, CoincidentPointsMakeAStarOfTheFirst) {
+  const Positions points(50000, Eigen::Vector3d(1, 2, 3));
+  const std::vector<Edge> edges = emst(SpatialIndex(points, {}), {});
+  ASSERT_EQ(edges.size(), points.size() - 1);
+  for (Index e = 0; e < edges.size(); ++e) ASSERT_EQ(edges[e], (Edge{0, e + 1}));  // ties by (min id, max id)
+}
+
+TEST(EmstOfMany, TwoClustersAMillionSpacingsApartShareOneLongEdge) {
+  Positions points = rfsmooth::test::noisy_sphere(25000, 0.01, 3);
+  const double spacing = std::sqrt(4 * 3.14159 / 25000);
+  for (const Eigen::Vector3d& p : rfsmooth::test::noisy_sphere(25000, 0.01, 4))
+    points.push_back(p + Eigen::Vector3d(1e6 * spacing, 0, 0));
+  const std::vector<Edge> edges = emst(SpatialIndex(points, {}), {});
+  ASSERT_EQ(edges.size(), points.size() - 1);
+  EXPECT_EQ(component_count(points.size(), edges), 1u);
+  for (std::size_t e = 0; e < edges.size(); ++e)
+    EXPECT_EQ(edges[e][0] < 25000 && edges[e][1] >= 25000, e + 1 == edges.size()) << e;
+}
+
+TEST(EmstOfMany, CancelStopsIt) {
+  const Positions points = rfsmooth::test::noisy_sphere(2000, 0.01, 5);
+  const SpatialIndex index(points, {});
+  const auto lists = index.nearest(6, {});
+  const std::atomic<bool> stop{true};
+  Context context;
+  context.stop = &stop;
+  EXPECT_THROW(emst(index, context), rfsmooth::Failure);
+  EXPECT_THROW(emst(index, lists, context), rfsmooth::Failure);
+}
+
+TEST(EmstOfMany, ATableOfOtherPointsIsRefused) {
+  const Positions points = rfsmooth::test::noisy_sphere(100, 0, 5),
+                  fewer(points.begin(), points.begin() + 50);
+  EXPECT_THROW(emst(SpatialIndex(points, {}), SpatialIndex(fewer, {}).nearest(6, {}), {}),
+               std::invalid_argument);
 }
 
 }  // namespace
