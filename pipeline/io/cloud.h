@@ -33,6 +33,13 @@ struct Note {
   std::size_t field = 0;
 };
 
+/// What an XYZ file says before its first point, besides comments.
+struct XyzStyle {
+  bool counted = false;              ///< a line with the number of points (.pts)
+  std::optional<std::string> names;  ///< a line that names the columns: what it starts with ("//", "# ", "")
+  char separator = ' ';              ///< between those names
+};
+
 struct Cloud {
   Format format = Format::ply;
   Encoding encoding = Encoding::binary_little_endian;
@@ -44,6 +51,7 @@ struct Cloud {
   std::size_t width = 0, height = 1;        ///< width x height = points; height 1 = unorganised
   std::string viewpoint = "0 0 0 1 0 0 0";  ///< PCD: translation and quaternion (w x y z), as written
   std::vector<Note> notes;                  ///< comments and obj_info, in file order
+  XyzStyle xyz_style;
 
   // How the file was written, so that an unchanged one comes back the same.
   std::string newline = "\n";

@@ -5,17 +5,11 @@
 #include <fmt/format.h>
 
 #include "rfsmooth/pipeline/io/header_lines.h"
+#include "rfsmooth/pipeline/io/off.h"
 #include "rfsmooth/pipeline/io/text.h"
 
 namespace rfsmooth::pipeline::io {
 namespace {
-
-// OFF's first word: [ST][C][N][4][n]OFF.
-bool is_off_word(std::string_view word) {
-  for (const std::string_view prefix : {"ST", "C", "N", "4", "n"})
-    if (word.substr(0, prefix.size()) == prefix) word.remove_prefix(prefix.size());
-  return word == "OFF";
-}
 
 bool is_pcd_word(std::string_view word) {
   return word == "VERSION" || word == "FIELDS" || word == "COLUMNS" || word == "SIZE" || word == "TYPE";

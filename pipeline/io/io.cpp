@@ -6,9 +6,12 @@
 #include <fmt/format.h>
 
 #include "rfsmooth/pipeline/io/atomic_file.h"
+#include "rfsmooth/pipeline/io/convert.h"
 #include "rfsmooth/pipeline/io/detect.h"
+#include "rfsmooth/pipeline/io/off.h"
 #include "rfsmooth/pipeline/io/pcd.h"
 #include "rfsmooth/pipeline/io/ply.h"
+#include "rfsmooth/pipeline/io/xyz.h"
 
 namespace rfsmooth::pipeline::io {
 namespace {
@@ -26,19 +29,33 @@ Cloud read(const Source& source, const ReadOptions& options, const Context& cont
   throw std::invalid_argument("read: not a Format");
 }
 
-void write(const Cloud& cloud, Format format, const WriteOptions& options, Sink& sink,
-           const Context& context) {
-  if (format != cloud.format) throw Failure({ErrorCode::usage, "conversion is not there yet"});
-  const Encoding encoding = options.encoding.value_or(cloud.encoding);
-  switch (format) {
+void write_as_is(const Cloud& cloud, Encoding encoding, Sink& sink, const Context& context) {
+  switch (cloud.format) {
     case Format::ply:
       return write_ply(cloud, encoding, sink, context);
     case Format::pcd:
       return write_pcd(cloud, encoding, sink, context);
     case Format::xyz:
+      return write_xyz(cloud, sink, context);
     case Format::off:
-      break;
+      return write_off(cloud, sink, context);
   }
+}
+
+void write(const Cloud& cloud, Format format, const WriteOptions& options, Sink& sink,
+           const Context& context) {
+  const Encoding encoding = target_encoding(cloud, format, options.encoding);
+  if (!options.drop_unsupported) {
+    const std::vector<std::string> losses = what_is_lost(cloud, format, encoding, context);
+    std::string list;
+    for (const std::string& loss : losses) list += (list.empty() ? "" : ", ") + loss;
+    if (!losses.empty())
+      throw Failure(
+          {ErrorCode::usage, fmt::format("{} ({}) cannot carry {}; --drop-unsupported leaves that out",
+                                         name_of(format), name_of(encoding), list)});
+  }
+  if (format == cloud.format) return write_as_is(cloud, encoding, sink, context);
+  write_as_is(convert(cloud, format, context), encoding, sink, context);
 }
 
 Format target_format(const Cloud& cloud, const std::filesystem::path& path, const WriteOptions& options) {

@@ -1,129 +1,146 @@
 #include "rfsmooth/pipeline/io/mesh_file.h"
 
 #include <algorithm>
-#include <string>
+#include <new>
+
+#include <fmt/format.h>
 
 namespace rfsmooth::pipeline::io {
 namespace {
 
-Index corner(double value, const Cloud& cloud, const std::string& what, std::size_t row) {
+using rfs_mesh::Edge;
+using rfs_mesh::Face;
+
+std::optional<std::size_t> polygon_field(const Table& table) {
+  for (std::size_t f = 0; f < table.fields.size(); ++f)
+    if (table.fields[f].is_list() &&
+        (table.fields[f].name == "vertex_indices" || table.fields[f].name == "vertex_index"))
+      return f;
+  return std::nullopt;
+}
+
+Index point(double value, const Cloud& cloud, const char* what, std::size_t row) {
   if (!(value >= 0 && value < double(cloud.size())))
-    throw Failure({ErrorCode::input_unreadable, what + " " + std::to_string(row) + " asks for point " +
-                                                    std::to_string(std::int64_t(value)) + "; there are " +
-                                                    std::to_string(cloud.size())});
+    throw Failure({ErrorCode::input_unreadable,
+                   fmt::format("{} {}: expected points below {}, found {}", what, row, cloud.size(), value)});
   return Index(value);
 }
 
-bool is_corner_list(const Field& field) {
-  return field.is_list() && (field.name == "vertex_indices" || field.name == "vertex_index");
+Result<MeshFile> with_faces(Result<Cloud> cloud, const std::string& name, const Context& context) {
+  if (!cloud.ok()) return cloud.error();
+  MeshFile mesh;
+  mesh.cloud = std::move(cloud).value();
+  try {
+    mesh.faces = faces_of(mesh.cloud, context);
+    if (mesh.faces.empty()) return Error{ErrorCode::input_unreadable, name + ": expected faces, found none"};
+  } catch (const Failure& failure) {
+    return Error{failure.error.code, name + ": " + failure.error.message};
+  } catch (const std::bad_alloc&) {
+    return Error{ErrorCode::out_of_memory, name + ": not enough memory for its faces"};
+  }
+  return mesh;
 }
 
-/// The rows as bytes. A table of text is copied, a binary one is not.
-class BinaryRows {
- public:
-  BinaryRows(const Table& table, const Context& context) : table_(&table) {
-    if (!table.text) return;
-    copy_ = table;
-    make_binary(copy_, context);
-    table_ = &copy_;
-  }
-  const Table& operator*() const { return *table_; }
+// Replaces the element of that name, or appends it.
+void put(Cloud& cloud, Table table) {
+  for (Table& present : cloud.elements)
+    if (present.name == table.name) {
+      present = std::move(table);
+      return;
+    }
+  cloud.elements.push_back(std::move(table));
+}
 
- private:
-  const Table* table_;
-  Table copy_;
-};
-
-void store_all(Table& table, Scalar type, double value) {
-  char bytes[8];
-  store(type, bytes, value);
-  table.data.insert(table.data.end(), bytes, bytes + size_of(type));
+void append(Bytes& data, std::int32_t value) {
+  const auto* p = reinterpret_cast<const char*>(&value);
+  data.insert(data.end(), p, p + sizeof value);
 }
 
 }  // namespace
 
-std::vector<rfs_mesh::Face> faces_of(const Cloud& cloud, const Context& context) {
-  std::vector<rfs_mesh::Face> faces;
-  const Table* element = cloud.element("face");
-  if (element == nullptr || std::none_of(element->fields.begin(), element->fields.end(), is_corner_list))
-    return faces;
-  const BinaryRows rows(*element, context);
-  std::vector<Index> corners;
-  for (std::size_t i = 0; i < element->count; ++i) {
-    const char* p = (*rows).row(i).data();
-    for (const Field& field : (*rows).fields) {
-      std::size_t n = field.count;
-      if (field.is_list()) {
-        n = std::size_t(load(*field.list_count, p));
-        p += size_of(*field.list_count);
-      }
-      if (is_corner_list(field)) {
-        corners.clear();
-        for (std::size_t k = 0; k < n; ++k)
-          corners.push_back(corner(load(field.type, p + k * size_of(field.type)), cloud, "face", i));
-        for (std::size_t k = 2; k < corners.size(); ++k)
-          faces.push_back({corners[0], corners[k - 1], corners[k]});
-        break;
-      }
-      p += n * size_of(field.type);
+Result<MeshFile> read_mesh(const std::filesystem::path& path, const ReadOptions& options,
+                           const Context& context) {
+  return with_faces(read_cloud(path, options, context), path.string(), context);
+}
+
+Result<MeshFile> parse_mesh(std::string_view bytes, const std::string& name, const ReadOptions& options,
+                            const Context& context) {
+  return with_faces(parse_cloud(bytes, name, options, context), name, context);
+}
+
+std::vector<Face> faces_of(const Cloud& cloud, const Context& context) {
+  std::vector<Face> faces;
+  const Table* table = cloud.element("face");
+  const auto field = table == nullptr ? std::nullopt : polygon_field(*table);
+  if (!field) return faces;
+  const Lists polygons = gather_lists(*table, *field, context);
+  std::size_t left_out = 0;
+  for (std::size_t i = 0; i < table->count; ++i) {
+    std::vector<Index> corners;
+    for (std::uint64_t k = polygons.start[i]; k < polygons.start[i + 1]; ++k)
+      corners.push_back(point(polygons.values[k], cloud, "face", i));
+    if (corners.size() < 3) ++left_out;
+    for (std::size_t k = 2; k < corners.size(); ++k) {
+      const Face face{corners[0], corners[k - 1], corners[k]};
+      if (face[0] == face[1] || face[1] == face[2] || face[0] == face[2])
+        ++left_out;
+      else
+        faces.push_back(face);
     }
   }
+  if (left_out > 0)
+    context.warn(fmt::format("{} degenerate faces are left out of the work; the file keeps them", left_out));
   return faces;
 }
 
-std::vector<rfs_mesh::Edge> edges_of(const Cloud& cloud, const Context& context) {
-  std::vector<rfs_mesh::Edge> edges;
-  const Table* element = cloud.element("edge");
-  if (element == nullptr) return edges;
+std::vector<Edge> edges_of(const Cloud& cloud, const Context& context) {
+  std::vector<Edge> edges;
+  const Table* table = cloud.element("edge");
+  if (table == nullptr) return edges;
   std::vector<std::size_t> ends;
   for (const std::string_view name : {"vertex1", "vertex2"})
-    for (std::size_t f = 0; f < element->fields.size(); ++f)
-      if (element->fields[f].name == name && element->fields[f].is_plain()) ends.push_back(f);
+    for (std::size_t f = 0; f < table->fields.size(); ++f)
+      if (table->fields[f].name == name && table->fields[f].is_plain()) ends.push_back(f);
   if (ends.size() != 2) return edges;
-  const std::vector<double> values = gather(*element, ends, context);
-  for (std::size_t i = 0; i < element->count; ++i) {
-    const Index a = corner(values[2 * i], cloud, "edge", i), b = corner(values[2 * i + 1], cloud, "edge", i);
+  const std::vector<double> values = gather(*table, ends, context);
+  for (std::size_t i = 0; i < table->count; ++i) {
+    const Index a = point(values[2 * i], cloud, "edge", i), b = point(values[2 * i + 1], cloud, "edge", i);
     if (a != b) edges.push_back({std::min(a, b), std::max(a, b)});
   }
   return edges;
 }
 
-Cloud make_mesh_file(const Positions& points, const std::vector<rfs_mesh::Face>& faces,
-                     const std::vector<rfs_mesh::Edge>& edges) {
+void set_faces(Cloud& cloud, const std::vector<Face>& faces) {
+  Table table;
+  table.name = "face";
+  table.fields.push_back({"vertex_indices", Scalar::int32, 1, Scalar::uint8});
+  table.count = faces.size();
+  table.data.reserve(13 * faces.size());
+  table.start.push_back(0);
+  for (const Face& face : faces) {
+    table.data.push_back(3);
+    for (const Index corner : face) append(table.data, std::int32_t(corner));
+    table.start.push_back(table.data.size());
+  }
+  put(cloud, std::move(table));
+}
+
+void set_edges(Cloud& cloud, const std::vector<Edge>& edges) {
+  Table table;
+  table.name = "edge";
+  table.fields = {{"vertex1", Scalar::int32}, {"vertex2", Scalar::int32}};
+  table.count = edges.size();
+  table.data.reserve(8 * edges.size());
+  for (const Edge& edge : edges)
+    for (const Index end : edge) append(table.data, std::int32_t(end));
+  put(cloud, std::move(table));
+}
+
+Cloud make_mesh_file(const Positions& points, const std::vector<Face>& faces,
+                     const std::vector<Edge>& edges) {
   Cloud cloud = make_cloud(points.empty() ? nullptr : points.front().data(), points.size(), Scalar::float64);
-  cloud.format = Format::ply;
-  cloud.encoding = Encoding::binary_little_endian;
-  if (!faces.empty()) {
-    Table table;
-    table.name = "face";
-    table.count = faces.size();
-    Field field;
-    field.name = "vertex_indices";
-    field.type = Scalar::int32;
-    field.list_count = Scalar::uint8;
-    table.fields = {field};
-    table.start.push_back(0);
-    for (const rfs_mesh::Face& face : faces) {
-      store_all(table, Scalar::uint8, 3);
-      for (const Index v : face) store_all(table, Scalar::int32, v);
-      table.start.push_back(table.data.size());
-    }
-    cloud.elements.push_back(std::move(table));
-  }
-  if (!edges.empty()) {
-    Table table;
-    table.name = "edge";
-    table.count = edges.size();
-    for (const char* name : {"vertex1", "vertex2"}) {
-      Field field;
-      field.name = name;
-      field.type = Scalar::int32;
-      table.fields.push_back(field);
-    }
-    for (const rfs_mesh::Edge& edge : edges)
-      for (const Index v : edge) store_all(table, Scalar::int32, v);
-    cloud.elements.push_back(std::move(table));
-  }
+  if (!faces.empty()) set_faces(cloud, faces);
+  if (!edges.empty()) set_edges(cloud, edges);
   return cloud;
 }
 

@@ -1,22 +1,41 @@
-/// Faces and edges of a file, and the file of a mesh: the bridge between io's Cloud and rfs_mesh's Mesh.
+/// Meshes in files: a Cloud whose PLY or OFF file also has faces (or edges). The polygons stay in the cloud
+/// as they were; here they are read as triangles to work on, and triangles and edges are put into a cloud to
+/// write.
 #pragma once
 
-#include <vector>
-
-#include "rfsmooth/pipeline/io/cloud.h"
-#include "rfsmooth/rfs_mesh/context.h"
+#include "rfsmooth/pipeline/io/io.h"
 #include "rfsmooth/rfs_mesh/mesh.h"
 
 namespace rfsmooth::pipeline::io {
 
-/// The triangles of a PLY or OFF file, rows of the points as corners; polygons are cut into fans, faces of
-/// one or two corners are left out. Empty if the file has no faces. \throw Failure (input_unreadable) naming
-/// the face that asks for a point that does not exist. O(faces).
+struct MeshFile {
+  Cloud cloud;                        ///< the file; write it with write_cloud after set_positions
+  std::vector<rfs_mesh::Face> faces;  ///< m x 3: its polygons split into fans; no repeated corners
+};
+
+/// Reads a mesh. Errors: as read_cloud; input_unreadable if it has no faces or one names a vertex that is not
+/// there. Polygons with fewer than three corners and triangles with a repeated corner are left out of `faces`
+/// and a warning says how many; the file keeps them. A convex polygon's fan covers it; of others, the
+/// connectivity is right.
+Result<MeshFile> read_mesh(const std::filesystem::path& path, const ReadOptions& options,
+                           const Context& context);
+Result<MeshFile> parse_mesh(std::string_view bytes, const std::string& name, const ReadOptions& options,
+                            const Context& context);
+
+/// The triangles of a PLY or OFF file, rows of the points as corners; polygons and degenerate faces as above.
+/// Empty if the file has no faces. \throw Failure (input_unreadable) naming the face that asks for a point
+/// that does not exist.
 std::vector<rfs_mesh::Face> faces_of(const Cloud& cloud, const Context& context = {});
 
 /// The edges of a PLY file (element edge with vertex1 and vertex2), smaller index first; a == b is left out.
 /// \throw Failure as above.
 std::vector<rfs_mesh::Edge> edges_of(const Cloud& cloud, const Context& context = {});
+
+/// Puts triangles into the cloud as element 'face' (list uchar int vertex_indices), edges as element 'edge'
+/// (int vertex1, int vertex2); replaces what was there under that name. Rows are binary. Only PLY and OFF can
+/// carry faces, only PLY edges: set cloud.format or write with that format.
+void set_faces(Cloud& cloud, const std::vector<rfs_mesh::Face>& faces);
+void set_edges(Cloud& cloud, const std::vector<rfs_mesh::Edge>& edges);
 
 /// A binary PLY of points (float64), triangles and edges; elements without rows are left out.
 Cloud make_mesh_file(const Positions& points, const std::vector<rfs_mesh::Face>& faces,

@@ -33,6 +33,18 @@ struct TextCursor {
   std::string_view rest() const { return {all.data() + at, all.size() - at}; }
 };
 
+/// Whether a line of a text body holds no values: blank, or a comment ('#' or '//').
+bool is_blank_or_comment(std::string_view line);
+
+/// The next line of the body with its line end; does not move on. Empty at the end.
+std::string_view peek_line(const TextCursor& cursor);
+
+/// Moves behind the next line.
+void skip_line(TextCursor& cursor);
+
+/// Sets table.count to the number of lines left that hold values.
+void count_text_rows(Table& table, const TextCursor& cursor);
+
 /// Reads table.count lines and checks that each holds exactly the values its fields ask for. Blank lines and
 /// lines that start with '#' are kept as interludes. \throw Failure naming the line, what was expected and
 /// what was found.

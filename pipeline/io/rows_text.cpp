@@ -45,12 +45,6 @@ std::string problem(const Table& table, std::string_view row) {
   return fmt::format("expected {} values, found more: {}", seen, in_quotes(word));
 }
 
-bool is_blank_or_comment(std::string_view line) {
-  const char* p = line.data();
-  const std::string_view word = next_word(p, p + line.size());
-  return word.empty() || word.front() == '#';
-}
-
 std::size_t count_lines(const Bytes& all, std::size_t to) {
   return std::size_t(std::count(all.begin(), all.begin() + std::ptrdiff_t(to), '\n'));
 }
@@ -60,6 +54,36 @@ std::size_t count_lines(const Bytes& all, std::size_t to) {
 TextCursor::TextCursor(const Source& from, std::uint64_t offset, std::size_t lines_before,
                        const Context& context)
     : source(from), all(from.read(offset, std::size_t(from.size() - offset), context)), lines(lines_before) {}
+
+bool is_blank_or_comment(std::string_view line) {
+  const char* p = line.data();
+  const std::string_view word = next_word(p, p + line.size());
+  return word.empty() || word.front() == '#' || word.substr(0, 2) == "//";
+}
+
+std::string_view peek_line(const TextCursor& cursor) {
+  const std::string_view rest = cursor.rest();
+  const std::size_t newline = rest.find('\n');
+  return newline == std::string_view::npos ? rest : rest.substr(0, newline + 1);
+}
+
+void skip_line(TextCursor& cursor) {
+  const std::size_t n = peek_line(cursor).size();
+  cursor.at += n;
+  if (n > 0) ++cursor.lines;
+}
+
+void count_text_rows(Table& table, const TextCursor& cursor) {
+  table.count = 0;
+  const char* p = cursor.all.data() + cursor.at;
+  const char* end = cursor.all.data() + cursor.all.size();
+  while (p != end) {
+    const char* newline = static_cast<const char*>(std::memchr(p, '\n', std::size_t(end - p)));
+    const char* next = newline == nullptr ? end : newline + 1;
+    if (!is_blank_or_comment({p, std::size_t(next - p)})) ++table.count;
+    p = next;
+  }
+}
 
 void read_text_rows(Table& table, TextCursor& cursor, const Context& context) {
   table.text = true;

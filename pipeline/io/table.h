@@ -47,6 +47,14 @@ struct Table {
 /// from the text where rows are text). Parallel. \throw std::invalid_argument if a field is not plain.
 std::vector<double> gather(const Table& table, const std::vector<std::size_t>& which, const Context& context);
 
+/// The values of a list field (or of an array), row after row: row i has values[start[i]] .. values[start[i +
+/// 1]].
+struct Lists {
+  std::vector<std::uint64_t> start;  ///< count + 1
+  std::vector<double> values;
+};
+Lists gather_lists(const Table& table, std::size_t field, const Context& context);
+
 /// Writes values back into plain fields, each in its own type; a value that equals the present one (or both
 /// are NaN) keeps its bytes or its text. Text gets the fewest digits that round-trip.
 void scatter(Table& table, const std::vector<std::size_t>& which, const double* values,
@@ -55,18 +63,23 @@ void scatter(Table& table, const std::vector<std::size_t>& which, const double* 
 /// Appends a plain field with one value per row.
 void append_field(Table& table, const Field& field, const double* values, const Context& context);
 
-/// Removes a field and its values. \throw std::invalid_argument if there is no such field.
-void remove_field(Table& table, std::size_t which, const Context& context);
-
 /// Keeps the rows `which` in that order.
 void select(Table& table, const std::vector<std::size_t>& which);
+
+/// Keeps the fields `which`, in that order; text rows are written anew, values separated by a blank.
+void project(Table& table, const std::vector<std::size_t>& which, const Context& context);
+
+/// Turns the array field `which` into a list, each row's count in front, and a list whose length is `count`
+/// in every row back into an array.
+void insert_list_counts(Table& table, std::size_t which, Scalar count_type, const Context& context);
+void remove_list_counts(Table& table, std::size_t which, std::size_t count, const Context& context);
+
+/// Whether float32 holds all the digits that the text of the plain fields `which` has.
+bool text_fits_float32(const Table& table, const std::vector<std::size_t>& which, const Context& context);
 
 /// The same rows as text, values separated by a blank, or as bytes in the fields' types.
 /// Both leave a table alone that is so already. Ragged values are dropped.
 void make_text(Table& table, const Context& context);
 void make_binary(Table& table, const Context& context);
-
-/// The smallest unsigned type's largest value: whether `n` can be stored as the list count `type`.
-bool count_fits(Scalar type, std::uint64_t n);
 
 }  // namespace rfsmooth::pipeline::io

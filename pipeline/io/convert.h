@@ -1,0 +1,26 @@
+/// From one format to another: what the target can carry is carried, the rest is named.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "rfsmooth/pipeline/io/cloud.h"
+
+namespace rfsmooth::pipeline::io {
+
+/// The encoding to write: `wanted`, or the cloud's own, or the target's nearest to it.
+/// \throw Failure (usage) if `format` has no such encoding.
+Encoding target_encoding(const Cloud& cloud, Format format, std::optional<Encoding> wanted);
+
+/// What writing the cloud so would lose, in words; empty if nothing. Not counted as a loss: the type names of
+/// a text without types (XYZ, OFF), padding fields ('_') and the bytes behind the last row.
+std::vector<std::string> what_is_lost(const Cloud& cloud, Format format, Encoding encoding,
+                                      const Context& context);
+
+/// The cloud as one of `format`, without what is lost. Arrays (PCD's COUNT) become PLY lists and back; width
+/// x height and viewpoint become obj_info lines (num_cols, num_rows, viewpoint) and back; comments stay
+/// comments.
+Cloud convert(const Cloud& cloud, Format format, const Context& context);
+
+}  // namespace rfsmooth::pipeline::io
