@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -152,7 +153,7 @@ double larger_principal_curvature(const Vector6d& c) {
 }
 
 LocalSurface fit_surface(const Positions& points, const Vector3d& p, const Index* neighbours,
-                         std::size_t count, Workspace& w) {
+                         std::size_t count, Workspace& w, int robust_rounds = kRobustRounds) {
   LocalSurface surface{Vector3d::UnitZ(), p};
   double reach = 0;
   w.samples.clear();
@@ -178,7 +179,7 @@ LocalSurface fit_surface(const Positions& points, const Vector3d& p, const Index
     w.local[j] = {t1.dot(w.samples[j].d), t2.dot(w.samples[j].d), n.dot(w.samples[j].d)};
   const int terms = count >= kSmallestQuadric ? 6 : 3;
   Vector6d c = fit(w, terms);
-  for (int round = 0; terms == 6 && round < kRobustRounds && reweight(w, c); ++round) c = fit(w, terms);
+  for (int round = 0; terms == 6 && round < robust_rounds && reweight(w, c); ++round) c = fit(w, terms);
   if (!c.allFinite()) return surface;
 
   surface.normal = (n - c[1] * t1 - c[2] * t2).normalized();
@@ -209,15 +210,22 @@ std::vector<LocalSurface> local_surfaces(const Positions& points, const Neighbor
   return surfaces;
 }
 
-std::vector<LocalSurface> wide_local_surfaces(const Positions& points, const SpatialIndex& index,
-                                              std::size_t count, const Context& context) {
+std::vector<LocalSurface> wide_local_surfaces(const SpatialIndex& index, const NoiseScale& scale,
+                                              std::size_t least, const Context& context) {
+  constexpr double kMisfit = 1.4;  // well above what the residual of pure noise scatters
+  const Positions& points = index.points();
   std::vector<LocalSurface> surfaces(points.size());
   for_blocks(context, points.size(), 256, [&](std::size_t begin, std::size_t end) {
     Workspace workspace;
     NearestOthers nearest;
     for (std::size_t i = begin; i < end; ++i) {
-      const auto& row = nearest.find(index, i, count);
-      surfaces[i] = fit_surface(points, points[i], row.data(), row.size(), workspace);
+      const auto& row = nearest.find(index, i, scale.neighbours);
+      std::size_t count = row.size();
+      surfaces[i] = fit_surface(points, points[i], row.data(), count, workspace);
+      while (surfaces[i].residual > kMisfit * scale.sigma && count / 2 >= least) {
+        count /= 2;
+        surfaces[i] = fit_surface(points, points[i], row.data(), count, workspace);
+      }
     }
   });
   return surfaces;
@@ -230,29 +238,58 @@ double mean_spacing(const Positions& points, const NeighborTable& near, const Co
          double(points.size());
 }
 
-double noise_sigma(const Positions& points, const SpatialIndex& index, const Context& context) {
-  constexpr std::size_t kSamples = 1000, kNarrowest = 24, kWidest = 384;
-  constexpr double kQuartile = 0.25, kPlateau = 1.2;
-  const std::size_t n = points.size(), samples = std::min(n, kSamples);
-  double sigma = 0;
+namespace {
+
+/// The lower quartile of the root of a chi-square variable over its degrees of freedom (Wilson & Hilferty).
+double quartile_of_deviation(double freedom) {
+  const double v = 2 / (9 * freedom);
+  return std::pow(std::max(0.1, 1 - v - 0.6745 * std::sqrt(v)), 1.5);
+}
+
+struct Deviation {
+  double sigma, radius;
+};
+
+/// The flat places' residual and the median radius of neighbourhoods of m.
+Deviation deviation_at(const SpatialIndex& index, std::size_t m, const Context& context) {
+  constexpr std::size_t kSamples = 1000;
+  constexpr double kEffective = 5.0 / 9;  // what the distance weights leave of m samples on a disk
+  const std::size_t n = index.points().size(), samples = std::min(n, kSamples);
+  std::vector<double> residuals(samples), radii(samples);
+  for_blocks(context, samples, 16, [&](std::size_t begin, std::size_t end) {
+    Workspace workspace;
+    NearestOthers nearest;
+    for (std::size_t s = begin; s < end; ++s) {
+      const std::size_t i = s * n / samples;
+      const Positions& points = index.points();
+      const auto& row = nearest.find(index, i, m);
+      residuals[s] = fit_surface(points, points[i], row.data(), row.size(), workspace, 0).residual;
+      radii[s] = row.empty() ? 0 : (points[row.back()] - points[i]).norm();
+    }
+  });
+  const auto quartile = residuals.begin() + std::ptrdiff_t(samples / 4);
+  std::nth_element(residuals.begin(), quartile, residuals.end());
+  return {*quartile / quartile_of_deviation(std::max(1.0, kEffective * double(m + 1) - 6)), median(radii)};
+}
+
+}  // namespace
+
+NoiseScale noise_scale(const SpatialIndex& index, const Context& context) {
+  constexpr std::size_t kNarrowest = 24, kWidest = 384;
+  constexpr double kShareOfRadius = 0.18;
+  const std::size_t n = index.points().size();
+  NoiseScale best;
+  double least = std::numeric_limits<double>::infinity();
   for (std::size_t m = kNarrowest; m <= kWidest && m < n; m *= 2) {
-    std::vector<double> residuals(samples);
-    for_blocks(context, samples, 16, [&](std::size_t begin, std::size_t end) {
-      Workspace workspace;
-      NearestOthers nearest;
-      for (std::size_t s = begin; s < end; ++s) {
-        const std::size_t i = s * n / samples;
-        const auto& row = nearest.find(index, i, m);
-        residuals[s] = fit_surface(points, points[i], row.data(), row.size(), workspace).residual;
-      }
-    });
-    const auto quartile = residuals.begin() + std::ptrdiff_t(double(samples) * kQuartile);
-    std::nth_element(residuals.begin(), quartile, residuals.end());
-    const bool plateau = m > kNarrowest && *quartile <= kPlateau * sigma;
-    if (plateau) return sigma;
-    sigma = *quartile;
+    const Deviation d = deviation_at(index, m, context);
+    const double share = d.radius > 0 ? d.sigma / d.radius : 0;
+    if (share < least) {
+      least = share;
+      best = {d.sigma, m};
+    }
+    if (share <= kShareOfRadius) break;
   }
-  return sigma;
+  return best;
 }
 
 }  // namespace rfsmooth::rfs_mesh

@@ -47,49 +47,19 @@ Positions shadows(const std::vector<LocalSurface>& surfaces, const Context& cont
   return at;
 }
 
-double median_residual(const std::vector<LocalSurface>& surfaces) {
-  if (surfaces.empty()) return 0;
-  std::vector<double> r(surfaces.size());
-  std::transform(surfaces.begin(), surfaces.end(), r.begin(),
-                 [](const LocalSurface& s) { return s.residual; });
-  std::nth_element(r.begin(), r.begin() + std::ptrdiff_t(r.size() / 2), r.end());
-  return r[r.size() / 2];
-}
-
-/// How many neighbours a quadric needs to see a slab of noise from the side: those within 2.5 sigma, at the
-/// median of a few places.
-std::size_t wide_neighbourhood(const SpatialIndex& index, double sigma, int least) {
-  constexpr double kBandwidth = 2.5;  // sigmas; ALGORITHMS: narrower balls lie inside the slab
-  constexpr std::size_t kPlaces = 200, kMost = 400;
-  const std::size_t n = index.points().size(), places = std::min(n, kPlaces);
-  std::vector<std::size_t> counts(places);
-  std::vector<Neighbor> found;
-  for (std::size_t s = 0; s < places; ++s) {
-    index.within(index.points()[s * n / places], kBandwidth * sigma, found);
-    counts[s] = found.size();
-  }
-  std::nth_element(counts.begin(), counts.begin() + std::ptrdiff_t(places / 2), counts.end());
-  return std::clamp(counts[places / 2], std::size_t(least), kMost);
-}
-
-/// The positions to test on, with their index, neighbours and surfaces.
+/// The positions to test on, where they are not the points, with their own neighbours and tree.
 struct Ground {
   Positions at;
   NeighborTable near;
-  std::vector<LocalSurface> surfaces;
   std::vector<Edge> tree;
-  double noise = 0;
 };
 
-/// Tests on other positions than the points: their own neighbours, surfaces and tree.
 Ground ground_at(Positions at, int k, const Context& context) {
   Ground ground;
   ground.at = std::move(at);
   const SpatialIndex index(ground.at, context);
   ground.near = index.nearest(k, context);
-  ground.surfaces = local_surfaces(ground.at, ground.near, context);
   ground.tree = emst(index, ground.near, context);
-  ground.noise = median_residual(ground.surfaces);
   return ground;
 }
 
@@ -114,31 +84,31 @@ Connection connect_all(const Positions& points, const ConnectOptions& options, c
   const SpatialIndex index = stages.run("index", 0, [&] { return SpatialIndex(points, context); });
   NeighborTable near =
       stages.run("neighbours", 0.05, [&] { return index.nearest(options.neighbours, context); });
-  c.surfaces = stages.run("local surfaces", 0.2, [&] { return local_surfaces(points, near, context); });
-  stages.run("noise", 0.35, [&] {
-    c.noise.spacing = mean_spacing(points, near, context);
-    c.noise.sigma = noise_sigma(points, index, context);
-  });
-  c.emst = stages.run("emst", 0.4, [&] { return emst(index, near, context); });
+  const NoiseScale scale = stages.run("noise", 0.15, [&] { return noise_scale(index, context); });
+  c.noise.spacing = mean_spacing(points, near, context);
+  c.noise.sigma = scale.sigma;
+  c.emst = stages.run("emst", 0.2, [&] { return emst(index, near, context); });
 
   Ground ground;
-  c.on_shadow = guide == nullptr && n > 0 && c.noise.sigma > options.shadow_from * c.noise.spacing;
-  if (guide != nullptr) {
-    ground = stages.run("guide", 0.5, [&] { return ground_at(*guide, options.neighbours, context); });
-  } else if (c.on_shadow) {
-    stages.run("shadow", 0.5, [&] {
-      const std::size_t wide = wide_neighbourhood(index, c.noise.sigma, options.neighbours);
-      if (wide > std::size_t(options.neighbours))
-        c.surfaces = wide_local_surfaces(points, index, wide, context);
-      ground = ground_at(shadows(c.surfaces, context), options.neighbours, context);
+  double noise = scale.sigma;
+  c.on_shadow = guide == nullptr && n > 0 && scale.sigma > options.shadow_from * c.noise.spacing;
+  const bool moved = guide != nullptr || c.on_shadow;
+  c.surfaces = stages.run("local surfaces", 0.4, [&] {
+    const auto k = std::size_t(options.neighbours);
+    return c.on_shadow && scale.neighbours > k ? wide_local_surfaces(index, scale, k, context)
+                                               : local_surfaces(points, near, context);
+  });
+  if (moved)
+    ground = stages.run(guide != nullptr ? "guide" : "shadow", 0.5, [&] {
+      return ground_at(guide != nullptr ? *guide : shadows(c.surfaces, context), options.neighbours, context);
     });
-  }
+  if (guide != nullptr) c.surfaces = local_surfaces(ground.at, ground.near, context);
   c.noise.field.resize(n);
   for_each_index(context, n, [&](std::size_t i) { c.noise.field[i] = c.surfaces[i].residual; });
-  const bool moved = guide != nullptr || c.on_shadow;
-  if (moved) c.surfaces = std::move(ground.surfaces);
-  const Terrain terrain{moved ? ground.at : points, c.surfaces, moved ? ground.near : near,
-                        moved ? ground.noise : c.noise.sigma};
+  // A quadric through m points leaves about a third of the noise in the shadow at the m that noise_scale
+  // picks.
+  if (moved) noise = guide != nullptr ? 0 : noise / 3;
+  const Terrain terrain{moved ? ground.at : points, c.surfaces, moved ? ground.near : near, noise};
 
   Sdg sdg = stages.run("sdg", 0.6,
                        [&] { return make_sdg(terrain, moved ? ground.tree : c.emst, options.sdg, context); });
