@@ -1,391 +1,44 @@
 #include "rfsmooth/rfs_mesh/emst.h"
 
-#include <atomic>
-#include <cstring>
-#include <limits>
-#include <stdexcept>
-
+#include "rfsmooth/rfs_mesh/boruvka.h"
 #include "rfsmooth/rfs_mesh/parallel.h"
 
 namespace rfsmooth::rfs_mesh {
 
 namespace {
 
-using Eigen::Vector3d;
-using Cursor = KdTree::Cursor;
-
 /// Nearest neighbours listed per point when the caller has no table. Measured on noisy surfaces: with 5 the
 /// later rounds search more than the lists saved, with 8 the lists cost more than they save.
 constexpr int kSeeds = 6;
 
-constexpr std::uint32_t kSubtree =
-    128;  // leaves of the subtrees that are labelled and searched by one thread
-
-constexpr std::uint32_t kWorthAsking = 8;  // leaves of the nodes that are first asked about as a whole
-
-constexpr std::uint64_t kNothing = std::numeric_limits<std::uint64_t>::max();
-
-/// Non-negative doubles order like their bits, so lengths can be minimised by an atomic integer.
-std::uint64_t to_bits(double d2) {
-  std::uint64_t bits = 0;
-  std::memcpy(&bits, &d2, sizeof bits);
-  return bits;
-}
-double to_length(std::uint64_t bits) {
-  if (bits == kNothing) return std::numeric_limits<double>::infinity();
-  double d2 = 0;
-  std::memcpy(&d2, &bits, sizeof d2);
-  return d2;
-}
-
-/// Lowers `target` to `value`: the least value remains, whatever the order of the calls.
-void lower(std::atomic<std::uint64_t>& target, std::uint64_t value) {
-  std::uint64_t seen = target.load(std::memory_order_relaxed);
-  while (value < seen && !target.compare_exchange_weak(seen, value, std::memory_order_relaxed)) {
-  }
-}
-
-std::uint64_t pair_of(Index a, Index b) {
-  return a < b ? std::uint64_t(a) << 32 | b : std::uint64_t(b) << 32 | a;
-}
-
-/// Boruvka's rounds. A component is named by one of its points, its root.
-class Boruvka {
- public:
-  Boruvka(const SpatialIndex& index, const NeighborTable& lists, const Context& context)
-      : points_(index.points()),
-        tree_(index.tree()),
-        lists_(lists),
-        context_(context),
-        n_(points_.size()),
-        component_(n_),
-        next_(n_, 0),
-        candidate_(n_),
-        reach_(n_),
-        best_length_(n_),
-        best_pair_(n_),
-        joined_(n_),
-        node_component_(tree_.node_count()),
-        node_reach_(tree_.node_count(), -1),
-        subtrees_(tree_.subtrees(kSubtree)),
-        roots_(n_) {
-    for_each_index(context_, n_, [&](std::size_t i) {
-      component_[i] = roots_[i] = Index(i);
-      candidate_[i] = lists_[i][0];
-      reach_[i] = length(Index(i), candidate_[i]);
-    });
-    edges_.reserve(n_ - 1);
-  }
-
-  std::vector<Edge> run() {
-    while (roots_.size() > 1) {
-      for_each_index(context_, roots_.size(), [&](std::size_t r) {
-        best_length_[roots_[r]].store(kNothing, std::memory_order_relaxed);
-        best_pair_[roots_[r]].store(kNothing, std::memory_order_relaxed);
-      });
-      look_along_lists();
-      search_tree();
-      choose();
-      join();
-    }
-    sort_edges();
-    return std::move(edges_);
-  }
-
- private:
-  double length(Index a, Index b) const { return squared_distance(points_[a], points_[b]); }
-  double best_of(Index root) const { return to_length(best_length_[root].load(std::memory_order_relaxed)); }
-
-  /// Every point offers its nearest known point in another component.
-  void look_along_lists() {
-    const auto k = std::uint32_t(lists_.k);
-    for_each_index(context_, n_, [&](std::size_t i) {
-      if (candidate_[i] == kNone) return;
-      const Index own = component_[i];
-      if (component_[candidate_[i]] == own) {
-        candidate_[i] = kNone;
-        if (next_[i] == k) return;  // had been searched for: reach_ stays true
-        const auto list = lists_[i];
-        std::uint32_t at = next_[i] + 1;
-        while (at < k && component_[list[at]] == own) ++at;
-        next_[i] = at;
-        if (at < k) candidate_[i] = list[at];
-        reach_[i] = length(Index(i), list[std::min(at, k - 1)]);
-        if (at == k) return;
-      }
-      lower(best_length_[own], to_bits(reach_[i]));
-    });
-  }
-
-  /// Points whose list is used up search the tree, where something shorter than their component's best may
-  /// be.
-  void search_tree() {
-    for_each_index(
-        context_, subtrees_.size(), [&](std::size_t s) { label(subtrees_[s]); }, 1);
-    label_upper(tree_.root());
-    for_each_index(
-        context_, subtrees_.size(), [&](std::size_t s) { search(subtrees_[s]); }, 1);
-  }
-
-  /// Names for each node the component that all its points share, kNone if they do not.
-  Index label(const Cursor& c) {
-    Index& shared = node_component_[c.node];
-    if (!c.is_leaf()) {
-      const Index left = label(c.left()), right = label(c.right());
-      return shared = left == right ? left : kNone;
-    }
-    const KdTree::Leaf& leaf = tree_.leaf(c.first);
-    shared = component_[leaf.id[0]];
-    for (std::uint32_t i = 1; i < KdTree::kLeaf && leaf.id[i] != kNone; ++i)
-      if (component_[leaf.id[i]] != shared) shared = kNone;
-    return shared;
-  }
-  Index label_upper(const Cursor& c) {
-    if (c.last - c.first <= kSubtree) return node_component_[c.node];
-    const Index left = label_upper(c.left()), right = label_upper(c.right());
-    return node_component_[c.node] = left == right ? left : kNone;
-  }
-
-  /// The points of one node. A node inside a component is passed over as a whole if nothing foreign is as
-  /// near to its box as the component's best; that stays true in later rounds, since what is foreign only
-  /// shrinks.
-  void search(const Cursor& c) {
-    if (c.is_leaf()) return search_leaf(c);
-    const Index own = node_component_[c.node];
-    if (own != kNone && c.last - c.first >= kWorthAsking) {
-      const double bound = best_of(own);
-      if (node_reach_[c.node] > bound) return;
-      if (!foreign_within(c, own, bound)) {
-        node_reach_[c.node] = bound;
-        return;
-      }
-    }
-    search(c.left());
-    search(c.right());
-  }
-
-  bool must_search(Index i) const {
-    return i != kNone && candidate_[i] == kNone && reach_[i] <= best_of(component_[i]);
-  }
-
-  /// The points of a leaf inside a component share the walk to the foreign leaves near it.
-  void search_leaf(const Cursor& c) {
-    const KdTree::Leaf& leaf = tree_.leaf(c.first);
-    const Index own = node_component_[c.node];
-    bool listed = false;
-    LeafList near;
-    for (const Index i : leaf.id) {
-      if (!must_search(i)) continue;
-      const double bound = best_of(component_[i]);
-      if (!listed && own != kNone) listed = list_foreign(c, own, bound, near);
-      const Neighbor found =
-          listed ? nearest_in(near, i, own, bound) : nearest_foreign(i, component_[i], bound);
-      candidate_[i] = found.index;
-      reach_[i] = found.squared_distance;
-      if (found.index != kNone) lower(best_length_[component_[i]], to_bits(found.squared_distance));
-    }
-  }
-
-  /// Calls `visit(cursor)` for the leaves with points of other components whose boxes are within sqrt(bound)
-  /// of that of `of`, until it says false.
-  template <class Visit>
-  void visit_foreign(const Cursor& of, Index own, double bound, Visit&& visit) const {
-    const KdTree::Node& box = tree_.node(of.node);
-    Cursor stack[64];
-    std::size_t top = 0;
-    stack[top++] = tree_.root();
-    while (top > 0) {
-      Cursor at = stack[--top];
-      while (node_component_[at.node] != own && squared_distance(box, tree_.node(at.node)) <= bound) {
-        if (at.is_leaf()) {
-          if (!visit(at)) return;
-          break;
-        }
-        stack[top++] = at.right();
-        at = at.left();
-      }
-    }
-  }
-
-  bool foreign_within(const Cursor& of, Index own, double bound) const {
-    bool any = false;
-    visit_foreign(of, own, bound, [&](const Cursor&) {
-      any = true;
-      return false;
-    });
-    return any;
-  }
-
-  struct LeafList {
-    static constexpr std::size_t kLongest = 64;
-    Cursor leaves[kLongest];
-    std::size_t count = 0;
+void sort_by_length(std::vector<Edge>& edges, const Positions& points, const Context& context) {
+  struct Keyed {
+    double squared_length;
+    Edge edge;
   };
-
-  /// False if there are too many.
-  bool list_foreign(const Cursor& of, Index own, double bound, LeafList& list) const {
-    if (bound == std::numeric_limits<double>::infinity()) return false;
-    list.count = 0;
-    bool fits = true;
-    visit_foreign(of, own, bound, [&](const Cursor& leaf) {
-      fits = list.count < LeafList::kLongest;
-      if (fits) list.leaves[list.count++] = leaf;
-      return fits;
-    });
-    return fits;
-  }
-
-  void scan(const Cursor& c, const Vector3d& q, Index own, Neighbor& best) const {
-    const KdTree::Leaf& leaf = tree_.leaf(c.first);
-    for (std::uint32_t i = 0; i < KdTree::kLeaf; ++i) {
-      const Neighbor candidate = {leaf.id[i], squared_distance(q, Vector3d(leaf.x[i], leaf.y[i], leaf.z[i]))};
-      if (candidate < best && component_[leaf.id[i]] != own) best = candidate;
-    }
-  }
-
-  Neighbor nearest_in(const LeafList& list, Index self, Index own, double bound) const {
-    const Vector3d q = points_[self];
-    Neighbor best = {kNone, bound};
-    for (std::size_t l = 0; l < list.count; ++l)
-      if (squared_distance(q, tree_.node(list.leaves[l].node)) <= best.squared_distance)
-        scan(list.leaves[l], q, own, best);
-    return best;
-  }
-
-  /// The nearest point of another component at most sqrt(bound) away, or {kNone, bound}.
-  Neighbor nearest_foreign(Index self, Index own, double bound) const {
-    const Vector3d q = points_[self];
-    Neighbor best = {kNone, bound};
-    struct Pending {
-      Cursor cursor;
-      double squared_distance;
-    } stack[64];
-    std::size_t top = 0;
-    stack[top++] = {tree_.root(), 0};
-    while (top > 0) {
-      Pending at = stack[--top];
-      while (node_component_[at.cursor.node] != own &&
-             !(best < Neighbor{tree_.node(at.cursor.node).least_id, at.squared_distance})) {
-        if (at.cursor.is_leaf()) {
-          scan(at.cursor, q, own, best);
-          break;
-        }
-        Pending near = {at.cursor.left(), 0}, far = {at.cursor.right(), 0};
-        near.squared_distance = squared_distance(q, tree_.node(near.cursor.node));
-        far.squared_distance = squared_distance(q, tree_.node(far.cursor.node));
-        if (far.squared_distance < near.squared_distance) std::swap(near, far);
-        stack[top++] = far;
-        at = near;
-      }
-    }
-    return best;
-  }
-
-  /// Among a component's edges of the least length, the one of least ids.
-  void choose() {
-    for_each_index(context_, n_, [&](std::size_t i) {
-      if (candidate_[i] == kNone) return;
-      const Index own = component_[i];
-      if (to_bits(reach_[i]) == best_length_[own].load(std::memory_order_relaxed))
-        lower(best_pair_[own], pair_of(Index(i), candidate_[i]));
-    });
-  }
-
-  /// Joins every component with the one its best edge leads to. Of two that chose the same edge the one of
-  /// the smaller root stays: there are no other cycles, since edges are totally ordered.
-  void join() {
-    const auto best_pair = [&](Index root) { return best_pair_[root].load(std::memory_order_relaxed); };
-    for_each_index(context_, roots_.size(), [&](std::size_t r) {
-      const Index root = roots_[r];
-      const std::uint64_t pair = best_pair(root);
-      if (pair == kNothing) throw std::logic_error("EMST: a component without an edge");
-      const Index a = Index(pair >> 32), b = Index(pair);
-      const Index other = component_[a] == root ? component_[b] : component_[a];
-      joined_[root] = best_pair(other) == pair && root < other ? root : other;
-    });
-    std::vector<Index> staying;
-    for (const Index root : roots_) {
-      const std::uint64_t pair = best_pair(root);
-      if (joined_[root] == root)
-        staying.push_back(root);
-      else
-        edges_.push_back({Index(pair >> 32), Index(pair)});
-    }
-    follow_joins();
-    for_each_index(context_, n_, [&](std::size_t i) { component_[i] = joined_[component_[i]]; });
-    roots_.swap(staying);
-  }
-
-  /// Makes joined_ name the root that stays. By doubling: chains may be as long as the cloud.
-  void follow_joins() {
-    std::vector<Index> jumped(roots_.size());
-    for (bool changed = true; changed;) {
-      changed = reduce_blocks(
-                    context_, roots_.size(), 0,
-                    [&](std::size_t begin, std::size_t end) {
-                      int any = 0;
-                      for (std::size_t r = begin; r < end; ++r) {
-                        jumped[r] = joined_[joined_[roots_[r]]];
-                        any |= int(jumped[r] != joined_[roots_[r]]);
-                      }
-                      return any;
-                    },
-                    [](int a, int b) { return a | b; }) != 0;
-      for_each_index(context_, roots_.size(), [&](std::size_t r) { joined_[roots_[r]] = jumped[r]; });
-    }
-  }
-
-  void sort_edges() {
-    struct Keyed {
-      double squared_length;
-      Edge edge;
-    };
-    std::vector<Keyed> keyed(edges_.size());
-    for_each_index(context_, edges_.size(), [&](std::size_t e) {
-      keyed[e] = {length(edges_[e][0], edges_[e][1]), edges_[e]};
-    });
-    parallel_sort(context_, keyed, [](const Keyed& a, const Keyed& b) {
-      return a.squared_length != b.squared_length ? a.squared_length < b.squared_length : a.edge < b.edge;
-    });
-    for_each_index(context_, edges_.size(), [&](std::size_t e) { edges_[e] = keyed[e].edge; });
-  }
-
-  const Positions& points_;
-  const KdTree& tree_;
-  const NeighborTable& lists_;
-  const Context& context_;
-  std::size_t n_;
-
-  // of a point
-  std::vector<Index> component_;
-  std::vector<std::uint32_t> next_;  // place of the candidate in its list, k if the list is used up
-  std::vector<Index> candidate_;     // its nearest point in another component, kNone if not known
-  std::vector<double> reach_;  // squared: how far the candidate is; without one, nothing foreign is nearer
-
-  // of a root
-  std::vector<std::atomic<std::uint64_t>> best_length_, best_pair_;
-  std::vector<Index> joined_;  // the root it joins
-
-  // of a node of the tree
-  std::vector<Index> node_component_;
-  std::vector<double> node_reach_;  // squared: nothing foreign is nearer to its box
-  std::vector<Cursor> subtrees_;
-
-  std::vector<Index> roots_;
-  std::vector<Edge> edges_;
-};
+  std::vector<Keyed> keyed(edges.size());
+  for_each_index(context, edges.size(), [&](std::size_t e) {
+    keyed[e] = {squared_distance(points[edges[e][0]], points[edges[e][1]]), edges[e]};
+  });
+  parallel_sort(context, keyed, [](const Keyed& a, const Keyed& b) {
+    return a.squared_length != b.squared_length ? a.squared_length < b.squared_length : a.edge < b.edge;
+  });
+  for_each_index(context, edges.size(), [&](std::size_t e) { edges[e] = keyed[e].edge; });
+}
 
 }  // namespace
 
 std::vector<Edge> emst(const SpatialIndex& index, const NeighborTable& nearest, const Context& context) {
-  if (index.points().size() < 2) return {};
-  if (nearest.size() != index.points().size())
-    throw std::invalid_argument("emst: the table is not of these points");
-  return Boruvka(index, nearest, context).run();
+  std::vector<Edge> edges = boruvka(index, nearest, context);
+  sort_by_length(edges, index.points(), context);
+  return edges;
 }
 
 std::vector<Edge> emst(const SpatialIndex& index, const Context& context) {
-  return emst(index, index.nearest(kSeeds, context), context);
+  std::vector<Edge> edges =
+      boruvka(index, index.nearest(kSeeds, context), context);  // the table is gone here
+  sort_by_length(edges, index.points(), context);
+  return edges;
 }
 
 }  // namespace rfsmooth::rfs_mesh

@@ -1,14 +1,16 @@
 /// The Euclidean minimum spanning tree (EMST) of a cloud: exact, parallel, deterministic.
 ///
 /// The first stage of Vollmer et al. section 7 (after Mencl): the tree of n - 1 edges of least total length
-/// that connects all points. Boruvka's rounds: every component picks its shortest edge to another one; the
-/// picked edges join the components. A point first looks along its list of nearest neighbours. Only where all
-/// of them have joined its own component, and the last one is nearer than the component's best edge so far,
-/// is the tree searched, with that edge as the bound and skipping subtrees that lie in the component.
+/// that connects all points. Kruskal over a Delaunay triangulation gives the same tree; here it is Boruvka's
+/// rounds over lists of nearest neighbours and the kd-tree (boruvka.h).
 ///
 /// Ties are broken by (length^2, min id, max id), a total order in which both ends of an edge agree, so the
 /// tree is unique: the same edges for any number of threads. Coincident points are joined by edges of length
 /// zero.
+///
+/// About O(n log n). At 1M noisy surface points a quarter of the time of CGAL's sequential Delaunay + Kruskal
+/// on one thread, and 120 bytes a point above the points at the peak (tests/bench/rfs_mesh/emst_bench.cpp).
+/// Thread safe; cancelling stops it within a block of a round.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,14 @@
 /// The k nearest and the radius neighbours of points in space, exact, ties by index.
+///
+/// Why an index of our own and not FLANN: the EMST needs a search that skips subtrees of its own component,
+/// equal distances must come in the order of the indices (determinism), and the tables of all points are made
+/// leaf by leaf (leaf_neighbors.h), which is faster. Seconds at 1M noisy surface points in Morton order, one
+/// thread, medians of one interleaved run of tests/bench/rfs_mesh/emst_bench.cpp:
+///
+///                    build   k = 8   k = 32
+///     this           0.18    0.41    0.80
+///     FLANN          0.11    0.62    1.67
+///     nanoflann      0.11    0.59    1.67
 #pragma once
 
 #include <vector>
