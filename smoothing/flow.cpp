@@ -6,7 +6,11 @@
 #include <fmt/format.h>
 
 #include "rfsmooth/rfs_mesh/parallel.h"
+#include "rfsmooth/smoothing/boundary.h"
 #include "rfsmooth/smoothing/constraint.h"
+#include "rfsmooth/smoothing/preserve.h"
+#include "rfsmooth/smoothing/pushback.h"
+#include "rfsmooth/smoothing/threshold.h"
 
 namespace rfsmooth::smoothing {
 
@@ -54,12 +58,15 @@ struct Fields {
 struct FillEmpty {
   const FlowEntry& entry;
   std::vector<const void*> defaults;
+  bool checking = true;
   std::size_t next = 0;
   template <class T>
   void operator()(const OptionInfo& info, std::optional<T>& value) {
     const auto& standard = *static_cast<const std::optional<T>*>(defaults[next++]);
     const auto& used = entry.parameters;
-    if (value && std::find(used.begin(), used.end(), info.name) == used.end())
+    const auto& any = modifiers();
+    if (checking && value && std::find(used.begin(), used.end(), info.name) == used.end() &&
+        std::find(any.begin(), any.end(), info.name) == any.end())
       throw Failure({ErrorCode::usage, fmt::format("--{} has no meaning for the flow '{}', which uses: {}",
                                                    info.name, entry.name, fmt::join(used, ", "))});
     if (!value) value = standard;
@@ -68,7 +75,53 @@ struct FillEmpty {
   void operator()(const OptionInfo&, T&) {}
 };
 
+FlowOptions modifier_defaults() {
+  FlowOptions o;
+  o.push_back = false;
+  o.push_alpha = 0;
+  o.push_beta = 0.6;  // HC's own defaults
+  o.threshold = "none";
+  o.threshold_value = 0.1;
+  o.threshold_every = 5;
+  o.preserve = "none";
+  o.boundary = "free";
+  return o;
+}
+
+/// The flow with its modifiers, innermost first: push-back, constraints, threshold, invariant.
+std::unique_ptr<Flow> compose(const FlowEntry& entry, const rfs_mesh::Mesh& mesh, const FlowOptions& o,
+                              const Constraints& constraints, const Context& context) {
+  AllowedMoves allowed(constraints, mesh.positions.size());
+  std::unique_ptr<Flow> flow = entry.make(mesh, o, constraints, context);
+  if (*o.push_back) flow = make_pushback(std::move(flow), mesh, *o.push_alpha, *o.push_beta);
+  const bool constrained = !constraints.hard.empty() || !constraints.strength.empty();
+  if (constrained && !flow->applies_constraints()) flow = make_constrained(std::move(flow), allowed);
+  if (*o.threshold != "none") {
+    ThresholdRule rule;
+    rule.rings = *o.threshold == "two-ring" ? 2 : *o.threshold == "one-ring" ? 1 : 0;
+    rule.constant = *o.threshold_value;
+    rule.every = *o.threshold_every;
+    rule.lambda = o.lambda ? *o.lambda : o.dt ? *o.dt : 1;
+    if (!(rule.lambda > 0)) rule.lambda = 1;
+    flow = make_threshold(std::move(flow), mesh, rule, context);
+  }
+  if (*o.preserve != "none") {
+    const Invariant invariant = *o.preserve == "volume" ? Invariant::volume
+                                : *o.preserve == "area" ? Invariant::area
+                                                        : Invariant::height_field;
+    flow = make_preserving(std::move(flow), mesh, invariant, std::move(allowed), context);
+  }
+  return flow;
+}
+
 }  // namespace
+
+const std::vector<std::string_view>& modifiers() {
+  static const std::vector<std::string_view> all = {"push-back", "push-alpha",      "push-beta",
+                                                    "threshold", "threshold-value", "threshold-every",
+                                                    "preserve",  "boundary"};
+  return all;
+}
 
 Result<const FlowEntry*> find_flow(std::string_view name) {
   const FlowEntry* nearest = &flows().front();
@@ -87,9 +140,12 @@ Result<FlowOptions> complete(const FlowOptions& options) {
   if (const auto valid = validate(options); !valid.ok()) return valid.error();
   return guarded([&] {
     FlowOptions full = options;
-    Fields defaults;
-    FlowOptions::describe(entry.value()->defaults, defaults);
-    FlowOptions::describe(full, FillEmpty{*entry.value(), defaults.at});
+    const FlowOptions standard = modifier_defaults();
+    Fields own, common;
+    FlowOptions::describe(entry.value()->defaults, own);
+    FlowOptions::describe(full, FillEmpty{*entry.value(), own.at, true});
+    FlowOptions::describe(standard, common);
+    FlowOptions::describe(full, FillEmpty{*entry.value(), common.at, false});
     return full;
   });
 }
@@ -99,13 +155,11 @@ Result<std::unique_ptr<Flow>> make_flow(const rfs_mesh::Mesh& mesh, const FlowOp
   const auto full = complete(options);
   if (!full.ok()) return full.error();
   return guarded([&] {
-    AllowedMoves allowed(constraints, mesh.positions.size());
-    const FlowEntry& entry = *find_flow(options.flow).value();
-    std::unique_ptr<Flow> flow = entry.make(mesh, full.value(), constraints, context);
-    const bool constrained = !constraints.hard.empty() || !constraints.strength.empty();
-    if (constrained && !flow->applies_constraints())
-      flow = make_constrained(std::move(flow), std::move(allowed));
-    return flow;
+    const FlowOptions& o = full.value();
+    const FlowEntry& entry = *find_flow(o.flow).value();
+    return with_boundary_rule(
+        *o.boundary, mesh, constraints, context,
+        [&](const rfs_mesh::Mesh& on, const Constraints& c) { return compose(entry, on, o, c, context); });
   });
 }
 

@@ -34,8 +34,23 @@ struct FlowOptions {
   std::optional<double> mixture;       ///< implicit flows: share of the first power beside the order-th
   std::optional<bool> keep_weights;    ///< implicit flows: weights of the first mesh for all steps
   std::optional<bool> normalised;      ///< curvature flow: divided by the sum of the cotangents
-  std::optional<double> tolerance;     ///< implicit flows: residual to stop at, relative
-  std::optional<std::string> norm;     ///< implicit flows: of the residual
+  std::optional<double> tangential;    ///< modified curvature flow: weight of the tangential umbrella
+  std::optional<int> power;            ///< directional: m of the energy integral H^(2m) dA that falls
+  std::optional<std::string> direction;  ///< directional: "auto" or "x,y,z"
+  std::optional<double> eps;             ///< local directional: |K| below it counts as flat, 1/h^2
+  std::optional<std::string> chart;      ///< discrete fairing: how neighbours get their parameters
+  std::optional<double> tolerance;       ///< implicit flows: residual to stop at, relative
+  std::optional<std::string> norm;       ///< implicit flows: of the residual
+
+  // Modifiers, usable with every flow (`modifiers()` lists them).
+  std::optional<bool> push_back;          ///< HC's second half after every step
+  std::optional<double> push_alpha;       ///< its alpha
+  std::optional<double> push_beta;        ///< its beta
+  std::optional<std::string> threshold;   ///< vertices slower than a threshold stay
+  std::optional<double> threshold_value;  ///< the constant threshold, x mean edge length
+  std::optional<int> threshold_every;     ///< steps between recomputing it from the rings
+  std::optional<std::string> preserve;    ///< invariant restored after every step
+  std::optional<std::string> boundary;    ///< what happens at edges with one face
 
   template <class Self, class Visit>
   static void describe(Self& self, Visit&& visit) {
@@ -69,9 +84,35 @@ struct FlowOptions {
           self.keep_weights);
     visit(OptionInfo{"normalised", "curvature flow: divided by the sum of the cotangents", ""},
           self.normalised);
+    visit(OptionInfo{"tangential", "modified curvature flow: weight of the tangential part", "", 0, 4},
+          self.tangential);
+    visit(OptionInfo{"power", "directional: m of the energy integral H^(2m) dA", "", 0, 8}, self.power);
+    visit(OptionInfo{"direction", "directional: auto, or x,y,z", ""}, self.direction);
+    visit(
+        OptionInfo{"eps", "local directional: Gauss curvature that counts as flat", "1/(mean edge)^2", 0, 1},
+        self.eps);
+    visit(
+        words("chart", "discrete fairing: parameters of the neighbours", {"tangent", "exponential", "mixed"}),
+        self.chart);
     visit(OptionInfo{"tolerance", "implicit flows: relative residual to stop at", "", 1e-14, 1},
           self.tolerance);
     visit(words("norm", "implicit flows: norm of the residual", {"l2", "linf"}), self.norm);
+    visit(OptionInfo{"push-back", "any flow: HC's push-back after every step", ""}, self.push_back);
+    visit(OptionInfo{"push-alpha", "push-back: weight of the original point", "", 0, 1}, self.push_alpha);
+    visit(OptionInfo{"push-beta", "push-back: own difference against the neighbours' mean", "", 0, 1},
+          self.push_beta);
+    visit(words("threshold", "any flow: vertices slower than this stay, others move by the excess",
+                {"none", "constant", "one-ring", "two-ring"}),
+          self.threshold);
+    visit(OptionInfo{"threshold-value", "the constant threshold", "x mean edge per unit step", 0, 1e6},
+          self.threshold_value);
+    visit(OptionInfo{"threshold-every", "steps between recomputing ring thresholds", "steps", 1, 1000000},
+          self.threshold_every);
+    visit(words("preserve", "any flow: what is restored after every step",
+                {"none", "volume", "area", "height-field"}),
+          self.preserve);
+    visit(words("boundary", "any flow: rule for edges with one face", {"free", "fixed", "curve", "virtual"}),
+          self.boundary);
   }
 };
 
@@ -131,6 +172,9 @@ struct FlowEntry {
 
 /// All flows, in the order of the README's table.
 const std::vector<FlowEntry>& flows();
+
+/// The options that work with every flow, by name, beside those of its entry.
+const std::vector<std::string_view>& modifiers();
 
 /// The entry called `name`; an Error (usage) with the nearest name if there is none.
 Result<const FlowEntry*> find_flow(std::string_view name);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "rfsmooth/rfs_mesh/measure.h"
 #include "rfsmooth/rfs_mesh/parallel.h"
 
 namespace rfsmooth::smoothing {
@@ -41,13 +42,9 @@ std::vector<double> weight_sums(const rfs_mesh::Adjacency& rows, const Operator&
   return sums;
 }
 
-double mean_edge_length(const rfs_mesh::Mesh& mesh, const Context& context) {
-  const double total = sum_over(context, mesh.positions.size(), 0.0, [&](std::size_t i) {
-    double sum = 0;
-    for (const Index j : mesh.one_ring[i]) sum += (mesh.positions[i] - mesh.positions[j]).norm();
-    return sum;
-  });
-  return total > 0 ? total / double(mesh.one_ring.items.size()) : 1;
+double length_unit(const rfs_mesh::Mesh& mesh, const Context& context) {
+  const double h = rfs_mesh::mean_edge_length(mesh, context);
+  return h > 0 ? h : 1;
 }
 
 OperatorSource::OperatorSource(std::string_view name, bool frozen) : name_(name), frozen_(frozen) {

@@ -36,8 +36,8 @@ void apply(const rfs_mesh::Adjacency& rows, const Operator& op, const Positions&
 /// weight_sums / mass.
 std::vector<double> weight_sums(const rfs_mesh::Adjacency& rows, const Operator& op, const Context& context);
 
-/// Mean length of the mesh's edges; 1 if there is none longer than zero. World units.
-double mean_edge_length(const rfs_mesh::Mesh& mesh, const Context& context);
+/// Mean length of the mesh's edges, the h of every flow; 1 if there is none longer than zero. World units.
+double length_unit(const rfs_mesh::Mesh& mesh, const Context& context);
 
 /// Umbrella, L = I - T: w = 1, m = degree. Vollmer 3.1, Ohtake (3), Desbrun (7) with the sign turned. Unit 1.
 Operator umbrella(const rfs_mesh::Mesh& mesh, const Context& context);

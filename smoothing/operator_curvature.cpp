@@ -52,7 +52,7 @@ Operator curvature(const rfs_mesh::Mesh& mesh, const rfs_mesh::Adjacency& vertex
                    const Context& context) {
   Operator op;
   const rfs_mesh::Adjacency& rows = mesh.one_ring;
-  const double h = mean_edge_length(mesh, context);
+  const double h = length_unit(mesh, context);
   op.unit = h * h;
   op.mass.resize(mesh.positions.size());
   op.weight.assign(rows.items.size(), 0);

@@ -7,7 +7,7 @@ Operator scale_dependent(const rfs_mesh::Mesh& mesh, const Context& context) {
   constexpr double kShortest = 1e-6;  // x mean edge: keeps 1 / |e| finite, far below any real edge
   Operator op;
   const rfs_mesh::Adjacency& rows = mesh.one_ring;
-  const double h = mean_edge_length(mesh, context);
+  const double h = length_unit(mesh, context);
   op.unit = h * h;
   op.mass.resize(mesh.positions.size());
   op.weight.resize(rows.items.size());
