@@ -23,8 +23,9 @@ Cloud read(const Source& source, const ReadOptions& options, const Context& cont
     case Format::pcd:
       return read_pcd(source, context);
     case Format::xyz:
+      return read_xyz(source, context);
     case Format::off:
-      source.fail("XYZ and OFF cannot be read yet");
+      return read_off(source, context);
   }
   throw std::invalid_argument("read: not a Format");
 }

@@ -64,9 +64,13 @@ std::uint32_t read_uint32(const char* p) {
 }
 
 void read_compressed(Table& table, BinaryCursor& cursor, const Context& context) {
-  if (table.count == 0) return;
   const Source& source = cursor.source;
   const std::uint64_t at = cursor.offset, left = source.size() - at;
+  if (table.count == 0) {
+    // Some writers put two zero sizes here, some nothing.
+    if (left >= 8 && source.read(at, 8, context) == Bytes(8, '\0')) cursor.offset += 8;
+    return;
+  }
   if (left < 8)
     source.fail(fmt::format("byte {}: expected the sizes of the compressed data (8 bytes), found {} bytes",
                             at, left));
@@ -87,8 +91,8 @@ void read_compressed(Table& table, BinaryCursor& cursor, const Context& context)
   Bytes columns(static_cast<std::size_t>(unpacked));
   const LzfOutcome outcome = lzf_decompress({stream.data(), stream.size()}, columns.data(), columns.size());
   if (!outcome.ok)
-    source.fail(
-        fmt::format("byte {}: the compressed data is damaged: {}", at + 8 + outcome.at, outcome.what));
+    source.fail(fmt::format("byte {}: expected intact compressed data, found damage: {}", at + 8 + outcome.at,
+                            outcome.what));
   table.data.resize(columns.size());
   transpose(table, Direction::to_rows, columns.data(), table.data.data(), context);
   cursor.offset += 8 + packed;

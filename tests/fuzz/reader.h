@@ -1,0 +1,55 @@
+/// What every reader's fuzz target does: read; if that works, write, read again, and come to the same bytes;
+/// move the points, convert, cut.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+
+#include "rfsmooth/pipeline/io/mesh_file.h"
+
+namespace rfsmooth::fuzz {
+
+inline int read_write_read(pipeline::io::Format format, const std::uint8_t* data, std::size_t size) {
+  namespace io = pipeline::io;
+  const Context context = [] {
+    Context c;
+    c.threads = 1;
+    return c;
+  }();
+  io::ReadOptions options;
+  options.format = format;
+  auto cloud = io::parse_cloud({reinterpret_cast<const char*>(data), size}, "fuzz", options, context);
+  if (!cloud.ok()) return 0;
+  const std::string once = io::serialize_cloud(cloud.value(), {}, context).value();
+  const auto again = io::parse_cloud(once, "again", options, context);
+  if (!again.ok() || io::serialize_cloud(again.value(), {}, context).value() != once) std::abort();
+  std::vector<double> xyz = io::positions(cloud.value(), context);
+  for (double& v : xyz) v += 0.125;
+  io::set_positions(cloud.value(), xyz.data(), context);
+  for (const io::Format to : {io::Format::ply, io::Format::pcd, io::Format::xyz, io::Format::off}) {
+    io::WriteOptions target;
+    target.format = to;
+    target.drop_unsupported = true;
+    const auto text = io::serialize_cloud(cloud.value(), target, context);
+    io::ReadOptions back;
+    back.format = to;
+    if (!text.ok()) std::abort();
+    // XYZ has no way to say "no points".
+    if (to == io::Format::xyz && cloud.value().size() == 0) continue;
+    const auto converted = io::parse_cloud(text.value(), "converted", back, context);
+    if (!converted.ok() || converted.value().size() != cloud.value().size()) std::abort();
+  }
+  try {
+    io::faces_of(cloud.value(), context);
+  } catch (const Failure&) {
+    // Faces that name points that are not there.
+  }
+  std::vector<std::size_t> rows;
+  for (std::size_t i = 1; i < cloud.value().size(); i += 2) rows.push_back(i);
+  io::select_points(cloud.value(), rows, context);
+  if (!io::serialize_cloud(cloud.value(), {}, context).ok()) std::abort();
+  return 0;
+}
+
+}  // namespace rfsmooth::fuzz
