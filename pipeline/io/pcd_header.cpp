@@ -182,6 +182,7 @@ Cloud read_pcd_header(HeaderLines& lines) {
   set_size(cloud, e, lines);
   if (!e.viewpoint.empty()) cloud.viewpoint = joined(e.viewpoint);
   cloud.original_header = lines.text();
+  if (cloud.original_header.back() != '\n') cloud.original_header += cloud.newline;  // cut off there
   cloud.original_canonical = pcd_header(cloud, cloud.encoding);
   return cloud;
 }

@@ -100,11 +100,8 @@ INSTANTIATE_TEST_SUITE_P(
                kPcd + "POINTS 1\nDATA binary_compressed\n" + std::string("\x02\0\0\0\x08\0\0\0\0a", 10),
                "found 8"},
         Broken{"CompressedTooGood",
-               std::string("FIELDS x y z h
-SIZE 4 4 4 4
-TYPE F F F F
-COUNT 1 1 1 9997
-POINTS 1000\nDATA binary_compressed\n") +
+               std::string("FIELDS x y z h\nSIZE 4 4 4 4\nTYPE F F F F\nCOUNT 1 1 1 9997\nPOINTS 1000\nDATA "
+                           "binary_compressed\n") +
                    std::string("\x02\0\0\0\0\x5a\x62\x02\0a", 10),
                "cannot hold"},
         Broken{"CompressedBadReference",
@@ -125,8 +122,7 @@ POINTS 1000\nDATA binary_compressed\n") +
         Broken{"OffFewVertices", "OFF\n2 0 0\n1 2 3\n", "row 2 of 2"},
         Broken{"OffBadFace", "OFF\n1 1 0\n1 2 3\n3 0 0\n", "line 4"},
         Broken{"OffHuge", "OFF\n4000000000 0 0\n1 2 3\n", "4000000000"}),
-    [](const auto& tested) {
-  return std::string(tested.param.name); });
+    [](const auto& tested) { return std::string(tested.param.name); });
 
 // Every prefix of a small file is either refused, or (ascii: cut inside the last number) still holds all its
 // points.
