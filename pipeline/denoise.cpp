@@ -1,5 +1,6 @@
 #include "rfsmooth/pipeline/denoise.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
@@ -58,9 +59,29 @@ void alternate(rfs_mesh::Mesh& mesh, const DenoiseOptions& options, DenoiseRepor
   context.report("smooth", 1);
 }
 
-/// How far every working point moved. \throw Failure if a flow left the realm of numbers.
-Positions displacements(const Positions& from, const Positions& to, const DenoiseOptions& options,
-                        const Context& context) {
+/// The median edge length around each vertex: as far as it may move. A noisy point is at least as far from
+/// its neighbours as from the surface, so this does not stop a flow from taking noise away; it stops a vertex
+/// beside a hole or a stray, whose ring is lopsided, from being dragged out of its neighbourhood.
+std::vector<double> reaches(const rfs_mesh::Mesh& mesh, const Context& context) {
+  std::vector<double> reach(mesh.positions.size(), 0);
+  for_blocks(context, reach.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    std::vector<double> lengths;
+    for (std::size_t i = begin; i < end; ++i) {
+      lengths.clear();
+      for (const Index j : mesh.one_ring[i])
+        lengths.push_back((mesh.positions[i] - mesh.positions[j]).norm());
+      if (lengths.empty()) continue;
+      const auto middle = lengths.begin() + std::ptrdiff_t(lengths.size() / 2);
+      std::nth_element(lengths.begin(), middle, lengths.end());
+      reach[i] = *middle;
+    }
+  });
+  return reach;
+}
+
+/// How far every working point moved, at most its reach. \throw Failure if a flow left the realm of numbers.
+Positions displacements(const Positions& from, const Positions& to, const std::vector<double>& reach,
+                        const DenoiseOptions& options, const Context& context) {
   Positions moved(from.size());
   for_each_index(context, from.size(), [&](std::size_t i) {
     moved[i] = to[i] - from[i];
@@ -69,6 +90,7 @@ Positions displacements(const Positions& from, const Positions& to, const Denois
           {ErrorCode::usage, fmt::format("the flow '{}' diverges with these options; smaller steps or "
                                          "fewer iterations are needed",
                                          options.flow.flow)});
+    if (const double length = moved[i].norm(); length > reach[i]) moved[i] *= reach[i] / length;
   });
   return moved;
 }
@@ -118,11 +140,19 @@ DenoiseReport run(double* xyz, std::size_t n, const DenoiseOptions& options, con
   report.faceless = connection.faceless;
   rfs_mesh::Mesh mesh = std::move(connection.mesh);
   connection = {};  // the tree, the graph and the surfaces are not needed while smoothing
+  // Points that no face reaches have no surface to be smoothed onto: as in the paper their edges go, and
+  // without neighbours they stay. Kept, such an edge would carry a stray over its whole length, and HC's
+  // push-back would throw its neighbour after it.
+  if (!mesh.loose_edges.empty()) {
+    mesh.loose_edges.clear();
+    rfs_mesh::rebuild_adjacency(mesh, context);
+  }
   report.faces = mesh.faces.size();
   report.edges = mesh.edge_count();
 
+  const std::vector<double> reach = reaches(mesh, context);
   alternate(mesh, options, report, context);
-  const Positions moved = displacements(cloud.points, mesh.positions, options, context);
+  const Positions moved = displacements(cloud.points, mesh.positions, reach, options, context);
   context.check_stop();
   commit(xyz, n, cloud, moved, report);
   return report;

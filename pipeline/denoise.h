@@ -4,6 +4,9 @@
 ///
 /// Vollmer, Mencl, Mueller 1999, section 7: "after each smoothing step" the dihedral angles are improved by
 /// edge swaps, so that the rough mesh and the smooth positions find each other.
+///
+/// Differs from the paper: a point moves at most the median length of its edges in the RFS-mesh, and points
+/// that no face reaches stay where they are.
 #pragma once
 
 #include <cstddef>

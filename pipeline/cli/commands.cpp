@@ -15,7 +15,8 @@ void polish(Command& command) {
 }
 
 std::vector<Command> all_commands() {
-  return {denoise_command(), info_command(), flows_command(), man_command(), completion_command()};
+  return {denoise_command(), mesh_command(),  smooth_mesh_command(), info_command(),
+          compare_command(), flows_command(), man_command(),         completion_command()};
 }
 
 }  // namespace rfsmooth::cli

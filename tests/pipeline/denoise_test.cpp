@@ -232,8 +232,6 @@ TEST(Denoise, FewPointsAndDegenerateOnesStayWhereTheyAre) {
   }
 }
 
-/// Every point of an umbrella step stays in the hull of the cloud; HC's push-back may leave it by less than
-/// what the step took: never by more than the cloud's own extent.
 TEST(Denoise, NeverThrowsAPointFar) {
   auto clouds = test::awkward_clouds(400);
   clouds.push_back({"two", {{0, 0, 0}, {1, 0, 0}}});
@@ -259,6 +257,25 @@ TEST(Denoise, NeverThrowsAPointFar) {
       EXPECT_LE(largest_difference(xyz, original), high - low);
       for (const double v : xyz) EXPECT_TRUE(std::isfinite(v));
     }
+}
+
+TEST(Denoise, AStrayStaysAndDragsNobody) {
+  const Positions points = test::noisy_sphere(3000, 0.005, 3);
+  Flat alone = flat(points), with_stray = alone;
+  with_stray.insert(with_stray.end(), {30, 0, 0});
+  const DenoiseReport without = run(alone, hc(10)), with = run(with_stray, hc(10));
+  EXPECT_EQ(with_stray[with_stray.size() - 3], 30);
+  EXPECT_LE(with.largest_move, 2 * without.largest_move);
+}
+
+TEST(Denoise, NoPointLeavesItsRing) {
+  // A sheet of spacing 1 whose last two rows are farther apart.
+  Flat xyz;
+  for (int i = 0; i < 20; ++i)
+    for (int j = 0; j < 20; ++j) xyz.insert(xyz.end(), {double(i) * (i > 17 ? 2 : 1), double(j), 0});
+  const Flat before = xyz;
+  run(xyz, hc(50));
+  EXPECT_LE(largest_difference(xyz, before), 4);
 }
 
 }  // namespace

@@ -1,0 +1,25 @@
+# Manual pages and completion scripts are printed by the command itself, from the tables it parses with.
+include(GNUInstallDirs)
+set(doc_dir "${CMAKE_CURRENT_BINARY_DIR}/share")
+set(pages rfsmooth.1)
+set(page_commands COMMAND sh -c "$<TARGET_FILE:rfsmooth_command> man > ${doc_dir}/rfsmooth.1")
+foreach(name denoise mesh smooth-mesh info compare flows)
+  list(APPEND pages rfsmooth-${name}.1)
+  list(APPEND page_commands COMMAND sh -c "$<TARGET_FILE:rfsmooth_command> man ${name} > ${doc_dir}/rfsmooth-${name}.1")
+endforeach()
+list(TRANSFORM pages PREPEND "${doc_dir}/")
+set(completions "${doc_dir}/rfsmooth" "${doc_dir}/_rfsmooth")
+add_custom_command(
+  OUTPUT ${pages} ${completions}
+  COMMAND "${CMAKE_COMMAND}" -E make_directory "${doc_dir}"
+  ${page_commands}
+  COMMAND sh -c "$<TARGET_FILE:rfsmooth_command> completion bash > ${doc_dir}/rfsmooth"
+  COMMAND sh -c "$<TARGET_FILE:rfsmooth_command> completion zsh > ${doc_dir}/_rfsmooth"
+  DEPENDS rfsmooth_command
+  VERBATIM)
+add_custom_target(rfsmooth_docs ALL DEPENDS ${pages} ${completions})
+
+install(TARGETS rfsmooth_command DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT command)
+install(FILES ${pages} DESTINATION "${CMAKE_INSTALL_MANDIR}/man1" COMPONENT command)
+install(FILES "${doc_dir}/rfsmooth" DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions" COMPONENT command)
+install(FILES "${doc_dir}/_rfsmooth" DESTINATION "${CMAKE_INSTALL_DATADIR}/zsh/site-functions" COMPONENT command)
