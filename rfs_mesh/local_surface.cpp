@@ -277,11 +277,13 @@ Deviation deviation_at(const SpatialIndex& index, std::size_t m, const Context& 
 NoiseScale noise_scale(const SpatialIndex& index, const Context& context) {
   constexpr std::size_t kNarrowest = 24, kWidest = 384;
   constexpr double kShareOfRadius = 0.18;
+  constexpr double kGrowthOfNoise = 1.26;  // cube root of 2: a ball inside a slab; faster growth is shape
   const std::size_t n = index.points().size();
   NoiseScale best;
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t m = kNarrowest; m <= kWidest && m < n; m *= 2) {
     const Deviation d = deviation_at(index, m, context);
+    if (best.neighbours > 0 && d.sigma > kGrowthOfNoise * best.sigma) break;
     const double share = d.radius > 0 ? d.sigma / d.radius : 0;
     if (share < least) {
       least = share;

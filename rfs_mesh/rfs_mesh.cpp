@@ -93,18 +93,23 @@ Connection connect_all(const Positions& points, const ConnectOptions& options, c
   double noise = scale.sigma;
   c.on_shadow = guide == nullptr && n > 0 && scale.sigma > options.shadow_from * c.noise.spacing;
   const bool moved = guide != nullptr || c.on_shadow;
+  const auto k = std::size_t(options.neighbours);
+  const bool wide = c.on_shadow && scale.neighbours > k;
   c.surfaces = stages.run("local surfaces", 0.4, [&] {
-    const auto k = std::size_t(options.neighbours);
-    return c.on_shadow && scale.neighbours > k ? wide_local_surfaces(index, scale, k, context)
-                                               : local_surfaces(points, near, context);
+    return wide ? wide_local_surfaces(index, scale, k, context) : local_surfaces(points, near, context);
   });
-  if (moved)
-    ground = stages.run(guide != nullptr ? "guide" : "shadow", 0.5, [&] {
-      return ground_at(guide != nullptr ? *guide : shadows(c.surfaces, context), options.neighbours, context);
-    });
-  if (guide != nullptr) c.surfaces = local_surfaces(ground.at, ground.near, context);
   c.noise.field.resize(n);
   for_each_index(context, n, [&](std::size_t i) { c.noise.field[i] = c.surfaces[i].residual; });
+  if (moved) {
+    near = NeighborTable();  // neighbours among the noisy points: not needed any more
+    stages.run(guide != nullptr ? "guide" : "shadow", 0.5, [&] {
+      ground =
+          ground_at(guide != nullptr ? *guide : shadows(c.surfaces, context), options.neighbours, context);
+      // A wide quadric's normal is better than any from the shadows; a narrow one's is not.
+      if (guide != nullptr || !wide) c.surfaces = local_surfaces(ground.at, ground.near, context);
+      if (guide == nullptr && !wide) ground.at = shadows(c.surfaces, context);
+    });
+  }
   // A quadric through m points leaves about a third of the noise in the shadow at the m that noise_scale
   // picks.
   if (moved) noise = guide != nullptr ? 0 : noise / 3;
@@ -114,11 +119,12 @@ Connection connect_all(const Positions& points, const ConnectOptions& options, c
                        [&] { return make_sdg(terrain, moved ? ground.tree : c.emst, options.sdg, context); });
   c.sdg = std::move(sdg.edges);
   c.bridges = std::move(sdg.bridges);
-  const auto umbrellas = stages.run("umbrellas", 0.75, [&] {
-    return open_umbrellas(terrain, make_adjacency(n, c.sdg, context), options.umbrella, context);
+  const ProposedFaces proposed = stages.run("umbrellas", 0.75, [&] {
+    const Adjacency graph = make_adjacency(n, c.sdg, context);
+    return proposed_faces(open_umbrellas(terrain, graph, options.umbrella, context), context);
   });
   stages.run("rfs-mesh", 0.9, [&] {
-    c.mesh.faces = keep_flattest_pairs(terrain.at, proposed_faces(umbrellas, context), context);
+    c.mesh.faces = keep_flattest_pairs(terrain.at, proposed, context);
     c.mesh.loose_edges = loose_edges(n, c.mesh.faces, c.sdg, c.faceless, context);
     rebuild_adjacency(c.mesh, context);
   });

@@ -92,6 +92,6 @@ TEST_P(SwapOnShape, SameBytesForAnyNumberOfThreads) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Shapes, SwapOnShape, testing::ValuesIn(test::clean_shapes()), test::name_of_shape);
+INSTANTIATE_TEST_SUITE_P(Shapes, SwapOnShape, testing::ValuesIn(test::clean_shapes()), test::NameOfShape());
 
 }  // namespace

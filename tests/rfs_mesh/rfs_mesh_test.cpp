@@ -125,7 +125,7 @@ TEST_P(CleanShape, RigidMotionAndScaleMakeTheSameMesh) {
   EXPECT_GT(double(both.size()), 0.99 * double(here.sdg.size()));
 }
 
-INSTANTIATE_TEST_SUITE_P(Shapes, CleanShape, testing::ValuesIn(test::clean_shapes()), test::name_of_shape);
+INSTANTIATE_TEST_SUITE_P(Shapes, CleanShape, testing::ValuesIn(test::clean_shapes()), test::NameOfShape());
 
 class AwkwardConnection : public testing::TestWithParam<test::AwkwardCloud> {};
 
@@ -151,6 +151,70 @@ TEST(Connection, TwoSheetsApartAreJoinedByBridgesOnly) {
   const Connection c = connected(points);
   for (const Face& f : c.mesh.faces)
     EXPECT_TRUE(points[f[0]][2] == points[f[1]][2] && points[f[1]][2] == points[f[2]][2]);
+}
+
+Positions with_noise(Positions points, double sigma, unsigned seed) {
+  std::mt19937_64 engine(seed);
+  std::normal_distribution<double> normal(0, sigma);
+  for (auto& p : points) {
+    const double x = normal(engine), y = normal(engine), z = normal(engine);
+    p += Eigen::Vector3d(x, y, z);
+  }
+  return points;
+}
+
+/// Noise in units of sqrt(area / n), and the share of edges that may join points more than three such units
+/// apart on the true sphere.
+class NoisySphere : public testing::TestWithParam<std::pair<double, double>> {};
+
+TEST_P(NoisySphere, MeshStaysASurface) {
+  const auto [noise, may_be_long] = GetParam();
+  const test::Shape sphere = test::unit_sphere();
+  const Positions clean = test::poisson_points(sphere, 6000, 1);
+  const double unit = std::sqrt(sphere.area / double(clean.size()));
+  const Positions points = with_noise(clean, noise * unit, 2);
+  const Connection c = connected(points);
+  expect_sound(c, points.size());
+  EXPECT_NEAR(c.noise.sigma, noise * unit, 0.2 * noise * unit);
+  std::size_t long_edges = 0;
+  for (Index a = 0; a < points.size(); ++a)
+    for (const Index b : c.mesh.one_ring[a])
+      long_edges += a < b && (points[a].normalized() - points[b].normalized()).norm() > 3 * unit;
+  EXPECT_LT(double(long_edges), may_be_long * double(c.mesh.edge_count()));
+  EXPECT_GT(double(c.mesh.faces.size()), 1.5 * double(points.size()));
+  EXPECT_LT(double(c.faceless), 0.01 * double(points.size()));
+}
+
+INSTANTIATE_TEST_SUITE_P(Noise, NoisySphere,
+                         testing::Values(std::pair(0.5, 0.01), std::pair(1.0, 0.01), std::pair(2.0, 0.05),
+                                         std::pair(3.0, 0.05)));
+
+TEST(Connection, NoisyThinPlateKeepsItsTwoSides) {
+  // Three spacings thick, noise of 0.3 spacing: fewer than 0.1 % of the edges away from the rim join the
+  // sides.
+  const double unit = 0.01;
+  Positions points;
+  for (const bool top : {false, true})
+    for (Eigen::Vector3d p : test::poisson_points(test::plane(), 10000, top ? 2 : 1)) {
+      p[2] = top ? 3 * unit : 0;
+      points.push_back(p);
+    }
+  const std::size_t bottom = test::poisson_points(test::plane(), 10000, 1).size();
+  points = with_noise(points, 0.3 * unit, 3);
+  const Connection c = connected(points);
+  const auto at_rim = [&](Index v) {
+    const double x = points[v][0], y = points[v][1];
+    return std::min({x, y, 1 - x, 1 - y}) < 6 * unit;
+  };
+  std::size_t inner = 0, crossing = 0;
+  for (Index a = 0; a < points.size(); ++a)
+    for (const Index b : c.mesh.one_ring[a]) {
+      if (b < a || at_rim(a) || at_rim(b)) continue;
+      ++inner;
+      crossing += (a < bottom) != (b < bottom);
+    }
+  EXPECT_GT(inner, points.size());
+  EXPECT_LT(double(crossing), 0.001 * double(inner));
 }
 
 TEST(Connection, GuideDecidesConnectivityAndPointsStay) {

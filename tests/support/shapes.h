@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include <gtest/gtest.h>
+#include <Eigen/Core>
 
 #include "rfsmooth/rfs_mesh/points.h"
 
@@ -68,9 +68,13 @@ inline Shape cube() {
           }};
 }
 
-inline std::string name_of_shape(const testing::TestParamInfo<Shape>& info) {
-  return info.param.name;
-}
+/// Names the instances of a test that runs on every shape.
+struct NameOfShape {
+  template <class Info>
+  std::string operator()(const Info& info) const {
+    return info.param.name;
+  }
+};
 
 inline std::vector<Shape> clean_shapes() {
   return {unit_sphere(), torus(), plane(), cube()};
