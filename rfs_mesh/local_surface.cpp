@@ -86,29 +86,59 @@ Matrix3d principal_axes(const Matrix3d& covariance) {
   return axes;
 }
 
-Vector6d monomials(double u, double v) {
-  Vector6d m;
-  m << 1, u, v, u * u, u * v, v * v;
-  return m;
+/// The quadric's height above the tangent plane at (u, v).
+double height(const Vector6d& c, double u, double v) {
+  return c[0] + u * (c[1] + c[3] * u + c[4] * v) + v * (c[2] + c[5] * v);
 }
 
 /// Weighted least squares of z on the first `terms` monomials (3 = plane, 6 = quadric).
+/// The normal matrix holds moments u^p v^q of degree 0 to 4 only: 15 sums instead of 36.
 Vector6d fit(const Workspace& w, int terms) {
-  Matrix6d a = Matrix6d::Zero();
-  Vector6d b = Vector6d::Zero();
+  double m00 = 0, m10 = 0, m01 = 0, m20 = 0, m11 = 0, m02 = 0, m30 = 0, m21 = 0, m12 = 0, m03 = 0, m40 = 0,
+         m31 = 0, m22 = 0, m13 = 0, m04 = 0;
+  double z0 = 0, zu = 0, zv = 0, zuu = 0, zuv = 0, zvv = 0;
   for (std::size_t j = 0; j < w.samples.size(); ++j) {
-    const Vector3d& x = w.local[j];
-    const Vector6d m = monomials(x[0], x[1]), wm = w.samples[j].weight * m;
-    a.noalias() += wm * m.transpose();
-    b += x[2] * wm;
+    const double weight = w.samples[j].weight, u = w.local[j][0], v = w.local[j][1], z = w.local[j][2];
+    const double uu = u * u, uv = u * v, vv = v * v;
+    const double wu = weight * u, wv = weight * v, wuu = weight * uu, wuv = weight * uv, wvv = weight * vv;
+    m00 += weight;
+    m10 += wu;
+    m01 += wv;
+    m20 += wuu;
+    m11 += wuv;
+    m02 += wvv;
+    m30 += wuu * u;
+    m21 += wuu * v;
+    m12 += wvv * u;
+    m03 += wvv * v;
+    m40 += wuu * uu;
+    m31 += wuu * uv;
+    m22 += wuu * vv;
+    m13 += wvv * uv;
+    m04 += wvv * vv;
+    z0 += weight * z;
+    zu += wu * z;
+    zv += wv * z;
+    zuu += wuu * z;
+    zuv += wuv * z;
+    zvv += wvv * z;
   }
+  Matrix6d a;
+  a << m00, m10, m01, m20, m11, m02,  //
+      m10, m20, m11, m30, m21, m12,   //
+      m01, m11, m02, m21, m12, m03,   //
+      m20, m30, m21, m40, m31, m22,   //
+      m11, m21, m12, m31, m22, m13,   //
+      m02, m12, m03, m22, m13, m04;
+  Vector6d b;
+  b << z0, zu, zv, zuu, zuv, zvv;
   for (int t = terms; t < 6; ++t) {
     a.row(t).setZero();
     a.col(t).setZero();
     a(t, t) = 1;
     b[t] = 0;
   }
-  a.diagonal().array() += kRidge * a(0, 0);
+  a.diagonal().array() += kRidge * m00;
   return a.llt().solve(b);
 }
 
@@ -122,7 +152,7 @@ double median(std::vector<double>& values) {
 bool reweight(Workspace& w, const Vector6d& c) {
   w.residual.resize(w.samples.size());
   for (std::size_t j = 0; j < w.samples.size(); ++j)
-    w.residual[j] = std::abs(w.local[j][2] - c.dot(monomials(w.local[j][0], w.local[j][1])));
+    w.residual[j] = std::abs(w.local[j][2] - height(c, w.local[j][0], w.local[j][1]));
   w.sorted = w.residual;
   const double cut = kTukey * 1.4826 * median(w.sorted);
   if (!(cut > 1e-12)) return false;
@@ -138,7 +168,7 @@ double residual_deviation(const Workspace& w, const Vector6d& c, int terms) {
   double sum = 0, total = 0, squares = 0;
   for (std::size_t j = 0; j < w.samples.size(); ++j) {
     const double weight = w.samples[j].weight;
-    sum += weight * square(w.local[j][2] - c.dot(monomials(w.local[j][0], w.local[j][1])));
+    sum += weight * square(w.local[j][2] - height(c, w.local[j][0], w.local[j][1]));
     total += weight;
     squares += weight * weight;
   }

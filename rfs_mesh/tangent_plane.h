@@ -24,9 +24,9 @@ struct TangentPlane {
   double angle(const Eigen::Vector3d& d) const { return std::atan2(t2.dot(d), t1.dot(d)); }
 };
 
-/// The angle in [0, 2 pi) to turn counter-clockwise from `from` to `to`.
+/// The angle in [0, 2 pi) to turn counter-clockwise from `from` to `to`, both in (-pi, pi].
 inline double turn(double from, double to) {
-  const double t = std::fmod(to - from, 2 * M_PI);
+  const double t = to - from;  // both lie in (-pi, pi], so one turn is enough
   return t < 0 ? t + 2 * M_PI : t;
 }
 
