@@ -114,7 +114,7 @@ std::vector<Vector2d> chart_of(const Mesh& mesh, const Adjacency& faces, Index i
 
 DividedDifferences::DividedDifferences(const Mesh& mesh, std::string_view chart, const Context& context)
     : rows_(mesh.one_ring) {
-  constexpr double kRidge = 1e-6;  // of a fit whose columns are of size one
+  constexpr double kRidge = 1e-4;  // of a fit whose columns are of size one
   constexpr double kTiny = 1e-12;  // keeps the fit of one or two neighbours regular
   const std::size_t n = mesh.positions.size();
   const Adjacency faces = vertex_faces(mesh, context);
