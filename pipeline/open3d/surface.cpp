@@ -1,0 +1,66 @@
+#include "rfsmooth/open3d/surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include <open3d/geometry/PointCloud.h>
+#include <open3d/geometry/TriangleMesh.h>
+
+namespace rfsmooth::open3d {
+
+namespace {
+
+using ::open3d::geometry::PointCloud;
+using ::open3d::geometry::TriangleMesh;
+
+PointCloud to_open3d(const Positions& points, const Positions& normals, double spacing) {
+  if (points.size() != normals.size()) throw std::invalid_argument("one normal per point is needed");
+  if (!(spacing > 0)) throw std::invalid_argument("the spacing must be positive");
+  PointCloud cloud(points);
+  cloud.normals_ = normals;
+  return cloud;
+}
+
+Result<rfs_mesh::Mesh> from_open3d(const TriangleMesh& surface, const char* method, const Context& context) {
+  if (surface.triangles_.empty())
+    return Error{ErrorCode::no_usable_points, std::string(method) + " finds no surface in these points"};
+  rfs_mesh::Mesh mesh;
+  mesh.positions = surface.vertices_;
+  mesh.faces.reserve(surface.triangles_.size());
+  for (const Eigen::Vector3i& t : surface.triangles_)
+    if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0])
+      mesh.faces.push_back({Index(t[0]), Index(t[1]), Index(t[2])});
+  rebuild_adjacency(mesh, context);
+  return mesh;
+}
+
+/// Poisson's octree depth at which a cell is about one spacing wide.
+std::size_t depth_for(const PointCloud& cloud, double spacing) {
+  const double extent = (cloud.GetMaxBound() - cloud.GetMinBound()).maxCoeff();
+  constexpr double kShallowest = 4, kDeepest = 12;  // 16 cells across; memory beyond 4096 cells across
+  return std::size_t(
+      std::clamp(std::round(std::log2(std::max(extent / spacing, 1.0))), kShallowest, kDeepest));
+}
+
+}  // namespace
+
+Result<rfs_mesh::Mesh> poisson(const Positions& points, const Positions& normals, double spacing,
+                               const Context& context) {
+  const PointCloud cloud = to_open3d(points, normals, spacing);
+  context.report("Poisson", 0);
+  const auto surface = std::get<0>(TriangleMesh::CreateFromPointCloudPoisson(
+      cloud, depth_for(cloud, spacing), 0.0F, 1.1F, false, context.threads > 0 ? context.threads : -1));
+  return from_open3d(*surface, "Poisson reconstruction", context);
+}
+
+Result<rfs_mesh::Mesh> ball_pivoting(const Positions& points, const Positions& normals, double spacing,
+                                     const Context& context) {
+  const PointCloud cloud = to_open3d(points, normals, spacing);
+  context.report("ball pivoting", 0);
+  const auto surface =
+      TriangleMesh::CreateFromPointCloudBallPivoting(cloud, {spacing, 2 * spacing, 4 * spacing});
+  return from_open3d(*surface, "ball pivoting", context);
+}
+
+}  // namespace rfsmooth::open3d

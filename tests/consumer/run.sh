@@ -1,0 +1,36 @@
+#!/usr/bin/env bash
+# run.sh SOURCE BUILD WAY: builds and runs the examples the way a user of the library would.
+# WAY: installed (find_package), subdirectory (add_subdirectory), pkgconfig, pcl (find_package with the PCL component).
+set -euo pipefail
+source=$1 build=$2 way=$3
+work="$build/consumer/$way"
+rm -rf "$work"
+mkdir -p "$work"
+[ "$way" = subdirectory ] || cmake --install "$build" --prefix "$work/prefix" > "$work/install.log"
+
+# build EXAMPLE OPTION...: configures and builds tests/consumer/EXAMPLE; the program is $work/build/example.
+build() {
+  local example=$1
+  shift
+  cmake -G Ninja -S "$source/tests/consumer/$example" -B "$work/build" -DCMAKE_BUILD_TYPE=Release "$@" > "$work/configure.log"
+  cmake --build "$work/build" > "$work/build.log" || { cat "$work/build.log"; exit 1; }
+}
+
+case "$way" in
+  installed)
+    build core -DCMAKE_PREFIX_PATH="$work/prefix"
+    "$work/build/example" ;;
+  subdirectory)
+    build core -DRFSMOOTH_SOURCE_DIR="$source" -DRFSMOOTH_WITH_PCL=OFF -DRFSMOOTH_WITH_OPEN3D=OFF -DRFSMOOTH_WITH_CGAL=OFF
+    "$work/build/example" ;;
+  pkgconfig)
+    export PKG_CONFIG_PATH="$work/prefix/lib/pkgconfig:$(echo "$work"/prefix/lib/*/pkgconfig)"
+    g++ -std=c++17 -O2 "$source/tests/consumer/core/example.cpp" -o "$work/example" $(pkg-config --cflags --libs rfsmooth)
+    "$work/example" ;;
+  pcl)
+    build pcl -DCMAKE_PREFIX_PATH="$work/prefix"
+    cloud=$(ls "$source"/clouds/*.pcd | head -n 1)
+    "$work/build/example" "$cloud" "$work/cleaned.pcd" 2> /dev/null
+    test -s "$work/cleaned.pcd" ;;
+  *) echo "no such way: $way"; exit 2 ;;
+esac

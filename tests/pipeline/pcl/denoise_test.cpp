@@ -1,0 +1,274 @@
+#include "rfsmooth/pcl/denoise.h"
+
+#include <cmath>
+#include <cstring>
+#include <random>
+
+#include <gtest/gtest.h>
+#include <pcl/PCLPointCloud2.h>
+#include <pcl/console/print.h>
+#include <pcl/conversions.h>
+#include <pcl/point_types.h>
+
+#include "rfsmooth/pcl/impl/denoise.hpp"
+
+/// A point type of a user's own: fields PCL knows nothing about.
+struct TimedPoint {
+  PCL_ADD_POINT4D;
+  double time;
+  std::uint16_t ring;
+  PCL_MAKE_ALIGNED_OPERATOR_NEW
+};
+POINT_CLOUD_REGISTER_POINT_STRUCT(TimedPoint,
+                                  (float, x, x)(float, y, y)(float, z, z)(double, time, time)(std::uint16_t,
+                                                                                              ring, ring))
+
+namespace {
+
+using rfsmooth::pcl::Denoise;
+
+/// An organised 60 x 50 noisy wavy sheet with NaN holes and one infinite coordinate; every byte of a point is
+/// set.
+template <typename PointT>
+typename ::pcl::PointCloud<PointT>::Ptr sheet(double offset = 0) {
+  auto cloud = ::pcl::make_shared<::pcl::PointCloud<PointT>>();
+  cloud->width = 60;
+  cloud->height = 50;
+  cloud->is_dense = false;
+  cloud->header.frame_id = "scanner";
+  cloud->header.stamp = 123456789;
+  cloud->header.seq = 7;
+  cloud->sensor_origin_ = {1, 2, 3, 0};
+  cloud->sensor_orientation_ = Eigen::Quaternionf(0.5f, 0.5f, 0.5f, 0.5f);
+  cloud->resize(60 * 50);
+  cloud->width = 60;
+  cloud->height = 50;
+  std::mt19937 engine(11);
+  const auto uniform = [&] { return (double(engine()) / 4294967296.0) - 0.5; };
+  for (int row = 0; row < 50; ++row)
+    for (int column = 0; column < 60; ++column) {
+      PointT& p = cloud->at(column, row);
+      std::memset(static_cast<void*>(&p), 0x41 + (row + column) % 7, sizeof(PointT));
+      p.x = float(offset + column + 0.3 * uniform());
+      p.y = float(offset + row + 0.3 * uniform());
+      p.z = float(3 * std::sin(0.1 * column) + 0.8 * uniform());
+    }
+  cloud->at(10, 10).y = NAN;
+  cloud->at(20, 30).x = INFINITY;
+  return cloud;
+}
+
+/// The bytes of a point without its x, y, z.
+template <typename PointT>
+std::string rest(const PointT& point) {
+  PointT copy = point;
+  copy.x = copy.y = copy.z = 0;
+  return {reinterpret_cast<const char*>(&copy), sizeof(PointT)};
+}
+
+template <typename PointT>
+void expect_same_but_xyz(const ::pcl::PointCloud<PointT>& in, const ::pcl::PointCloud<PointT>& out) {
+  ASSERT_EQ(in.size(), out.size());
+  EXPECT_EQ(in.width, out.width);
+  EXPECT_EQ(in.height, out.height);
+  EXPECT_EQ(in.is_dense, out.is_dense);
+  EXPECT_EQ(in.header.frame_id, out.header.frame_id);
+  EXPECT_EQ(in.header.stamp, out.header.stamp);
+  EXPECT_EQ(in.header.seq, out.header.seq);
+  EXPECT_EQ(in.sensor_origin_, out.sensor_origin_);
+  EXPECT_EQ(in.sensor_orientation_.coeffs(), out.sensor_orientation_.coeffs());
+  for (std::size_t i = 0; i < in.size(); ++i) ASSERT_EQ(rest(in[i]), rest(out[i])) << i;
+}
+
+template <typename PointT>
+Denoise<PointT> quiet_filter() {
+  ::pcl::console::setVerbosityLevel(::pcl::console::L_ALWAYS);  // the errors below are expected
+  return Denoise<PointT>();
+}
+
+template <typename PointT>
+class PclDenoise : public ::testing::Test {};
+using PointTypes =
+    ::testing::Types<::pcl::PointXYZ, ::pcl::PointXYZI, ::pcl::PointXYZRGB, ::pcl::PointXYZRGBA,
+                     ::pcl::PointNormal, ::pcl::PointXYZRGBNormal, TimedPoint>;
+TYPED_TEST_SUITE(PclDenoise, PointTypes);
+
+TYPED_TEST(PclDenoise, OnlyFiniteCoordinatesChange) {
+  const auto cloud = sheet<TypeParam>();
+  Denoise<TypeParam> denoise = quiet_filter<TypeParam>();
+  denoise.setInputCloud(cloud);
+  ::pcl::PointCloud<TypeParam> out;
+  denoise.filter(out);
+  EXPECT_EQ(denoise.getStatus(), "");
+  expect_same_but_xyz(*cloud, out);
+  std::size_t moved = 0;
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const auto &a = (*cloud)[i], &b = out[i];
+    const bool finite = std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
+    if (finite)
+      moved += a.x != b.x || a.y != b.y || a.z != b.z;
+    else
+      EXPECT_EQ(std::memcmp(&a.x, &b.x, 3 * sizeof(float)), 0) << i;
+  }
+  EXPECT_GT(moved, 2000u);
+  EXPECT_EQ(denoise.getReport().finite, 2998u);
+}
+
+TYPED_TEST(PclDenoise, InPlaceGivesTheSamePoints) {
+  const auto cloud = sheet<TypeParam>();
+  Denoise<TypeParam> denoise = quiet_filter<TypeParam>();
+  denoise.setInputCloud(cloud);
+  ::pcl::PointCloud<TypeParam> out;
+  denoise.filter(out);
+  denoise.filter(*cloud);
+  expect_same_but_xyz(out, *cloud);
+  for (std::size_t i = 0; i < out.size(); ++i) EXPECT_EQ(std::memcmp(&out[i].x, &(*cloud)[i].x, 12), 0) << i;
+}
+
+TYPED_TEST(PclDenoise, PointsOutsideTheIndicesStayAndInfluenceNothing) {
+  const auto cloud = sheet<TypeParam>();
+  const auto indices = ::pcl::make_shared<::pcl::Indices>();
+  for (int i = 0; i < 1500; ++i) indices->push_back(i);
+  Denoise<TypeParam> denoise = quiet_filter<TypeParam>();
+  denoise.setInputCloud(cloud);
+  denoise.setIndices(indices);
+  ::pcl::PointCloud<TypeParam> out, other;
+  denoise.filter(out);
+  expect_same_but_xyz(*cloud, out);
+  for (std::size_t i = 1500; i < out.size(); ++i)
+    EXPECT_EQ(std::memcmp(&out[i].x, &(*cloud)[i].x, 12), 0) << i;
+  for (std::size_t i = 1500; i < cloud->size(); ++i) (*cloud)[i].z += 1;
+  denoise.filter(other);
+  for (std::size_t i = 0; i < 1500; ++i) EXPECT_EQ(std::memcmp(&out[i].x, &other[i].x, 12), 0) << i;
+}
+
+TYPED_TEST(PclDenoise, UnusableInputIsAStatusAndAnEmptyCloud) {
+  Denoise<TypeParam> denoise = quiet_filter<TypeParam>();
+  auto out = sheet<TypeParam>();
+  denoise.filter(*out);
+  EXPECT_TRUE(out->empty());
+  EXPECT_NE(denoise.getStatus().find("setInputCloud"), std::string::npos);
+
+  const auto cloud = sheet<TypeParam>();
+  denoise.setInputCloud(cloud);
+  denoise.setIndices(::pcl::make_shared<::pcl::Indices>(::pcl::Indices{0, 3000}));
+  denoise.filter(*out);
+  EXPECT_TRUE(out->empty());
+  EXPECT_NE(denoise.getStatus(), "");
+
+  const auto nan = ::pcl::make_shared<::pcl::PointCloud<TypeParam>>(*cloud);
+  for (auto& p : *nan) p.x = NAN;
+  Denoise<TypeParam> other = quiet_filter<TypeParam>();
+  other.setInputCloud(nan);
+  other.filter(*out);
+  EXPECT_TRUE(out->empty());
+  EXPECT_NE(other.getStatus(), "");
+
+  other.setInputCloud(cloud);
+  other.setFlow("no such flow");
+  other.filter(*out);
+  EXPECT_TRUE(out->empty());
+  EXPECT_NE(other.getStatus(), "");
+}
+
+TEST(PclDenoiseThreads, SameBytesForAnyNumber) {
+  const auto cloud = sheet<::pcl::PointXYZ>();
+  ::pcl::PointCloud<::pcl::PointXYZ> first;
+  for (const unsigned threads : {1u, 2u, 4u, 7u}) {
+    Denoise<::pcl::PointXYZ> denoise;
+    denoise.setNumberOfThreads(threads);
+    denoise.setInputCloud(cloud);
+    ::pcl::PointCloud<::pcl::PointXYZ> out;
+    denoise.filter(out);
+    if (threads == 1) first = out;
+    for (std::size_t i = 0; i < out.size(); ++i)
+      ASSERT_EQ(std::memcmp(&out[i], &first[i], 12), 0) << threads << " threads, point " << i;
+  }
+}
+
+TEST(PclDenoiseCloud2, AnyFieldsSameCoordinatesAsTheTypedFilter) {
+  const auto cloud = sheet<TimedPoint>();
+  const auto message = ::pcl::make_shared<::pcl::PCLPointCloud2>();
+  ::pcl::toPCLPointCloud2(*cloud, *message);
+  Denoise<TimedPoint> typed;
+  typed.setInputCloud(cloud);
+  ::pcl::PointCloud<TimedPoint> expected;
+  typed.filter(expected);
+
+  Denoise<::pcl::PCLPointCloud2> untyped;
+  untyped.setInputCloud(message);
+  ::pcl::PCLPointCloud2 out;
+  untyped.filter(out);
+  ASSERT_EQ(untyped.getStatus(), "");
+  EXPECT_EQ(out.fields.size(), message->fields.size());
+  EXPECT_EQ(out.width, 60u);
+  EXPECT_EQ(out.height, 50u);
+  EXPECT_EQ(out.header.stamp, 123456789u);
+  ::pcl::PointCloud<TimedPoint> got;
+  ::pcl::fromPCLPointCloud2(out, got);
+  for (std::size_t i = 0; i < got.size(); ++i) {
+    ASSERT_EQ(std::memcmp(&got[i].x, &expected[i].x, 12), 0) << i;
+    ASSERT_EQ(got[i].time, (*cloud)[i].time) << i;
+    ASSERT_EQ(got[i].ring, (*cloud)[i].ring) << i;
+  }
+  const ::pcl::PCLPointCloud2 separate = out;
+  untyped.filter(*message);
+  EXPECT_EQ(message->data, separate.data) << "in place";
+}
+
+TEST(PclDenoiseCloud2, DoublesKeepUtmPrecision) {
+  const auto cloud = ::pcl::make_shared<::pcl::PCLPointCloud2>();
+  cloud->width = 3000;
+  cloud->height = 1;
+  cloud->point_step = 28;
+  cloud->row_step = 28 * 3000;
+  cloud->is_dense = 1;
+  const char* const names[] = {"x", "y", "z", "label"};
+  for (int f = 0; f < 4; ++f) {
+    ::pcl::PCLPointField field;
+    field.name = names[f];
+    field.offset = std::uint32_t(8 * f);
+    field.datatype = f < 3 ? ::pcl::PCLPointField::FLOAT64 : ::pcl::PCLPointField::INT32;
+    field.count = 1;
+    cloud->fields.push_back(field);
+  }
+  cloud->data.resize(28 * 3000);
+  const auto small = sheet<::pcl::PointXYZ>();
+  const double origin[3] = {500000, 4649776, 200};
+  for (int i = 0; i < 3000; ++i) {
+    const auto& p = (*small)[std::size_t(i)];
+    const double xyz[3] = {origin[0] + p.x, origin[1] + p.y, origin[2] + p.z};
+    std::memcpy(&cloud->data[std::size_t(28 * i)], xyz, 24);
+  }
+  Denoise<::pcl::PCLPointCloud2> far;
+  far.setInputCloud(cloud);
+  ::pcl::PCLPointCloud2 out;
+  far.filter(out);
+  ASSERT_EQ(far.getStatus(), "");
+  Denoise<::pcl::PointXYZ> near;
+  near.setInputCloud(small);
+  ::pcl::PointCloud<::pcl::PointXYZ> expected;
+  near.filter(expected);
+  for (int i = 0; i < 3000; ++i) {
+    double xyz[3];
+    std::memcpy(xyz, &out.data[std::size_t(28 * i)], 24);
+    if (!std::isfinite(xyz[0] + xyz[1] + xyz[2])) continue;
+    EXPECT_NEAR(xyz[0] - origin[0], expected[std::size_t(i)].x, 1e-5);
+    EXPECT_NEAR(xyz[1] - origin[1], expected[std::size_t(i)].y, 1e-5);
+    EXPECT_NEAR(xyz[2] - origin[2], expected[std::size_t(i)].z, 1e-5);
+  }
+}
+
+TEST(PclDenoiseCloud2, WithoutCoordinatesIsAStatus) {
+  const auto cloud = ::pcl::make_shared<::pcl::PCLPointCloud2>();
+  cloud->width = 1;
+  cloud->height = 1;
+  Denoise<::pcl::PCLPointCloud2> denoise = quiet_filter<::pcl::PCLPointCloud2>();
+  denoise.setInputCloud(cloud);
+  ::pcl::PCLPointCloud2 out;
+  denoise.filter(out);
+  EXPECT_TRUE(out.data.empty());
+  EXPECT_NE(denoise.getStatus(), "");
+}
+
+}  // namespace
