@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <pcl/filters/impl/filter.hpp>
+#include <pcl/impl/pcl_base.hpp>
 
 #include "rfsmooth/pcl/denoise.h"
 
