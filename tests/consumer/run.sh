@@ -3,6 +3,7 @@
 # WAY: installed (find_package), subdirectory (add_subdirectory), pkgconfig, pcl (find_package with the PCL component).
 set -euo pipefail
 source=$1 build=$2 way=$3
+launcher=$(command -v ccache || true)
 work="$build/consumer/$way"
 rm -rf "$work"
 mkdir -p "$work"
@@ -12,7 +13,7 @@ mkdir -p "$work"
 build() {
   local example=$1
   shift
-  cmake -G Ninja -S "$source/tests/consumer/$example" -B "$work/build" -DCMAKE_BUILD_TYPE=Release "$@" > "$work/configure.log"
+  cmake -G Ninja -S "$source/tests/consumer/$example" -B "$work/build" -DCMAKE_BUILD_TYPE=Release ${launcher:+-DCMAKE_CXX_COMPILER_LAUNCHER=$launcher} "$@" > "$work/configure.log"
   cmake --build "$work/build" > "$work/build.log" || { cat "$work/build.log"; exit 1; }
 }
 
@@ -21,7 +22,7 @@ case "$way" in
     build core -DCMAKE_PREFIX_PATH="$work/prefix"
     "$work/build/example" ;;
   subdirectory)
-    build core -DRFSMOOTH_SOURCE_DIR="$source" -DRFSMOOTH_WITH_PCL=OFF -DRFSMOOTH_WITH_OPEN3D=OFF -DRFSMOOTH_WITH_CGAL=OFF
+    build core -DRFSMOOTH_SOURCE_DIR="$source" -DRFSMOOTH_BUILD_CLI=OFF -DRFSMOOTH_WITH_PCL=OFF -DRFSMOOTH_WITH_OPEN3D=OFF -DRFSMOOTH_WITH_CGAL=OFF
     "$work/build/example" ;;
   pkgconfig)
     export PKG_CONFIG_PATH="$work/prefix/lib/pkgconfig:$(echo "$work"/prefix/lib/*/pkgconfig)"
