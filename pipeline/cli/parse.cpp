@@ -49,6 +49,16 @@ std::vector<std::string> option_names(const Command* command) {
   throw Failure({ErrorCode::usage, message});
 }
 
+std::string in_our_words(const CLI::ParseError& error) {
+  const std::string what = error.what();
+  const std::string first = what.substr(0, what.find_first_of(" :"));
+  if (what.find("flag override") != std::string::npos) return fmt::format("--{} takes no value", first);
+  if (what.find("missing") != std::string::npos) return fmt::format("{} needs a value", first);
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr)
+    return fmt::format("{} takes one value and may be given once", first);
+  return what;
+}
+
 [[noreturn]] void refuse_unknown_option(const std::string& typed, const Command* command) {
   const std::string name = typed.substr(0, typed.find('='));
   refuse(fmt::format("unknown option {}{}{}", name, command ? " for rfsmooth " + command->name : "",
@@ -64,6 +74,7 @@ Parsed parse(int argc, const char* const* argv, const std::vector<Command>& comm
   add_help(app, into);
   app.add_flag("--version", into.version);
   app.allow_extras();
+  app.require_subcommand(0, 1);  // a file called like a command is a file
 
   std::vector<std::vector<std::string>> positional(commands.size());
   std::vector<CLI::App*> subs;
@@ -89,11 +100,8 @@ Parsed parse(int argc, const char* const* argv, const std::vector<Command>& comm
   };
   try {
     app.parse(argc, argv);
-  } catch (const CLI::ArgumentMismatch& mismatch) {
-    note_command();
-    refuse(fmt::format("{}", mismatch.what()));
   } catch (const CLI::ParseError& error) {
-    refuse(error.what());
+    refuse(in_our_words(error));
   }
   note_command();
   if (parsed.command == nullptr)

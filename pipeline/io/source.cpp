@@ -15,8 +15,9 @@ namespace {
 // Between polls for a cancel; large enough that the calls cost nothing.
 constexpr std::size_t kChunk = std::size_t{16} << 20;
 
-std::size_t read_some(int file, char* out, std::size_t n) {
+std::size_t read_some(int file, char* out, std::size_t n, const Context& context) {
   for (;;) {
+    context.check_stop();  // a signal ends the wait for a pipe or a terminal
     const ssize_t got = ::read(file, out, n);
     if (got >= 0) return std::size_t(got);
     if (errno != EINTR) throw Failure({ErrorCode::input_unreadable, std::strerror(errno)});
@@ -29,7 +30,7 @@ Bytes read_all(int file, const Context& context) {
     context.check_stop();
     const std::size_t had = all.size();
     all.resize(had + std::max<std::size_t>(std::size_t{1} << 16, had / 2));
-    const std::size_t got = read_some(file, all.data() + had, all.size() - had);
+    const std::size_t got = read_some(file, all.data() + had, all.size() - had, context);
     all.resize(had + got);
     if (got == 0) return all;
   }

@@ -177,6 +177,13 @@ TEST_F(DenoiseCommand, TwoInputsOfOneNameAreRefusedBeforeAnythingIsDone) {
   EXPECT_FALSE(there("out"));
 }
 
+TEST_F(DenoiseCommand, AFileCalledLikeACommandIsAFile) {
+  put("info", noisy_plane(10).bytes());
+  const Ran ran = run({"denoise", "--flow", "hc", "info", "mesh", "--format", "ply"});
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  EXPECT_TRUE(there("mesh"));
+}
+
 TEST_F(DenoiseCommand, PositionalArgumentsAreCounted) {
   for (const auto& arguments : std::vector<std::vector<std::string>>{{"denoise"},
                                                                      {"denoise", "a"},

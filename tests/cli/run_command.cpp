@@ -73,8 +73,11 @@ Ran run_program(const std::string& program, const std::vector<std::string>& argu
   const auto start = Clock::now();
   bool interrupted = setup.interrupt_after_ms < 0;
   while (out.read_end >= 0 || err.read_end >= 0) {
-    if (in.write_end >= 0 && written == setup.input.size()) close_and_forget(in.write_end);
-    pollfd watched[3] = {{out.read_end, POLLIN, 0}, {err.read_end, POLLIN, 0}, {in.write_end, POLLOUT, 0}};
+    if (in.write_end >= 0 && written == setup.input.size() && !setup.hold_input_open)
+      close_and_forget(in.write_end);
+    pollfd watched[3] = {{out.read_end, POLLIN, 0},
+                         {err.read_end, POLLIN, 0},
+                         {written < setup.input.size() ? in.write_end : -1, POLLOUT, 0}};
     poll(watched, 3, 10);
     for (int k = 0; k < 2; ++k) {
       if ((watched[k].revents & (POLLIN | POLLHUP)) == 0) continue;

@@ -13,6 +13,7 @@ struct Ran {
 
 struct RunSetup {
   std::string input;                     ///< given on standard input
+  bool hold_input_open = false;          ///< standard input does not end while the program runs
   std::string folder;                    ///< working folder; empty: the test's own
   std::vector<std::string> environment;  ///< "NAME=value", added
   std::size_t address_space = 0;         ///< bytes; 0 = no limit

@@ -1,0 +1,303 @@
+/// Awkward input through the real command: every row of the tables of what other tools get wrong.
+#include <chrono>
+#include <cmath>
+#include <cstring>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "cli/folder.h"
+#include "cli/small_clouds.h"
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+namespace rfsmooth::test {
+namespace {
+
+std::string ascii_ply(const std::vector<std::string>& rows) {
+  std::string out = "ply\nformat ascii 1.0\nelement vertex " + std::to_string(rows.size()) +
+                    "\nproperty double x\nproperty double y\nproperty double z\nend_header\n";
+  for (const std::string& row : rows) out += row + "\n";
+  return out;
+}
+
+class Awkward : public InFolder {
+ protected:
+  /// The input must be refused with this code and message, and nothing be written.
+  void expect_refused(const std::string& name, int code, const std::string& says) {
+    const auto before = names();
+    const Ran ran = run({"denoise", "--flow", "hc", name, "out.ply"});
+    EXPECT_EQ(ran.code, code) << ran.err;
+    EXPECT_EQ(ran.out, "");
+    EXPECT_THAT(ran.err, HasSubstr(says));
+    EXPECT_EQ(names(), before);
+  }
+  /// The output must be the input, byte for byte.
+  void expect_unchanged(const std::string& name) {
+    const Ran ran = run({"denoise", "--flow", "hc", name, "same.ply"});
+    ASSERT_EQ(ran.code, 0) << ran.err;
+    EXPECT_EQ(take("same.ply"), take(name));
+  }
+};
+
+TEST_F(Awkward, MissingFile) {
+  expect_refused("nothing.ply", 3, "nothing.ply");
+}
+
+TEST_F(Awkward, FolderAsInput) {
+  std::filesystem::create_directory(at("folder.ply"));
+  expect_refused("folder.ply", 3, "directory");
+}
+
+TEST_F(Awkward, EmptyFile) {
+  put("in.ply", "");
+  expect_refused("in.ply", 3, "in.ply");
+}
+
+TEST_F(Awkward, HeaderOnly) {
+  put("in.ply", ascii_ply({}));
+  expect_refused("in.ply", 4, "no points");
+}
+
+TEST_F(Awkward, OnlyNonFinitePoints) {
+  put("in.ply", ascii_ply({"nan nan nan", "inf 0 0"}));
+  expect_refused("in.ply", 4, "finite");
+}
+
+TEST_F(Awkward, TruncatedAtEveryByte) {
+  const std::string whole = noisy_plane(3).bytes();
+  for (std::size_t size = 0; size < whole.size(); size += size < 250 ? 7 : 1) {
+    put("in.ply", whole.substr(0, size));
+    const Ran ran = run({"denoise", "--flow", "hc", "in.ply", "out.ply"});
+    ASSERT_EQ(ran.code, 3) << "at byte " << size << ": " << ran.err;
+    ASSERT_FALSE(there("out.ply"));
+  }
+}
+
+TEST_F(Awkward, TruncationNamesTheByteExpectedAndFound) {
+  const std::string whole = noisy_plane(3).bytes();
+  put("in.ply", whole.substr(0, whole.size() - 5));
+  const Ran ran = run({"info", "in.ply"});
+  EXPECT_EQ(ran.code, 3);
+  EXPECT_THAT(ran.err, ::testing::AllOf(HasSubstr("byte"), HasSubstr("expected"), HasSubstr("found")));
+}
+
+TEST_F(Awkward, HeaderThatPromisesFourBillionPoints) {
+  std::string cloud = noisy_plane(3).bytes();
+  const std::string from = "element vertex 9", to = "element vertex 4000000000";
+  cloud.replace(cloud.find(from), from.size(), to);
+  put("in.ply", cloud);
+  RunSetup setup;
+#ifndef __SANITIZE_ADDRESS__
+  setup.address_space = std::size_t{2} << 30;  // no room to allocate first and look later
+#endif
+  const Ran ran = run({"info", "in.ply"}, setup);
+  EXPECT_EQ(ran.code, 3) << ran.err;
+  EXPECT_THAT(ran.err, HasSubstr("4000000000"));
+}
+
+TEST_F(Awkward, OnePoint) {
+  put("in.ply", ascii_ply({"1 2 3"}));
+  expect_unchanged("in.ply");
+}
+
+TEST_F(Awkward, TwoCoincidentPoints) {
+  put("in.ply", ascii_ply({"1 2 3", "1 2 3"}));
+  expect_unchanged("in.ply");
+}
+
+TEST_F(Awkward, TwoAndThreePointsStayNear) {
+  put("two.ply", ascii_ply({"0 0 0", "1 0 0"}));
+  EXPECT_EQ(run({"denoise", "--flow", "hc", "two.ply", "o2.ply"}).code, 0);
+  put("three.ply", ascii_ply({"0 0 0", "1 0 0", "0 1 0"}));
+  EXPECT_EQ(run({"denoise", "--flow", "hc", "three.ply", "o3.ply"}).code, 0);
+}
+
+TEST_F(Awkward, ManyIdenticalPoints) {
+  BinaryPly cloud;
+  for (int i = 0; i < 3 * 200000; ++i) cloud.xyz.push_back(0.25f);
+  put("in.ply", cloud.bytes());
+  expect_unchanged("in.ply");
+}
+
+TEST_F(Awkward, CollinearPointsStayOnTheirLine) {
+  std::vector<std::string> rows;
+  for (int i = 0; i < 200; ++i) rows.push_back(std::to_string(i * i % 97) + " 0 0");
+  put("in.ply", ascii_ply(rows));
+  const Ran ran = run({"denoise", "--flow", "hc", "in.ply", "out.ply"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  const std::string out = take("out.ply");
+  std::size_t lines = 0;
+  for (std::size_t at = out.find("end_header\n") + 11; at < out.size(); at = out.find('\n', at) + 1, ++lines)
+    EXPECT_EQ(out.substr(out.find('\n', at) - 4, 4), " 0 0");
+  EXPECT_EQ(lines, 200u);
+}
+
+TEST_F(Awkward, RegularOpenGridIsFlatAndStaysFlat) {
+  std::vector<std::string> rows;
+  for (int i = 0; i < 20; ++i)
+    for (int j = 0; j < 20; ++j) rows.push_back(std::to_string(i) + " " + std::to_string(j) + " 5");
+  put("in.ply", ascii_ply(rows));
+  ASSERT_EQ(run({"denoise", "--flow", "hc", "in.ply", "out.ply"}).code, 0);
+  const std::string out = take("out.ply");
+  EXPECT_EQ(std::count(out.begin(), out.end(), '\n'), 407);  // 7 header lines, 400 rows
+  for (std::size_t at = out.find("end_header\n") + 11; at < out.size(); at = out.find('\n', at) + 1)
+    EXPECT_EQ(out.substr(out.find('\n', at) - 2, 2), " 5");
+}
+
+TEST_F(Awkward, NanAndInfStayInPlaceBitForBit) {
+  BinaryPly cloud = noisy_plane(20);
+  const BinaryPly clean = cloud;
+  const float nan = std::nanf("123");
+  for (const std::size_t row : {0, 17, 399}) cloud.xyz[3 * row + 1] = row == 17 ? INFINITY : nan;
+  put("in.ply", cloud.bytes());
+  ASSERT_EQ(run({"denoise", "--flow", "hc", "in.ply", "out.ply"}).code, 0);
+  const std::string before = cloud.bytes(), after = take("out.ply");
+  ASSERT_EQ(after.size(), before.size());
+  const std::size_t header = cloud.header().size();
+  for (const std::size_t row : {0, 17, 399})
+    EXPECT_EQ(after.substr(header + row * BinaryPly::kRow, BinaryPly::kRow),
+              before.substr(header + row * BinaryPly::kRow, BinaryPly::kRow));
+}
+
+TEST_F(Awkward, UntouchedTextKeepsItsText) {
+  const std::string odd = ascii_ply({"1.500e+0 002.0 3", "1.500e+0 002.0 3"});
+  put("in.ply", odd);
+  expect_unchanged("in.ply");
+}
+
+TEST_F(Awkward, CarriageReturnsInTheHeader) {
+  std::string text = ascii_ply({"0 0 0", "1 0 0", "0 1 0", "1 1 0.5"});
+  std::string dos;
+  for (const char c : text) dos += c == '\n' ? "\r\n" : std::string(1, c);
+  put("in.ply", dos);
+  const Ran ran = run({"denoise", "--flow", "hc", "in.ply", "out.ply"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  EXPECT_THAT(take("out.ply"), HasSubstr("end_header\r\n"));
+}
+
+TEST_F(Awkward, AbsurdHeaders) {
+  int number = 0;
+  for (const char* header :
+       {"ply\nformat ascii 1.0\nelement vertex -1\nproperty float x\nproperty float y\nproperty float "
+        "z\nend_header\n",
+        "ply\nformat ascii 1.0\nelement vertex 99999999999999999999\nproperty float x\nproperty float "
+        "y\nproperty "
+        "float z\nend_header\n",
+        "ply\nformat ascii 1.0\nelement vertex 1\nproperty quaternion x\nproperty float y\nproperty float "
+        "z\nend_header\n1 2 3\n",
+        "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nend_header\n1 2\n",
+        "ply\nformat morse 1.0\nelement vertex 1\nproperty float x\nend_header\n1\n",
+        "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS x y z\nSIZE 4 4 3\nTYPE F F "
+        "F\nCOUNT 1 1 1\n"
+        "WIDTH 1\nHEIGHT 1\nPOINTS 1\nDATA ascii\n1 2 3\n",
+        "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F "
+        "F\nCOUNT 1 1 "
+        "4000000000\nWIDTH 4000000000\nHEIGHT 4000000000\nPOINTS 1\nDATA binary\nabc"}) {
+    const std::string name = "in" + std::to_string(number++);
+    put(name, header);
+    const Ran ran = run({"info", name});
+    EXPECT_EQ(ran.code, 3) << header << ran.out;
+    EXPECT_THAT(ran.err, HasSubstr(name));
+  }
+}
+
+TEST_F(Awkward, OutputFolderMissing) {
+  put("in.ply", noisy_plane(4).bytes());
+  const Ran ran = run({"denoise", "--flow", "hc", "in.ply", "no/such/out.ply"});
+  EXPECT_EQ(ran.code, 5);
+  EXPECT_THAT(ran.err, HasSubstr("no/such"));
+}
+
+TEST_F(Awkward, OutputFolderIsAFile) {
+  put("in.ply", noisy_plane(4).bytes());
+  put("file", "precious");
+  EXPECT_EQ(run({"denoise", "--flow", "hc", "in.ply", "-o", "file/"}).code, 5);
+  EXPECT_EQ(run({"denoise", "--flow", "hc", "in.ply", "in.ply", "-o", "file"}).code, 5);
+  EXPECT_EQ(run({"denoise", "--flow", "hc", "in.ply", "file/out.ply"}).code, 5);
+  EXPECT_EQ(take("file"), "precious");
+}
+
+TEST_F(Awkward, OutputIsAFolder) {
+  put("in.ply", noisy_plane(4).bytes());
+  std::filesystem::create_directory(at("out.ply"));
+  EXPECT_EQ(run({"denoise", "--flow", "hc", "--force", "in.ply", "out.ply"}).code, 5);
+}
+
+TEST_F(Awkward, OutputFolderNotWritable) {
+  if (geteuid() == 0) GTEST_SKIP() << "root may write everywhere";
+  put("in.ply", noisy_plane(4).bytes());
+  std::filesystem::create_directory(at("locked"));
+  chmod(at("locked").c_str(), 0500);
+  EXPECT_EQ(run({"denoise", "--flow", "hc", "in.ply", "locked/out.ply"}).code, 5);
+}
+
+TEST_F(Awkward, FullDisk) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
+  put("in.ply", noisy_plane(4).bytes());
+  const Ran ran = run({"denoise", "--flow", "hc", "in.ply", "/dev/full", "--force", "--format", "ply"});
+  EXPECT_EQ(ran.code, 5);
+  EXPECT_THAT(ran.err, HasSubstr("No space"));
+}
+
+TEST_F(Awkward, LinkAsOutputIsWrittenThrough) {
+  put("in.ply", noisy_plane(4).bytes());
+  put("target.ply", "old");
+  std::filesystem::create_symlink("target.ply", at("link.ply"));
+  ASSERT_EQ(run({"denoise", "--flow", "hc", "--force", "in.ply", "link.ply"}).code, 0);
+  EXPECT_TRUE(std::filesystem::is_symlink(at("link.ply")));
+  EXPECT_NE(take("target.ply"), "old");
+}
+
+TEST_F(Awkward, MemoryIsRefusedBeforeStarting) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "address space cannot be limited under the address sanitizer";
+#endif
+  BinaryPly cloud;
+  cloud.xyz.assign(std::size_t{3} * 1000000, 0.5f);
+  put("in.ply", cloud.bytes());
+  RunSetup setup;
+  setup.address_space = std::size_t{300} << 20;
+  const Ran ran = run({"denoise", "--flow", "hc", "--threads", "1", "in.ply", "out.ply"}, setup);
+  EXPECT_EQ(ran.code, 6) << ran.err;
+  EXPECT_THAT(ran.err, HasSubstr("memory"));
+  EXPECT_THAT(names(), ElementsAre("in.ply"));
+}
+
+TEST_F(Awkward, InterruptStopsWithinASecondAndLeavesNoFile) {
+  put("in.ply", noisy_plane(300).bytes());
+  RunSetup setup;
+  setup.interrupt_after_ms = 300;
+  const auto start = std::chrono::steady_clock::now();
+  const Ran ran = run({"denoise", "--flow", "hc", "--iterations", "100000", "in.ply", "out.ply"}, setup);
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  EXPECT_EQ(ran.code, 130) << ran.err;
+  EXPECT_THAT(ran.err, HasSubstr("cancelled"));
+  EXPECT_THAT(names(), ElementsAre("in.ply"));
+  EXPECT_LT(seconds, 30) << "100000 steps were not run to their end";
+}
+
+TEST_F(Awkward, InterruptWhileWaitingForStandardInput) {
+  RunSetup setup;
+  setup.hold_input_open = true;
+  setup.interrupt_after_ms = 200;
+  const Ran ran = run({"denoise", "--flow", "hc", "-", "out.ply"}, setup);
+  EXPECT_EQ(ran.code, 130) << ran.err;
+  EXPECT_TRUE(names().empty());
+}
+
+TEST_F(Awkward, FullStandardOutputIsAnError) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
+  put("in.ply", noisy_plane(4).bytes());
+  RunSetup setup;
+  setup.folder = at("");
+  const Ran ran =
+      run_program("sh", {"-c", std::string("exec ") + RFSMOOTH_COMMAND + " info in.ply > /dev/full"}, setup);
+  EXPECT_EQ(ran.code, 5);
+}
+
+}  // namespace
+}  // namespace rfsmooth::test

@@ -1,0 +1,182 @@
+/// Real scans through the real command: everything but the coordinates of finite points comes back bit for
+/// bit.
+#include <cmath>
+#include <cstring>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "rfsmooth/pipeline/io/io.h"
+
+#include "cli/folder.h"
+
+namespace rfsmooth::test {
+namespace {
+
+namespace io = pipeline::io;
+
+#ifdef __SANITIZE_ADDRESS__
+constexpr const char* kSteps = "1";  // ten times slower
+#else
+constexpr const char* kSteps = "10";
+#endif
+
+io::Cloud read(const std::string& path) {
+  auto cloud = io::read_cloud(path, {}, {});
+  if (!cloud.ok()) throw std::runtime_error(cloud.error().message);
+  return std::move(cloud).value();
+}
+
+bool is_coordinate(const io::Cloud& cloud, std::size_t field) {
+  return std::find(cloud.xyz.begin(), cloud.xyz.end(), field) != cloud.xyz.end();
+}
+
+/// The parts of a row by field: words of text, or bytes.
+std::vector<std::string> parts(const io::Table& table, std::size_t row) {
+  std::vector<std::string> out;
+  const std::string_view bytes = table.row(row);
+  if (table.text) {
+    const char *p = bytes.data(), *end = p + bytes.size();
+    for (const io::Field& field : table.fields) {
+      std::string words;
+      for (std::size_t k = 0; k < field.count; ++k)
+        words += std::string(io::next_word(p, end, table.separators)) + ' ';
+      out.push_back(words);
+    }
+    return out;
+  }
+  std::size_t at = 0;
+  for (const io::Field& field : table.fields) {
+    const std::size_t size = field.count * io::size_of(field.type);
+    out.emplace_back(bytes.substr(at, size));
+    at += size;
+  }
+  return out;
+}
+
+void expect_only_finite_points_moved(const io::Cloud& before, const io::Cloud& after) {
+  ASSERT_EQ(after.size(), before.size());
+  EXPECT_EQ(after.width, before.width);
+  EXPECT_EQ(after.height, before.height);
+  EXPECT_EQ(after.viewpoint, before.viewpoint);
+  EXPECT_EQ(after.encoding, before.encoding);
+  ASSERT_EQ(after.points().fields.size(), before.points().fields.size());
+  for (std::size_t f = 0; f < before.points().fields.size(); ++f) {
+    EXPECT_EQ(after.points().fields[f].name, before.points().fields[f].name);
+    EXPECT_EQ(after.points().fields[f].type, before.points().fields[f].type);
+    EXPECT_EQ(after.points().fields[f].count, before.points().fields[f].count);
+  }
+  const std::vector<double> old_xyz = io::positions(before), new_xyz = io::positions(after);
+  std::size_t moved = 0;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const bool finite = std::isfinite(old_xyz[3 * i]) && std::isfinite(old_xyz[3 * i + 1]) &&
+                        std::isfinite(old_xyz[3 * i + 2]);
+    const auto old_parts = parts(before.points(), i), new_parts = parts(after.points(), i);
+    for (std::size_t f = 0; f < old_parts.size(); ++f)
+      ASSERT_TRUE((finite && is_coordinate(before, f)) || new_parts[f] == old_parts[f])
+          << "row " << i << " field " << before.points().fields[f].name;
+    if (finite) moved += std::memcmp(&old_xyz[3 * i], &new_xyz[3 * i], 3 * sizeof(double)) != 0;
+    ASSERT_EQ(finite, std::isfinite(new_xyz[3 * i] + new_xyz[3 * i + 1] + new_xyz[3 * i + 2])) << "row " << i;
+  }
+  EXPECT_GT(moved, before.size() / 4);
+}
+
+class Scans : public InFolder {
+ protected:
+  void expect_cleaned(const std::string& input) {
+    const std::string output = "out" + std::filesystem::path(input).extension().string();
+    const Ran ran = run({"denoise", "--flow", "hc", "--iterations", kSteps, input, output});
+    ASSERT_EQ(ran.code, 0) << ran.err;
+    EXPECT_EQ(ran.out, "");
+    expect_only_finite_points_moved(read(input), read(at(output)));
+  }
+};
+
+class RawScans : public Scans, public ::testing::WithParamInterface<const char*> {
+ protected:
+  std::string path() const { return std::string(RFSMOOTH_SCANS_DIR) + "/" + GetParam(); }
+  void SetUp() override {
+    if (!std::filesystem::exists(path())) GTEST_SKIP() << "no scan " << path() << " (set RFSMOOTH_SCANS_DIR)";
+  }
+};
+
+TEST_P(RawScans, OnlyFinitePointsMove) {
+  expect_cleaned(path());
+}
+
+TEST_P(RawScans, SameBytesForOneToFourThreads) {
+#ifdef __SANITIZE_ADDRESS__
+  if (std::filesystem::file_size(path()) > 700000) GTEST_SKIP() << "too long under sanitizers";
+#endif
+  std::string first;
+  for (const char* threads : {"1", "2", "3", "4"}) {
+    const std::string name = std::string(threads) + ".pcd";
+    const Ran ran = run({"denoise", "--flow", "hc", "--iterations", "2", "--threads", threads, path(), name});
+    ASSERT_EQ(ran.code, 0) << ran.err;
+    const std::string bytes = take(name);
+    if (first.empty()) first = bytes;
+    EXPECT_TRUE(bytes == first) << threads << " threads";
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Files, RawScans,
+                         ::testing::Values("milk_cartoon_all_small_clorox.pcd",
+                                           "table_scene_mug_stereo_textured.pcd", "mOSD_learn0.pcd",
+                                           "cturtle.pcd", "room_scan1.pcd", "terrain_samp11-utm.pcd"),
+                         [](const auto& test) {
+                           std::string name = test.param;
+                           for (char& c : name)
+                             if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
+                           return name;
+                         });
+
+/// building.ply and b9_training.ply of CGAL's data archive (Debian: libcgal-demo).
+class CgalData : public Scans, public ::testing::WithParamInterface<const char*> {
+ protected:
+  void SetUp() override {
+    if (!std::filesystem::exists(RFSMOOTH_CGAL_DATA))
+      GTEST_SKIP() << "no archive " << RFSMOOTH_CGAL_DATA
+                   << " (install libcgal-demo or set RFSMOOTH_CGAL_DATA)";
+    RunSetup setup;
+    setup.folder = at("");
+    const Ran ran = run_program("tar",
+                                {"xzf", RFSMOOTH_CGAL_DATA, "--wildcards",
+                                 std::string("*/points_3/") + GetParam(), "--transform", "s|.*/||"},
+                                setup);
+    ASSERT_EQ(ran.code, 0) << ran.err;
+  }
+};
+
+TEST_P(CgalData, OnlyFinitePointsMove) {
+  expect_cleaned(at(GetParam()));
+}
+
+INSTANTIATE_TEST_SUITE_P(Files, CgalData, ::testing::Values("building.ply", "b9_training.ply"),
+                         [](const auto& test) { return std::string(test.param, test.index == 0 ? 8 : 11); });
+
+TEST_F(Scans, UtmDoublesKeepTheirPrecision) {
+  // Two grids of 100 x 100 points with steps of 1 mm at UTM coordinates: float could not tell them apart.
+  std::string header =
+      "ply\nformat ascii 1.0\nelement vertex 10000\nproperty double x\nproperty double y\nproperty double "
+      "z\nend_header\n";
+  std::string rows;
+  for (int i = 0; i < 100; ++i)
+    for (int j = 0; j < 100; ++j)
+      rows += std::to_string(500000 + 0.001 * i) + " " + std::to_string(4649776 + 0.001 * j) + " " +
+              std::to_string((i * 7 + j * 3) % 5 * 0.0001) + "\n";
+  put("utm.ply", header + rows);
+  const Ran ran = run({"denoise", "--flow", "hc", "utm.ply", "out.ply"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  const auto before = io::positions(read(at("utm.ply"))), after = io::positions(read(at("out.ply")));
+  double rough = 0, smooth = 0;
+  for (std::size_t i = 0; i < before.size(); i += 3) {
+    EXPECT_NEAR(after[i], before[i], 0.002);
+    EXPECT_NEAR(after[i + 1], before[i + 1], 0.002);
+    rough += std::pow(before[i + 2] - 0.0002, 2);
+    smooth += std::pow(after[i + 2] - 0.0002, 2);
+  }
+  EXPECT_LT(smooth, 0.5 * rough);
+}
+
+}  // namespace
+}  // namespace rfsmooth::test
