@@ -179,8 +179,15 @@ Result<FlowReport> smooth(rfs_mesh::Mesh& mesh, const FlowOptions& options, cons
         flow.value()->step(mesh, context);
       }
       report.solver_iterations = flow.value()->solver_iterations();
-      for (std::size_t i = 0; i < original.size(); ++i)
-        report.largest_move = std::max(report.largest_move, (mesh.positions[i] - original[i]).norm());
+      report.largest_move = reduce_blocks(
+          context, original.size(), 0.0,
+          [&](std::size_t begin, std::size_t end) {
+            double largest = 0;
+            for (std::size_t i = begin; i < end; ++i)
+              largest = std::max(largest, (mesh.positions[i] - original[i]).norm());
+            return largest;
+          },
+          [](double a, double b) { return std::max(a, b); });
     });
     return report;
   });

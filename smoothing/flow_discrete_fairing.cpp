@@ -46,7 +46,10 @@ class DiscreteFairing : public Flow {
     });
     const Product product = [&](const Positions& u, Positions& v) {
       differences_.apply(u, v, context);
-      for_each_index(context, n, [&](std::size_t i) { v[i] = data[i] * u[i] + dt_ * v[i]; });
+      return sum_over(context, n, 0.0, [&](std::size_t i) {
+        v[i] = data[i] * u[i] + dt_ * v[i];
+        return u[i].dot(v[i]);
+      });
     };
     const Positions start = x;
     iterations_ += conjugate_gradients(product, diagonal, w, b, x, allowed_, solver_, context).iterations;

@@ -5,6 +5,7 @@
 /// Vollmer, Mencl, Mueller 1999, section 4. Converges for alpha > 0 and beta > 0.5 (theorem 5.2). With alpha
 /// = 0 one step is x - (1 - beta) L^2 x. The paper lists the simultaneous version; in the sequential one the
 /// Laplacian half updates in index order and the push-back follows.
+#include "rfsmooth/rfs_mesh/parallel.h"
 #include "rfsmooth/smoothing/constraint.h"
 #include "rfsmooth/smoothing/pushback.h"
 #include "rfsmooth/smoothing/umbrella_speed.h"
@@ -13,9 +14,49 @@ namespace rfsmooth::smoothing {
 
 namespace {
 
+using Eigen::Vector3d;
+
+/// The simultaneous version in two passes over the neighbours and without copies: p_i is b_i plus the anchor,
+/// so only b is stored between them.
+class SimultaneousHc : public Flow {
+ public:
+  SimultaneousHc(const rfs_mesh::Mesh& mesh, double alpha, double beta) : alpha_(alpha), beta_(beta) {
+    if (alpha > 0) original_ = mesh.positions;
+  }
+
+  void step(rfs_mesh::Mesh& mesh, const Context& context) override {
+    Positions& q = mesh.positions;
+    const rfs_mesh::Adjacency& rows = mesh.one_ring;
+    const auto anchor = [&](std::size_t i) {
+      return alpha_ > 0 ? Vector3d(alpha_ * original_[i] + (1 - alpha_) * q[i]) : q[i];
+    };
+    difference_.resize(q.size());
+    for_each_index(context, q.size(), [&](std::size_t i) {
+      const Index begin = rows.start[i], end = rows.start[i + 1];
+      Vector3d sum = Vector3d::Zero();
+      for (Index k = begin; k < end; ++k) sum += q[rows.items[k]];
+      difference_[i] = begin == end ? sum : Vector3d(sum / double(end - begin) - anchor(i));
+    });
+    for_each_index(context, q.size(), [&](std::size_t i) {
+      const Index begin = rows.start[i], end = rows.start[i + 1];
+      if (begin == end) return;
+      Vector3d sum = Vector3d::Zero();
+      for (Index k = begin; k < end; ++k) sum += difference_[rows.items[k]];
+      const Vector3d p = anchor(i) + (1 - beta_) * (difference_[i] - sum / double(end - begin));
+      if (p.allFinite()) q[i] = p;
+    });
+  }
+
+ private:
+  double alpha_, beta_;
+  Positions original_, difference_;
+};
+
 std::unique_ptr<Flow> make(const rfs_mesh::Mesh& mesh, const FlowOptions& options,
                            const Constraints& constraints, const Context&) {
   const Update update = *options.update == "sequential" ? Update::sequential : Update::simultaneous;
+  if (update == Update::simultaneous && constraints.hard.empty())
+    return std::make_unique<SimultaneousHc>(mesh, *options.alpha, *options.beta);
   auto laplacian = make_explicit(make_umbrella_speed(false), 1, update);
   if (!constraints.hard.empty())  // so that the difference of a fixed vertex is zero, as in the paper
     laplacian =

@@ -49,8 +49,9 @@ class HcLimit : public Flow {
         level[i] = still(i) ? Vector3d(Vector3d::Zero()) : Vector3d(x[i] - w / degree(i));
         y[i] = still(i) ? x[i] : Vector3d(beta_ * degree(i) * x[i] + (1 - beta_) * w);
       });
-      for_each_index(context, n, [&](std::size_t i) {
+      return sum_over(context, n, 0.0, [&](std::size_t i) {
         if (!still(i)) y[i] += c_ * (degree(i) * level[i] - movable_sum(level, i));
+        return x[i].dot(y[i]);
       });
     };
     Positions x(n), b(n), share(n);

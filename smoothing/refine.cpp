@@ -54,8 +54,11 @@ void minimise(Mesh& mesh, const AllowedMoves& allowed, const RefineOptions& opti
     if (!(v > 0)) v = 1;
   SolverOptions solver;
   solver.tolerance = options.tolerance;
-  conjugate_gradients([&](const Positions& x, Positions& y) { differences.apply(x, y, context); }, diagonal,
-                      diagonal, b, d, allowed, solver, context);
+  const Product product = [&](const Positions& x, Positions& y) {
+    differences.apply(x, y, context);
+    return sum_over(context, n, 0.0, [&](std::size_t i) { return x[i].dot(y[i]); });
+  };
+  conjugate_gradients(product, diagonal, diagonal, b, d, allowed, solver, context);
   for_each_index(context, n, [&](std::size_t i) {
     const Vector3d p = mesh.positions[i] + allowed(i, d[i]);
     if (p.allFinite()) mesh.positions[i] = p;

@@ -54,21 +54,23 @@ SolverReport conjugate_gradients(const Product& product, const std::vector<doubl
   const auto relative = [&](double norm) {
     return goal > 0 ? std::sqrt(norm) / goal * options.tolerance : 0;
   };
-  double previous = 0;
+  // x follows one pass behind, in the pass that reads the old direction anyway.
+  double previous = 0, alpha = 0;
   while (report.iterations < options.max_iterations && std::sqrt(sums.norm) > goal) {
     const double beta = report.iterations == 0 ? 0 : sums.rz / previous;
-    for_each_index(context, n, [&](std::size_t i) { p[i] = r[i] / diagonal[i] + beta * p[i]; });
-    product(p, y);
-    const double curvature = sum_over(context, n, 0.0, [&](std::size_t i) { return p[i].dot(y[i]); });
-    if (!(curvature > 0) || !std::isfinite(sums.rz / curvature)) break;
-    const double alpha = sums.rz / curvature;
-    previous = sums.rz;
-    sums = gather([&](std::size_t i) {
-      x[i] += alpha * p[i];
-      return r[i] -= alpha * allowed(i, y[i]);
+    for_each_index(context, n, [&](std::size_t i) {
+      if (beta != 0) x[i] += alpha * p[i];
+      p[i] = beta == 0 ? Vector3d(r[i] / diagonal[i]) : Vector3d(r[i] / diagonal[i] + beta * p[i]);
     });
+    const double curvature = product(p, y);
+    alpha = 0;
+    if (!(curvature > 0) || !std::isfinite(sums.rz / curvature)) break;
+    alpha = sums.rz / curvature;
+    previous = sums.rz;
+    sums = gather([&](std::size_t i) { return r[i] -= alpha * allowed(i, y[i]); });
     ++report.iterations;
   }
+  if (alpha != 0) for_each_index(context, n, [&](std::size_t i) { x[i] += alpha * p[i]; });
   report.residual = relative(sums.norm);
   report.converged = std::sqrt(sums.norm) <= goal;
   return report;
@@ -84,15 +86,16 @@ class Matrix {
       if (s_.a[k] != 0) order_ = k + 1;
   }
 
-  void multiply(const Positions& x, Positions& y) {
+  double multiply(const Positions& x, Positions& y) {
     const std::vector<double>& mass = s_.op.mass;
     const std::vector<double>& data = s_.data.empty() ? mass : s_.data;
     const std::size_t n = x.size();
     y.resize(n);
-    if (order_ <= 1) {
-      for_each_index(context_, n, [&](std::size_t i) { y[i] = data[i] * x[i] + s_.a[0] * difference(x, i); });
-      return;
-    }
+    if (order_ <= 1)
+      return sum_over(context_, n, 0.0, [&](std::size_t i) {
+        y[i] = data[i] * x[i] + s_.a[0] * difference(x, i);
+        return x[i].dot(y[i]);
+      });
     level_.resize(n);
     for_each_index(context_, n, [&](std::size_t i) {
       const Vector3d d = difference(x, i);
@@ -108,7 +111,10 @@ class Matrix {
       });
       level_.swap(next_);
     }
-    for_each_index(context_, n, [&](std::size_t i) { y[i] += s_.a[order_ - 1] * difference(level_, i); });
+    return sum_over(context_, n, 0.0, [&](std::size_t i) {
+      y[i] += s_.a[order_ - 1] * difference(level_, i);
+      return x[i].dot(y[i]);
+    });
   }
 
   /// The diagonal; exact up to second order, an estimate above it (enough for a preconditioner).
@@ -167,21 +173,23 @@ SolverReport solve(const Fairing& system, const Positions& o, Positions& x, cons
     throw std::invalid_argument("a Fairing with a strength per vertex has order two at most");
   if (n == 0) return {0, 0, true};
 
-  if (x.size() != n) x = o;
+  const bool warm = x.size() == n;
+  x.resize(n);
   const Vector3d centre =
       sum_over(context, n, Vector3d(Vector3d::Zero()), [&](std::size_t i) { return o[i]; }) / double(n);
-  Positions b(n), start = x, iterate(n);
+  Positions b(n), iterate(n);
   for_each_index(context, n, [&](std::size_t i) {
+    if (!warm) x[i] = o[i];
     b[i] = data[i] * (o[i] - centre);
     iterate[i] = x[i] - centre;
   });
   Matrix matrix(system, context);
   const SolverReport report =
-      conjugate_gradients([&](const Positions& u, Positions& v) { matrix.multiply(u, v); }, matrix.diagonal(),
-                          system.op.mass, b, iterate, allowed, options, context);
+      conjugate_gradients([&](const Positions& u, Positions& v) { return matrix.multiply(u, v); },
+                          matrix.diagonal(), system.op.mass, b, iterate, allowed, options, context);
   for_each_index(context, n, [&](std::size_t i) {
     // The move, not the position: vertices that may not move keep their bits.
-    const Vector3d place = start[i] + allowed(i, iterate[i] - (start[i] - centre));
+    const Vector3d place = x[i] + allowed(i, iterate[i] - (x[i] - centre));
     if (place.allFinite()) x[i] = place;
   });
   return report;

@@ -38,8 +38,9 @@ struct SolverReport {
   bool converged = false;
 };
 
-/// y = A x for a symmetric positive definite A; x and y n rows, distinct.
-using Product = std::function<void(const Positions& x, Positions& y)>;
+/// y = A x for a symmetric positive definite A; x and y n rows, distinct. Returns x . y, summed in fixed
+/// blocks.
+using Product = std::function<double(const Positions& x, Positions& y)>;
 
 /// Solves A x = b from the start x (which hard constraints keep feasible). `diagonal` is A's, positive;
 /// `mass` defines the norm of the residual. 5 n-vectors of memory.
