@@ -1,0 +1,257 @@
+/// The whole of `denoise` beside PCL's moving least squares: stages, points per second, peak memory, the same
+/// bytes for 1, 2 and 4 threads, and how time per point grows (../README.md).
+///
+/// Every run is a process of its own, forked from one that has never started a thread, so that peaks of
+/// memory are the tool's; the rounds go over the tools in turn, so that both meet the same load of the
+/// machine.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <functional>
+#include <map>
+#include <random>
+#include <string>
+#include <thread>
+
+#include <CLI/CLI.hpp>
+#include <Eigen/Geometry>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "peers.h"
+#include "quality/ours.h"
+
+namespace {
+
+using namespace rfsmooth::bench;
+using rfsmooth::Positions;
+
+constexpr double kPi = 3.14159265358979323846;
+
+/// n points of a bumpy sphere, evenly spread (Fibonacci lattice), with isotropic noise of `sigma` mean
+/// distances to the nearest neighbour, in random order. One thread; the same for the same arguments.
+Positions noisy_cloud(std::size_t n, double sigma) {
+  // The mean nearest distance of this lattice, bumps included, is 0.963 sqrt(4 pi / n) (counted for n = 1e5).
+  const double spacing = 0.963 * std::sqrt(4 * kPi / double(n));
+  std::mt19937_64 engine(7);
+  std::normal_distribution<double> noise(0, sigma * spacing);
+  Positions points(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const double z = 1 - (2 * double(i) + 1) / double(n), turn = kPi * (3 - std::sqrt(5.0)) * double(i);
+    const double r = std::sqrt(1 - z * z);
+    const Eigen::Vector3d p(r * std::cos(turn), r * std::sin(turn), z);
+    const double bump = 1 + 0.05 * std::sin(5 * p[0]) * std::sin(5 * p[1]) * std::sin(5 * p[2]);
+    const double x = noise(engine), y = noise(engine), w = noise(engine);
+    points[i] = bump * p + Eigen::Vector3d(x, y, w);
+  }
+  std::shuffle(points.begin(), points.end(), engine);
+  return points;
+}
+
+/// What a run tells its parent.
+struct Run {
+  double seconds = 0, cpu = 0;
+  double bytes = 0;  ///< peak above the process before the run, plus the input's own 24 bytes a point
+  std::uint64_t hash = 0;
+  std::map<std::string, double> stages;
+};
+
+double resident(const char* key) {  // kB -> bytes
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);)
+    if (line.rfind(key, 0) == 0) return 1024 * std::stod(line.substr(std::strlen(key) + 1));
+  return 0;
+}
+
+double cpu_seconds() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const auto seconds = [](const timeval& t) { return double(t.tv_sec) + 1e-6 * double(t.tv_usec); };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+/// Runs `tool` on the points in a process of its own. \throw std::runtime_error if it does not come back
+/// well.
+Run run_apart(const Positions& points, const std::function<Positions(Run&)>& tool) {
+  int ends[2];
+  if (pipe(ends) != 0) throw std::runtime_error("no pipe");
+  std::fflush(stdout);
+  const pid_t child = fork();
+  if (child == 0) {
+    close(ends[0]);
+    int code = 1;
+    try {
+      Run run;
+      std::ofstream("/proc/self/clear_refs") << 5;  // the peak starts at what is resident now
+      const double before = resident("VmRSS:"), cpu = cpu_seconds();
+      const auto start = std::chrono::steady_clock::now();
+      const Positions out = tool(run);
+      run.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      run.cpu = cpu_seconds() - cpu;
+      run.bytes = resident("VmHWM:") - before + 24 * double(points.size());
+      run.hash = hash_points(out);
+      std::string text;
+      char line[256];
+      std::snprintf(line, sizeof line, "%.9g %.9g %.9g %llu\n", run.seconds, run.cpu, run.bytes,
+                    static_cast<unsigned long long>(run.hash));
+      text += line;
+      for (const auto& [name, seconds] : run.stages) text += std::to_string(seconds) + " " + name + "\n";
+      code = write(ends[1], text.data(), text.size()) == ssize_t(text.size()) ? 0 : 1;
+    } catch (const std::exception& e) {
+      std::fprintf(stderr, "speed: %s\n", e.what());
+    }
+    _exit(code);
+  }
+  close(ends[1]);
+  std::string text;
+  char buffer[4096];
+  for (ssize_t got; (got = read(ends[0], buffer, sizeof buffer)) > 0;) text.append(buffer, std::size_t(got));
+  close(ends[0]);
+  int status = 0;
+  waitpid(child, &status, 0);
+  if (status != 0) throw std::runtime_error("a run failed");
+  Run run;
+  std::istringstream in(text);
+  in >> run.seconds >> run.cpu >> run.bytes >> run.hash;
+  for (double seconds = 0; in >> seconds;) {
+    std::string name;
+    std::getline(in >> std::ws, name);
+    run.stages[name] = seconds;
+  }
+  return run;
+}
+
+Run ours(const Positions& points, const Variant& variant, int threads) {
+  return run_apart(points, [&](Run& run) {
+    auto result = run_ours(points, variant, threads);
+    for (std::size_t i = 0; i < result.report.seconds.size(); ++i)  // numbered: the map keeps their order
+      run.stages[std::string(1, char('a' + i % 26)) + " " + result.report.seconds[i].name] =
+          result.report.seconds[i].seconds;
+    return std::move(result.points);
+  });
+}
+
+Run mls(const Positions& points, int threads) {
+  return run_apart(points, [&](Run&) { return peers::pcl_mls(points, 48, threads).points; });
+}
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const std::size_t n = values.size();
+  return n % 2 == 1 ? values[n / 2] : (values[n / 2 - 1] + values[n / 2]) / 2;
+}
+
+double median_of(const std::vector<Run>& runs, double Run::*field) {
+  std::vector<double> values;
+  for (const auto& run : runs) values.push_back(run.*field);
+  return median(values);
+}
+
+void print_tool(const char* name, const std::vector<Run>& runs, std::size_t n) {
+  const double seconds = median_of(runs, &Run::seconds);
+  std::printf("    %-12s %8.2f s wall %8.2f s CPU %10.0f points/s %6.0f bytes a point at the peak\n", name,
+              seconds, median_of(runs, &Run::cpu), double(n) / seconds,
+              median_of(runs, &Run::bytes) / double(n));
+}
+
+void beside_mls(const Positions& points, const Variant& variant, const std::vector<int>& threads,
+                int rounds) {
+  std::map<int, std::vector<Run>> mine, theirs;
+  for (int round = 0; round < rounds; ++round)
+    for (const int t : threads) {
+      mine[t].push_back(ours(points, variant, t));
+      theirs[t].push_back(mls(points, t));
+      std::fprintf(stderr, "round %d, %d threads: done\n", round + 1, t);
+    }
+  bool same = true;
+  for (const int t : threads) {
+    std::printf("\n  %d thread%s, median of %d interleaved runs\n", t, t == 1 ? "" : "s", rounds);
+    print_tool("rfsmooth", mine[t], points.size());
+    print_tool("PCL MLS k 48", theirs[t], points.size());
+    std::vector<double> wall, cpu;
+    for (int i = 0; i < rounds; ++i) {
+      const auto at = std::size_t(i);
+      wall.push_back(mine[t][at].seconds / theirs[t][at].seconds);
+      cpu.push_back(mine[t][at].cpu / theirs[t][at].cpu);
+    }
+    std::printf("    ratio, median of the rounds' own: wall %.2f, CPU %.2f\n    stages:", median(wall),
+                median(cpu));
+    for (const auto& [name, seconds] : mine[t].front().stages) {
+      std::vector<double> values;
+      for (const auto& run : mine[t]) values.push_back(run.stages.at(name));
+      std::printf(" %s %.2f s;", name.substr(2).c_str(), median(values));
+    }
+    std::printf("\n");
+    for (const auto& run : mine[t]) same = same && run.hash == mine[threads.front()].front().hash;
+  }
+  std::printf("\n  same bytes in every run of rfsmooth on");
+  for (const int t : threads) std::printf(" %d", t);
+  std::printf(" threads: %s (hash %016llx)\n", same ? "yes" : "NO",
+              static_cast<unsigned long long>(mine[threads.front()].front().hash));
+}
+
+void scaling(const std::vector<std::size_t>& sizes, double sigma, const Variant& variant, int threads) {
+  std::printf("\n  time per point, %d threads, one run each\n", threads);
+  double least = 0, most = 0;
+  for (const std::size_t n : sizes) {
+    const Positions points = noisy_cloud(n, sigma);
+    const Run run = ours(points, variant, threads);
+    const double each = 1e6 * run.seconds / double(n);
+    least = least == 0 ? each : std::min(least, each);
+    most = std::max(most, each);
+    std::printf(
+        "    %9zu points %9.2f s wall %9.2f s CPU %7.3f us wall %7.3f us CPU and %5.0f bytes a point\n", n,
+        run.seconds, run.cpu, each, 1e6 * run.cpu / double(n), run.bytes / double(n));
+    std::fflush(stdout);
+  }
+  std::printf("    slowest over fastest per point: %.2f\n", most / least);
+}
+
+int run(int argc, char** argv) {
+  std::size_t n = 1000000;
+  int rounds = 5;
+  double sigma = 1;
+  std::vector<int> threads = {1, 2, 4};
+  std::vector<std::size_t> sizes = {100000, 1000000, 10000000};
+  Variant variant{"rfsmooth", {}};
+  bool no_scaling = false;
+  CLI::App app{"denoise beside PCL's moving least squares: time, memory, same bytes"};
+  app.add_option("--points", n)->capture_default_str();
+  app.add_option("--rounds", rounds, "interleaved runs of each tool; medians are printed")
+      ->capture_default_str();
+  app.add_option("--noise", sigma, "x mean distance to the nearest neighbour")->capture_default_str();
+  app.add_option("--threads", threads, "numbers of threads to measure")->capture_default_str();
+  app.add_option("--options", variant.options, "options of denoise: flow=hc no-swap ...");
+  app.add_option("--scaling-sizes", sizes)->capture_default_str();
+  app.add_flag("--no-scaling", no_scaling);
+  CLI11_PARSE(app, argc, argv);
+  make_options(variant.options);  // says what is wrong before anything long starts
+
+  const unsigned cores = std::thread::hardware_concurrency();
+  std::printf("%zu points of a bumpy sphere, isotropic noise of %g spacings, %u cores\n", n, sigma, cores);
+  std::vector<int> possible;
+  for (const int t : threads)
+    if (t <= int(cores))
+      possible.push_back(t);
+    else
+      std::printf("  %d threads: not measured, there are %u cores\n", t, cores);
+  if (possible.empty()) return 0;
+  beside_mls(noisy_cloud(n, sigma), variant, possible, rounds);
+  if (!no_scaling) scaling(sizes, sigma, variant, possible.back());
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "speed: %s\n", e.what());
+    return 1;
+  }
+}
