@@ -48,6 +48,10 @@ bool carries(const Cloud& cloud, std::size_t field, Format format, const Context
   return false;
 }
 
+bool is_coordinate(const Cloud& cloud, std::size_t field) {
+  return std::find(cloud.xyz.begin(), cloud.xyz.end(), field) != cloud.xyz.end();
+}
+
 // The fields of the points that go along, in the target's order.
 std::vector<std::size_t> kept_fields(const Cloud& cloud, Format format, const Context& context) {
   if (format == Format::off) return off_fields(cloud);
@@ -56,7 +60,7 @@ std::vector<std::size_t> kept_fields(const Cloud& cloud, Format format, const Co
   if (format == Format::xyz) kept.assign(cloud.xyz.begin(), cloud.xyz.end());
   for (std::size_t f = 0; f < cloud.points().fields.size(); ++f)
     if (!is_padding(cloud.points().fields[f]) && std::find(kept.begin(), kept.end(), f) == kept.end() &&
-        carries(cloud, f, format, context))
+        (is_coordinate(cloud, f) || carries(cloud, f, format, context)))
       kept.push_back(f);
   return kept;
 }
@@ -152,6 +156,17 @@ void rewrite_notes(Cloud& cloud, Format from, Format to) {
     cloud.notes.push_back({fmt::format("obj_info num_rows {}", cloud.height)});
   }
   if (cloud.viewpoint != kNoViewpoint) cloud.notes.push_back({"obj_info viewpoint " + cloud.viewpoint});
+}
+
+// PLY has no 64-bit whole numbers; coordinates of that type, which cannot be left out, become doubles.
+void widen_coordinates(Table& table, const Context& context) {
+  const bool text = table.text;
+  for (Field& field : table.fields) {
+    if (field.type != Scalar::int64 && field.type != Scalar::uint64) continue;
+    make_text(table, context);
+    field.type = Scalar::float64;
+  }
+  if (!text) make_binary(table, context);
 }
 
 // Arrays of a fixed length become lists: each row gets its count in front.
@@ -270,7 +285,10 @@ Cloud convert(const Cloud& cloud, Format format, const Context& context) {
   for (std::size_t axis = 0; axis < 3; ++axis)
     out.xyz[axis] = std::size_t(std::find(kept.begin(), kept.end(), cloud.xyz[axis]) - kept.begin());
   for (Field& f : points.fields) f.spelling.clear();
-  if (format == Format::ply) arrays_to_lists(points, context);
+  if (format == Format::ply) {
+    widen_coordinates(points, context);
+    arrays_to_lists(points, context);
+  }
   if (format == Format::pcd) lists_to_arrays(points, context);
   if (format == Format::xyz && points.fields.size() > 3) out.xyz_style.names = "# ";
   out.elements.push_back(std::move(points));

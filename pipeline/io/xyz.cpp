@@ -44,8 +44,10 @@ bool names_coordinates(const std::vector<std::string_view>& words) {
   return has_word(words, 'x') && has_word(words, 'y') && has_word(words, 'z');
 }
 
-// "1,5 2,5 3,5" and "1,5;2,5;3,5": read as six columns, such a file would be silently wrong.
+// "1,5 2,5 3,5" and "1,5;2,5;3,5": read as six columns, such a file would be silently wrong. Who writes
+// decimal points does not write decimal commas.
 bool has_decimal_commas(std::string_view line) {
+  if (line.find('.') != std::string_view::npos) return false;
   bool inner = false, other = false;
   for (std::size_t k = 1; k + 1 < line.size(); ++k) {
     const bool between = line[k - 1] >= '0' && line[k - 1] <= '9' && line[k + 1] >= '0' && line[k + 1] <= '9';

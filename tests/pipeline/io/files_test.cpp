@@ -230,6 +230,14 @@ TEST(Coordinates, UpperCaseDuplicatesAndWholeNumbers) {
   EXPECT_EQ(as(cloud, Format::pcd), head + "1 3 3 9\n");
 }
 
+TEST(Convert, CoordinatesAreNeverLeftOut) {
+  const std::string pcd = "FIELDS x y z\nSIZE 4 8 4\nTYPE F I F\nPOINTS 1\nDATA ascii\n1 2 3\n";
+  EXPECT_NE(as(parsed(pcd), Format::ply).find("field 'y'"), std::string::npos);
+  const Cloud ply = parsed(as(parsed(pcd), Format::ply, true));
+  EXPECT_EQ(ply.points().fields[1].type, Scalar::float64);
+  EXPECT_EQ(positions(ply), (std::vector<double>{1, 2, 3}));
+}
+
 TEST(Mesh, EdgesAndFacesAreWrittenAndRead) {
   const Positions points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   const Cloud cloud = parsed(as(make_mesh_file(points, {{0, 1, 2}}, {{0, 1}, {1, 2}}), Format::ply));
