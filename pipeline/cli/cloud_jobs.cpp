@@ -25,7 +25,7 @@ std::string run_one(const Job& job, const JobOptions& options, const CloudWork& 
   pipeline::io::Cloud cloud = load_cloud(job.input, context, stages);
   entry["input"].update(describe(cloud));
   console.set_points(cloud.size());
-  const std::string summary = work(cloud, job, context, console, stages, entry);
+  std::string summary = work(cloud, job, context, console, stages, entry);
   store_cloud(cloud, job.output, options.files, context, stages);
   console.say(fmt::format("{} -> {}: {}", job.input, job.output, summary));
   console.say("seconds: " + text_of(stages));

@@ -50,7 +50,7 @@ std::string entry(const std::string& heading, const std::string& text) {
 }  // namespace
 
 const std::vector<ExitCode>& exit_codes() {
-  static const std::vector<ExitCode> kCodes = {
+  static const std::vector<ExitCode> codes = {
       {0, "done"},
       {1, "internal error, or (with several inputs) some of them failed for different reasons"},
       {2, "wrong usage: an unknown option, a value outside its range"},
@@ -59,7 +59,7 @@ const std::vector<ExitCode>& exit_codes() {
       {5, "output cannot be written, or exists and --force was not given"},
       {6, "not enough memory (estimated before starting, or met on the way)"},
       {130, "cancelled (Ctrl-C); no file is left behind"}};
-  return kCodes;
+  return codes;
 }
 
 std::string option_heading(const CommandOption& option) {

@@ -50,7 +50,7 @@ std::vector<std::string> option_names(const Command* command) {
 }
 
 std::string in_our_words(const CLI::ParseError& error) {
-  const std::string what = error.what();
+  std::string what = error.what();
   const std::string first = what.substr(0, what.find_first_of(" :"));
   if (what.find("flag override") != std::string::npos) return fmt::format("--{} takes no value", first);
   if (what.find("missing") != std::string::npos) return fmt::format("{} needs a value", first);
@@ -108,6 +108,7 @@ Parsed parse(int argc, const char* const* argv, const std::vector<Command>& comm
     for (const std::string& extra : app.remaining()) {
       if (extra[0] == '-') refuse_unknown_option(extra, nullptr);
       std::vector<std::string> names;
+      names.reserve(commands.size());
       for (const Command& c : commands) names.push_back(c.name);
       refuse(fmt::format("unknown command '{}'{}", extra, did_you_mean(extra, names)));
     }
