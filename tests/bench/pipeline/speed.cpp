@@ -147,6 +147,7 @@ double median(std::vector<double> values) {
 
 double median_of(const std::vector<Run>& runs, double Run::*field) {
   std::vector<double> values;
+  values.reserve(runs.size());
   for (const auto& run : runs) values.push_back(run.*field);
   return median(values);
 }

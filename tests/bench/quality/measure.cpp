@@ -35,9 +35,10 @@ rfs_mesh::Mesh sharp_edges(const rfs_mesh::Mesh& mesh, const std::vector<Eigen::
       const Index a = mesh.faces[f][k], b = mesh.faces[f][(k + 1) % 3];
       const auto [at, fresh] = first_face.try_emplace(std::minmax(a, b), Index(f));
       if (fresh) continue;
+      const rfs_mesh::Face& other = mesh.faces[at->second];
       const bool same_way = [&] {  // both faces run along the edge the same way: one of them is flipped
         for (std::size_t j = 0; j < 3; ++j)
-          if (mesh.faces[at->second][j] == a && mesh.faces[at->second][(j + 1) % 3] == b) return true;
+          if (other[j] == a && other[(j + 1) % 3] == b) return true;
         return false;
       }();
       const double cosine = normals[f].dot(normals[at->second]) * (same_way ? -1 : 1);

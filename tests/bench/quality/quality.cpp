@@ -95,6 +95,7 @@ int run(int argc, char** argv) {
   }
   const Results results = collect(plan, cases, variants);
   std::vector<std::string> names;
+  names.reserve(variants.size());
   for (const auto& variant : variants) names.push_back(variant.name);
   print_tables(plan, results, names, all);
   print_ratios(plan, results, "rfsmooth", "rfsmooth --no-equalize");
