@@ -35,14 +35,14 @@ class SimultaneousHc : public Flow {
       const Index begin = rows.start[i], end = rows.start[i + 1];
       Vector3d sum = Vector3d::Zero();
       for (Index k = begin; k < end; ++k) sum += q[rows.items[k]];
-      difference_[i] = begin == end ? sum : Vector3d(sum / double(end - begin) - anchor(i));
+      difference_[i] = begin == end ? sum : Vector3d((1 / double(end - begin)) * sum - anchor(i));
     });
     for_each_index(context, q.size(), [&](std::size_t i) {
       const Index begin = rows.start[i], end = rows.start[i + 1];
       if (begin == end) return;
       Vector3d sum = Vector3d::Zero();
       for (Index k = begin; k < end; ++k) sum += difference_[rows.items[k]];
-      const Vector3d p = anchor(i) + (1 - beta_) * (difference_[i] - sum / double(end - begin));
+      const Vector3d p = anchor(i) + (1 - beta_) * (difference_[i] - (1 / double(end - begin)) * sum);
       if (p.allFinite()) q[i] = p;
     });
   }

@@ -26,7 +26,7 @@ void apply(const rfs_mesh::Adjacency& rows, const Operator& op, const Positions&
     } else {
       for (Index k = begin; k < end; ++k) sum += weight[k] * (x[i] - x[items[k]]);
     }
-    y[i] = sum / op.mass[i];
+    y[i] = (1 / op.mass[i]) * sum;
   });
 }
 

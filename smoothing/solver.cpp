@@ -24,9 +24,11 @@ SolverReport conjugate_gradients(const Product& product, const std::vector<doubl
                                  const Context& context) {
   const std::size_t n = b.size();
   const bool linf = options.linf;
-  const auto term = [&](const Vector3d& r, std::size_t i) {
-    return linf ? r.squaredNorm() / (mass[i] * mass[i]) : r.squaredNorm() / mass[i];
-  };
+  std::vector<double> inverse(n), weight(n);  // multiplications instead of divisions in every pass
+  for_each_index(context, n, [&](std::size_t i) {
+    inverse[i] = 1 / diagonal[i];
+    weight[i] = linf ? 1 / (mass[i] * mass[i]) : 1 / mass[i];
+  });
   const auto join = [linf](double u, double v) { return linf ? std::max(u, v) : u + v; };
   /// `update(i)` for all i, returning the sums of the residual that it returns.
   const auto gather = [&](auto&& update) {
@@ -36,8 +38,9 @@ SolverReport conjugate_gradients(const Product& product, const std::vector<doubl
           Sums s;
           for (std::size_t i = begin; i < end; ++i) {
             const Vector3d r = update(i);
-            s.rz += r.squaredNorm() / diagonal[i];
-            s.norm = join(s.norm, term(r, i));
+            const double square = r.squaredNorm();
+            s.rz += square * inverse[i];
+            s.norm = join(s.norm, square * weight[i]);
           }
           return s;
         },
@@ -60,7 +63,7 @@ SolverReport conjugate_gradients(const Product& product, const std::vector<doubl
     const double beta = report.iterations == 0 ? 0 : sums.rz / previous;
     for_each_index(context, n, [&](std::size_t i) {
       if (beta != 0) x[i] += alpha * p[i];
-      p[i] = beta == 0 ? Vector3d(r[i] / diagonal[i]) : Vector3d(r[i] / diagonal[i] + beta * p[i]);
+      p[i] = beta == 0 ? Vector3d(inverse[i] * r[i]) : Vector3d(inverse[i] * r[i] + beta * p[i]);
     });
     const double curvature = product(p, y);
     alpha = 0;
@@ -100,14 +103,14 @@ class Matrix {
     for_each_index(context_, n, [&](std::size_t i) {
       const Vector3d d = difference(x, i);
       y[i] = data[i] * x[i] + s_.a[0] * d;
-      level_[i] = (s_.strength.empty() ? 1 : s_.strength[i]) / mass[i] * d;
+      level_[i] = ((s_.strength.empty() ? 1 : s_.strength[i]) / mass[i]) * d;
     });
     for (int k = 1; k + 1 < order_; ++k) {
       next_.resize(n);
       for_each_index(context_, n, [&](std::size_t i) {
         const Vector3d d = difference(level_, i);
         y[i] += s_.a[k] * d;
-        next_[i] = d / mass[i];
+        next_[i] = (1 / mass[i]) * d;
       });
       level_.swap(next_);
     }

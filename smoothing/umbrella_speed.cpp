@@ -36,7 +36,7 @@ class UmbrellaSpeed : public Speed {
       }
     }
     if constexpr (kInverseDistance) return total > 0 ? Vector3d(sum / total) : Vector3d::Zero();
-    return row.size() > 0 ? Vector3d(sum / double(row.size()) - q) : Vector3d::Zero();
+    return row.size() > 0 ? Vector3d((1 / double(row.size())) * sum - q) : Vector3d::Zero();
   }
 };
 
