@@ -37,8 +37,7 @@ AllowedMoves::AllowedMoves(const Constraints& constraints, std::size_t n) : stre
     if (strength_[i] == 0) kind_[i] = Kind::fixed;
 }
 
-Vector3d AllowedMoves::operator()(std::size_t i, const Vector3d& move) const {
-  if (kind_.empty()) return move;
+Vector3d AllowedMoves::projected(std::size_t i, const Vector3d& move) const {
   switch (kind_[i]) {
     case Kind::free:
       return move;

@@ -25,12 +25,16 @@ class AllowedMoves {
   bool all_free() const { return kind_.empty(); }
 
   /// The part of a move of vertex i that its hard constraint allows. Zero for fixed vertices.
-  Eigen::Vector3d operator()(std::size_t i, const Eigen::Vector3d& move) const;
+  Eigen::Vector3d operator()(std::size_t i, const Eigen::Vector3d& move) const {
+    return kind_.empty() ? move : projected(i, move);
+  }
 
   /// The strength of vertex i: 1 = moves freely, 0 = stays.
   double strength(std::size_t i) const { return strength_.empty() ? 1 : strength_[i]; }
 
  private:
+  Eigen::Vector3d projected(std::size_t i, const Eigen::Vector3d& move) const;
+
   enum class Kind : unsigned char { free, fixed, axis, plane };
   std::vector<Kind> kind_;  ///< empty: no hard constraint and no zero strength
   std::vector<Eigen::Vector3d> direction_;

@@ -128,9 +128,10 @@ class Matrix {
     for_each_index(context_, result.size(), [&](std::size_t i) {
       double own = 0, second = 0;
       for (Index k = s_.rows.start[i]; k < s_.rows.start[i + 1]; ++k) {
-        const Index j = s_.rows.items[k];
         const double w = s_.op.weight.empty() ? 1 : s_.op.weight[k];
         own += w;
+        if (s_.a[1] == 0) continue;
+        const Index j = s_.rows.items[k];
         second += w * w * (s_.strength.empty() ? 1 : s_.strength[j]) / mass[j];
       }
       second += own * own * (s_.strength.empty() ? 1 : s_.strength[i]) / mass[i];
