@@ -33,6 +33,10 @@ std::uint64_t priority(float gain, std::size_t candidate) {
   return std::uint64_t(bits) << 32 | (0xffffffffu - std::uint32_t(candidate));
 }
 
+std::size_t corner_of(const Face& f, Index v) {
+  return std::size_t(std::find(f.begin(), f.end(), v) - f.begin());
+}
+
 Index third(const Face& f, Index a, Index b) {
   for (const Index v : f)
     if (v != a && v != b) return v;
@@ -47,7 +51,12 @@ class Swapper {
         mesh_(mesh),
         faces_(faces),
         options_(options),
-        around_(vertex_faces(at_.size(), faces, context)) {}
+        around_(vertex_faces(at_.size(), faces, context)),
+        flaps_(3 * faces.size()) {
+    for_each_index(context, faces.size(), [&](std::size_t f) {
+      for (std::size_t k = 0; k < 3; ++k) flaps_[3 * f + k] = make_flap(Index(f), k);
+    });
+  }
 
   /// The swaps of edges from a to higher vertices that pay.
   template <class Emit>
@@ -55,27 +64,33 @@ class Swapper {
     for (const Index f : around_[a])
       for (const Index b : faces_[f]) {
         if (b <= a) continue;
-        const Sides sides = faces_at(a, b);
-        if (sides.count != 2 || sides.face[0] != f) continue;  // each edge once: from its lower face
-        if (const auto swap = consider(a, b, f, sides.face[1])) emit(*swap);
+        const Index c = third(faces_[f], a, b);
+        const Flap& flap = flaps_[3 * std::size_t(f) + corner_of(faces_[f], c)];
+        if (flap.faces != 2 || flap.across < f) continue;  // each edge once: from its lower face
+        if (const auto swap = consider(a, b, f, flap)) emit(*swap);
       }
   }
 
  private:
-  struct Sides {
-    std::array<Index, 2> face{kNone, kNone};
-    int count = 0;
+  /// What lies across the edge opposite a face's corner: each is looked up many times, and found once here.
+  struct Flap {
+    Index across = kNone;     ///< the other face if there is exactly one
+    std::uint32_t faces = 1;  ///< faces at the edge, this one included
+    double angle = 0;         ///< dihedral angle with the other face
   };
 
-  Sides faces_at(Index a, Index b) const {
-    Sides sides;
-    for (const Index f : around_[a]) {
-      const Face& v = faces_[f];
-      if (v[0] != b && v[1] != b && v[2] != b) continue;
-      if (sides.count < 2) sides.face[std::size_t(sides.count)] = f;
-      ++sides.count;
+  Flap make_flap(Index f, std::size_t corner) const {
+    const Face& face = faces_[f];
+    const Index p = face[(corner + 1) % 3], q = face[(corner + 2) % 3];
+    Flap flap;
+    for (const Index g : around_[p]) {
+      const Face& v = faces_[g];
+      if (g == f || (v[0] != q && v[1] != q && v[2] != q)) continue;
+      flap.across = g;
+      ++flap.faces;
     }
-    return sides;
+    if (flap.faces == 2) flap.angle = angle(p, q, face[corner], third(faces_[flap.across], p, q));
+    return flap;
   }
 
   bool connected(Index c, Index d) const {
@@ -96,24 +111,23 @@ class Swapper {
     return dihedral_angle(at_[p], at_[q], at_[r], at_[s]);
   }
 
-  std::optional<Swap> consider(Index a, Index b, Index f, Index g) const {
+  std::optional<Swap> consider(Index a, Index b, Index f, const Flap& middle) const {
+    const Index g = middle.across;
     const Index c = third(faces_[f], a, b), d = third(faces_[g], a, b);
-    if (c == d || connected(c, d) || is_loose(a, b)) return std::nullopt;
-    if (!keeps_shape(a, b, c, d)) return std::nullopt;
+    if (c == d || !keeps_shape(a, b, c, d) || connected(c, d) || is_loose(a, b)) return std::nullopt;
     Swap swap{a, b, c, d, f, g, {}, 0};
-    double gain = angle(c, d, a, b) - angle(a, b, c, d);
-    // The four outer edges, the corner of the pair across each before and after.
-    const std::array<std::array<Index, 4>, 4> outer = {
-        {{b, c, a, d}, {c, a, b, d}, {a, d, b, c}, {d, b, a, c}}};
+    double gain = angle(c, d, a, b) - middle.angle;
+    // The four outer edges: the corner of the old face across each, and the corner of the new one.
+    struct Outer {
+      Index p, q, face, before, after;
+    };
+    const std::array<Outer, 4> outer = {{{b, c, f, a, d}, {c, a, f, b, d}, {a, d, g, b, c}, {d, b, g, a, c}}};
     for (std::size_t k = 0; k < 4; ++k) {
-      const auto [p, q, before, after] = outer[k];
-      const Sides sides = faces_at(p, q);
-      if (sides.count > 2) return std::nullopt;
-      const Index own = k < 2 ? f : g;
-      swap.outer[k] = sides.count < 2 ? kNone : sides.face[sides.face[0] == own];
-      if (swap.outer[k] == kNone) continue;
-      const Index across = third(faces_[swap.outer[k]], p, q);
-      gain += angle(p, q, after, across) - angle(p, q, before, across);
+      const auto [p, q, own, before, after] = outer[k];
+      const Flap& flap = flaps_[3 * std::size_t(own) + corner_of(faces_[own], before)];
+      if (flap.faces > 2) return std::nullopt;
+      swap.outer[k] = flap.across;
+      if (flap.across != kNone) gain += angle(p, q, after, third(faces_[flap.across], p, q)) - flap.angle;
     }
     swap.gain = float(gain);
     if (!(gain > options_.least_gain)) return std::nullopt;
@@ -135,6 +149,7 @@ class Swapper {
   const std::vector<Face>& faces_;
   const SwapOptions& options_;
   Adjacency around_;
+  std::vector<Flap> flaps_;  ///< three a face, by the corner opposite the edge
 };
 
 template <class Body>

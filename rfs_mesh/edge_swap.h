@@ -22,7 +22,7 @@ struct SwapOptions {
   double least_gain = 1e-3;
   /// New faces have at least this Bank & Smith quality, or the old pair's lower one if that is less.
   double quality = 0.25;
-  int rounds = 3;  ///< sets of independent swaps in one pass; each round finds about half of what is left
+  int rounds = 1;  ///< sets of independent swaps in one pass; what one leaves, the next pass finds
 
   template <class Self, class Visit>
   static void describe(Self& self, Visit&& visit) {

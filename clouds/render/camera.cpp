@@ -29,7 +29,7 @@ Vector3d broadside(const Positions& points) {
 }
 
 std::pair<double, double> range_without_strays(std::vector<double> values) {
-  const auto cut = std::ptrdiff_t(values.size() / 500);
+  const auto cut = std::ptrdiff_t(values.size() / 66);
   const auto low = values.begin() + cut, high = values.end() - 1 - cut;
   std::nth_element(values.begin(), low, values.end());
   const double least = *low;
@@ -55,7 +55,7 @@ Camera::Camera(const Positions& points, const CameraOptions& options, int width,
   const auto [left, right] = range(right_);
   const auto [bottom, top] = range(up_);
   const auto [back, front] = range(toward_);
-  constexpr double kMargin = 1.08;
+  constexpr double kMargin = 1.15;  // also for what was cut off the ends
   const double wide = std::max(right - left, 1e-12), tall = std::max(top - bottom, 1e-12);
   const double full = std::min(width / (kMargin * wide), height / (kMargin * tall));
   scale_ = full * options.zoom;

@@ -80,7 +80,7 @@ Color shade(const Color& color, const Vector3d& normal) {
   const Vector3d n = normal[2] < 0 ? Vector3d(-normal) : normal;
   static const Vector3d kKey = Vector3d(-0.62, 0.58, 0.53).normalized(),
                         kFill = Vector3d(0.75, -0.1, 0.65).normalized();
-  const double light = 0.16 + 0.78 * std::max(0.0, n.dot(kKey)) + 0.22 * std::max(0.0, n.dot(kFill));
+  const double light = 0.26 + 0.70 * std::max(0.0, n.dot(kKey)) + 0.30 * std::max(0.0, n.dot(kFill));
   return (color * float(std::min(light, 1.05))).cwiseMin(1.0F);
 }
 
