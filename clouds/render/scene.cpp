@@ -67,15 +67,10 @@ void estimate_surfels(Scene& scene, int neighbors, const Context& context) {
     scene.normals[i] = solver.eigenvectors().col(0);
     scene.reach[i] = 0.8 * (scene.points[row[sixth]] - scene.points[i]).norm();
   });
-  // A stray is far from all, but its neighbours are not far from theirs.
-  const std::vector<double> reach = scene.reach;
-  for_each_index(context, n, [&](std::size_t i) {
-    std::vector<double> around;
-    for (const Index j : nearest[i]) around.push_back(reach[j]);
-    std::nth_element(around.begin(), around.begin() + std::ptrdiff_t(around.size() / 2), around.end());
-    const double usual = around[around.size() / 2];
-    if (reach[i] > 2.5 * usual) scene.reach[i] = usual;
-  });
+  std::vector<double> sorted = scene.reach;
+  std::nth_element(sorted.begin(), sorted.begin() + std::ptrdiff_t(n / 2), sorted.end());
+  const double median = sorted[n / 2];
+  for (double& r : scene.reach) r = r > 3 * median ? median : r;
 }
 
 void color_by(Scene& scene, const std::vector<double>& values, const ColorRange& range) {
