@@ -1,4 +1,5 @@
-/// What a reconstructed surface still needs to belong to its cloud: no invented faces, and the cloud's colours.
+/// What a reconstructed surface still needs to belong to its cloud: no invented faces, and the cloud's
+/// colours.
 #pragma once
 
 #include <vector>
@@ -9,12 +10,13 @@
 
 namespace rfsmooth::pipeline {
 
-/// Drops the faces with a corner farther than `length` (world units) from every one of the n points, then the vertices
-/// no face needs: Poisson reconstruction closes every gap, however wide, with surface nobody measured.
-/// `points` must not be empty. O(m log n), parallel, deterministic.
+/// Drops the faces with a corner farther than `length` (world units) from every one of the n points, then the
+/// vertices no face needs: Poisson reconstruction closes every gap, however wide, with surface nobody
+/// measured. `points` must not be empty. O(m log n), parallel, deterministic.
 void trim_far_faces(rfs_mesh::Mesh& mesh, const Positions& points, double length, const Context& context);
 
 /// The nearest of the n points to each vertex of the mesh: whose colour it takes.
-std::vector<Index> nearest_points(const rfs_mesh::Mesh& mesh, const Positions& points, const Context& context);
+std::vector<Index> nearest_points(const rfs_mesh::Mesh& mesh, const Positions& points,
+                                  const Context& context);
 
 }  // namespace rfsmooth::pipeline

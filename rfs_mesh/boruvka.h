@@ -1,7 +1,8 @@
 /// Boruvka's rounds over a cloud: the edges of its Euclidean minimum spanning tree (emst.h), in no order.
 ///
 /// In every round each component picks its shortest edge to another one, and the picked edges join the
-/// components: at most log2 n rounds, 11 at 1M noisy surface points. Where the shortest edge comes from, cheapest first:
+/// components: at most log2 n rounds, 11 at 1M noisy surface points. Where the shortest edge comes from,
+/// cheapest first:
 /// 1. a point's list of nearest neighbours, from which its own component's are skipped;
 /// 2. where the list is used up and its last is nearer than the component's best edge so far, the kd-tree,
 /// with that edge

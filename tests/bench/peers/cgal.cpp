@@ -61,7 +61,8 @@ Smoothed cgal_bilateral(const Positions& points, int k, int times, int threads) 
   constexpr unsigned kNormals = 24;
   const Threads limit(threads);
   std::vector<Oriented> cloud;
-  for (std::size_t i = 0; i < points.size(); ++i) cloud.emplace_back(to_cgal(points[i]), Kernel::Vector_3(0, 0, 0), Index(i));
+  for (std::size_t i = 0; i < points.size(); ++i)
+    cloud.emplace_back(to_cgal(points[i]), Kernel::Vector_3(0, 0, 0), Index(i));
   const auto maps = CGAL::parameters::point_map(CGAL::Nth_of_tuple_property_map<0, Oriented>())
                         .normal_map(CGAL::Nth_of_tuple_property_map<1, Oriented>());
   CGAL::jet_estimate_normals<CGAL::Parallel_tag>(cloud, kNormals, maps);

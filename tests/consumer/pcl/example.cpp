@@ -1,6 +1,7 @@
 // Read a PCD file, take the noise out, write it again: example IN.pcd OUT.pcd
 #include <pcl/io/pcd_io.h>
 #include <pcl/point_types.h>
+
 #include <rfsmooth/pcl/denoise.h>
 
 int main(int argc, char** argv) {
