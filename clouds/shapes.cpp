@@ -31,7 +31,7 @@ class Sphere : public Shape {
   double density(const Vector3d& p) const override { return p[2] < 0 ? 1 / ratio_ : 1; }
   Vector3d surface_point(Random& random) const override {
     for (;;) {
-      const Vector3d p = random.direction();
+      Vector3d p = random.direction();
       if (random.uniform() < density(p)) return p;
     }
   }

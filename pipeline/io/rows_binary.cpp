@@ -60,7 +60,7 @@ void read_lists(Table& table, BinaryCursor& cursor, const Context& context) {
   std::size_t least = 0;
   for (const Field& f : table.fields)
     least += f.is_list() ? size_of(*f.list_count) : f.count * size_of(f.type);
-  if (table.count > std::size_t(end - p) / least)
+  if (least > 0 && table.count > std::size_t(end - p) / least)
     cursor.source.fail(
         fmt::format("byte {}: expected {} rows of element '{}', at least {} bytes each, found {} bytes",
                     cursor.offset, table.count, table.name, least, end - p));
