@@ -93,12 +93,12 @@ class DirectionalSpeed : public Speed {
       const Operator op = curvature(mesh, around_, context);
       Positions Hn, field(n), laplacian;
       apply(mesh.one_ring, op, mesh.positions, Hn, context);
-      std::vector<double> H(n), K(n), dA(n);
+      std::vector<double> H(n), K(n), share(n);
       for_each_index(context, n, [&](std::size_t i) {
         const Vector3d normal = volume[i].normalized();
-        dA[i] = op.mass[i] / (2 * h * h);
+        share[i] = op.mass[i] / (2 * h * h);
         H[i] = -h * Hn[i].dot(normal);
-        K[i] = angle_deficit(mesh, around_, Index(i)) / dA[i];
+        K[i] = angle_deficit(mesh, around_, Index(i)) / share[i];
         field[i] = Vector3d(std::pow(H[i], 2 * power_ - 1), 0, 0);
       });
       apply(mesh.one_ring, op, field, laplacian, context);
@@ -106,7 +106,7 @@ class DirectionalSpeed : public Speed {
         const double m = power_, H2 = H[i] * H[i];
         const double lap = -2 * h * h * laplacian[i].x();  // the operator is -Lap/2
         const double inside = m * H[i] * lap + std::pow(H2, m) * (2 * m * (2 * H2 - K[i]) - 2 * H2);
-        const Vector3d t = -inside * dA[i] * volume[i].normalized();
+        const Vector3d t = -inside * share[i] * volume[i].normalized();
         return t.allFinite() ? t : zero;
       };
       a = sum_over(context, n, zero, term);
