@@ -15,10 +15,12 @@ namespace {
 
 struct FlowsOptions {
   bool json = false;
+  bool markdown = false;
 
   template <class Self, class Visit>
   static void describe(Self& self, Visit&& visit) {
     visit(OptionInfo{"json", "print JSON", ""}, self.json);
+    visit(OptionInfo{"markdown", "print the table of the README", ""}, self.markdown);
   }
 };
 
@@ -36,10 +38,16 @@ std::vector<std::pair<std::string, std::string>> defaults_of(const smoothing::Fl
 
 void print_table() {
   for (const smoothing::FlowEntry& flow : smoothing::flows()) {
-    fmt::print("{:<16} {} ({})\n{:16}", flow.name, flow.summary, flow.source, "");
+    fmt::print("{:<18} {} ({})\n{:18}", flow.name, flow.summary, flow.source, "");
     for (const auto& [name, value] : defaults_of(flow)) fmt::print(" --{} {}", name, value);
     fmt::print("\n");
   }
+}
+
+void print_markdown() {
+  fmt::print("| flow | what it does | source |\n|---|---|---|\n");
+  for (const smoothing::FlowEntry& flow : smoothing::flows())
+    fmt::print("| `{}` | {} | {} |\n", flow.name, flow.summary, flow.source);
 }
 
 void print_json() {
@@ -60,12 +68,14 @@ Command flows_command() {
   Command command;
   command.name = "flows";
   command.summary = "list the ways of smoothing that --flow takes";
-  command.usage = {"[--json]"};
+  command.usage = {"[--json|--markdown]"};
   command.description = "Prints every flow with its source and the options it uses.";
   collect(*options, command.options);
   command.run = [options](const Invocation& typed) {
     if (!typed.arguments.empty()) throw Failure({ErrorCode::usage, "rfsmooth flows takes no arguments"});
-    options->json ? print_json() : print_table();
+    if (options->json && options->markdown)
+      throw Failure({ErrorCode::usage, "--json and --markdown exclude each other"});
+    options->json ? print_json() : options->markdown ? print_markdown() : print_table();
     return 0;
   };
   return command;
