@@ -4,17 +4,30 @@
 #include <stdexcept>
 
 #include "rfsmooth/rfs_mesh/parallel.h"
+#include "rfsmooth/smoothing/conjugate_gradients.h"
+#include "rfsmooth/smoothing/fairing_matrix.h"
 
 namespace rfsmooth::smoothing {
 
 using Eigen::Vector3d;
+using Eigen::Vector4f;
 
 namespace {
 
-/// r.z and the residual's norm, gathered in one pass.
-struct Sums {
-  double rz = 0, norm = 0;
-};
+template <class Scalar>
+std::vector<Scalar> norm_weights(const std::vector<double>& mass, double unit, bool largest,
+                                 const Context& context) {
+  std::vector<Scalar> weight(mass.size());
+  for_each_index(context, weight.size(), [&](std::size_t i) {
+    const double m = mass[i] / unit;
+    weight[i] = Scalar(largest ? 1 / (m * m) : 1 / m);
+  });
+  return weight;
+}
+
+double relative(double norm, double goal, double tolerance) {
+  return goal > 0 ? norm / goal * tolerance : 0;
+}
 
 }  // namespace
 
@@ -23,144 +36,128 @@ SolverReport conjugate_gradients(const Product& product, const std::vector<doubl
                                  const AllowedMoves& allowed, const SolverOptions& options,
                                  const Context& context) {
   const std::size_t n = b.size();
-  const bool linf = options.linf;
-  std::vector<double> inverse(n), weight(n);  // multiplications instead of divisions in every pass
-  for_each_index(context, n, [&](std::size_t i) {
-    inverse[i] = 1 / diagonal[i];
-    weight[i] = linf ? 1 / (mass[i] * mass[i]) : 1 / mass[i];
-  });
-  const auto join = [linf](double u, double v) { return linf ? std::max(u, v) : u + v; };
-  /// `update(i)` for all i, returning the sums of the residual that it returns.
-  const auto gather = [&](auto&& update) {
-    return reduce_blocks(
-        context, n, Sums{},
-        [&](std::size_t begin, std::size_t end) {
-          Sums s;
-          for (std::size_t i = begin; i < end; ++i) {
-            const Vector3d r = update(i);
-            const double square = r.squaredNorm();
-            s.rz += square * inverse[i];
-            s.norm = join(s.norm, square * weight[i]);
-          }
-          return s;
-        },
-        [&](Sums u, const Sums& v) {
-          return Sums{u.rz + v.rz, join(u.norm, v.norm)};
-        });
-  };
-  const double goal = options.tolerance * std::sqrt(gather([&](std::size_t i) { return b[i]; }).norm);
-
-  Positions r(n), p(n), y(n);
+  Scales<double> scales{std::vector<double>(n), norm_weights<double>(mass, 1, options.linf, context),
+                        options.linf};
+  for_each_index(context, n, [&](std::size_t i) { scales.inverse[i] = 1 / diagonal[i]; });
+  const double goal =
+      options.tolerance * std::sqrt(residual_sums(context, n, scales, [&](std::size_t i) -> const Vector3d& {
+                                      return b[i];
+                                    }).square);
+  Positions r(n), y(n);
   product(x, y);
-  Sums sums = gather([&](std::size_t i) { return r[i] = allowed(i, b[i] - y[i]); });
-  SolverReport report;
-  const auto relative = [&](double norm) {
-    return goal > 0 ? std::sqrt(norm) / goal * options.tolerance : 0;
-  };
-  // x follows one pass behind, in the pass that reads the old direction anyway.
-  double previous = 0, alpha = 0;
-  while (report.iterations < options.max_iterations && std::sqrt(sums.norm) > goal) {
-    const double beta = report.iterations == 0 ? 0 : sums.rz / previous;
-    for_each_index(context, n, [&](std::size_t i) {
-      if (beta != 0) x[i] += alpha * p[i];
-      p[i] = beta == 0 ? Vector3d(inverse[i] * r[i]) : Vector3d(inverse[i] * r[i] + beta * p[i]);
-    });
-    const double curvature = product(p, y);
-    alpha = 0;
-    if (!(curvature > 0) || !std::isfinite(sums.rz / curvature)) break;
-    alpha = sums.rz / curvature;
-    previous = sums.rz;
-    sums = gather([&](std::size_t i) { return r[i] -= alpha * allowed(i, y[i]); });
-    ++report.iterations;
-  }
-  if (alpha != 0) for_each_index(context, n, [&](std::size_t i) { x[i] += alpha * p[i]; });
-  report.residual = relative(sums.norm);
-  report.converged = std::sqrt(sums.norm) <= goal;
-  return report;
+  const ResidualSums sums = residual_sums(
+      context, n, scales, [&](std::size_t i) -> const Vector3d& { return r[i] = allowed(i, b[i] - y[i]); });
+  const Iterated done = conjugate_gradient_iteration<Vector3d>(context, product, scales, r, sums, x, allowed,
+                                                               goal, options.max_iterations);
+  return {done.iterations, relative(done.norm, goal, options.tolerance), done.norm <= goal};
 }
 
 namespace {
 
-/// The matrix of a Fairing, without forming it.
-class Matrix {
+/// One solve: the residual in double precision, corrections in single precision, which halves the memory that
+/// every iteration walks through. Where a correction does not help, in double precision to the end.
+class FairingSolve {
  public:
-  Matrix(const Fairing& system, const Context& context) : s_(system), context_(context) {
-    for (int k = 0; k < 4; ++k)
-      if (s_.a[k] != 0) order_ = k + 1;
+  FairingSolve(const Fairing& system, const AllowedMoves& allowed, const SolverOptions& options,
+               const Context& context)
+      : system_(system),
+        allowed_(allowed),
+        options_(options),
+        context_(context),
+        n_(system.op.mass.size()),
+        mean_mass_(sum_over(context, n_, 0.0, [&](std::size_t i) { return system.op.mass[i]; }) / double(n_)),
+        exact_(system, mean_mass_, context),
+        norm_{{}, norm_weights<double>(system.op.mass, mean_mass_, options.linf, context), options.linf} {
+    norm_.inverse = norm_.norm;  // r.z is not used of it
   }
 
-  double multiply(const Positions& x, Positions& y) {
-    const std::vector<double>& mass = s_.op.mass;
-    const std::vector<double>& data = s_.data.empty() ? mass : s_.data;
-    const std::size_t n = x.size();
-    y.resize(n);
-    if (order_ <= 1)
-      return sum_over(context_, n, 0.0, [&](std::size_t i) {
-        y[i] = data[i] * x[i] + s_.a[0] * difference(x, i);
-        return x[i].dot(y[i]);
-      });
-    level_.resize(n);
-    for_each_index(context_, n, [&](std::size_t i) {
-      const Vector3d d = difference(x, i);
-      y[i] = data[i] * x[i] + s_.a[0] * d;
-      level_[i] = ((s_.strength.empty() ? 1 : s_.strength[i]) / mass[i]) * d;
-    });
-    for (int k = 1; k + 1 < order_; ++k) {
-      next_.resize(n);
-      for_each_index(context_, n, [&](std::size_t i) {
-        const Vector3d d = difference(level_, i);
-        y[i] += s_.a[k] * d;
-        next_[i] = (1 / mass[i]) * d;
-      });
-      level_.swap(next_);
-    }
-    return sum_over(context_, n, 0.0, [&](std::size_t i) {
-      y[i] += s_.a[order_ - 1] * difference(level_, i);
-      return x[i].dot(y[i]);
-    });
-  }
-
-  /// The diagonal; exact up to second order, an estimate above it (enough for a preconditioner).
-  std::vector<double> diagonal() const {
-    const std::vector<double>& mass = s_.op.mass;
-    const std::vector<double>& data = s_.data.empty() ? mass : s_.data;
-    std::vector<double> result(mass.size());
-    for_each_index(context_, result.size(), [&](std::size_t i) {
-      double own = 0, second = 0;
-      for (Index k = s_.rows.start[i]; k < s_.rows.start[i + 1]; ++k) {
-        const double w = s_.op.weight.empty() ? 1 : s_.op.weight[k];
-        own += w;
-        if (s_.a[1] == 0) continue;
-        const Index j = s_.rows.items[k];
-        second += w * w * (s_.strength.empty() ? 1 : s_.strength[j]) / mass[j];
+  /// \param o around the centre; x likewise.
+  SolverReport run(const Positions& o, Positions& x) {
+    const std::vector<double>& data = system_.data.empty() ? system_.op.mass : system_.data;
+    b_.resize(n_);
+    r_.resize(n_);
+    const double size = residual_sums(context_, n_, norm_, [&](std::size_t i) -> const Vector3d& {
+                          return b_[i] = data[i] / mean_mass_ * o[i];
+                        }).square;
+    const double goal = options_.tolerance * std::sqrt(size);
+    SolverReport report;
+    double norm = residual(x);
+    while (norm > goal && std::isfinite(norm) && report.iterations < options_.max_iterations) {
+      const double before = norm;
+      correct(norm, goal, x, report.iterations);
+      norm = residual(x);
+      if (!(norm > goal)) break;
+      if (norm > kWorthwhile * before) {
+        norm = finish_in_double(goal, x, report.iterations);
+        break;
       }
-      second += own * own * (s_.strength.empty() ? 1 : s_.strength[i]) / mass[i];
-      const double rate = std::abs(own) / mass[i];
-      const double d = data[i] + s_.a[0] * own + s_.a[1] * second + s_.a[2] * mass[i] * rate * rate * rate +
-                       s_.a[3] * mass[i] * rate * rate * rate * rate;
-      result[i] = d > 0 && std::isfinite(d) ? d : mass[i];
-    });
-    return result;
+    }
+    report.residual = relative(norm, goal, options_.tolerance);
+    report.converged = norm <= goal;
+    return report;
   }
 
  private:
-  /// (S x)_i
-  Vector3d difference(const Positions& x, std::size_t i) const {
-    const Index begin = s_.rows.start[i], end = s_.rows.start[i + 1];
-    const Index* const items = s_.rows.items.data();
-    Vector3d sum = Vector3d::Zero();
-    if (s_.op.weight.empty()) {
-      for (Index k = begin; k < end; ++k) sum += x[items[k]];
-      return double(end - begin) * x[i] - sum;
-    }
-    for (Index k = begin; k < end; ++k) sum += s_.op.weight[k] * (x[i] - x[items[k]]);
-    return sum;
+  /// A correction that leaves more than this of the residual met the limits of single precision.
+  static constexpr double kWorthwhile = 0.5;
+  /// Single precision has seven digits; a correction is asked for at most four of them.
+  static constexpr double kCorrection = 1e-4;
+
+  double residual(const Positions& x) {
+    y_.resize(n_);
+    exact_.multiply(x, y_);
+    return std::sqrt(residual_sums(context_, n_, norm_, [&](std::size_t i) -> const Vector3d& {
+                       return r_[i] = allowed_(i, b_[i] - y_[i]);
+                     }).square);
   }
 
-  const Fairing& s_;
+  /// Adds a solution of A d = r in single precision to x.
+  void correct(double norm, double goal, Positions& x, int& iterations) {
+    FairingMatrix<Vector4f> matrix(system_, mean_mass_, context_);
+    const Scales<float> scales{matrix.inverse_diagonal(),
+                               norm_weights<float>(system_.op.mass, mean_mass_, options_.linf, context_),
+                               options_.linf};
+    Vectors<Vector4f> r(n_), d(n_);
+    const ResidualSums sums = residual_sums(context_, n_, scales, [&](std::size_t i) -> const Vector4f& {
+      r[i].head<3>() = (r_[i] / norm).cast<float>();
+      r[i][3] = 0;
+      d[i].setZero();
+      return r[i];
+    });
+    constexpr double kSlack = 0.95;  // for what rounding adds between this residual and the exact one
+    const Iterated done = conjugate_gradient_iteration<Vector4f>(
+        context_, [&](const Vectors<Vector4f>& u, Vectors<Vector4f>& v) { return matrix.multiply(u, v); },
+        scales, r, sums, d, allowed_, std::max(kSlack * goal / norm, kCorrection),
+        options_.max_iterations - iterations);
+    iterations += done.iterations;
+    for_each_index(context_, n_, [&](std::size_t i) {
+      const Vector3d move = norm * d[i].head<3>().cast<double>();
+      if (move.allFinite()) x[i] += allowed_(i, move);
+    });
+  }
+
+  /// From the residual r_ of x. \return the norm of the recursive residual.
+  double finish_in_double(double goal, Positions& x, int& iterations) {
+    Scales<double> scales = norm_;
+    scales.inverse = exact_.inverse_diagonal();
+    const ResidualSums sums =
+        residual_sums(context_, n_, scales, [&](std::size_t i) -> const Vector3d& { return r_[i]; });
+    const Iterated done = conjugate_gradient_iteration<Vector3d>(
+        context_, [&](const Positions& u, Positions& v) { return exact_.multiply(u, v); }, scales, r_, sums,
+        x, allowed_, goal, options_.max_iterations - iterations);
+    iterations += done.iterations;
+    return done.norm;
+  }
+
+  const Fairing& system_;
+  const AllowedMoves& allowed_;
+  const SolverOptions& options_;
   const Context& context_;
-  int order_ = 0;
-  Positions level_, next_;
+  std::size_t n_;
+  double mean_mass_;
+  FairingMatrix<Vector3d> exact_;
+  Scales<double> norm_;
+  Positions b_, r_, y_;
 };
 
 }  // namespace
@@ -181,16 +178,13 @@ SolverReport solve(const Fairing& system, const Positions& o, Positions& x, cons
   x.resize(n);
   const Vector3d centre =
       sum_over(context, n, Vector3d(Vector3d::Zero()), [&](std::size_t i) { return o[i]; }) / double(n);
-  Positions b(n), iterate(n);
+  Positions centred(n), iterate(n);
   for_each_index(context, n, [&](std::size_t i) {
     if (!warm) x[i] = o[i];
-    b[i] = data[i] * (o[i] - centre);
+    centred[i] = o[i] - centre;
     iterate[i] = x[i] - centre;
   });
-  Matrix matrix(system, context);
-  const SolverReport report =
-      conjugate_gradients([&](const Positions& u, Positions& v) { return matrix.multiply(u, v); },
-                          matrix.diagonal(), system.op.mass, b, iterate, allowed, options, context);
+  const SolverReport report = FairingSolve(system, allowed, options, context).run(centred, iterate);
   for_each_index(context, n, [&](std::size_t i) {
     // The move, not the position: vertices that may not move keep their bits.
     const Vector3d place = x[i] + allowed(i, iterate[i] - (x[i] - centre));
