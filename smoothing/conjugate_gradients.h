@@ -18,6 +18,10 @@ namespace rfsmooth::smoothing {
 template <class Vector>
 using Vectors = std::vector<Vector>;
 
+/// One number per vertex; not filled when made, so that the pages are first touched in parallel.
+template <class Scalar>
+using Numbers = Eigen::Array<Scalar, Eigen::Dynamic, 1>;
+
 /// The part of a move that the hard constraints allow, in either precision.
 inline Eigen::Vector3d allowed_part(const AllowedMoves& allowed, std::size_t i, const Eigen::Vector3d& move) {
   return allowed(i, move);
@@ -32,8 +36,8 @@ inline Eigen::Vector4f allowed_part(const AllowedMoves& allowed, std::size_t i, 
 /// What the iteration needs beside the product: 1 / A's diagonal and the weights of the residual's norm.
 template <class Scalar>
 struct Scales {
-  std::vector<Scalar> inverse;
-  std::vector<Scalar> norm;
+  Numbers<Scalar> inverse;
+  Numbers<Scalar> norm;
   bool largest = false;  ///< the largest weighted residual instead of the root of the sum of squares
 };
 
@@ -54,8 +58,8 @@ ResidualSums residual_sums(const Context& context, std::size_t n, const Scales<S
         ResidualSums s;
         for (std::size_t i = begin; i < end; ++i) {
           const double square = double(update(i).squaredNorm());
-          s.rz += square * double(scales.inverse[i]);
-          s.square = join(s.square, square * double(scales.norm[i]));
+          s.rz += square * double(scales.inverse[Eigen::Index(i)]);
+          s.square = join(s.square, square * double(scales.norm[Eigen::Index(i)]));
         }
         return s;
       },
@@ -87,11 +91,11 @@ Iterated conjugate_gradient_iteration(const Context& context, Product&& product,
     const bool first = done.iterations == 0;
     for_each_index(context, n, [&](std::size_t i) {
       if (first) {
-        p[i] = scales.inverse[i] * r[i];
+        p[i] = scales.inverse[Eigen::Index(i)] * r[i];
         return;
       }
       x[i] += step * p[i];
-      p[i] = scales.inverse[i] * r[i] + beta * p[i];
+      p[i] = scales.inverse[Eigen::Index(i)] * r[i] + beta * p[i];
     });
     const double curvature = product(p, y);
     alpha = 0;

@@ -15,12 +15,12 @@ using Eigen::Vector4f;
 namespace {
 
 template <class Scalar>
-std::vector<Scalar> norm_weights(const std::vector<double>& mass, double unit, bool largest,
-                                 const Context& context) {
-  std::vector<Scalar> weight(mass.size());
-  for_each_index(context, weight.size(), [&](std::size_t i) {
-    const double m = mass[i] / unit;
-    weight[i] = Scalar(largest ? 1 / (m * m) : 1 / m);
+Numbers<Scalar> norm_weights(const std::vector<double>& mass, double unit, bool largest,
+                             const Context& context) {
+  Numbers<Scalar> weight(Eigen::Index(mass.size()));
+  for_each_index(context, mass.size(), [&](std::size_t i) {
+    const double w = unit / mass[i];
+    weight[Eigen::Index(i)] = Scalar(largest ? w * w : w);
   });
   return weight;
 }
@@ -36,9 +36,9 @@ SolverReport conjugate_gradients(const Product& product, const std::vector<doubl
                                  const AllowedMoves& allowed, const SolverOptions& options,
                                  const Context& context) {
   const std::size_t n = b.size();
-  Scales<double> scales{std::vector<double>(n), norm_weights<double>(mass, 1, options.linf, context),
-                        options.linf};
-  for_each_index(context, n, [&](std::size_t i) { scales.inverse[i] = 1 / diagonal[i]; });
+  Scales<double> scales{Numbers<double>(Eigen::Index(n)),
+                        norm_weights<double>(mass, 1, options.linf, context), options.linf};
+  for_each_index(context, n, [&](std::size_t i) { scales.inverse[Eigen::Index(i)] = 1 / diagonal[i]; });
   const double goal =
       options.tolerance * std::sqrt(residual_sums(context, n, scales, [&](std::size_t i) -> const Vector3d& {
                                       return b[i];
@@ -58,42 +58,51 @@ namespace {
 /// every iteration walks through. Where a correction does not help, in double precision to the end.
 class FairingSolve {
  public:
-  FairingSolve(const Fairing& system, const AllowedMoves& allowed, const SolverOptions& options,
-               const Context& context)
-      : system_(system),
-        allowed_(allowed),
-        options_(options),
-        context_(context),
-        n_(system.op.mass.size()),
-        mean_mass_(sum_over(context, n_, 0.0, [&](std::size_t i) { return system.op.mass[i]; }) / double(n_)),
-        exact_(system, mean_mass_, context),
-        norm_{{}, norm_weights<double>(system.op.mass, mean_mass_, options.linf, context), options.linf} {
-    norm_.inverse = norm_.norm;  // r.z is not used of it
-  }
+  FairingSolve(const Fairing& system, const Positions& o, Positions& x, const AllowedMoves& allowed,
+               const SolverOptions& options, const Context& context)
+      : s_(system), o_(o), x_(x), allowed_(allowed), options_(options), context_(context), n_(o.size()) {}
 
-  /// \param o around the centre; x likewise.
-  SolverReport run(const Positions& o, Positions& x) {
-    const std::vector<double>& data = system_.data.empty() ? system_.op.mass : system_.data;
-    b_.resize(n_);
-    r_.resize(n_);
-    const double size = residual_sums(context_, n_, norm_, [&](std::size_t i) -> const Vector3d& {
-                          return b_[i] = data[i] / mean_mass_ * o[i];
-                        }).square;
-    const double goal = options_.tolerance * std::sqrt(size);
+  SolverReport run() {
+    struct Sums {
+      Vector3d x = Vector3d::Zero();
+      double mass = 0;
+      Sums& operator+=(const Sums& other) {
+        x += other.x;
+        mass += other.mass;
+        return *this;
+      }
+    };
+    const Sums sums = sum_over(context_, n_, Sums{}, [&](std::size_t i) {
+      return Sums{o_[i], s_.op.mass[i]};
+    });
+    mean_mass_ = sums.mass / double(n_);
+    const Vector3d centre = sums.x / double(n_);
+    const double size = norm_of([&](std::size_t i) { return Vector3d(data(i) * (o_[i] - centre)); });
+    goal_ = options_.tolerance * size;
+    // Single precision sees lengths in this unit and the norm in that one.
+    length_ = options_.linf ? size : size / std::sqrt(mean_mass_ * double(n_));
+    if (!(length_ > 0)) length_ = 1;
+    norm_unit_ = options_.linf ? length_ : length_ * std::sqrt(mean_mass_);
+
     SolverReport report;
-    double norm = residual(x);
-    while (norm > goal && std::isfinite(norm) && report.iterations < options_.max_iterations) {
+    Vectors<Vector4f> r(n_);
+    const auto as_float = [&](std::size_t i, const Vector3d& v) {
+      r[i].head<3>() = (v / (mean_mass_ * length_)).cast<float>();
+      r[i][3] = 0;
+    };
+    double norm = residual(as_float);
+    while (norm > goal_ && std::isfinite(norm) && report.iterations < options_.max_iterations) {
       const double before = norm;
-      correct(norm, goal, x, report.iterations);
-      norm = residual(x);
-      if (!(norm > goal)) break;
+      correct(r, norm, report.iterations);
+      norm = residual(as_float);
+      if (!(norm > goal_)) break;
       if (norm > kWorthwhile * before) {
-        norm = finish_in_double(goal, x, report.iterations);
+        norm = finish_in_double(report.iterations);
         break;
       }
     }
-    report.residual = relative(norm, goal, options_.tolerance);
-    report.converged = norm <= goal;
+    report.residual = relative(norm, goal_, options_.tolerance);
+    report.converged = norm <= goal_;
     return report;
   }
 
@@ -102,62 +111,135 @@ class FairingSolve {
   static constexpr double kWorthwhile = 0.5;
   /// Single precision has seven digits; a correction is asked for at most four of them.
   static constexpr double kCorrection = 1e-4;
+  /// For what rounding adds between the residual of the iteration and the exact one.
+  static constexpr double kSlack = 0.95;
 
-  double residual(const Positions& x) {
-    y_.resize(n_);
-    exact_.multiply(x, y_);
-    return std::sqrt(residual_sums(context_, n_, norm_, [&](std::size_t i) -> const Vector3d& {
-                       return r_[i] = allowed_(i, b_[i] - y_[i]);
-                     }).square);
+  double data(std::size_t i) const { return s_.data.empty() ? s_.op.mass[i] : s_.data[i]; }
+
+  /// The norm of a residual given by vertex.
+  template <class Residual>
+  double norm_of(Residual&& r) const {
+    const bool largest = options_.linf;
+    const auto join = [largest](double u, double v) { return largest ? std::max(u, v) : u + v; };
+    return std::sqrt(reduce_blocks(
+        context_, n_, 0.0,
+        [&](std::size_t begin, std::size_t end) {
+          double sum = 0;
+          for (std::size_t i = begin; i < end; ++i) {
+            const double m = s_.op.mass[i];
+            sum = join(sum, r(i).squaredNorm() / (largest ? m * m : m));
+          }
+          return sum;
+        },
+        join));
   }
 
-  /// Adds a solution of A d = r in single precision to x.
-  void correct(double norm, double goal, Positions& x, int& iterations) {
-    FairingMatrix<Vector4f> matrix(system_, mean_mass_, context_);
-    const Scales<float> scales{matrix.inverse_diagonal(),
-                               norm_weights<float>(system_.op.mass, mean_mass_, options_.linf, context_),
-                               options_.linf};
-    Vectors<Vector4f> r(n_), d(n_);
-    const ResidualSums sums = residual_sums(context_, n_, scales, [&](std::size_t i) -> const Vector4f& {
-      r[i].head<3>() = (r_[i] / norm).cast<float>();
-      r[i][3] = 0;
+  /// (S x)_i, from differences, so that it does not matter where the origin is.
+  Vector3d difference(const Positions& x, std::size_t i) const {
+    const Vector3d own = x[i];
+    Vector3d sum = Vector3d::Zero();
+    for (Index k = s_.rows.start[i]; k < s_.rows.start[i + 1]; ++k) {
+      const Vector3d d = own - x[s_.rows.items[k]];
+      sum += s_.op.weight.empty() ? d : Vector3d(s_.op.weight[k] * d);
+    }
+    return sum;
+  }
+
+  /// store(i, r_i) of r = Q o - A x, its allowed part; returns the norm.
+  template <class Store>
+  double residual(Store&& store) {
+    int order = 1;
+    for (int k = 1; k < 4; ++k)
+      if (s_.a[std::size_t(k)] != 0) order = k + 1;
+    const auto keep = [&](std::size_t i, const Vector3d& free) {
+      const Vector3d r = allowed_(i, free);
+      store(i, r);
+      return r;
+    };
+    const auto from_data = [&](std::size_t i) { return Vector3d(data(i) * (o_[i] - x_[i])); };
+    if (order == 1)
+      return norm_of([&](std::size_t i) { return keep(i, from_data(i) - s_.a[0] * difference(x_, i)); });
+    const bool plain = order == 2 && s_.a[0] == 0;  // nothing to carry over from the first pass
+    Positions level(n_), next(order > 2 ? n_ : 0), sum(plain ? 0 : n_);
+    for_each_index(context_, n_, [&](std::size_t i) {
+      const Vector3d d = difference(x_, i);
+      if (!plain) sum[i] = from_data(i) - s_.a[0] * d;
+      level[i] = ((s_.strength.empty() ? 1 : s_.strength[i]) / s_.op.mass[i]) * d;
+    });
+    for (int k = 1; k + 1 < order; ++k) {
+      for_each_index(context_, n_, [&](std::size_t i) {
+        const Vector3d d = difference(level, i);
+        sum[i] -= s_.a[std::size_t(k)] * d;
+        next[i] = d / s_.op.mass[i];
+      });
+      level.swap(next);
+    }
+    return norm_of([&](std::size_t i) {
+      const Vector3d d = s_.a[std::size_t(order) - 1] * difference(level, i);
+      return keep(i, (plain ? from_data(i) : sum[i]) - d);
+    });
+  }
+
+  /// Adds a solution of A d = r in single precision to x; r is overwritten.
+  void correct(Vectors<Vector4f>& r, double norm, int& iterations) {
+    if (!matrix_) {
+      matrix_.emplace(s_, mean_mass_, context_);
+      scales_ = {matrix_->inverse_diagonal(),
+                 norm_weights<float>(s_.op.mass, mean_mass_, options_.linf, context_), options_.linf};
+    }
+    Vectors<Vector4f> d(n_);
+    const ResidualSums sums = residual_sums(context_, n_, scales_, [&](std::size_t i) -> const Vector4f& {
       d[i].setZero();
       return r[i];
     });
-    constexpr double kSlack = 0.95;  // for what rounding adds between this residual and the exact one
-    const Iterated done = conjugate_gradient_iteration<Vector4f>(
-        context_, [&](const Vectors<Vector4f>& u, Vectors<Vector4f>& v) { return matrix.multiply(u, v); },
-        scales, r, sums, d, allowed_, std::max(kSlack * goal / norm, kCorrection),
-        options_.max_iterations - iterations);
-    iterations += done.iterations;
-    for_each_index(context_, n_, [&](std::size_t i) {
-      const Vector3d move = norm * d[i].head<3>().cast<double>();
-      if (move.allFinite()) x[i] += allowed_(i, move);
+    const double goal = std::max(kSlack * goal_, kCorrection * norm) / norm_unit_;
+    iterations +=
+        conjugate_gradient_iteration<Vector4f>(
+            context_,
+            [&](const Vectors<Vector4f>& u, Vectors<Vector4f>& v) { return matrix_->multiply(u, v); },
+            scales_, r, sums, d, allowed_, goal, options_.max_iterations - iterations)
+            .iterations;
+    for_each_index(context_, n_, [&](std::size_t i) { move(i, length_ * d[i].head<3>().cast<double>()); });
+  }
+
+  /// \return the norm of the recursive residual.
+  double finish_in_double(int& iterations) {
+    matrix_.reset();
+    FairingMatrix<Vector3d> matrix(s_, mean_mass_, context_);
+    const Scales<double> scales{matrix.inverse_diagonal(),
+                                norm_weights<double>(s_.op.mass, mean_mass_, options_.linf, context_),
+                                options_.linf};
+    Positions r(n_), d(n_);
+    residual([&](std::size_t i, const Vector3d& v) {
+      r[i] = v / (mean_mass_ * length_);
+      d[i].setZero();
     });
-  }
-
-  /// From the residual r_ of x. \return the norm of the recursive residual.
-  double finish_in_double(double goal, Positions& x, int& iterations) {
-    Scales<double> scales = norm_;
-    scales.inverse = exact_.inverse_diagonal();
     const ResidualSums sums =
-        residual_sums(context_, n_, scales, [&](std::size_t i) -> const Vector3d& { return r_[i]; });
+        residual_sums(context_, n_, scales, [&](std::size_t i) -> const Vector3d& { return r[i]; });
     const Iterated done = conjugate_gradient_iteration<Vector3d>(
-        context_, [&](const Positions& u, Positions& v) { return exact_.multiply(u, v); }, scales, r_, sums,
-        x, allowed_, goal, options_.max_iterations - iterations);
+        context_, [&](const Positions& u, Positions& v) { return matrix.multiply(u, v); }, scales, r, sums, d,
+        allowed_, goal_ / norm_unit_, options_.max_iterations - iterations);
     iterations += done.iterations;
-    return done.norm;
+    for_each_index(context_, n_, [&](std::size_t i) { move(i, length_ * d[i]); });
+    return done.norm * norm_unit_;
   }
 
-  const Fairing& system_;
+  /// Vertices that may not move keep their bits.
+  void move(std::size_t i, const Vector3d& by) {
+    const Vector3d place = x_[i] + allowed_(i, by);
+    if (place.allFinite()) x_[i] = place;
+  }
+
+  const Fairing& s_;
+  const Positions& o_;
+  Positions& x_;
   const AllowedMoves& allowed_;
   const SolverOptions& options_;
   const Context& context_;
   std::size_t n_;
-  double mean_mass_;
-  FairingMatrix<Vector3d> exact_;
-  Scales<double> norm_;
-  Positions b_, r_, y_;
+  double mean_mass_ = 1, goal_ = 0, length_ = 1, norm_unit_ = 1;
+  std::optional<FairingMatrix<Vector4f>> matrix_;
+  Scales<float> scales_;
 };
 
 }  // namespace
@@ -165,32 +247,19 @@ class FairingSolve {
 SolverReport solve(const Fairing& system, const Positions& o, Positions& x, const AllowedMoves& allowed,
                    const SolverOptions& options, const Context& context) {
   const std::size_t n = o.size();
-  const std::vector<double>& data = system.data.empty() ? system.op.mass : system.data;
-  if (system.rows.size() != n || system.op.mass.size() != n || data.size() != n ||
+  if (system.rows.size() != n || system.op.mass.size() != n ||
+      (!system.data.empty() && system.data.size() != n) ||
       (!system.strength.empty() && system.strength.size() != n) ||
       (!system.op.weight.empty() && system.op.weight.size() != system.rows.items.size()))
     throw std::invalid_argument("the arrays of a Fairing differ in size");
   if (!system.strength.empty() && (system.a[2] != 0 || system.a[3] != 0))
     throw std::invalid_argument("a Fairing with a strength per vertex has order two at most");
   if (n == 0) return {0, 0, true};
-
-  const bool warm = x.size() == n;
-  x.resize(n);
-  const Vector3d centre =
-      sum_over(context, n, Vector3d(Vector3d::Zero()), [&](std::size_t i) { return o[i]; }) / double(n);
-  Positions centred(n), iterate(n);
-  for_each_index(context, n, [&](std::size_t i) {
-    if (!warm) x[i] = o[i];
-    centred[i] = o[i] - centre;
-    iterate[i] = x[i] - centre;
-  });
-  const SolverReport report = FairingSolve(system, allowed, options, context).run(centred, iterate);
-  for_each_index(context, n, [&](std::size_t i) {
-    // The move, not the position: vertices that may not move keep their bits.
-    const Vector3d place = x[i] + allowed(i, iterate[i] - (x[i] - centre));
-    if (place.allFinite()) x[i] = place;
-  });
-  return report;
+  if (x.size() != n) {
+    x.resize(n);
+    for_each_index(context, n, [&](std::size_t i) { x[i] = o[i]; });
+  }
+  return FairingSolve(system, o, x, allowed, options, context).run();
 }
 
 }  // namespace rfsmooth::smoothing
