@@ -86,9 +86,10 @@ class FairingSolve {
 
     SolverReport report;
     Vectors<Vector4f> r(n_);
+    const double per_unit = 1 / (mean_mass_ * length_);
     const auto as_float = [&](std::size_t i, const Vector3d& v) {
-      r[i].head<3>() = (v / (mean_mass_ * length_)).cast<float>();
-      r[i][3] = 0;
+      const Vector3d scaled = per_unit * v;
+      r[i] = Vector4f(float(scaled[0]), float(scaled[1]), float(scaled[2]), 0);
     };
     double norm = residual(as_float);
     while (norm > goal_ && std::isfinite(norm) && report.iterations < options_.max_iterations) {
@@ -135,12 +136,16 @@ class FairingSolve {
   }
 
   /// (S x)_i, from differences, so that it does not matter where the origin is.
+  template <bool kWeighted>
   Vector3d difference(const Positions& x, std::size_t i) const {
+    const Index* const items = s_.rows.items.data();
     const Vector3d own = x[i];
     Vector3d sum = Vector3d::Zero();
     for (Index k = s_.rows.start[i]; k < s_.rows.start[i + 1]; ++k) {
-      const Vector3d d = own - x[s_.rows.items[k]];
-      sum += s_.op.weight.empty() ? d : Vector3d(s_.op.weight[k] * d);
+      if constexpr (kWeighted)
+        sum += s_.op.weight[k] * (own - x[items[k]]);
+      else
+        sum += own - x[items[k]];
     }
     return sum;
   }
@@ -148,6 +153,11 @@ class FairingSolve {
   /// store(i, r_i) of r = Q o - A x, its allowed part; returns the norm.
   template <class Store>
   double residual(Store&& store) {
+    return s_.op.weight.empty() ? residual_with<false>(store) : residual_with<true>(store);
+  }
+
+  template <bool kWeighted, class Store>
+  double residual_with(Store& store) {
     int order = 1;
     for (int k = 1; k < 4; ++k)
       if (s_.a[std::size_t(k)] != 0) order = k + 1;
@@ -158,24 +168,26 @@ class FairingSolve {
     };
     const auto from_data = [&](std::size_t i) { return Vector3d(data(i) * (o_[i] - x_[i])); };
     if (order == 1)
-      return norm_of([&](std::size_t i) { return keep(i, from_data(i) - s_.a[0] * difference(x_, i)); });
+      return norm_of(
+          [&](std::size_t i) { return keep(i, from_data(i) - s_.a[0] * difference<kWeighted>(x_, i)); });
     const bool plain = order == 2 && s_.a[0] == 0;  // nothing to carry over from the first pass
-    Positions level(n_), next(order > 2 ? n_ : 0), sum(plain ? 0 : n_);
+    level_.resize(n_);
+    Positions next(order > 2 ? n_ : 0), sum(plain ? 0 : n_);
     for_each_index(context_, n_, [&](std::size_t i) {
-      const Vector3d d = difference(x_, i);
+      const Vector3d d = difference<kWeighted>(x_, i);
       if (!plain) sum[i] = from_data(i) - s_.a[0] * d;
-      level[i] = ((s_.strength.empty() ? 1 : s_.strength[i]) / s_.op.mass[i]) * d;
+      level_[i] = ((s_.strength.empty() ? 1 : s_.strength[i]) / s_.op.mass[i]) * d;
     });
     for (int k = 1; k + 1 < order; ++k) {
       for_each_index(context_, n_, [&](std::size_t i) {
-        const Vector3d d = difference(level, i);
+        const Vector3d d = difference<kWeighted>(level_, i);
         sum[i] -= s_.a[std::size_t(k)] * d;
-        next[i] = d / s_.op.mass[i];
+        next[i] = (1 / s_.op.mass[i]) * d;
       });
-      level.swap(next);
+      level_.swap(next);
     }
     return norm_of([&](std::size_t i) {
-      const Vector3d d = s_.a[std::size_t(order) - 1] * difference(level, i);
+      const Vector3d d = s_.a[std::size_t(order) - 1] * difference<kWeighted>(level_, i);
       return keep(i, (plain ? from_data(i) : sum[i]) - d);
     });
   }
@@ -238,6 +250,7 @@ class FairingSolve {
   const Context& context_;
   std::size_t n_;
   double mean_mass_ = 1, goal_ = 0, length_ = 1, norm_unit_ = 1;
+  Positions level_;  ///< of the residual
   std::optional<FairingMatrix<Vector4f>> matrix_;
   Scales<float> scales_;
 };
