@@ -1,13 +1,19 @@
-/// rfsmooth smooth-mesh: any flow on a mesh from a file; the connectivity stays.
+/// rfsmooth smooth-mesh: any flow on a mesh from a file; then, if asked for, a finer mesh through its
+/// vertices, and its ridges and ravines as a field.
 #include <chrono>
+#include <cmath>
 #include <memory>
 
+#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include "rfsmooth/pipeline/cli/cloud_jobs.h"
 #include "rfsmooth/pipeline/cli/command.h"
-#include "rfsmooth/pipeline/io/mesh_file.h"
-#include "rfsmooth/smoothing/flow.h"
+#include "rfsmooth/pipeline/cli/constraint_fields.h"
+#include "rfsmooth/pipeline/cli/file_mesh.h"
+#include "rfsmooth/rfs_mesh/measure.h"
+#include "rfsmooth/smoothing/refine.h"
+#include "rfsmooth/smoothing/ridges.h"
 
 namespace rfsmooth::cli {
 
@@ -15,78 +21,144 @@ namespace {
 
 using nlohmann::ordered_json;
 
+/// What may follow the flow.
+struct After {
+  smoothing::RefineOptions refine{0, "mixed", 0, 1e-4};
+  std::optional<double> sharp_angle;
+  bool ridges = false;
+  double ridge_curvature = 0.1;  // a turn of six degrees from edge to edge
+
+  template <class Self, class Visit>
+  static void describe(Self& self, Visit&& visit) {
+    visit(OptionInfo{"refine", "levels of refinement after the flow; each multiplies the faces by four", "",
+                     0, 10},
+          self.refine.levels);
+    OptionInfo chart{"refine-chart", "refinement: how neighbours get their parameters", ""};
+    chart.choices = {"tangent", "exponential", "mixed"};
+    visit(chart, self.refine.chart);
+    visit(OptionInfo{"refine-pimple", "refinement: how far given vertices may move at the end", "x mean edge",
+                     0, 10},
+          self.refine.pimple);
+    visit(OptionInfo{"sharp-angle",
+                     "refinement: edges where the normals turn by more stay sharp curves; auto: none",
+                     "degrees", 0, 180},
+          self.sharp_angle);
+    visit(OptionInfo{"ridges", "write the field ridge: 1 on ridges, -1 on ravines, else 0", ""}, self.ridges);
+    visit(OptionInfo{"ridge-curvature", "least curvature of a ridge or ravine", "1 / mean edge", 0, 1e6},
+          self.ridge_curvature);
+  }
+};
+
 struct Options {
   smoothing::FlowOptions flow;
+  ConstraintFields constraints;
+  After after;
   JobOptions job;
+
+  template <class Self, class Visit>
+  static void describe(Self& self, Visit&& visit) {
+    smoothing::FlowOptions::describe(self.flow, visit);
+    ConstraintFields::describe(self.constraints, visit);
+    After::describe(self.after, visit);
+  }
 };
 
-/// The mesh over the finite vertices, around a local origin.
-struct FileMesh {
-  rfs_mesh::Mesh mesh;
-  std::vector<Index> of_row;  ///< kNone for vertices that are not finite
-};
+template <class T>
+T value_or_fail(Result<T> result, const std::string& name) {
+  if (!result.ok()) throw Failure({result.error().code, name + ": " + result.error().message});
+  return std::move(result).value();
+}
 
-FileMesh mesh_of(const pipeline::io::Cloud& cloud, const std::vector<double>& xyz, const std::string& name,
-                 const Context& context) {
-  const std::vector<rfs_mesh::Face> faces = pipeline::io::faces_of(cloud, context);
-  if (faces.empty())
-    throw Failure({ErrorCode::input_unreadable,
-                   name + ": has no faces; expected a mesh (for clouds use: rfsmooth denoise)"});
-  FileMesh out;
-  out.of_row.assign(cloud.size(), kNone);
-  Positions& points = out.mesh.positions;
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const Eigen::Vector3d p(xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]);
-    if (!p.allFinite()) continue;
-    out.of_row[i] = Index(points.size());
-    points.push_back(p);
-  }
-  if (points.empty()) throw Failure({ErrorCode::no_usable_points, name + ": no vertex is finite"});
-  const Eigen::Vector3d origin = points.front();
-  for (auto& p : points) p -= origin;
-  for (const rfs_mesh::Face& face : faces) {
-    const rfs_mesh::Face f = {out.of_row[face[0]], out.of_row[face[1]], out.of_row[face[2]]};
-    const bool whole = f[0] != kNone && f[1] != kNone && f[2] != kNone;
-    if (whole && f[0] != f[1] && f[1] != f[2] && f[2] != f[0]) out.mesh.faces.push_back(f);
-  }
-  rfs_mesh::rebuild_adjacency(out.mesh, context);
-  return out;
+/// The edges between two faces whose normals turn by more than `degrees`.
+std::vector<rfs_mesh::Edge> sharp_edges(const rfs_mesh::Mesh& mesh, double degrees, const Context& context) {
+  const rfs_mesh::Adjacency around = vertex_faces(mesh, context);
+  const double least = std::cos(degrees * M_PI / 180);
+  std::vector<rfs_mesh::Edge> sharp;
+  for (Index a = 0; a < mesh.positions.size(); ++a)
+    for (const Index b : mesh.one_ring[a]) {
+      if (b < a) continue;
+      std::vector<Eigen::Vector3d> normals;
+      for (const Index f : around[a]) {
+        const rfs_mesh::Face& face = mesh.faces[f];
+        if (face[0] != b && face[1] != b && face[2] != b) continue;
+        const bool along = (face[0] == a && face[1] == b) || (face[1] == a && face[2] == b) ||
+                           (face[2] == a && face[0] == b);
+        normals.push_back((along ? 1 : -1) * rfs_mesh::face_cross(mesh.positions, face).normalized());
+      }
+      // Turned to run along the edge alike, the normals of a flat pair are opposite.
+      if (normals.size() == 2 && -normals[0].dot(normals[1]) < least) sharp.push_back({a, b});
+    }
+  return sharp;
 }
 
 std::string smooth_file(const Options& options, pipeline::io::Cloud& cloud, const Job& job,
                         const Context& context, Console& console, std::vector<pipeline::StageTime>& stages,
                         ordered_json& entry) {
-  std::vector<double> xyz = pipeline::io::positions(cloud, context);
-  FileMesh file = mesh_of(cloud, xyz, job.input, context);
-  const Positions before = file.mesh.positions;
-  const auto start = std::chrono::steady_clock::now();
-  const auto result = smoothing::smooth(file.mesh, options.flow, context);
-  if (!result.ok()) throw Failure({result.error().code, job.input + ": " + result.error().message});
-  stages.push_back(
-      {"smooth", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()});
+  auto start = std::chrono::steady_clock::now();
+  const auto lap = [&](const char* stage) {
+    const auto now = std::chrono::steady_clock::now();
+    stages.push_back({stage, std::chrono::duration<double>(now - start).count()});
+    start = now;
+  };
+  FileMesh file = file_mesh(cloud, job.input, context);
+  const auto constraints = value_or_fail(guarded([&] {
+                                           return constraints_of(options.constraints, cloud, file.of_row,
+                                                                 file.before.size(), context);
+                                         }),
+                                         job.input);
+  lap("connect");
+  const auto done =
+      value_or_fail(smoothing::smooth(file.mesh, options.flow, context, constraints), job.input);
+  lap("smooth");
   bool moved = false;
-  for (std::size_t i = 0; i < file.of_row.size(); ++i) {
-    if (file.of_row[i] == kNone) continue;
-    const Eigen::Vector3d move = file.mesh.positions[file.of_row[i]] - before[file.of_row[i]];
-    for (int axis = 0; axis < 3; ++axis)
-      if (move[axis] != 0) {
-        xyz[3 * i + std::size_t(axis)] += move[axis];
-        moved = true;
-      }
+  const std::vector<double> rows = file.moved_rows(moved);
+  const bool stale_normals = moved && has_normals(cloud) && options.after.refine.levels == 0;
+  const std::size_t points = cloud.size(), faces = file.mesh.faces.size();
+  if (options.after.refine.levels > 0) {
+    const auto sharp = options.after.sharp_angle ? sharp_edges(file.mesh, *options.after.sharp_angle, context)
+                                                 : std::vector<rfs_mesh::Edge>{};
+    rfs_mesh::Mesh fine =
+        value_or_fail(smoothing::refine(file.mesh, options.after.refine, context, sharp), job.input);
+    const bool more = cloud.points().fields.size() > 3;
+    put_refined(cloud, file, rows, fine);
+    file.mesh = std::move(fine);
+    if (more)
+      console.warn(job.input + ": a refined mesh has new points; only x, y, z and triangles are written");
+    lap("refine");
+  } else {
+    pipeline::io::set_positions(cloud, rows.data(), context);
   }
-  pipeline::io::set_positions(cloud, xyz.data(), context);
-  if (moved && has_normals(cloud))
+  if (stale_normals)
     console.warn(fmt::format("{}: the normals are kept; they now describe the old positions", job.input));
+  if (options.after.ridges) {
+    if (cloud.format == pipeline::io::Format::off)
+      throw Failure({ErrorCode::usage, job.input + ": OFF cannot hold the field of --ridges; use PLY"});
+    const std::vector<int> kind =
+        smoothing::ridges_and_ravines(file.mesh, options.after.ridge_curvature, context);
+    std::vector<double> field(cloud.size(), 0);
+    for (std::size_t i = 0; i < field.size(); ++i) {
+      // Rows behind the given ones are the refined vertices, in their order.
+      const std::size_t v = i < file.of_row.size() ? file.of_row[i] : file.before.size() + i - points;
+      if (v != kNone) field[i] = kind[v];
+    }
+    pipeline::io::set_field(cloud, "ridge", pipeline::io::Scalar::int8, field, context);
+    lap("ridges");
+  }
 
-  entry["options"] = effective_options(smoothing::complete(options.flow).value(), options.job.files);
-  entry["counts"] = {{"points", cloud.size()},
-                     {"finite", before.size()},
-                     {"faces", file.mesh.faces.size()},
-                     {"steps", result.value().steps},
-                     {"solver_iterations", result.value().solver_iterations}};
-  entry["largest_move"] = result.value().largest_move;
-  return fmt::format("{} vertices, {} faces; {} steps; largest move {:.4g}", cloud.size(),
-                     file.mesh.faces.size(), result.value().steps, result.value().largest_move);
+  Options used = options;
+  used.flow = smoothing::complete(options.flow).value();
+  entry["options"] = effective_options(used, options.job.files);
+  entry["counts"] = {{"points", points},
+                     {"finite", file.before.size()},
+                     {"faces", faces},
+                     {"constrained", constraints.hard.size()},
+                     {"written_points", cloud.size()},
+                     {"written_faces", file.mesh.faces.size()},
+                     {"steps", done.steps},
+                     {"solver_iterations", done.solver_iterations}};
+  entry["largest_move"] = done.largest_move;
+  return fmt::format("{} vertices, {} faces; {} steps; largest move {:.4g}", points, faces, done.steps,
+                     done.largest_move);
 }
 
 int run(const Options& options, const Invocation& typed) {
@@ -102,15 +174,16 @@ Command smooth_mesh_command() {
   auto options = std::make_shared<Options>();
   Command command;
   command.name = "smooth-mesh";
-  command.summary = "smooth a triangle mesh from a file with any flow";
+  command.summary = "smooth a triangle mesh from a file with any flow; refine it; find its ridges";
   command.usage = {"[options] IN OUT", "[options] IN... -o FOLDER/"};
   command.description =
       "Reads a mesh (PLY with faces, OFF), moves its vertices by a flow and writes the same file with x, y, "
-      "z "
-      "replaced. Faces, fields and order stay; polygons count as fans of triangles. Vertices that are not "
-      "finite "
-      "stay as they are.";
-  collect(options->flow, command.options);
+      "z replaced. Faces, fields and order stay; polygons count as fans of triangles. Vertices that are not "
+      "finite stay as they are.\n\n"
+      "Fields of the file can hold vertices back (--strength-field), fix them (--fixed-field) or let them "
+      "slide (--axis-field, --plane-field). --refine puts a finer, fair mesh through the vertices "
+      "(--iterations 0 refines without smoothing); --ridges marks ridges and ravines.";
+  collect(*options, command.options);
   collect(options->job, command.options);
   polish(command);
   command.run = [options](const Invocation& typed) { return run(*options, typed); };
