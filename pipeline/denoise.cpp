@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -38,8 +39,9 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// Smooths the mesh, alternating steps and swaps.
-void alternate(rfs_mesh::Mesh& mesh, const DenoiseOptions& options, DenoiseReport& report,
+/// Smooths the mesh, alternating steps and swaps. Returns whether the flow left points alone that it could
+/// not place.
+bool alternate(rfs_mesh::Mesh& mesh, const DenoiseOptions& options, DenoiseReport& report,
                const Context& context) {
   const int steps = *options.flow.iterations;
   const auto flow = value_or_fail(smoothing::make_flow(mesh, options.flow, context));
@@ -57,6 +59,11 @@ void alternate(rfs_mesh::Mesh& mesh, const DenoiseOptions& options, DenoiseRepor
     if (swaps > 0) flow->connectivity_changed(mesh, context);
   }
   context.report("smooth", 1);
+  if (const auto chosen = flow->automatic()) {
+    report.noise_left = chosen->left;
+    report.guide_strength = chosen->guide_strength;
+  }
+  return flow->limits_moves();
 }
 
 /// The median edge length around each vertex: as far as it may move. A noisy point is at least as far from
@@ -150,8 +157,12 @@ DenoiseReport run(double* xyz, std::size_t n, const DenoiseOptions& options, con
   report.faces = mesh.faces.size();
   report.edges = mesh.edge_count();
 
-  const std::vector<double> reach = reaches(mesh, context);
-  alternate(mesh, options, report, context);
+  report.noise_left = report.noise;
+  DenoiseOptions& effective = report.effective;
+  if (effective.flow.flow == "auto" && !effective.flow.noise) effective.flow.noise = report.noise;
+  std::vector<double> reach = reaches(mesh, context);
+  if (alternate(mesh, effective, report, context))
+    reach.assign(reach.size(), std::numeric_limits<double>::infinity());
   const Positions moved = displacements(cloud.points, mesh.positions, reach, options, context);
   context.check_stop();
   commit(xyz, n, cloud, moved, report);

@@ -49,10 +49,12 @@ struct DenoiseReport {
   std::size_t finite = 0;    ///< rows worked on
   std::size_t distinct = 0;  ///< distinct positions among them
   std::size_t moved = 0;     ///< rows whose coordinates changed
-  double spacing = 0;  ///< mean distance to the nearest neighbour, world units; 0 with fewer than 2 points
-  double noise = 0;    ///< standard deviation along the normal, as measured before; world units
-  double largest_move = 0;  ///< world units
-  double rms_move = 0;      ///< over the finite rows, world units
+  double spacing = 0;     ///< mean distance to the nearest neighbour, world units; 0 with fewer than 2 points
+  double noise = 0;       ///< standard deviation along the normal, as measured before; world units
+  double noise_left = 0;  ///< estimate of what is left of it; as before where the flow cannot tell
+  double guide_strength = 0;  ///< of the automatic flow's guide, dimensionless; 0 for other flows
+  double largest_move = 0;    ///< world units
+  double rms_move = 0;        ///< over the finite rows, world units
   std::size_t faces = 0, edges = 0, sdg_edges = 0, bridges = 0, faceless = 0, swaps = 0;
   std::vector<StageTime> seconds;  ///< in the order first done
 };

@@ -13,20 +13,24 @@
 
 #include "rfsmooth/rfs_mesh/mesh.h"
 #include "rfsmooth/rfs_mesh/options.h"
+#include "rfsmooth/smoothing/automatic.h"
 
 namespace rfsmooth::smoothing {
 
 /// Parameters of all flows. Every field is optional: each flow uses those its registry entry names and has
 /// its own defaults for the empty ones; giving one that the flow does not use is an error.
 struct FlowOptions {
-  std::string flow = "hc";            ///< a name from `flows()`
-  std::optional<int> iterations;      ///< steps
-  std::optional<double> lambda;       ///< step length of explicit flows, dimensionless
-  std::optional<double> mu;           ///< Taubin: length of the inflating step, > lambda
-  std::optional<double> dt;           ///< time step of implicit flows, dimensionless, any size
-  std::optional<double> alpha;        ///< HC: weight of the original point against the current one, in [0, 1]
-  std::optional<double> beta;         ///< HC: a vertex's own difference against its neighbours', in [0, 1]
-  std::optional<std::string> anchor;  ///< Laplacian: the point that is averaged with the neighbours' mean
+  std::string flow = "auto";      ///< a name from `flows()`
+  std::optional<int> iterations;  ///< steps
+  std::optional<double>
+      strength;                  ///< auto: 0 = nothing, 1 = as the noise asks for, 2 = as for twice the noise
+  std::optional<double> noise;   ///< auto: standard deviation along the normal, world units; empty = measured
+  std::optional<double> lambda;  ///< step length of explicit flows, dimensionless
+  std::optional<double> mu;      ///< Taubin: length of the inflating step, > lambda
+  std::optional<double> dt;      ///< time step of implicit flows, dimensionless, any size
+  std::optional<double> alpha;   ///< HC: weight of the original point against the current one, in [0, 1]
+  std::optional<double> beta;    ///< HC: a vertex's own difference against its neighbours', in [0, 1]
+  std::optional<std::string> anchor;   ///< Laplacian: the point that is averaged with the neighbours' mean
   std::optional<std::string> weights;  ///< neighbours' weights of the umbrella
   std::optional<std::string> update;   ///< all vertices at once, or each seeing its predecessors' new places
   std::optional<std::string> op;       ///< implicit flows: the Laplacian
@@ -62,6 +66,10 @@ struct FlowOptions {
     };
     visit(OptionInfo{"flow", "how the mesh is smoothed (see `rfsmooth flows`)", ""}, self.flow);
     visit(OptionInfo{"iterations", "number of steps", "steps", 0, 1000000}, self.iterations);
+    visit(OptionInfo{"strength", "auto: times the strength that the noise asks for", "", 0, 10},
+          self.strength);
+    visit(OptionInfo{"noise", "auto: its standard deviation along the normal", "world units", 0, 1e300},
+          self.noise);
     visit(OptionInfo{"lambda", "step length of explicit flows", "", 0, 1}, self.lambda);
     visit(OptionInfo{"mu", "Taubin: length of the inflating step", "", 0, 2}, self.mu);
     visit(OptionInfo{"dt", "time step of implicit flows", "", 0, 1e9}, self.dt);
@@ -154,6 +162,12 @@ class Flow {
 
   /// Conjugate gradient iterations of all steps so far; 0 for explicit flows.
   virtual int solver_iterations() const { return 0; }
+
+  /// Whether the flow keeps points that it cannot place where they are; if not, the caller limits moves.
+  virtual bool limits_moves() const { return false; }
+
+  /// What the automatic flow chose; empty before its first step and for other flows.
+  virtual std::optional<AutomaticReport> automatic() const { return {}; }
 
   /// Whether the flow heeds the constraints it was made with itself; if not, `make_flow` wraps it.
   virtual bool applies_constraints() const { return false; }

@@ -1,0 +1,129 @@
+#include "rfsmooth/smoothing/automatic.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "rfsmooth/rfs_mesh/parallel.h"
+#include "rfsmooth/smoothing/height_field.h"
+#include "rfsmooth/smoothing/patches.h"
+#include "rfsmooth/smoothing/solver.h"
+#include "rfsmooth/smoothing/stranded.h"
+
+namespace rfsmooth::smoothing {
+
+namespace {
+
+// Chosen on the development shapes (tests/bench/quality) at 10,000 and 50,000 points, noise of 1 to 3 %.
+constexpr double kGuide = 10;         // c = kGuide (sigma/h)^2
+constexpr double kNarrowest = 52.6;   // m_0 = kNarrowest (sigma/h)^2: a radius of 4.5 sigma
+constexpr double kFewest = 16;        // m_0 at small noise: a quadric has six unknowns
+constexpr double kWidest = 1600;      // the widest patches, and
+constexpr double kWidestShare = 4;    // at least this many times m_0
+constexpr double kStrayFrom = 5;      // sigma
+constexpr double kNoNoise = 0.05;     // spacings: less than this is left alone
+constexpr std::size_t kTooFew = 32;   // points
+constexpr std::size_t kOwnMean = 60;  // from this many members on, patches average; below, near neighbours do
+constexpr double kNearEvidence = 24;  // independent points in two near means, halved
+constexpr double kPatchEvidence = 0.8;  // the same of two patch means, per member
+
+/// A running mixture of predictions with weights exp(log_weight), rescaled when a larger one comes.
+struct Mixture {
+  std::vector<double> height, own, weight, log_weight, largest;
+
+  explicit Mixture(const std::vector<double>& data)
+      : height(data),
+        own(data.size(), 1),
+        weight(data.size(), 1),
+        log_weight(data.size(), 0),
+        largest(data.size(), 0) {}
+
+  void add(std::size_t i, const Prediction& p) {
+    const double top = std::max(largest[i], log_weight[i]);
+    const double old = weight[i] * std::exp(largest[i] - top);
+    const double now = p.covered[i] ? std::exp(log_weight[i] - top) : 0;
+    height[i] = (old * height[i] + now * p.height[i]) / (old + now);
+    own[i] = (old * own[i] + now * p.own[i]) / (old + now);
+    weight[i] = old + now;
+    largest[i] = top;
+  }
+};
+
+Positions fair(const rfs_mesh::Mesh& mesh, double strength, const Context& context) {
+  const Operator op = umbrella(mesh, context);
+  SolverOptions options;
+  options.tolerance = 1e-4;
+  Positions x;
+  solve({mesh.one_ring, op, {0, strength, 0, 0}, {}, {}}, mesh.positions, x, AllowedMoves(), options,
+        context);
+  return x;
+}
+
+/// Adds the scale of `members` points to the mixture. `before` holds the risk of the scale before it.
+void add_scale(const HeightField& field, std::size_t members, const std::vector<double>& sigma,
+               std::vector<double>& before, Mixture& mixture, const Context& context) {
+  constexpr double kNeverChosen = 700;  // exp(-700) is still a number
+  const Patches patches(field, members, sigma, context);
+  const Prediction prediction = patches.predict(context);
+  std::vector<double> difference(field.size());
+  for_each_index(context, field.size(), [&](std::size_t i) {
+    const double e = (field.heights()[i] - prediction.height[i]) / sigma[i];
+    const double risk = prediction.covered[i] ? e * e + 2 * prediction.own[i] - 1 : before[i];
+    difference[i] = risk - before[i];
+    before[i] = risk;
+  });
+  const bool wide = members >= kOwnMean;
+  for (int twice = 0; twice < 2; ++twice)
+    difference = wide ? patches.mean(difference, context) : field.local_mean(difference, context);
+  const double evidence = wide ? kPatchEvidence * double(members) : kNearEvidence;
+  for_each_index(context, field.size(), [&](std::size_t i) {
+    mixture.log_weight[i] = std::max(mixture.log_weight[i] - evidence * difference[i], -kNeverChosen);
+    mixture.add(i, prediction);
+  });
+}
+
+}  // namespace
+
+Positions automatic_smoothing(const rfs_mesh::Mesh& mesh, double sigma, double spacing,
+                              AutomaticReport& report, const Context& context) {
+  const std::size_t n = mesh.positions.size();
+  report = {};
+  report.left = sigma;
+  if (n < kTooFew || !(sigma > kNoNoise * spacing)) return mesh.positions;
+  const double share = sigma / spacing;
+  report.guide_strength = kGuide * share * share;
+  Positions guide = fair(mesh, report.guide_strength, context);
+  context.report("smooth", 0.1);
+  report.stranded = land_stranded(mesh, kStrayFrom * sigma, guide, context);
+  // Again: the landed ones make the surface denser, and smaller islands stand out.
+  if (report.stranded > 0) land_stranded(mesh, kStrayFrom * sigma, guide, context);
+  const HeightField field(std::move(guide), mesh.positions, context);
+
+  // The data themselves are the first candidate: no error against themselves, all their own.
+  const std::vector<double> noise(n, sigma);
+  std::vector<double> risk(n, 1);
+  Mixture mixture(field.heights());
+  const double narrowest = std::max(kFewest, kNarrowest * share * share);
+  const double widest = std::max(kWidest, kWidestShare * narrowest);
+  for (double m = narrowest; m <= widest; m *= 2) {
+    context.report("smooth", 0.1 + 0.9 * std::log(m / narrowest) / std::log(2 * widest / narrowest));
+    add_scale(field, std::min(std::size_t(m), n / 2), noise, risk, mixture, context);
+    if (m >= double(n) / 2) break;
+  }
+
+  Positions smooth = mesh.positions;
+  for_each_index(context, n, [&](std::size_t i) {
+    const Eigen::Vector3d move =
+        field.guide()[i] + mixture.height[i] * field.normals()[i] - mesh.positions[i];
+    if (move.allFinite() && move.norm() <= kStrayFrom * sigma) smooth[i] += move;
+  });
+  const double mean_risk = sum_over(context, n, 0.0,
+                                    [&](std::size_t i) {
+                                      const double e = (field.heights()[i] - mixture.height[i]) / sigma;
+                                      return e * e + 2 * mixture.own[i] - 1;
+                                    }) /
+                           double(n);
+  report.left = sigma * std::sqrt(std::clamp(mean_risk, 0.0, 1.0));
+  return smooth;
+}
+
+}  // namespace rfsmooth::smoothing

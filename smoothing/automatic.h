@@ -1,0 +1,38 @@
+/// The automatic flow: how strongly to smooth is chosen at every point from the data.
+///
+/// 1. Guide: one implicit fairing of second order on the RFS-mesh, (I + c L^2) g = x with the umbrella and
+///    c = 10 (sigma/h)^2 (Desbrun et al. 1999, 2.6; Kobbelt et al. 1998), sigma the noise, h the spacing.
+///    Points it stranded are landed (stranded.h). The cloud is now a height field z over the guide.
+/// 2. Candidates: overlapping quadrics over m = m_0, 2 m_0, 4 m_0, ... points (patches.h), each scale a
+///    prediction f_m of every height. The narrowest patch has a radius of about 4.5 sigma: below that the
+///    guide, which was made from the same data, is within its noise.
+/// 3. Choice: Stein's unbiased risk (Stein 1981) of each scale at each point,
+///        rho_m = (z - f_m)^2 / sigma^2 + 2 df_m/dz - 1,
+///    whose mean over a neighbourhood estimates the mean squared error of f_m there, in units of sigma^2,
+///    without knowing the truth. Each scale is compared with the next narrower one over a neighbourhood of
+///    its own size (what a patch of m points can see, only a mean over m points can judge), and the scales
+///    are mixed with weights exp(-size of the evidence) (Leung and Barron 2006): smooth places take wide
+///    patches, edges and thin parts narrow ones, and where every patch is worse than the data the data stay.
+///
+/// One strength for the whole cloud cannot do this: on the development shapes the best single c differs by
+/// 100 times between the flat and the thin parts of one cloud. Points move along the guide's normals from the
+/// guide's places; those that would move more than 5 sigma are strays and stay.
+#pragma once
+
+#include "rfsmooth/rfs_mesh/mesh.h"
+
+namespace rfsmooth::smoothing {
+
+struct AutomaticReport {
+  double guide_strength = 0;  ///< c of the guide's fairing, dimensionless
+  double left = 0;            ///< estimate of the noise left, root mean square along the normal, world units
+  std::size_t stranded = 0;   ///< points that the fairing had left beside the surface
+};
+
+/// The smoothed places of mesh.positions (n x 3). `sigma`: standard deviation of the noise along the normal,
+/// world units; below 0.05 spacings the points come back as they are. `spacing`: h, world units.
+/// O(n log n); about 450 bytes a point beside the mesh. Parallel, the same bits for any number of threads.
+Positions automatic_smoothing(const rfs_mesh::Mesh& mesh, double sigma, double spacing,
+                              AutomaticReport& report, const Context& context);
+
+}  // namespace rfsmooth::smoothing

@@ -1,0 +1,45 @@
+/// A noisy cloud seen as heights over a smooth guide.
+///
+///     x_i = g_i + z_i n_i + (a tangential rest that is left alone)
+///
+/// The guide g lies near the surface, its neighbourhoods and normals are calm; what is left to estimate is
+/// one number a point. The normals are those of the plane through the nearest guide points, side arbitrary.
+#pragma once
+
+#include <vector>
+
+#include "rfsmooth/rfs_mesh/context.h"
+#include "rfsmooth/rfs_mesh/neighbors.h"
+
+namespace rfsmooth::smoothing {
+
+class HeightField {
+ public:
+  /// \param guide n x 3, near the surface; n >= 2.
+  /// \param data n x 3, the noisy points of the same indices.
+  /// O(n log n), parallel, the same bits for any number of threads.
+  HeightField(Positions guide, const Positions& data, const Context& context);
+  HeightField(const HeightField&) = delete;
+  HeightField& operator=(const HeightField&) = delete;
+
+  std::size_t size() const { return guide_.size(); }
+  const Positions& guide() const { return guide_; }
+  const std::vector<Eigen::Vector3d>& normals() const { return normals_; }  ///< n, unit
+  const std::vector<double>& heights() const { return heights_; }           ///< n: z, world units
+  const rfs_mesh::SpatialIndex& index() const { return index_; }            ///< over the guide
+
+  /// The mean of `values` over the nearest points on the same sheet, nearer ones weighing more. O(n).
+  std::vector<double> local_mean(const std::vector<double>& values, const Context& context) const;
+
+ private:
+  Positions guide_;
+  rfs_mesh::SpatialIndex index_;
+  rfs_mesh::NeighborTable near_;
+  std::vector<Eigen::Vector3d> normals_;
+  std::vector<double> heights_;
+};
+
+/// cos^2 of the angle between two normals of any side; 0 beyond 60 degrees: another sheet, or round an edge.
+double same_sheet(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
+
+}  // namespace rfsmooth::smoothing

@@ -1,0 +1,19 @@
+/// Points that a fairing left beside the surface, put onto it.
+///
+/// Where noise exceeds the spacing, some points have no face, or only faces among a few others that lie off
+/// the surface like themselves; the fairing, which only knows neighbours, leaves such islands where they are.
+/// They show themselves: the faired points lie densely on the surface and thinly beside it. A point whose
+/// tenth neighbour is farther than 1.7 times what is usual around it (the lower quartile), or that has no
+/// neighbours in the mesh, is projected from its noisy place onto the plane through the nearest others.
+#pragma once
+
+#include "rfsmooth/rfs_mesh/mesh.h"
+
+namespace rfsmooth::smoothing {
+
+/// Moves the stranded points of `guide` (n x 3, the faired mesh.positions), except those farther from the
+/// surface than `most` (world units): they are strays. Returns how many were found. O(n log n), parallel,
+/// deterministic.
+std::size_t land_stranded(const rfs_mesh::Mesh& mesh, double most, Positions& guide, const Context& context);
+
+}  // namespace rfsmooth::smoothing
