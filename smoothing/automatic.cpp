@@ -2,26 +2,29 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "rfsmooth/rfs_mesh/parallel.h"
 #include "rfsmooth/smoothing/height_field.h"
 #include "rfsmooth/smoothing/patches.h"
 #include "rfsmooth/smoothing/solver.h"
 #include "rfsmooth/smoothing/stranded.h"
+#include "rfsmooth/smoothing/thinning.h"
 
 namespace rfsmooth::smoothing {
 
 namespace {
 
 // Chosen on the development shapes (tests/bench/quality) at 10,000 and 50,000 points, noise of 1 to 3 %.
-constexpr double kGuide = 10;         // c = kGuide (sigma/h)^2
-constexpr double kNarrowest = 52.6;   // m_0 = kNarrowest (sigma/h)^2: a radius of 4.5 sigma
-constexpr double kFewest = 16;        // m_0 at small noise: a quadric has six unknowns
-constexpr double kWidest = 1600;      // the widest patches, and
-constexpr double kWidestShare = 4;    // at least this many times m_0
-constexpr double kStrayFrom = 5;      // sigma
-constexpr double kNoNoise = 0.05;     // spacings: less than this is left alone
-constexpr std::size_t kTooFew = 32;   // points
+constexpr std::size_t kMostOverlap = 14;  // patches over a point; a thinning leaves 0.4 of them
+constexpr double kGuide = 10;             // c = kGuide (sigma/h)^2
+constexpr double kNarrowest = 52.6;       // m_0 = kNarrowest (sigma/h)^2: a radius of 4.5 sigma
+constexpr double kFewest = 16;            // m_0 at small noise: a quadric has six unknowns
+constexpr double kWidest = 1600;          // the widest patches, and
+constexpr double kWidestShare = 4;        // at least this many times m_0
+constexpr double kStrayFrom = 5;          // sigma
+constexpr double kNoNoise = 0.05;         // spacings: less than this is left alone
+constexpr std::size_t kTooFew = 32;       // points
 constexpr std::size_t kOwnMean = 60;  // from this many members on, patches average; below, near neighbours do
 constexpr double kNearEvidence = 24;  // independent points in two near means, halved
 constexpr double kPatchEvidence = 0.8;  // the same of two patch means, per member
@@ -59,10 +62,11 @@ Positions fair(const rfs_mesh::Mesh& mesh, double strength, const Context& conte
 }
 
 /// Adds the scale of `members` points to the mixture. `before` holds the risk of the scale before it.
-void add_scale(const HeightField& field, std::size_t members, const std::vector<double>& sigma,
-               std::vector<double>& before, Mixture& mixture, const Context& context) {
+void add_scale(const HeightField& field, std::size_t members, const std::vector<Index>& seeds,
+               const std::vector<double>& sigma, std::vector<double>& before, Mixture& mixture,
+               const Context& context) {
   constexpr double kNeverChosen = 700;  // exp(-700) is still a number
-  const Patches patches(field, members, sigma, context);
+  const Patches patches(field, members, seeds, sigma, context);
   const Prediction prediction = patches.predict(context);
   std::vector<double> difference(field.size());
   for_each_index(context, field.size(), [&](std::size_t i) {
@@ -102,11 +106,15 @@ Positions automatic_smoothing(const rfs_mesh::Mesh& mesh, double sigma, double s
   const std::vector<double> noise(n, sigma);
   std::vector<double> risk(n, 1);
   Mixture mixture(field.heights());
+  std::vector<Index> seeds(n);
+  std::iota(seeds.begin(), seeds.end(), Index{0});
   const double narrowest = std::max(kFewest, kNarrowest * share * share);
   const double widest = std::max(kWidest, kWidestShare * narrowest);
   for (double m = narrowest; m <= widest; m *= 2) {
     context.report("smooth", 0.1 + 0.9 * std::log(m / narrowest) / std::log(2 * widest / narrowest));
-    add_scale(field, std::min(std::size_t(m), n / 2), noise, risk, mixture, context);
+    const std::size_t members = std::min(std::size_t(m), n / 2);
+    while (seeds.size() * members > kMostOverlap * n) seeds = thin(field.guide(), seeds, context);
+    add_scale(field, members, seeds, noise, risk, mixture, context);
     if (m >= double(n) / 2) break;
   }
 

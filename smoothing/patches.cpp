@@ -9,14 +9,15 @@
 #include <Eigen/Geometry>
 
 #include "rfsmooth/rfs_mesh/parallel.h"
+#include "rfsmooth/smoothing/thinning.h"
 
 namespace rfsmooth::smoothing {
 
 namespace {
 
-constexpr std::size_t kOverlap = 8;  // patches over a point; 16 gains 2 % of the error at twice the time
-constexpr std::size_t kAxis = 12;    // nearest points whose normals make the patch's axis
-constexpr double kWellCovered = 0.3, kBarelyCovered = 0.1;  // weight of the best patch over a point
+constexpr std::size_t kMostOver = 16;  // patches over a point: more only cost time
+constexpr std::size_t kAxis = 12;      // nearest points whose normals make the patch's axis
+constexpr double kCovered = 0.2;       // least weight of the best patch over a point
 
 }  // namespace
 
@@ -25,26 +26,21 @@ Patches::Features Patches::features(const Patch& patch, const Eigen::Vector3d& r
   return (Features() << 1, u, v, u * u, u * v, v * v).finished();
 }
 
-Patches::Patches(const HeightField& field, std::size_t members, const std::vector<double>& sigma,
-                 const Context& context)
-    : field_(field), members_(std::min(members, field.size())) {
-  const std::size_t n = field.size(), stride = std::max<std::size_t>(1, members_ / kOverlap);
-  reach_ = (members_ + stride - 1) / stride;
-  // Every stride-th point: in the order of a working cloud, neighbours in the order are neighbours in space.
-  // Where that order jumps, or indices mean nothing, places stay uncovered and get seeds of their own.
-  for (std::size_t i = stride / 2; i < n; i += stride) seeds_.push_back(Index(i));
-  if (seeds_.empty()) seeds_.push_back(0);
-  std::size_t fitted = 0;
-  for (const double share : {kWellCovered, kBarelyCovered, 0.0}) {
-    fit(fitted, seeds_.size(), sigma, context);
-    fitted = seeds_.size();
-    cover(context);
-    if (share == 0) break;
-    const std::vector<Index> missing = uncovered(share);
-    if (missing.empty()) break;
-    const std::size_t step = std::max<std::size_t>(1, stride / 4);
-    for (std::size_t k = 0; k < missing.size(); k += step) seeds_.push_back(missing[k]);
-  }
+Patches::Patches(const HeightField& field, std::size_t members, std::vector<Index> seeds,
+                 const std::vector<double>& sigma, const Context& context)
+    : field_(field), members_(std::min(members, field.size())), seeds_(std::move(seeds)) {
+  reach_ =
+      std::clamp<std::size_t>((members_ * seeds_.size() + field.size() - 1) / field.size(), 1, kMostOver);
+  fit(0, seeds_.size(), sigma, context);
+  cover(context);
+  // A place between sheets or at the end of something thin may be in no patch, or only at the rim of one.
+  const std::vector<Index> missing = uncovered();
+  if (missing.empty()) return;
+  const std::size_t first = seeds_.size();
+  const std::vector<Index> more = thin(field.guide(), missing, context);
+  seeds_.insert(seeds_.end(), more.begin(), more.end());
+  fit(first, seeds_.size(), sigma, context);
+  cover(context);
 }
 
 void Patches::fit(std::size_t first, std::size_t last, const std::vector<double>& sigma,
@@ -101,7 +97,7 @@ void Patches::fit_one(std::size_t s, const std::vector<double>& sigma,
     squares += w * w;
   }
   // Few points, or points in a line, leave the quadric undetermined: the ridge makes it flat there.
-  system.diagonal().array() += 1e-6 * system(0, 0) + 1e-12;
+  system.diagonal().array() += 1e-9 * system(0, 0) + 1e-12;
   const Matrix6 inverse = system.selfadjointView<Eigen::Lower>().llt().solve(Matrix6::Identity());
   const Features quadric = inverse * right;
   std::size_t at = 0;
@@ -151,11 +147,11 @@ void Patches::cover(const Context& context) {
   });
 }
 
-std::vector<Index> Patches::uncovered(double share) const {
+std::vector<Index> Patches::uncovered() const {
   std::vector<Index> missing;
   for (std::size_t i = 0; i < field_.size(); ++i) {
     const auto first = over_weight_.begin() + std::ptrdiff_t(i * reach_);
-    if (*std::max_element(first, first + std::ptrdiff_t(reach_)) < share) missing.push_back(Index(i));
+    if (*std::max_element(first, first + std::ptrdiff_t(reach_)) < kCovered) missing.push_back(Index(i));
   }
   return missing;
 }

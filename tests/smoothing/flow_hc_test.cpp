@@ -35,6 +35,7 @@ TEST(Hc, IsThePapersListing) {
     Positions expected = o;
     for (int step = 0; step < 3; ++step) hc_listing(mesh, o, expected, 0.2, 0.7);
     FlowOptions options;
+    options.flow = "hc";
     options.iterations = 3;
     options.alpha = 0.2;
     options.beta = 0.7;

@@ -34,6 +34,9 @@ class EveryFlow : public testing::TestWithParam<std::string_view> {
     if (std::find(used.begin(), used.end(), "tolerance") != used.end()) o.tolerance = 1e-12;
     return o;
   }
+
+  /// Of the move: what rounding may change. The automatic flow keeps its quadrics in single precision.
+  double rounding() const { return options().flow == "auto" ? 1e-6 : 1e-8; }
 };
 INSTANTIATE_TEST_SUITE_P(Flows, EveryFlow, testing::ValuesIn(names()), [](const auto& flow) {
   std::string name(flow.param);
@@ -114,7 +117,7 @@ TEST_P(EveryFlow, CommutesWithRigidMotion) {
   for (Eigen::Vector3d& p : moved.positions) p = motion(p);
   ASSERT_TRUE(smooth(mesh, exact_options(), {}).ok());
   ASSERT_TRUE(smooth(moved, exact_options(), {}).ok());
-  EXPECT_LT(disagreement(start, mesh.positions, moved.positions, motion, 1), 1e-8);
+  EXPECT_LT(disagreement(start, mesh.positions, moved.positions, motion, 1), rounding());
 }
 
 TEST_P(EveryFlow, CommutesWithUniformScale) {
@@ -128,7 +131,7 @@ TEST_P(EveryFlow, CommutesWithUniformScale) {
     EXPECT_LT(disagreement(
                   start, mesh.positions, scaled.positions,
                   [&](const Eigen::Vector3d& p) { return Eigen::Vector3d(scale * p); }, scale),
-              1e-8);
+              rounding());
   }
 }
 
@@ -149,7 +152,7 @@ TEST_P(EveryFlow, CommutesWithPermutation) {
   for (Index i = 0; i < n; ++i) back[i] = permuted.positions[place(i)];
   EXPECT_LT(disagreement(
                 start, mesh.positions, back, [](const Eigen::Vector3d& p) { return p; }, 1),
-            1e-8);
+            rounding());
 }
 
 TEST_P(EveryFlow, HardConstraintsHold) {

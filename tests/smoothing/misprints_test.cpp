@@ -54,6 +54,7 @@ TEST(Bilaplacian, IsHcWithoutTheOriginalPoint) {
   FlowOptions bilaplacian, hc;
   bilaplacian.flow = "bilaplacian";
   bilaplacian.lambda = 0.3;
+  hc.flow = "hc";
   hc.alpha = 0;
   hc.beta = 0.7;
   bilaplacian.iterations = hc.iterations = 5;

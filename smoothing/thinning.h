@@ -1,0 +1,20 @@
+/// Ever sparser, evenly spread subsets of a cloud, each inside the one before.
+///
+/// A thinning keeps a maximal independent set of the graph of the three nearest neighbours (Luby 1986, with
+/// the sum of squared distances to them as the priority, ties by index): no two kept points are neighbours,
+/// and every other one has a kept neighbour. It depends on distances alone, so it turns with the cloud and
+/// does not know the order of the points.
+#pragma once
+
+#include <vector>
+
+#include "rfsmooth/rfs_mesh/context.h"
+#include "rfsmooth/rfs_mesh/points.h"
+
+namespace rfsmooth::smoothing {
+
+/// A subset of `subset` (ascending indices into points) with about 0.4 of its size, ascending; at least one
+/// index if `subset` has any. O(n log n) in the size of the subset, deterministic.
+std::vector<Index> thin(const Positions& points, const std::vector<Index>& subset, const Context& context);
+
+}  // namespace rfsmooth::smoothing
