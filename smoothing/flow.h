@@ -83,7 +83,7 @@ struct FlowOptions {
                 {"simultaneous", "sequential"}),
           self.update);
     visit(words("operator", "implicit flows: the Laplacian",
-                {"umbrella", "inverse-distance", "scale-dependent", "curvature"}),
+                {"umbrella", "inverse-distance", "scale-dependent", "curvature", "tufted"}),
           self.op);
     visit(OptionInfo{"order", "implicit flows: power of the operator", "", 1, 4}, self.order);
     visit(OptionInfo{"mixture", "implicit flows: share of the first power; negative enhances", "", -1, 1},

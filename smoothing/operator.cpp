@@ -48,8 +48,8 @@ double length_unit(const rfs_mesh::Mesh& mesh, const Context& context) {
 }
 
 OperatorSource::OperatorSource(std::string_view name, bool frozen) : name_(name), frozen_(frozen) {
-  const std::array<std::string_view, 5> known = {"umbrella", "inverse-distance", "scale-dependent",
-                                                 "curvature", "curvature-normalised"};
+  const std::array<std::string_view, 6> known = {"umbrella", "inverse-distance", "scale-dependent",
+                                                 "curvature", "curvature-normalised", "tufted"};
   if (std::find(known.begin(), known.end(), name) == known.end())
     throw std::invalid_argument("unknown operator " + name_);
 }
@@ -63,6 +63,8 @@ const Operator& OperatorSource::on(const rfs_mesh::Mesh& mesh, const Context& co
     op_ = inverse_distance(mesh, context);
   } else if (name_ == "scale-dependent") {
     op_ = scale_dependent(mesh, context);
+  } else if (name_ == "tufted") {
+    op_ = tufted(mesh, context);
   } else {
     if (!ready_) faces_ = vertex_faces(mesh, context);
     op_ = curvature(mesh, faces_, context);

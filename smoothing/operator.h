@@ -60,6 +60,16 @@ Operator scale_dependent(const rfs_mesh::Mesh& mesh, const Context& context);
 Operator curvature(const rfs_mesh::Mesh& mesh, const rfs_mesh::Adjacency& vertex_faces,
                    const Context& context);
 
+/// The curvature operator without negative weights, on any mesh: intrinsic Delaunay on the tufted cover.
+///
+/// Every face is taken twice, front and back, and the sides around each edge are glued in pairs, which makes
+/// a closed manifold of any mesh; its lengths are mollified by at most 1e-5 h, its edges flipped until they
+/// are Delaunay; the cotangents of that, halved. Sharp, Crane, A Laplacian for Nonmanifold Triangle Meshes,
+/// 2020. On a closed Delaunay mesh it is the curvature operator. With weights that are never negative, an
+/// implicit step of first order keeps every vertex inside the bounding box, and explicit steps have their
+/// full length. Unit h^2; own rows. O(n log n) typically, one thread.
+Operator tufted(const rfs_mesh::Mesh& mesh, const Context& context);
+
 /// The curvature operator with m = sum of |w| (Desbrun 5.5): rows sum to one, so explicit steps up to 1 are
 /// stable. The paper sums w, which is the same while no weight is negative. Unit 1.
 Operator normalised(const rfs_mesh::Adjacency& rows, Operator op, const Context& context);
@@ -76,7 +86,8 @@ double thin_plate_energy(const rfs_mesh::Adjacency& rows, const Operator& op, co
 /// Builds an operator by its option name, on the current positions or once for all steps.
 class OperatorSource {
  public:
-  /// \param name "umbrella", "inverse-distance", "scale-dependent", "curvature", "curvature-normalised".
+  /// \param name "umbrella", "inverse-distance", "scale-dependent", "curvature", "curvature-normalised",
+  /// "tufted".
   /// \param frozen keep the weights of the first mesh (Desbrun 4.3, "relative to the initial mesh").
   OperatorSource(std::string_view name, bool frozen);
 
