@@ -48,7 +48,7 @@ double length_unit(const rfs_mesh::Mesh& mesh, const Context& context) {
 }
 
 OperatorSource::OperatorSource(std::string_view name, bool frozen) : name_(name), frozen_(frozen) {
-  const std::array<std::string_view, 6> known = {"umbrella", "inverse-distance", "scale-dependent",
+  const std::array<std::string_view, 6> known = {"umbrella",  "inverse-distance",     "scale-dependent",
                                                  "curvature", "curvature-normalised", "tufted"};
   if (std::find(known.begin(), known.end(), name) == known.end())
     throw std::invalid_argument("unknown operator " + name_);
