@@ -214,27 +214,4 @@ TEST(Ohtake, ModifiedCurvatureFlowEvensTheSampling) {
             0.8 * edge_unevenness(run(noisy, flow("curvature", 10))));
 }
 
-TEST(Energy, LaplacianLowersTheMembraneEnergyBilaplacianTheThinPlateEnergyEveryStep) {
-  Mesh mesh = noisy_sphere(3, 0.3);
-  double energy = thin_plate(mesh);
-  for (int step = 0; step < 10; ++step) {
-    mesh = run(mesh, flow("bilaplacian", 1));
-    EXPECT_LT(thin_plate(mesh), energy);
-    energy = thin_plate(mesh);
-  }
-  const auto membrane = [](const Mesh& m) {
-    double sum = 0;
-    for (Index i = 0; i < m.positions.size(); ++i)
-      for (const Index j : m.one_ring[i]) sum += (m.positions[i] - m.positions[j]).squaredNorm();
-    return sum;
-  };
-  Mesh other = noisy_sphere(3, 0.3);
-  energy = membrane(other);
-  for (int step = 0; step < 10; ++step) {
-    other = run(other, flow("laplacian", 1));
-    EXPECT_LT(membrane(other), energy);
-    energy = membrane(other);
-  }
-}
-
 }  // namespace

@@ -1,0 +1,105 @@
+// The energy that a paper says falls, falls, step by step.
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include "rfsmooth/smoothing/divided_difference.h"
+#include "rfsmooth/smoothing/flow.h"
+#include "rfsmooth/smoothing/operator.h"
+
+#include "support/meshes.h"
+
+using namespace rfsmooth;
+using namespace rfsmooth::smoothing;
+using Eigen::Vector3d;
+using rfs_mesh::Mesh;
+
+namespace {
+
+Mesh noisy_sphere() {
+  Mesh mesh = support::icosphere(3);
+  support::add_noise(mesh, 0.3 * support::mean_edge(mesh), 11);
+  return mesh;
+}
+
+/// Runs one step at a time; `energy` must fall every time.
+template <class Energy>
+void falls(FlowOptions o, int steps, Energy&& energy) {
+  o.iterations = 1;
+  Mesh mesh = noisy_sphere();
+  double before = energy(mesh);
+  for (int step = 0; step < steps; ++step) {
+    ASSERT_TRUE(smooth(mesh, o, {}).ok());
+    const double after = energy(mesh);
+    EXPECT_LT(after, before) << o.flow << ", step " << step;
+    before = after;
+  }
+}
+
+FlowOptions flow(const char* name) {
+  FlowOptions o;
+  o.flow = name;
+  return o;
+}
+
+double thin_plate(const Mesh& mesh) {
+  return thin_plate_energy(mesh.one_ring, umbrella(mesh, {}), mesh.positions, {});
+}
+
+double membrane(const Mesh& mesh) {
+  double sum = 0;
+  for (Index i = 0; i < mesh.positions.size(); ++i)
+    for (const Index j : mesh.one_ring[i]) sum += (mesh.positions[i] - mesh.positions[j]).squaredNorm();
+  return sum;
+}
+
+double area(const Mesh& mesh) {
+  double sum = 0;
+  for (const auto& f : mesh.faces)
+    sum += (mesh.positions[f[1]] - mesh.positions[f[0]])
+               .cross(mesh.positions[f[2]] - mesh.positions[f[0]])
+               .norm() /
+           2;
+  return sum;
+}
+
+TEST(Energy, LaplacianLowersTheMembraneEnergy) {
+  falls(flow("laplacian"), 10, membrane);
+}
+
+TEST(Energy, BilaplacianAndHcLowerTheThinPlateEnergy) {
+  falls(flow("bilaplacian"), 10, thin_plate);
+  falls(flow("hc"), 10, thin_plate);
+}
+
+TEST(Energy, CurvatureFlowsLowerTheArea) {
+  falls(flow("curvature"), 10, area);
+  FlowOptions normalised = flow("curvature");
+  normalised.normalised = true;
+  falls(normalised, 10, area);
+  FlowOptions implicit = flow("implicit");
+  implicit.op = "curvature";
+  implicit.order = 1;
+  implicit.dt = 1;
+  falls(implicit, 5, area);
+}
+
+TEST(Energy, ImplicitFairingLowersTheEnergyOfItsOrder) {
+  FlowOptions o = flow("implicit");
+  for (const double dt : {1.0, 100.0}) {
+    o.dt = dt;
+    o.order = 1;
+    falls(o, 4, membrane);
+    o.order = 2;
+    falls(o, 4, thin_plate);
+  }
+}
+
+TEST(Energy, DiscreteFairingLowersTheThinPlateEnergyOfItsCharts) {
+  Mesh mesh = noisy_sphere();
+  const DividedDifferences charts(mesh, "tangent", {});
+  const double before = charts.energy(mesh.positions, {});
+  ASSERT_TRUE(smooth(mesh, flow("discrete-fairing"), {}).ok());
+  EXPECT_LT(charts.energy(mesh.positions, {}), 0.5 * before);
+}
+
+}  // namespace
