@@ -1,7 +1,7 @@
 #include "rfsmooth/rfs_mesh/mesh.h"
 
 #include <algorithm>
-#include <atomic>
+#include <memory>
 
 #include <fmt/format.h>
 
@@ -26,88 +26,143 @@ void prefix_sum(std::vector<Index>& start, const Context& context) {
   });
 }
 
+/// An item and the row it belongs to.
+template <class Item>
+struct Placed {
+  Index row;
+  Item item;
+};
+
 /// Rows of n from (row, item) pairs: `visit(s, emit)` passes the pairs of source s to `emit`, the same way
-/// each time. Threads take places in a row in any order, so the rows come out right only once sorted.
-template <class Visit>
-Adjacency unsorted_rows(std::size_t n, std::size_t sources, const Context& context, Visit&& visit) {
+/// each time; `append(row, first, last, items)` puts a row's items, in the order of their sources, into the
+/// adjacency.
+///
+/// The pairs are dealt into buckets of rows that fit the cache, in order and without locks; then every bucket
+/// is finished by itself. O(pairs); memory for the pairs once more.
+template <class Item, class Visit, class Append>
+Adjacency rows_from(std::size_t n, std::size_t sources, const Context& context, Visit&& visit,
+                    Append&& append) {
+  const std::size_t bucket = std::max<std::size_t>(1024, n / 1024 + 1), buckets = n / bucket + 1;
+  const std::size_t chunk = std::max<std::size_t>(4096, sources / 256 + 1);
+  const std::size_t chunks = (sources + chunk - 1) / chunk;
+  // place[b * chunks + c]: where the pairs of chunk c for bucket b go.
+  std::vector<std::size_t> place(buckets * chunks + 1, 0);
+  for_blocks(context, sources, chunk, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::size_t> count(buckets, 0);
+    for (std::size_t s = begin; s < end; ++s)
+      visit(s, [&](Index row, const Item&) { ++count[row / bucket]; });
+    for (std::size_t b = 0; b < buckets; ++b) place[b * chunks + begin / chunk + 1] = count[b];
+  });
+  for (std::size_t k = 1; k < place.size(); ++k) place[k] += place[k - 1];
+  // Not a vector: its pages are first touched where they are written, in parallel.
+  const std::unique_ptr<Placed<Item>[]> dealt(new Placed<Item>[place.back()]);
+  for_blocks(context, sources, chunk, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::size_t> next(buckets);
+    for (std::size_t b = 0; b < buckets; ++b) next[b] = place[b * chunks + begin / chunk];
+    for (std::size_t s = begin; s < end; ++s)
+      visit(s, [&](Index row, const Item& item) { dealt[next[row / bucket]++] = {row, item}; });
+  });
+
   Adjacency rows;
   rows.start.assign(n + 1, 0);
-  std::vector<std::atomic<Index>> place(n);
-  for_each_index(context, sources, [&](std::size_t s) {
-    visit(s, [&](Index row, Index) { place[row].fetch_add(1, std::memory_order_relaxed); });
+  std::vector<std::vector<Index>> finished(buckets);
+  for_blocks(context, n, bucket, [&](std::size_t begin, std::size_t end) {
+    const std::size_t b = begin / bucket, from = place[b * chunks], to = place[(b + 1) * chunks];
+    std::vector<Index> start(end - begin + 1, 0);
+    for (std::size_t k = from; k < to; ++k) ++start[dealt[k].row - begin + 1];
+    for (std::size_t i = 1; i < start.size(); ++i) start[i] += start[i - 1];
+    std::vector<Item> items(to - from);
+    std::vector<Index> next(start.begin(), start.end() - 1);
+    for (std::size_t k = from; k < to; ++k) items[next[dealt[k].row - begin]++] = dealt[k].item;
+    finished[b].reserve(to - from);
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::size_t before = finished[b].size();
+      append(Index(i), items.data() + start[i - begin], items.data() + start[i - begin + 1], finished[b]);
+      rows.start[i + 1] = Index(finished[b].size() - before);
+    }
   });
-  for_each_index(context, n, [&](std::size_t i) { rows.start[i + 1] = place[i].load(); });
   prefix_sum(rows.start, context);
-  for_each_index(context, n, [&](std::size_t i) { place[i].store(rows.start[i]); });
   rows.items.resize(rows.start[n]);
-  for_each_index(context, sources, [&](std::size_t s) {
-    visit(s, [&](Index row, Index item) {
-      rows.items[place[row].fetch_add(1, std::memory_order_relaxed)] = item;
-    });
+  for_blocks(context, n, bucket, [&](std::size_t begin, std::size_t) {
+    std::vector<Index>& items = finished[begin / bucket];
+    std::copy(items.begin(), items.end(), rows.items.begin() + rows.start[begin]);
+    items = {};
   });
   return rows;
 }
 
-void sort_rows(Adjacency& rows, const Context& context) {
-  for_each_index(context, rows.size(), [&](std::size_t i) {
-    std::sort(rows.items.begin() + rows.start[i], rows.items.begin() + rows.start[i + 1]);
-  });
-}
-
-/// Sorts every row and drops repeated items.
-void sort_unique(Adjacency& rows, const Context& context) {
-  std::vector<Index> kept(rows.size() + 1, 0);
-  for_each_index(context, rows.size(), [&](std::size_t i) {
-    const auto first = rows.items.begin() + rows.start[i], last = rows.items.begin() + rows.start[i + 1];
-    std::sort(first, last);
-    kept[i + 1] = Index(std::unique(first, last) - first);
-  });
-  prefix_sum(kept, context);
-  std::vector<Index> items(kept.back());
-  for_each_index(context, rows.size(), [&](std::size_t i) {
-    std::copy_n(rows.items.begin() + rows.start[i], kept[i + 1] - kept[i], items.begin() + kept[i]);
-  });
-  rows.items = std::move(items);
-  rows.start = std::move(kept);
-}
-
-template <class Emit>
-void both_ways(Index a, Index b, Emit&& emit) {
-  if (a == b) return;
-  emit(a, b);
-  emit(b, a);
+/// Inserts v into `size` ascending items, unless it is there; returns the new size. Rings are short.
+std::size_t insert_sorted(Index* items, std::size_t size, Index v) {
+  std::size_t at = size;
+  while (at > 0 && items[at - 1] > v) --at;
+  if (at > 0 && items[at - 1] == v) return size;
+  for (std::size_t k = size; k > at; --k) items[k] = items[k - 1];
+  items[at] = v;
+  return size + 1;
 }
 
 }  // namespace
 
 Adjacency make_adjacency(std::size_t n, const std::vector<Edge>& edges, const Context& context) {
-  Adjacency rows = unsorted_rows(n, edges.size(), context, [&](std::size_t s, auto&& emit) {
-    both_ways(edges[s][0], edges[s][1], emit);
-  });
-  sort_unique(rows, context);
-  return rows;
+  return rows_from<Index>(
+      n, edges.size(), context,
+      [&](std::size_t s, auto&& emit) {
+        const Edge& e = edges[s];
+        if (e[0] == e[1]) return;
+        emit(e[0], e[1]);
+        emit(e[1], e[0]);
+      },
+      [](Index, Index* first, Index* last, std::vector<Index>& items) {
+        std::sort(first, last);
+        items.insert(items.end(), first, std::unique(first, last));
+      });
 }
 
 void rebuild_adjacency(Mesh& mesh, const Context& context) {
+  using Others = std::array<Index, 2>;  // of a face; of a loose edge its other end twice
   const std::size_t faces = mesh.faces.size();
-  mesh.one_ring = unsorted_rows(mesh.positions.size(), faces + mesh.loose_edges.size(), context,
-                                [&](std::size_t s, auto&& emit) {
-                                  if (s >= faces) {
-                                    const Edge& e = mesh.loose_edges[s - faces];
-                                    return both_ways(e[0], e[1], emit);
-                                  }
-                                  const Face& f = mesh.faces[s];
-                                  for (int k = 0; k < 3; ++k) both_ways(f[k], f[(k + 1) % 3], emit);
-                                });
-  sort_unique(mesh.one_ring, context);
+  mesh.one_ring = rows_from<Others>(
+      mesh.positions.size(), faces + mesh.loose_edges.size(), context,
+      [&](std::size_t s, auto&& emit) {
+        if (s >= faces) {
+          const Edge& e = mesh.loose_edges[s - faces];
+          emit(e[0], Others{e[1], e[1]});
+          emit(e[1], Others{e[0], e[0]});
+          return;
+        }
+        const Face& f = mesh.faces[s];
+        emit(f[0], Others{f[1], f[2]});
+        emit(f[1], Others{f[2], f[0]});
+        emit(f[2], Others{f[0], f[1]});
+      },
+      [](Index row, const Others* first, const Others* last, std::vector<Index>& items) {
+        constexpr std::size_t kShort = 64;
+        std::array<Index, kShort> ring;
+        std::size_t size = 0;
+        if (std::size_t(last - first) <= kShort / 2) {
+          for (const Others* o = first; o != last; ++o)
+            for (const Index v : *o)
+              if (v != row) size = insert_sorted(ring.data(), size, v);
+          items.insert(items.end(), ring.data(), ring.data() + size);
+          return;
+        }
+        std::vector<Index> all;
+        for (const Others* o = first; o != last; ++o) all.insert(all.end(), o->begin(), o->end());
+        all.erase(std::remove(all.begin(), all.end(), row), all.end());
+        std::sort(all.begin(), all.end());
+        items.insert(items.end(), all.begin(), std::unique(all.begin(), all.end()));
+      });
 }
 
 Adjacency vertex_faces(std::size_t n, const std::vector<Face>& faces, const Context& context) {
-  Adjacency rows = unsorted_rows(n, faces.size(), context, [&](std::size_t f, auto&& emit) {
-    for (const Index v : faces[f]) emit(v, Index(f));
-  });
-  sort_rows(rows, context);
-  return rows;
+  return rows_from<Index>(
+      n, faces.size(), context,
+      [&](std::size_t f, auto&& emit) {
+        for (const Index v : faces[f]) emit(v, Index(f));
+      },
+      [](Index, const Index* first, const Index* last, std::vector<Index>& items) {
+        items.insert(items.end(), first, last);
+      });
 }
 
 Adjacency vertex_faces(const Mesh& mesh, const Context& context) {
