@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "rfsmooth/rfs_mesh/morton.h"
 #include "rfsmooth/rfs_mesh/parallel.h"
 
 namespace rfsmooth::rfs_mesh {
@@ -28,17 +29,6 @@ struct Box {
     return a;
   }
 };
-
-/// Spreads the low 21 bits of v so that two zero bits stand between neighbours.
-std::uint64_t spread_bits(std::uint64_t v) {
-  v &= 0x1fffff;
-  v = (v | v << 32) & 0x1f00000000ffff;
-  v = (v | v << 16) & 0x1f0000ff0000ff;
-  v = (v | v << 8) & 0x100f00f00f00f00f;
-  v = (v | v << 4) & 0x10c30c30c30c30c3;
-  v = (v | v << 2) & 0x1249249249249249;
-  return v;
-}
 
 struct Keyed {
   std::uint64_t code;
@@ -81,8 +71,7 @@ Result<WorkingCloud> make_working_cloud(const double* xyz, std::size_t n, const 
                              extent, kSmallest, kLargest)};
 
   // Morton code on a 2^21 grid over the box; points in one cell are ordered by their coordinates.
-  constexpr double kCells = 2097151;
-  const double to_cell = extent > 0 ? kCells / extent : 0;
+  const double to_cell = extent > 0 ? kMortonCells / extent : 0;
   std::vector<Keyed> keyed(n);
   for_each_index(context, n, [&](std::size_t i) {
     const Vector3d p = point(i);
@@ -90,10 +79,7 @@ Result<WorkingCloud> make_working_cloud(const double* xyz, std::size_t n, const 
       keyed[i] = {std::numeric_limits<std::uint64_t>::max(), Index(i)};
       return;
     }
-    std::uint64_t code = 0;
-    for (int axis = 0; axis < 3; ++axis)
-      code |= spread_bits(std::uint64_t((p[axis] - box.low[axis]) * to_cell)) << axis;
-    keyed[i] = {code, Index(i)};
+    keyed[i] = {morton_code(p, box.low, to_cell), Index(i)};
   });
   const auto lexicographic = [&](const Vector3d& p, const Vector3d& q) {
     for (int axis = 0; axis < 3; ++axis)

@@ -10,6 +10,7 @@
 #include "rfsmooth/smoothing/constraint.h"
 #include "rfsmooth/smoothing/preserve.h"
 #include "rfsmooth/smoothing/pushback.h"
+#include "rfsmooth/smoothing/reorder.h"
 #include "rfsmooth/smoothing/threshold.h"
 
 namespace rfsmooth::smoothing {
@@ -163,6 +164,40 @@ Result<std::unique_ptr<Flow>> make_flow(const rfs_mesh::Mesh& mesh, const FlowOp
   });
 }
 
+namespace {
+
+FlowReport run(rfs_mesh::Mesh& mesh, const FlowOptions& options, const Context& context,
+               const Constraints& constraints) {
+  FlowReport report;
+  auto flow = make_flow(mesh, options, context, constraints);
+  if (!flow.ok()) throw Failure(flow.error());
+  const int steps = *options.iterations;
+  for (; report.steps < steps; ++report.steps) {
+    context.report(options.flow, double(report.steps) / steps);
+    flow.value()->step(mesh, context);
+  }
+  report.solver_iterations = flow.value()->solver_iterations();
+  return report;
+}
+
+/// The same on the mesh in an order that suits the cache; mesh.positions come back in the caller's.
+FlowReport run_reordered(rfs_mesh::Mesh& mesh, const FlowOptions& options, const Context& context,
+                         const Constraints& constraints) {
+  Reordered near = reorder(mesh, context);
+  FlowReport report;
+  try {
+    report = run(near.mesh, options, context, reorder(constraints, near.place));
+  } catch (const Failure& failure) {
+    if (failure.error.code != ErrorCode::usage) throw;
+    return run(mesh, options, context, constraints);  // fails too, with the caller's vertices in the message
+  }
+  for_each_index(context, near.place.size(),
+                 [&](std::size_t i) { mesh.positions[i] = near.mesh.positions[near.place[i]]; });
+  return report;
+}
+
+}  // namespace
+
 Result<FlowReport> smooth(rfs_mesh::Mesh& mesh, const FlowOptions& options, const Context& context,
                           const Constraints& constraints) {
   const auto full = complete(options);
@@ -171,14 +206,11 @@ Result<FlowReport> smooth(rfs_mesh::Mesh& mesh, const FlowOptions& options, cons
   auto result = guarded([&] {
     FlowReport report;
     in_arena(context, [&] {
-      auto flow = make_flow(mesh, full.value(), context, constraints);
-      if (!flow.ok()) throw Failure(flow.error());
-      const int steps = *full.value().iterations;
-      for (; report.steps < steps; ++report.steps) {
-        context.report(options.flow, double(report.steps) / steps);
-        flow.value()->step(mesh, context);
-      }
-      report.solver_iterations = flow.value()->solver_iterations();
+      const FlowOptions& o = full.value();
+      const bool any_order = !o.update || *o.update == "simultaneous";
+      report = any_order && *o.iterations > 0 && is_scattered(mesh, context)
+                   ? run_reordered(mesh, o, context, constraints)
+                   : run(mesh, o, context, constraints);
       report.largest_move = reduce_blocks(
           context, original.size(), 0.0,
           [&](std::size_t begin, std::size_t end) {
