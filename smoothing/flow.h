@@ -127,7 +127,7 @@ struct FlowOptions {
 /// What a run did.
 struct FlowReport {
   int steps = 0;
-  int solver_iterations = 0;  ///< implicit flows: conjugate gradient iterations, all steps together
+  int solver_iterations = 0;  ///< implicit flows: products with the matrix, all steps together
   double largest_move = 0;    ///< world units
 };
 
@@ -160,7 +160,7 @@ class Flow {
   /// Told that the connectivity changed (edge swaps) while the vertices stayed the same.
   virtual void connectivity_changed(const rfs_mesh::Mesh&, const Context&) {}
 
-  /// Conjugate gradient iterations of all steps so far; 0 for explicit flows.
+  /// Solver iterations (products with the matrix) of all steps so far; 0 for explicit flows.
   virtual int solver_iterations() const { return 0; }
 
   /// Whether the flow keeps points that it cannot place where they are; if not, the caller limits moves.

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "rfsmooth/rfs_mesh/parallel.h"
+#include "rfsmooth/smoothing/chebyshev.h"
 #include "rfsmooth/smoothing/conjugate_gradients.h"
 #include "rfsmooth/smoothing/fairing_matrix.h"
 
@@ -66,15 +67,19 @@ class FairingSolve {
     struct Sums {
       Vector3d x = Vector3d::Zero();
       double mass = 0;
+      std::size_t other_mass = 0;  ///< vertices whose mass is not their degree
       Sums& operator+=(const Sums& other) {
         x += other.x;
         mass += other.mass;
+        other_mass += other.other_mass;
         return *this;
       }
     };
     const Sums sums = sum_over(context_, n_, Sums{}, [&](std::size_t i) {
-      return Sums{o_[i], s_.op.mass[i]};
+      const double degree = double(std::max<std::size_t>(1, s_.rows.degree(i)));
+      return Sums{o_[i], s_.op.mass[i], s_.op.mass[i] != degree};
     });
+    umbrella_ = s_.op.weight.empty() && sums.other_mass == 0;
     mean_mass_ = sums.mass / double(n_);
     const Vector3d centre = sums.x / double(n_);
     const double size = norm_of([&](std::size_t i) { return Vector3d(data(i) * (o_[i] - centre)); });
@@ -194,6 +199,28 @@ class FairingSolve {
 
   /// Adds a solution of A d = r in single precision to x; r is overwritten.
   void correct(Vectors<Vector4f>& r, double norm, int& iterations) {
+    if (!correct_by_polynomial(r, norm, iterations)) correct_by_iteration(r, norm, iterations);
+  }
+
+  /// For the umbrella with the data's own mass, second order: the degree that it takes is known beforehand.
+  bool correct_by_polynomial(Vectors<Vector4f>& r, double norm, int& iterations) {
+    const bool plain = umbrella_ && s_.data.empty() && s_.strength.empty() && allowed_.all_free();
+    if (!plain || options_.linf || !(s_.a[1] > 0 && s_.a[0] >= 0) || s_.a[2] != 0 || s_.a[3] != 0)
+      return false;
+    const double reduction = std::max(kSlack * goal_ / norm, kCorrection);
+    constexpr int kMost = 2000;
+    const auto polynomial = inverse_polynomial(s_.a[0], s_.a[1], reduction,
+                                               std::min(kMost, 2 * (options_.max_iterations - iterations)));
+    if (!polynomial) return false;
+    iterations += int(polynomial->size() + 1) / 2;
+    Vectors<Vector4f> d(n_);
+    for_each_index(context_, n_, [&](std::size_t i) { r[i] *= float(mean_mass_ / s_.op.mass[i]); });
+    apply_polynomial(*polynomial, s_.rows, r, d, context_);
+    for_each_index(context_, n_, [&](std::size_t i) { move(i, length_ * d[i].head<3>().cast<double>()); });
+    return true;
+  }
+
+  void correct_by_iteration(Vectors<Vector4f>& r, double norm, int& iterations) {
     if (!matrix_) {
       matrix_.emplace(s_, mean_mass_, context_);
       scales_ = {matrix_->inverse_diagonal(),
@@ -249,6 +276,7 @@ class FairingSolve {
   const SolverOptions& options_;
   const Context& context_;
   std::size_t n_;
+  bool umbrella_ = false;
   double mean_mass_ = 1, goal_ = 0, length_ = 1, norm_unit_ = 1;
   Positions level_;  ///< of the residual
   std::optional<FairingMatrix<Vector4f>> matrix_;

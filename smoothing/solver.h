@@ -13,6 +13,10 @@
 ///
 ///     |A x - b| < tolerance |b|    in the inner product of M^-1 (l2), or per vertex over m_i (linf)
 ///
+/// Corrections are computed in single precision, residuals and positions in double; where single precision
+/// does not suffice, all is double. Second order with the umbrella and nothing else (Q = M, C = 1, no
+/// constraint, l2) is solved by a polynomial instead (chebyshev.h), several times faster.
+///
 /// Determinism: fixed-block reductions, the same bits for any number of threads. Never returns a non-finite
 /// position: a breakdown (a singular or indefinite system) stops at the last finite iterate and says so.
 #pragma once
@@ -33,7 +37,7 @@ struct SolverOptions {
 };
 
 struct SolverReport {
-  int iterations = 0;
+  int iterations = 0;   ///< products with A in the iteration
   double residual = 0;  ///< reached, relative, in the norm of the options
   bool converged = false;
 };
