@@ -15,7 +15,9 @@
 /// / (2 |gradV_i|^2) equals (a, n) H n in the limit, and changes the volume by zero to first order for every
 /// a, since the gradients of the area sum to zero. For m = 0 the direction is the gradient of this scheme's
 /// own area. a = 0 on symmetric shapes. Where (a, n) < 0 it is backward diffusion: steps stay few and small.
-/// The mesh must be closed; it is oriented first. lambda in units of h^2.
+/// The mesh is oriented first, as far as it can be. Only a closed one keeps its volume; vertices whose edges
+/// do not all have two faces stay, so that rough meshes and open ones can be smoothed too. lambda in units of
+/// h^2.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -49,6 +51,7 @@ class DirectionalSpeed : public Speed {
     for_each_index(context, n, [&](std::size_t i) {
       area[i].setZero();
       volume[i].setZero();
+      if (!interior_[i]) return;
       for (const Index f : around_[i]) {
         const rfs_mesh::Face& face = faces_[f];
         const int k = face[0] == i ? 0 : face[1] == i ? 1 : 2;
@@ -69,8 +72,9 @@ class DirectionalSpeed : public Speed {
   }
 
   void connectivity_changed(const rfs_mesh::Mesh& mesh, const Context& context) override {
-    faces_ = closed_and_oriented(mesh, "directional diffusion");
+    faces_ = oriented_as_far_as_possible(mesh);
     around_ = vertex_faces(mesh, context);
+    interior_ = interior_vertices(mesh, around_, context);
   }
 
  private:
@@ -119,6 +123,7 @@ class DirectionalSpeed : public Speed {
   Vector3d direction_;
   std::vector<rfs_mesh::Face> faces_;
   rfs_mesh::Adjacency around_;
+  std::vector<char> interior_;
 };
 
 /// "x,y,z" to a unit vector; empty = zero.
@@ -150,7 +155,7 @@ FlowEntry flow_directional() {
   defaults.power = 0;
   defaults.direction = "auto";
   return {"directional",
-          "curvature flow along one direction; keeps the volume of a closed mesh",
+          "curvature flow along one direction; keeps the volume of closed meshes",
           "Zhao-Xu (3), (33)",
           {"iterations", "lambda", "power", "direction"},
           defaults,

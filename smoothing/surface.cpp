@@ -68,14 +68,12 @@ struct Side {
   bool upward;
 };
 
-}  // namespace
-
-std::vector<Face> closed_and_oriented(const rfs_mesh::Mesh& mesh, const char* what) {
+/// Turns the faces so that neighbours across edges of two faces agree and parts face outward. `refuse(why)`
+/// is called where the mesh is not closed, manifold at its edges and orientable; if it returns, that place is
+/// left as it is.
+template <class Refuse>
+std::vector<Face> oriented_faces(const rfs_mesh::Mesh& mesh, Refuse&& refuse) {
   std::vector<Face> faces = mesh.faces;
-  const auto refuse = [what](const std::string& why) {
-    throw Failure({ErrorCode::usage, fmt::format("{} needs a closed, orientable mesh; {}", what, why)});
-  };
-  if (faces.empty()) refuse("this one has no faces");
   std::vector<Side> sides;
   sides.reserve(3 * faces.size());
   for (Index f = 0; f < faces.size(); ++f)
@@ -92,16 +90,21 @@ std::vector<Face> closed_and_oriented(const rfs_mesh::Mesh& mesh, const char* wh
   };
   std::vector<std::array<Link, 3>> links(faces.size());
   std::vector<int> count(faces.size(), 0);
-  for (std::size_t s = 0; s < sides.size(); s += 2) {
+  for (std::size_t s = 0; s < sides.size();) {
     const Side& one = sides[s];
-    const bool paired = s + 1 < sides.size() && sides[s + 1].low == one.low && sides[s + 1].high == one.high;
-    if (!paired) refuse(fmt::format("the edge {}-{} has an odd number of faces", one.low, one.high));
-    if (s + 2 < sides.size() && sides[s + 2].low == one.low && sides[s + 2].high == one.high)
+    std::size_t end = s + 1;
+    while (end < sides.size() && sides[end].low == one.low && sides[end].high == one.high) ++end;
+    if (end - s == 2) {
+      const Side& two = sides[s + 1];
+      const bool same = one.upward == two.upward;
+      links[one.face][count[one.face]++] = {two.face, same};
+      links[two.face][count[two.face]++] = {one.face, same};
+    } else if (end - s > 3 && (end - s) % 2 == 0) {
       refuse(fmt::format("the edge {}-{} has more than two faces", one.low, one.high));
-    const Side& two = sides[s + 1];
-    const bool same = one.upward == two.upward;
-    links[one.face][count[one.face]++] = {two.face, same};
-    links[two.face][count[two.face]++] = {one.face, same};
+    } else {
+      refuse(fmt::format("the edge {}-{} has an odd number of faces", one.low, one.high));
+    }
+    s = end;
   }
   std::vector<signed char> turn(faces.size(), -1);  // -1 unseen, 0 as it is, 1 turned
   std::vector<Index> part;
@@ -109,10 +112,12 @@ std::vector<Face> closed_and_oriented(const rfs_mesh::Mesh& mesh, const char* wh
     if (turn[seed] >= 0) continue;
     part.assign(1, seed);
     turn[seed] = 0;
-    double volume = 0;
+    Vector3d centre = Vector3d::Zero();
     for (std::size_t at = 0; at < part.size(); ++at) {
       const Index f = part[at];
-      for (const Link& link : links[f]) {
+      for (const Index v : faces[f]) centre += mesh.positions[v] / 3;
+      for (int k = 0; k < count[f]; ++k) {
+        const Link& link = links[f][std::size_t(k)];
         const auto wanted = static_cast<signed char>(turn[f] ^ (link.same ? 1 : 0));
         if (turn[link.face] < 0) {
           turn[link.face] = wanted;
@@ -122,16 +127,31 @@ std::vector<Face> closed_and_oriented(const rfs_mesh::Mesh& mesh, const char* wh
         }
       }
     }
-    const Vector3d origin = mesh.positions[faces[seed][0]];
+    centre /= double(part.size());
+    double volume = 0;
     for (const Index f : part) {
-      const Vector3d a = mesh.positions[faces[f][0]] - origin, b = mesh.positions[faces[f][1]] - origin,
-                     c = mesh.positions[faces[f][2]] - origin;
+      const Vector3d a = mesh.positions[faces[f][0]] - centre, b = mesh.positions[faces[f][1]] - centre,
+                     c = mesh.positions[faces[f][2]] - centre;
       volume += (turn[f] != 0 ? -1 : 1) * a.dot(b.cross(c));
     }
     for (const Index f : part)
       if ((turn[f] != 0) != (volume < 0)) std::swap(faces[f][1], faces[f][2]);
   }
   return faces;
+}
+
+}  // namespace
+
+std::vector<Face> closed_and_oriented(const rfs_mesh::Mesh& mesh, const char* what) {
+  const auto refuse = [what](const std::string& why) {
+    throw Failure({ErrorCode::usage, fmt::format("{} needs a closed, orientable mesh; {}", what, why)});
+  };
+  if (mesh.faces.empty()) refuse("this one has no faces");
+  return oriented_faces(mesh, refuse);
+}
+
+std::vector<Face> oriented_as_far_as_possible(const rfs_mesh::Mesh& mesh) {
+  return oriented_faces(mesh, [](const std::string&) {});
 }
 
 }  // namespace rfsmooth::smoothing

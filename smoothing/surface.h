@@ -24,4 +24,8 @@ double angle_deficit(const rfs_mesh::Mesh& mesh, const rfs_mesh::Adjacency& vert
 /// what needs it.
 std::vector<rfs_mesh::Face> closed_and_oriented(const rfs_mesh::Mesh& mesh, const char* what);
 
+/// The same for any mesh, as far as it goes: neighbours agree across edges of two faces, except where the
+/// mesh has only one side; parts face away from their centre.
+std::vector<rfs_mesh::Face> oriented_as_far_as_possible(const rfs_mesh::Mesh& mesh);
+
 }  // namespace rfsmooth::smoothing
