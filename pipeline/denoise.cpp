@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 #include <fmt/format.h>
 
@@ -41,10 +42,10 @@ class Stopwatch {
 
 /// Smooths the mesh, alternating steps and swaps. Returns whether the flow left points alone that it could
 /// not place.
-bool alternate(rfs_mesh::Mesh& mesh, const DenoiseOptions& options, DenoiseReport& report,
-               const Context& context) {
+bool alternate(rfs_mesh::Mesh& mesh, const DenoiseOptions& options, const std::vector<double>& strength,
+               DenoiseReport& report, const Context& context) {
   const int steps = *options.flow.iterations;
-  const auto flow = value_or_fail(smoothing::make_flow(mesh, options.flow, context));
+  const auto flow = value_or_fail(smoothing::make_flow(mesh, options.flow, context, {{}, strength}));
   for (int step = 0; step < steps; ++step) {
     context.report("smooth", double(step) / steps);
     {
@@ -125,7 +126,17 @@ void commit(double* xyz, std::size_t n, const rfs_mesh::WorkingCloud& cloud, con
   if (report.finite > 0) report.rms_move = std::sqrt(square_sum / double(report.finite));
 }
 
-DenoiseReport run(double* xyz, std::size_t n, const DenoiseOptions& options, const Context& context) {
+/// The strengths of the working points: of rows that share one, the least.
+std::vector<double> working_strengths(const std::vector<double>& strength,
+                                      const rfs_mesh::WorkingCloud& cloud) {
+  std::vector<double> working(strength.empty() ? 0 : cloud.points.size(), 1);
+  for (std::size_t i = 0; i < strength.size(); ++i)
+    if (const Index p = cloud.of_input[i]; p != kNone) working[p] = std::min(working[p], strength[i]);
+  return working;
+}
+
+DenoiseReport run(double* xyz, std::size_t n, const DenoiseOptions& options, const Context& context,
+                  const std::vector<double>& strength) {
   DenoiseReport report;
   report.points = n;
   report.effective = options;
@@ -161,7 +172,7 @@ DenoiseReport run(double* xyz, std::size_t n, const DenoiseOptions& options, con
   DenoiseOptions& effective = report.effective;
   if (effective.flow.flow == "auto" && !effective.flow.noise) effective.flow.noise = report.noise;
   std::vector<double> reach = reaches(mesh, context);
-  if (alternate(mesh, effective, report, context))
+  if (alternate(mesh, effective, working_strengths(strength, cloud), report, context))
     reach.assign(reach.size(), std::numeric_limits<double>::infinity());
   const Positions moved = displacements(cloud.points, mesh.positions, reach, options, context);
   context.check_stop();
@@ -172,7 +183,11 @@ DenoiseReport run(double* xyz, std::size_t n, const DenoiseOptions& options, con
 }  // namespace
 
 Result<DenoiseReport> denoise(double* xyz, std::size_t n, const DenoiseOptions& options,
-                              const Context& context) {
+                              const Context& context, const std::vector<double>& strength) {
+  if (!strength.empty() && strength.size() != n)
+    throw std::invalid_argument("the strengths are not one per row");
+  for (const double s : strength)
+    if (!(s >= 0 && s <= 1)) throw std::invalid_argument("a strength is outside [0, 1]");
   if (const auto valid = validate(options); !valid.ok()) return valid.error();
   DenoiseOptions effective = options;
   auto flow = smoothing::complete(options.flow);
@@ -180,7 +195,7 @@ Result<DenoiseReport> denoise(double* xyz, std::size_t n, const DenoiseOptions& 
   effective.flow = std::move(flow).value();
   return guarded([&] {
     DenoiseReport report;
-    in_arena(context, [&] { report = run(xyz, n, effective, context); });
+    in_arena(context, [&] { report = run(xyz, n, effective, context, strength); });
     return report;
   });
 }

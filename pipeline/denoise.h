@@ -63,10 +63,11 @@ struct DenoiseReport {
 /// stay as they are and influence nothing; rows that share a position move together. Only moved coordinates
 /// are written: a row gets its own value plus the displacement of its working point. On an error or cancel
 /// `xyz` is untouched. Same bytes out for any number of threads and any order of the rows.
-/// Errors: usage, no_usable_points, out_of_memory, cancelled. O(n log n + steps n).
-/// Thread-safe on distinct arrays.
+/// `strength`: n, in [0, 1]: 0 = the row stays, 1 = smoothed fully; empty = all 1 (Desbrun et al. 1999, 2.7).
+/// Errors: usage, no_usable_points, out_of_memory, cancelled. O(n log n + steps n). \throw
+/// std::invalid_argument for strengths of another number or outside [0, 1]. Thread-safe on distinct arrays.
 Result<DenoiseReport> denoise(double* xyz, std::size_t n, const DenoiseOptions& options,
-                              const Context& context);
+                              const Context& context, const std::vector<double>& strength = {});
 
 /// Bytes that `denoise` takes at its peak for n points, the caller's array not counted (an upper bound for
 /// scans; measured, see denoise.cpp).

@@ -75,6 +75,8 @@ class BoundaryCurve : public Flow {
     inner_->connectivity_changed(mesh, context);
   }
   int solver_iterations() const override { return inner_->solver_iterations(); }
+  bool limits_moves() const override { return inner_->limits_moves(); }
+  std::optional<AutomaticReport> automatic() const override { return inner_->automatic(); }
 
  private:
   std::unique_ptr<Flow> inner_;
@@ -104,6 +106,8 @@ class VirtualVertices : public Flow {
     inner_->connectivity_changed(closed_, context);
   }
   int solver_iterations() const override { return inner_->solver_iterations(); }
+  bool limits_moves() const override { return inner_->limits_moves(); }
+  std::optional<AutomaticReport> automatic() const override { return inner_->automatic(); }
 
  private:
   /// Rebuilds closed_; a flow under way keeps its number of vertices, so later loops beyond it stay open.

@@ -71,6 +71,8 @@ class Constrained : public Flow {
     inner_->connectivity_changed(mesh, context);
   }
   int solver_iterations() const override { return inner_->solver_iterations(); }
+  bool limits_moves() const override { return inner_->limits_moves(); }
+  std::optional<AutomaticReport> automatic() const override { return inner_->automatic(); }
 
  private:
   std::unique_ptr<Flow> inner_;

@@ -67,6 +67,8 @@ class Preserving : public Flow {
     connect(mesh);
   }
   int solver_iterations() const override { return inner_->solver_iterations(); }
+  bool limits_moves() const override { return inner_->limits_moves(); }
+  std::optional<AutomaticReport> automatic() const override { return inner_->automatic(); }
   bool applies_constraints() const override { return inner_->applies_constraints(); }
 
  private:

@@ -144,7 +144,7 @@ class FairingSolve {
   template <bool kWeighted>
   Vector3d difference(const Positions& x, std::size_t i) const {
     const Index* const items = s_.rows.items.data();
-    const Vector3d own = x[i];
+    const Vector3d& own = x[i];
     Vector3d sum = Vector3d::Zero();
     for (Index k = s_.rows.start[i]; k < s_.rows.start[i + 1]; ++k) {
       if constexpr (kWeighted)
@@ -167,7 +167,7 @@ class FairingSolve {
     for (int k = 1; k < 4; ++k)
       if (s_.a[std::size_t(k)] != 0) order = k + 1;
     const auto keep = [&](std::size_t i, const Vector3d& free) {
-      const Vector3d r = allowed_(i, free);
+      Vector3d r = allowed_(i, free);
       store(i, r);
       return r;
     };

@@ -38,6 +38,8 @@ class Threshold : public Flow {
     inner_->connectivity_changed(mesh, context);
   }
   int solver_iterations() const override { return inner_->solver_iterations(); }
+  bool limits_moves() const override { return inner_->limits_moves(); }
+  std::optional<AutomaticReport> automatic() const override { return inner_->automatic(); }
   bool applies_constraints() const override { return inner_->applies_constraints(); }
 
  private:

@@ -5,6 +5,7 @@
 
 #include "rfsmooth/pipeline/cli/cloud_jobs.h"
 #include "rfsmooth/pipeline/cli/command.h"
+#include "rfsmooth/pipeline/cli/constraint_fields.h"
 #include "rfsmooth/pipeline/cli/memory.h"
 #include "rfsmooth/pipeline/denoise.h"
 
@@ -16,11 +17,21 @@ using nlohmann::ordered_json;
 
 struct Options {
   pipeline::DenoiseOptions denoise;
+  std::optional<std::string> strength_field;
   JobOptions job;
+
+  template <class Self, class Visit>
+  static void describe(Self& self, Visit&& visit) {
+    pipeline::DenoiseOptions::describe(self.denoise, visit);
+    visit(OptionInfo{"strength-field", "field in [0, 1] of the input: 0 stays, 1 is smoothed fully", ""},
+          self.strength_field);
+  }
 };
 
 void enter(const pipeline::DenoiseReport& done, const Options& options, ordered_json& entry) {
-  entry["options"] = effective_options(done.effective, options.job.files);
+  Options used = options;
+  used.denoise = done.effective;
+  entry["options"] = effective_options(used, options.job.files);
   entry["counts"] = {{"points", done.points},       {"finite", done.finite},   {"distinct", done.distinct},
                      {"moved", done.moved},         {"faces", done.faces},     {"edges", done.edges},
                      {"sdg_edges", done.sdg_edges}, {"bridges", done.bridges}, {"faceless", done.faceless},
@@ -48,7 +59,9 @@ std::string denoise_cloud(const Options& options, pipeline::io::Cloud& cloud, co
   const std::size_t n = cloud.size();
   if (const auto error = refuse_without_memory(job.input, pipeline::denoise_memory(n))) throw Failure(*error);
   std::vector<double> xyz = pipeline::io::positions(cloud, context);
-  const auto result = pipeline::denoise(xyz.data(), n, options.denoise, context);
+  const std::vector<double> strength =
+      options.strength_field ? strengths(cloud, *options.strength_field, context) : std::vector<double>{};
+  const auto result = pipeline::denoise(xyz.data(), n, options.denoise, context, strength);
   if (!result.ok()) throw Failure({result.error().code, job.input + ": " + result.error().message});
   const pipeline::DenoiseReport& done = result.value();
   pipeline::io::set_positions(cloud, xyz.data(), context);
@@ -84,7 +97,7 @@ Command denoise_command() {
       "exactly two names are taken, IN and OUT; with -o every name is an input. Existing files are replaced "
       "only "
       "with --force. Ctrl-C stops within a second and leaves no file.";
-  collect(options->denoise, command.options);
+  collect(*options, command.options);
   collect(options->job, command.options);
   polish(command);
   command.run = [options](const Invocation& typed) { return run(*options, typed); };

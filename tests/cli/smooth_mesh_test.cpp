@@ -87,6 +87,25 @@ TEST_F(SmoothMesh, StrengthFieldHoldsBackAndFixedFieldFixes) {
   EXPECT_NE(fixed[3 * kSide + 4][2], before[3 * kSide + 4][2]);
 }
 
+TEST_F(SmoothMesh, DenoiseTakesStrengthsFromAFieldToo) {
+  const std::string in = bumpy_grid("property float s\n", [](int i, int) { return i < 4 ? " 0" : " 1"; });
+  put("in.ply", in);
+  for (const char* flow : {"hc", "implicit"}) {
+    const Ran ran = run({"denoise", "in.ply", "out.ply", "--force", "--flow", flow, "--strength-field", "s"});
+    ASSERT_EQ(ran.code, 0) << ran.err;
+    const auto before = rows_of(in, kSide * kSide), after = rows_of(take("out.ply"), kSide * kSide);
+    double moved = 0;
+    for (std::size_t v = 0; v < before.size(); ++v) {
+      if (v / kSide < 4) {
+        EXPECT_EQ(after[v], before[v]) << v;
+      }
+      moved = std::max(moved, std::abs(after[v][2] - before[v][2]));
+    }
+    EXPECT_GT(moved, 0.01) << flow;
+  }
+  EXPECT_EQ(run({"denoise", "in.ply", "new.ply", "--strength-field", "t"}).code, 2);
+}
+
 TEST_F(SmoothMesh, AxisAndPlaneFieldsLetVerticesSlide) {
   const auto before = rows_of(bumpy_grid(""), kSide * kSide);
   const std::string in = bumpy_grid("property int a\nproperty int p\n", [](int i, int) {
