@@ -46,7 +46,7 @@ class Directions {
 
   Vector3d operator()(std::size_t row) const {
     if (normal_[0].empty()) return all_;
-    const Vector3d normal(normal_[0][row], normal_[1][row], normal_[2][row]);
+    Vector3d normal(normal_[0][row], normal_[1][row], normal_[2][row]);
     if (!normal.allFinite() || normal == Vector3d::Zero())
       throw Failure({ErrorCode::usage, fmt::format("point {} is to slide but has no normal", row)});
     return normal;

@@ -14,6 +14,7 @@
 #include "rfsmooth/rfs_mesh/measure.h"
 #include "rfsmooth/smoothing/refine.h"
 #include "rfsmooth/smoothing/ridges.h"
+#include "rfsmooth/smoothing/surface.h"
 
 namespace rfsmooth::cli {
 
@@ -91,6 +92,15 @@ std::vector<rfs_mesh::Edge> sharp_edges(const rfs_mesh::Mesh& mesh, double degre
   return sharp;
 }
 
+/// Turns faces that do not agree with their neighbours, so that ridges and ravines are told apart. Where all
+/// agree, the side that the file chose stays.
+void make_agree(rfs_mesh::Mesh& mesh) {
+  std::vector<rfs_mesh::Face> turned = smoothing::oriented_as_far_as_possible(mesh);
+  std::size_t others = 0;
+  for (std::size_t f = 0; f < turned.size(); ++f) others += turned[f] != mesh.faces[f];
+  if (others > 0 && others < turned.size()) mesh.faces = std::move(turned);
+}
+
 std::string smooth_file(const Options& options, pipeline::io::Cloud& cloud, const Job& job,
                         const Context& context, Console& console, std::vector<pipeline::StageTime>& stages,
                         ordered_json& entry) {
@@ -133,6 +143,7 @@ std::string smooth_file(const Options& options, pipeline::io::Cloud& cloud, cons
   if (options.after.ridges) {
     if (cloud.format == pipeline::io::Format::off)
       throw Failure({ErrorCode::usage, job.input + ": OFF cannot hold the field of --ridges; use PLY"});
+    make_agree(file.mesh);
     const std::vector<int> kind =
         smoothing::ridges_and_ravines(file.mesh, options.after.ridge_curvature, context);
     std::vector<double> field(cloud.size(), 0);

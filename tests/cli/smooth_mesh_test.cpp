@@ -159,6 +159,24 @@ TEST_F(SmoothMesh, RidgesAreWrittenAsAField) {
   EXPECT_GT(marked, 0);
   EXPECT_EQ(after[0][3], 0);
   EXPECT_EQ(after[4 * kSide + 4][3], 1);
+
+  // The same with a third of the faces turned over.
+  std::string mixed = bumpy_grid("");
+  std::istringstream lines(mixed.substr(mixed.find("end_header\n") + 11));
+  std::string text = mixed.substr(0, mixed.find("end_header\n") + 11), line;
+  for (int row = 0; std::getline(lines, line); ++row) {
+    std::istringstream words(line);
+    std::string n, a, b, c;
+    words >> n >> a >> b >> c;
+    text += row >= kSide * kSide && row % 3 == 0 ? n + " " + a + " " + c + " " + b + "\n" : line + "\n";
+  }
+  const auto again = smoothed(text, {"--iterations", "0", "--ridges", "--ridge-curvature", "0.3"});
+  bool same = true, opposite = true;  // an open sheet has no outside
+  for (std::size_t v = 0; v < after.size(); ++v) {
+    same = same && again[v][3] == after[v][3];
+    opposite = opposite && (again[v][3] != 0) == (after[v][3] != 0);
+  }
+  EXPECT_TRUE(same || opposite);
 }
 
 }  // namespace
