@@ -61,7 +61,9 @@ bool alternate(rfs_mesh::Mesh& mesh, const DenoiseOptions& options, const std::v
   }
   context.report("smooth", 1);
   if (const auto chosen = flow->automatic()) {
+    report.noise = chosen->noise;
     report.noise_left = chosen->left;
+    report.effective.flow.noise = chosen->noise;
     report.guide_strength = chosen->guide_strength;
   }
   return flow->limits_moves();
@@ -169,10 +171,8 @@ DenoiseReport run(double* xyz, std::size_t n, const DenoiseOptions& options, con
   report.edges = mesh.edge_count();
 
   report.noise_left = report.noise;
-  DenoiseOptions& effective = report.effective;
-  if (effective.flow.flow == "auto" && !effective.flow.noise) effective.flow.noise = report.noise;
   std::vector<double> reach = reaches(mesh, context);
-  if (alternate(mesh, effective, working_strengths(strength, cloud), report, context))
+  if (alternate(mesh, options, working_strengths(strength, cloud), report, context))
     reach.assign(reach.size(), std::numeric_limits<double>::infinity());
   const Positions moved = displacements(cloud.points, mesh.positions, reach, options, context);
   context.check_stop();

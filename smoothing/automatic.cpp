@@ -23,10 +23,12 @@ constexpr double kFewest = 16;            // m_0 at small noise: a quadric has s
 constexpr double kWidest = 1600;          // the widest patches, and
 constexpr double kWidestShare = 4;        // at least this many times m_0
 constexpr double kStrayFrom = 5;          // sigma
-constexpr double kNoNoise = 0.05;         // spacings: less than this is left alone
-constexpr std::size_t kTooFew = 32;       // points
+
+constexpr double kNoNoise = 0.05;     // spacings: less than this is left alone
+constexpr std::size_t kTooFew = 32;   // points
 constexpr std::size_t kOwnMean = 60;  // from this many members on, patches average; below, near neighbours do
 constexpr double kNearEvidence = 24;  // independent points in two near means, halved
+constexpr double kTolerated = 0.15;   // sigma^2: what a near mean scatters by without meaning anything
 constexpr double kPatchEvidence = 0.8;  // the same of two patch means, per member
 
 /// A running mixture of predictions with weights exp(log_weight), rescaled when a larger one comes.
@@ -65,7 +67,6 @@ Positions fair(const rfs_mesh::Mesh& mesh, double strength, const Context& conte
 void add_scale(const HeightField& field, std::size_t members, const std::vector<Index>& seeds,
                const std::vector<double>& sigma, std::vector<double>& before, Mixture& mixture,
                const Context& context) {
-  constexpr double kNeverChosen = 700;  // exp(-700) is still a number
   const Patches patches(field, members, seeds, sigma, context);
   const Prediction prediction = patches.predict(context);
   std::vector<double> difference(field.size());
@@ -75,12 +76,16 @@ void add_scale(const HeightField& field, std::size_t members, const std::vector<
     difference[i] = risk - before[i];
     before[i] = risk;
   });
+  // A wide patch is judged over its own width, but must not be far off anywhere near the point either: the
+  // few points that it misses by sigmas would be outvoted.
+  std::vector<double> near = field.local_mean(field.local_mean(difference, context), context);
   const bool wide = members >= kOwnMean;
-  for (int twice = 0; twice < 2; ++twice)
-    difference = wide ? patches.mean(difference, context) : field.local_mean(difference, context);
-  const double evidence = wide ? kPatchEvidence * double(members) : kNearEvidence;
+  if (wide) difference = patches.mean(patches.mean(difference, context), context);
   for_each_index(context, field.size(), [&](std::size_t i) {
-    mixture.log_weight[i] = std::max(mixture.log_weight[i] - evidence * difference[i], -kNeverChosen);
+    const double against = wide ? kPatchEvidence * double(members) * difference[i] +
+                                      kNearEvidence * std::max(0.0, near[i] - kTolerated)
+                                : kNearEvidence * near[i];
+    mixture.log_weight[i] -= against;
     mixture.add(i, prediction);
   });
 }
@@ -90,8 +95,7 @@ void add_scale(const HeightField& field, std::size_t members, const std::vector<
 Positions automatic_smoothing(const rfs_mesh::Mesh& mesh, double sigma, double spacing,
                               AutomaticReport& report, const Context& context) {
   const std::size_t n = mesh.positions.size();
-  report = {};
-  report.left = sigma;
+  report = {sigma, 0, sigma, 0};
   if (n < kTooFew || !(sigma > kNoNoise * spacing)) return mesh.positions;
   const double share = sigma / spacing;
   report.guide_strength = kGuide * share * share;

@@ -1,5 +1,6 @@
 /// The automatic flow (automatic.h): strength chosen at every point from the data.
 #include "rfsmooth/rfs_mesh/local_surface.h"
+#include "rfsmooth/rfs_mesh/noise.h"
 #include "rfsmooth/rfs_mesh/parallel.h"
 #include "rfsmooth/smoothing/automatic.h"
 #include "rfsmooth/smoothing/flow.h"
@@ -18,10 +19,11 @@ class AutomaticFlow : public Flow {
     {
       const rfs_mesh::SpatialIndex index(mesh.positions, context);
       spacing = mean_spacing(mesh.positions, index.nearest(1, context), context);
-      sigma = noise_ ? *noise_ : noise_scale(index, context).sigma;
+      sigma = noise_ ? *noise_ : rfs_mesh::measure_noise(index, context).sigma;
     }
     report_.emplace();
     mesh.positions = automatic_smoothing(mesh, strength_ * sigma, spacing, *report_, context);
+    report_->noise = sigma;
   }
 
   bool limits_moves() const override { return true; }

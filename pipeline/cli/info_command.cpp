@@ -1,4 +1,5 @@
 /// rfsmooth info: what a file holds.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -9,6 +10,7 @@
 #include "rfsmooth/pipeline/cli/command.h"
 #include "rfsmooth/pipeline/cli/console.h"
 #include "rfsmooth/rfs_mesh/neighbors.h"
+#include "rfsmooth/rfs_mesh/noise.h"
 #include "rfsmooth/rfs_mesh/parallel.h"
 #include "rfsmooth/rfs_mesh/points.h"
 
@@ -32,8 +34,8 @@ struct Options {
 /// Finite and distinct points, bounding box, mean distance to the nearest other point.
 ordered_json measure(const pipeline::io::Cloud& cloud, const Context& context) {
   const std::vector<double> xyz = pipeline::io::positions(cloud, context);
-  ordered_json json = {
-      {"finite", 0}, {"distinct", 0}, {"low", nullptr}, {"high", nullptr}, {"spacing", nullptr}};
+  ordered_json json = {{"finite", 0},        {"distinct", 0},    {"low", nullptr},        {"high", nullptr},
+                       {"spacing", nullptr}, {"noise", nullptr}, {"noise_field", nullptr}};
   const auto working = rfs_mesh::make_working_cloud(xyz.data(), cloud.size(), context);
   if (!working.ok()) {
     if (working.error().code == ErrorCode::no_usable_points) return json;
@@ -58,6 +60,11 @@ ordered_json measure(const pipeline::io::Cloud& cloud, const Context& context) {
     const double sum = sum_over(context, points.size(), 0.0,
                                 [&](std::size_t i) { return (points[i] - points[nearest[i][0]]).norm(); });
     json["spacing"] = sum / double(points.size());
+    rfs_mesh::NoiseField noise = rfs_mesh::measure_noise(index, context);
+    json["noise"] = noise.sigma;
+    std::sort(noise.local.begin(), noise.local.end());
+    for (const std::size_t tenth : {1, 5, 9})
+      json["noise_field"].push_back(noise.local[tenth * (noise.local.size() - 1) / 10]);
   });
   return json;
 }
@@ -86,6 +93,10 @@ void print_text(const ordered_json& info) {
   if (!info["spacing"].is_null())
     fmt::print("  spacing   {:.6g} (mean distance to the nearest other point)\n",
                info["spacing"].get<double>());
+  if (!info["noise"].is_null())
+    fmt::print(
+        "  noise     {:.6g} (standard deviation along the normal; over the cloud {} from calm to loud)\n",
+        info["noise"].get<double>(), vector_text(info["noise_field"]));
   fmt::print("  fields   ");
   for (const auto& field : info["fields"]) {
     fmt::print(" {}:{}", field["name"].get<std::string>(), field["type"].get<std::string>());

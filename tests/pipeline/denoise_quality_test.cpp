@@ -40,7 +40,7 @@ class DenoiseQuality : public ::testing::TestWithParam<const char*> {
     std::vector<double> xyz = noisy();
     pipeline::DenoiseOptions options;
     options.flow.flow = flow;
-    options.flow.iterations = 10;
+    if (flow != "auto") options.flow.iterations = 10;
     const auto report = pipeline::denoise(xyz.data(), xyz.size() / 3, options, {});
     EXPECT_TRUE(report.ok());
     return errors(*shape_, xyz);
@@ -52,6 +52,12 @@ TEST_P(DenoiseQuality, HcTakesTheNoiseAndKeepsTheVolume) {
   const Errors before = errors(*shape_, noisy()), hc = after("hc");
   EXPECT_LT(hc.mean_square, 0.4 * before.mean_square);
   EXPECT_LT(std::abs(hc.volume_change), 0.01);
+}
+
+TEST_P(DenoiseQuality, TheAutomaticFlowLeavesLessThanHalfOfWhatHcLeaves) {
+  const Errors automatic = after("auto");
+  EXPECT_LT(automatic.mean_square, 0.5 * after("hc").mean_square);
+  EXPECT_LT(std::abs(automatic.volume_change), 0.01);
 }
 
 TEST_P(DenoiseQuality, TheLaplacianShrinksVisiblyMore) {

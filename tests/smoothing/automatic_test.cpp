@@ -1,0 +1,158 @@
+#include "rfsmooth/smoothing/automatic.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "rfsmooth/rfs_mesh/neighbors.h"
+#include "rfsmooth/smoothing/patches.h"
+#include "rfsmooth/smoothing/stranded.h"
+#include "rfsmooth/smoothing/thinning.h"
+
+#include "support/meshes.h"
+
+using namespace rfsmooth;
+using namespace rfsmooth::smoothing;
+
+namespace {
+
+double spacing(const Positions& points) {
+  const rfs_mesh::SpatialIndex index(points, {});
+  const auto near = index.nearest(1, {});
+  double sum = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) sum += (points[near[i][0]] - points[i]).norm();
+  return sum / double(points.size());
+}
+
+rfs_mesh::Mesh noisy_sphere(double share, double& sigma) {
+  rfs_mesh::Mesh mesh = support::icosphere(4);
+  sigma = share * spacing(mesh.positions);
+  support::add_noise(mesh, sigma, 11);
+  return mesh;
+}
+
+std::vector<Index> all(std::size_t n) {
+  std::vector<Index> indices(n);
+  std::iota(indices.begin(), indices.end(), Index{0});
+  return indices;
+}
+
+TEST(Automatic, LeavesATenthOfTheErrorOfANoisySphereAndKnowsWhatIsLeft) {
+  for (const double share : {0.2, 0.5, 1.0}) {
+    double sigma = 0;
+    const rfs_mesh::Mesh mesh = noisy_sphere(share, sigma);
+    AutomaticReport report;
+    const Positions smooth = automatic_smoothing(mesh, sigma, spacing(mesh.positions), report, {});
+    const double left = support::rms_off_unit_sphere(smooth);
+    EXPECT_LT(left, 0.33 * support::rms_off_unit_sphere(mesh.positions)) << share;  // of the square: a tenth
+    EXPECT_LT(report.left, 0.5 * sigma) << share;
+    EXPECT_GT(report.guide_strength, 0);
+  }
+}
+
+TEST(Automatic, NoNoiseIsTheIdentity) {
+  const rfs_mesh::Mesh mesh = support::icosphere(4);
+  AutomaticReport report;
+  EXPECT_EQ(automatic_smoothing(mesh, 0, spacing(mesh.positions), report, {}), mesh.positions);
+  EXPECT_EQ(automatic_smoothing(mesh, 0.04 * spacing(mesh.positions), spacing(mesh.positions), report, {}),
+            mesh.positions);
+}
+
+TEST(Automatic, NoPointMovesFartherThanFiveSigma) {
+  double sigma = 0;
+  rfs_mesh::Mesh mesh = noisy_sphere(0.5, sigma);
+  mesh.positions[100] *= 1.5;  // a stray
+  AutomaticReport report;
+  const Positions smooth = automatic_smoothing(mesh, sigma, spacing(mesh.positions), report, {});
+  for (std::size_t i = 0; i < smooth.size(); ++i)
+    EXPECT_LE((smooth[i] - mesh.positions[i]).norm(), 5 * sigma * (1 + 1e-12));
+}
+
+TEST(Patches, PredictAQuadricExactlyWhateverTheSharesOfThePointsAre) {
+  Positions guide, data;
+  for (int i = 0; i < 30; ++i)
+    for (int j = 0; j < 30; ++j) {
+      const double x = i + 0.3 * std::sin(7.0 * j), y = j + 0.3 * std::cos(5.0 * i);
+      guide.emplace_back(x, y, 0);
+      data.emplace_back(x, y, 0.01 * x * x - 0.02 * x * y + 0.3 * y - 1);
+    }
+  const HeightField field(guide, data, {});
+  const std::vector<double> sigma(guide.size(), 1);
+  for (const std::size_t m : {16, 100}) {
+    std::vector<Index> seeds = thin(guide, all(guide.size()), {});
+    const Patches patches(field, m, seeds, sigma, {});
+    const Prediction p = patches.predict({});
+    for (std::size_t i = 0; i < guide.size(); ++i) {
+      ASSERT_TRUE(p.covered[i]);
+      EXPECT_NEAR(p.height[i], field.heights()[i], 1e-4) << m;
+      EXPECT_GT(p.own[i], 0);
+      EXPECT_LT(p.own[i], 1);
+    }
+  }
+}
+
+TEST(Patches, OwnIsTheDerivativeOfAPredictionByThePointsHeight) {
+  Positions guide, data;
+  for (int i = 0; i < 20; ++i)
+    for (int j = 0; j < 20; ++j) {
+      guide.emplace_back(i + 0.2 * std::sin(3.0 * j), j + 0.2 * std::cos(4.0 * i), 0);
+      data.push_back(guide.back() + Eigen::Vector3d(0, 0, 0.01 * std::sin(1.7 * i * j)));
+    }
+  // Noise so large that no patch has residuals above it: the weights of the patches stay as they are.
+  const std::vector<double> sigma(guide.size(), 10);
+  const std::vector<Index> seeds = thin(guide, all(guide.size()), {});
+  const std::size_t i = 207;
+  const double step = 0.5;
+  const HeightField field(guide, data, {});
+  const Prediction before = Patches(field, 24, seeds, sigma, {}).predict({});
+  data[i].z() += step;
+  const HeightField lifted(guide, data, {});
+  const Prediction after = Patches(lifted, 24, seeds, sigma, {}).predict({});
+  const double side = field.normals()[i].z();
+  EXPECT_NEAR(side * (after.height[i] - before.height[i]) / (side * step * side), before.own[i], 1e-4);
+}
+
+TEST(Patches, MeanOfAConstantIsTheConstant) {
+  const rfs_mesh::Mesh mesh = support::icosphere(3);
+  const HeightField field(mesh.positions, mesh.positions, {});
+  const std::vector<double> sigma(field.size(), 1), seven(field.size(), 7);
+  const Patches patches(field, 40, thin(mesh.positions, all(field.size()), {}), sigma, {});
+  for (const double v : patches.mean(seven, {})) EXPECT_NEAR(v, 7, 1e-5);
+  for (const double v : field.local_mean(seven, {})) EXPECT_NEAR(v, 7, 1e-12);
+}
+
+TEST(Thinning, KeepsAnIndependentSetThatEveryPointIsNearTo) {
+  const rfs_mesh::Mesh mesh = [] {
+    rfs_mesh::Mesh m = support::icosphere(4);
+    support::add_noise(m, 0.01, 2);
+    return m;
+  }();
+  const std::size_t n = mesh.positions.size();
+  const std::vector<Index> kept = thin(mesh.positions, all(n), {});
+  EXPECT_TRUE(std::is_sorted(kept.begin(), kept.end()));
+  EXPECT_GT(kept.size(), n / 5);
+  EXPECT_LT(kept.size(), n / 2);
+  const std::set<Index> in(kept.begin(), kept.end());
+  const rfs_mesh::SpatialIndex index(mesh.positions, {});
+  const auto near = index.nearest(3, {});
+  for (const Index k : kept)
+    for (const Index j : near[k]) EXPECT_EQ(in.count(j), 0u);
+  EXPECT_TRUE(thin(mesh.positions, {}, {}).empty());
+  EXPECT_EQ(thin(mesh.positions, {4}, {}), std::vector<Index>{4});
+}
+
+TEST(Stranded, IslandsBesideTheSurfaceAreLanded) {
+  rfs_mesh::Mesh mesh = support::icosphere(5);
+  for (std::size_t i = 0; i < 2000; i += 100) mesh.positions[i] *= 1.1;
+  Positions guide = mesh.positions;
+  EXPECT_GE(land_stranded(mesh, 0.5, guide, {}), 20u);
+  for (std::size_t i = 0; i < 2000; i += 100) EXPECT_NEAR(guide[i].norm(), 1, 0.01);
+  guide = mesh.positions;
+  land_stranded(mesh, 0.05, guide, {});
+  for (std::size_t i = 0; i < 2000; i += 100) EXPECT_EQ(guide[i], mesh.positions[i]) << "too far: a stray";
+}
+
+}  // namespace
