@@ -1,4 +1,7 @@
 // Why the library differs from what the papers print: each printed formula, and what it does.
+#include <cmath>
+
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
@@ -111,6 +114,27 @@ TEST(ScaleDependent, IsTwiceTheUmbrellaForUnitEdges) {
   apply(mesh.one_ring, scale_dependent(mesh, {}), mesh.positions, scale, {});
   const Positions one = umbrella_of(mesh, mesh.positions);
   for (std::size_t i = 0; i < one.size(); ++i) EXPECT_LT((scale[i] - 2 * one[i]).norm(), 1e-12);
+}
+
+/// The largest eigenvalue of the umbrella I - T, by its symmetric form.
+double largest_eigenvalue(const Mesh& mesh) {
+  const auto n = Eigen::Index(mesh.positions.size());
+  Eigen::MatrixXd L = Eigen::MatrixXd::Identity(n, n);
+  for (Index i = 0; i < n; ++i)
+    for (const Index j : mesh.one_ring[i])
+      L(i, j) -= 1 / std::sqrt(double(mesh.one_ring.degree(i)) * double(mesh.one_ring.degree(j)));
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(L, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff();
+}
+
+// Desbrun prints the umbrella's spectrum as [-1, 0]: explicit steps would then be stable up to 2.
+TEST(Umbrella, TheSpectrumReachesOneAndAHalfOnARegularMeshAndTwoOnABipartiteGraph) {
+  EXPECT_NEAR(largest_eigenvalue(support::torus(12, 12, 0.4)), 1.5, 1e-9);
+  Mesh ring;  // an even cycle of loose edges
+  for (Index i = 0; i < 8; ++i) ring.positions.emplace_back(std::cos(i), std::sin(i), 0);
+  for (Index i = 0; i < 7; ++i) ring.loose_edges.push_back({i, i + 1});
+  ring.loose_edges.insert(ring.loose_edges.begin() + 1, {0, 7});
+  rebuild_adjacency(ring, {});
+  EXPECT_NEAR(largest_eigenvalue(ring), 2, 1e-12);
 }
 
 }  // namespace
