@@ -95,7 +95,8 @@ void add_scale(const HeightField& field, std::size_t members, const std::vector<
 Positions automatic_smoothing(const rfs_mesh::Mesh& mesh, double sigma, double spacing,
                               AutomaticReport& report, const Context& context) {
   const std::size_t n = mesh.positions.size();
-  report = {sigma, 0, sigma, 0};
+  report = {};
+  report.noise = report.left = sigma;
   if (n < kTooFew || !(sigma > kNoNoise * spacing)) return mesh.positions;
   const double share = sigma / spacing;
   report.guide_strength = kGuide * share * share;

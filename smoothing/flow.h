@@ -25,6 +25,7 @@ struct FlowOptions {
   std::optional<double>
       strength;                  ///< auto: 0 = nothing, 1 = as the noise asks for, 2 = as for twice the noise
   std::optional<double> noise;   ///< auto: standard deviation along the normal, world units; empty = measured
+  std::optional<bool> equalize;  ///< auto: evens the points out along the surface afterwards
   std::optional<double> lambda;  ///< step length of explicit flows, dimensionless
   std::optional<double> mu;      ///< Taubin: length of the inflating step, > lambda
   std::optional<double> dt;      ///< time step of implicit flows, dimensionless, any size
@@ -70,6 +71,9 @@ struct FlowOptions {
           self.strength);
     visit(OptionInfo{"noise", "auto: its standard deviation along the normal", "world units", 0, 1e300},
           self.noise);
+    visit(
+        OptionInfo{"equalize", "auto: even the points out along the surface, by half a spacing at most", ""},
+        self.equalize);
     visit(OptionInfo{"lambda", "step length of explicit flows", "", 0, 1}, self.lambda);
     visit(OptionInfo{"mu", "Taubin: length of the inflating step", "", 0, 2}, self.mu);
     visit(OptionInfo{"dt", "time step of implicit flows", "", 0, 1e9}, self.dt);

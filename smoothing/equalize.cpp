@@ -1,0 +1,143 @@
+#include "rfsmooth/smoothing/equalize.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+
+#include "rfsmooth/rfs_mesh/neighbors.h"
+#include "rfsmooth/rfs_mesh/parallel.h"
+
+namespace rfsmooth::smoothing {
+
+namespace {
+
+// Chosen on the development shapes (tests/bench/quality).
+constexpr int kNear = 24;             // neighbours of the frame and its quadric
+constexpr std::size_t kPushers = 12;  // neighbours that push
+constexpr double kReach = 1.9;        // R in local distances between points
+constexpr double kStep = 0.2;         // of R f
+constexpr int kSteps = 4;
+constexpr double kMost = 0.5;         // of the local distance
+constexpr double kSameNormal = 0.85;  // cosine: a neighbour beyond it means an edge
+constexpr double kWidestGap = 2.4;    // radians between neighbours' directions: wider means a rim
+
+/// A point's surface: x(u, v) = p + u t + v b + (c3 u^2 + c4 u v + c5 v^2 + c1 u + c2 v) n.
+struct Frame {
+  Eigen::Vector3d t, b, n;
+  Eigen::Matrix<double, 5, 1> quadric = Eigen::Matrix<double, 5, 1>::Zero();
+  double distance = 0;  ///< between points near here, as on a hexagonal grid
+  bool movable = false;
+
+  Eigen::Vector3d at(const Eigen::Vector3d& p, const Eigen::Vector2d& m) const {
+    const double u = m.x(), v = m.y();
+    return p + u * t + v * b +
+           (quadric[0] * u + quadric[1] * v + quadric[2] * u * u + quadric[3] * u * v + quadric[4] * v * v) *
+               n;
+  }
+};
+
+Eigen::Vector3d plane_normal(const Positions& points, std::size_t i, rfs_mesh::Adjacency::Row near) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (const Index j : near) {
+    const Eigen::Vector3d d = points[j] - points[i];
+    sum += d;
+    spread += d * d.transpose();
+  }
+  spread -= sum * sum.transpose() / double(near.size() + 1);
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>()
+      .computeDirect(spread)
+      .eigenvectors()
+      .col(0)
+      .normalized();
+}
+
+/// Whether the directions to the nearest neighbours leave no wide gap.
+bool surrounded(const Frame& f, const Positions& points, std::size_t i, rfs_mesh::Adjacency::Row near) {
+  std::array<double, kPushers> angles = {};
+  for (std::size_t k = 0; k < kPushers; ++k) {
+    const Eigen::Vector3d d = points[near[k]] - points[i];
+    angles[k] = std::atan2(d.dot(f.b), d.dot(f.t));
+  }
+  std::sort(angles.begin(), angles.end());
+  double widest = angles.front() + 2 * M_PI - angles.back();
+  for (std::size_t k = 1; k < kPushers; ++k) widest = std::max(widest, angles[k] - angles[k - 1]);
+  return widest < kWidestGap;
+}
+
+Frame make_frame(const Positions& points, const std::vector<Eigen::Vector3d>& normals, std::size_t i,
+                 rfs_mesh::Adjacency::Row near) {
+  using Vector5 = Eigen::Matrix<double, 5, 1>;
+  using Matrix5 = Eigen::Matrix<double, 5, 5>;
+  Frame f;
+  f.n = normals[i];
+  const double reach = (points[near[near.size() - 1]] - points[i]).norm();
+  if (!f.n.allFinite() || !(reach > 0)) return f;
+  f.t = f.n.unitOrthogonal();
+  f.b = f.n.cross(f.t);
+  // n points in a disk of radius r, each with the area of a hexagon: d^2 sqrt(3) / 2 = pi r^2 / n.
+  f.distance = reach * std::sqrt(2 * M_PI / std::sqrt(3.0) / double(near.size()));
+  for (std::size_t k = 0; k < kPushers; ++k)
+    if (std::abs(normals[near[k]].dot(f.n)) < kSameNormal) return f;
+  if (!surrounded(f, points, i, near)) return f;
+  Matrix5 a = Matrix5::Zero();
+  Vector5 right = Vector5::Zero();
+  for (const Index j : near) {
+    const Eigen::Vector3d d = (points[j] - points[i]) / reach;
+    if (std::abs(normals[j].dot(f.n)) < kSameNormal) continue;
+    const double u = d.dot(f.t), v = d.dot(f.b), w = 1.1 - d.squaredNorm();
+    const Vector5 g = (Vector5() << u, v, u * u, u * v, v * v).finished();
+    a += w * g * g.transpose();
+    right += w * d.dot(f.n) * g;
+  }
+  a.diagonal().array() += 1e-9;
+  f.quadric = a.llt().solve(right);
+  f.quadric.tail<3>() /= reach;
+  f.movable = f.quadric.allFinite();
+  return f;
+}
+
+}  // namespace
+
+double equalize(Positions& points, double most, const Context& context) {
+  const std::size_t n = points.size();
+  if (n <= std::size_t(kNear) || !(most > 0)) return 0;
+  const rfs_mesh::SpatialIndex index(points, context);
+  const rfs_mesh::NeighborTable near = index.nearest(kNear, context);
+  std::vector<Eigen::Vector3d> normals(n);
+  for_each_index(context, n, [&](std::size_t i) { normals[i] = plane_normal(points, i, near[i]); });
+  std::vector<Frame> frames(n);
+  for_each_index(context, n, [&](std::size_t i) { frames[i] = make_frame(points, normals, i, near[i]); });
+
+  Positions now = points, next = points;
+  std::vector<Eigen::Vector2d> moved(n, Eigen::Vector2d::Zero());
+  for (int step = 0; step < kSteps; ++step) {
+    for_each_index(context, n, [&](std::size_t i) {
+      const Frame& f = frames[i];
+      if (!f.movable) return;
+      const double reach = kReach * f.distance;
+      Eigen::Vector2d force = Eigen::Vector2d::Zero();
+      for (std::size_t k = 0; k < kPushers; ++k) {
+        const Eigen::Vector3d d = now[i] - now[near[i][k]];
+        const double length = d.norm();
+        if (!(length > 0) || length >= reach) continue;
+        force += (1 - length / reach) / length * Eigen::Vector2d(d.dot(f.t), d.dot(f.b));
+      }
+      moved[i] += kStep * reach * force;
+      const double limit = std::min(kMost * f.distance, most);
+      if (const double length = moved[i].norm(); length > limit) moved[i] *= limit / length;
+      next[i] = f.at(points[i], moved[i]);
+    });
+    now.swap(next);
+    next = now;
+  }
+  points = std::move(now);
+  return std::sqrt(sum_over(context, n, 0.0, [&](std::size_t i) { return moved[i].squaredNorm(); }) /
+                   double(n));
+}
+
+}  // namespace rfsmooth::smoothing
