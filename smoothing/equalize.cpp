@@ -30,7 +30,7 @@ struct Frame {
   Eigen::Vector3d t, b, n;
   Eigen::Matrix<double, 5, 1> quadric = Eigen::Matrix<double, 5, 1>::Zero();
   double distance = 0;  ///< between points near here, as on a hexagonal grid
-  bool movable = false;
+  bool movable = false, rim = false;
 
   Eigen::Vector3d at(const Eigen::Vector3d& p, const Eigen::Vector2d& m) const {
     const double u = m.x(), v = m.y();
@@ -58,14 +58,14 @@ Eigen::Vector3d plane_normal(const Positions& points, std::size_t i, rfs_mesh::A
 
 /// Whether the directions to the nearest neighbours leave no wide gap.
 bool surrounded(const Frame& f, const Positions& points, std::size_t i, rfs_mesh::Adjacency::Row near) {
-  std::array<double, kPushers> angles = {};
-  for (std::size_t k = 0; k < kPushers; ++k) {
+  std::array<double, kNear> angles = {};
+  for (std::size_t k = 0; k < angles.size(); ++k) {
     const Eigen::Vector3d d = points[near[k]] - points[i];
     angles[k] = std::atan2(d.dot(f.b), d.dot(f.t));
   }
   std::sort(angles.begin(), angles.end());
   double widest = angles.front() + 2 * M_PI - angles.back();
-  for (std::size_t k = 1; k < kPushers; ++k) widest = std::max(widest, angles[k] - angles[k - 1]);
+  for (std::size_t k = 1; k < angles.size(); ++k) widest = std::max(widest, angles[k] - angles[k - 1]);
   return widest < kWidestGap;
 }
 
@@ -81,9 +81,10 @@ Frame make_frame(const Positions& points, const std::vector<Eigen::Vector3d>& no
   f.b = f.n.cross(f.t);
   // n points in a disk of radius r, each with the area of a hexagon: d^2 sqrt(3) / 2 = pi r^2 / n.
   f.distance = reach * std::sqrt(2 * M_PI / std::sqrt(3.0) / double(near.size()));
+  f.rim = !surrounded(f, points, i, near);
+  if (f.rim) return f;
   for (std::size_t k = 0; k < kPushers; ++k)
     if (std::abs(normals[near[k]].dot(f.n)) < kSameNormal) return f;
-  if (!surrounded(f, points, i, near)) return f;
   Matrix5 a = Matrix5::Zero();
   Vector5 right = Vector5::Zero();
   for (const Index j : near) {
@@ -113,12 +114,19 @@ double equalize(Positions& points, double most, const Context& context) {
   std::vector<Frame> frames(n);
   for_each_index(context, n, [&](std::size_t i) { frames[i] = make_frame(points, normals, i, near[i]); });
 
+  // Beside a rim the pushes from outside are missing too: points there stay as well.
+  std::vector<char> inside(n);
+  for_each_index(context, n, [&](std::size_t i) {
+    inside[i] = frames[i].movable;
+    for (std::size_t k = 0; k < kPushers; ++k) inside[i] &= char(!frames[near[i][k]].rim);
+  });
+
   Positions now = points, next = points;
   std::vector<Eigen::Vector2d> moved(n, Eigen::Vector2d::Zero());
   for (int step = 0; step < kSteps; ++step) {
     for_each_index(context, n, [&](std::size_t i) {
       const Frame& f = frames[i];
-      if (!f.movable) return;
+      if (!inside[i]) return;
       const double reach = kReach * f.distance;
       Eigen::Vector2d force = Eigen::Vector2d::Zero();
       for (std::size_t k = 0; k < kPushers; ++k) {
