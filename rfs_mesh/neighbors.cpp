@@ -36,6 +36,37 @@ class Nearest {
   std::vector<Neighbor>& list_;
 };
 
+/// The same for lists so long that keeping them sorted would cost more than the search: candidates pile up to
+/// twice the number and the farther half goes.
+class NearestMany {
+ public:
+  NearestMany(std::size_t k, std::vector<Neighbor>& storage) : list_(storage), k_(k) {
+    list_.clear();
+    list_.reserve(2 * k);
+  }
+  const Neighbor& worst() const { return worst_; }
+  void offer(const Neighbor& candidate) {
+    list_.push_back(candidate);
+    if (list_.size() == 2 * k_) drop_farther();
+  }
+  void finish() {
+    if (list_.size() > k_) drop_farther();
+    std::sort(list_.begin(), list_.end());
+  }
+
+ private:
+  void drop_farther() {
+    const auto last = list_.begin() + std::ptrdiff_t(k_ - 1);
+    std::nth_element(list_.begin(), last, list_.end());
+    worst_ = *last;
+    list_.resize(k_);
+  }
+
+  std::vector<Neighbor>& list_;
+  std::size_t k_;
+  Neighbor worst_ = {kNone, std::numeric_limits<double>::infinity()};
+};
+
 /// Visits the leaves that may hold something better than `worst()`, nearer ones first; `scan(leaf)`.
 template <class Worst, class Scan>
 void search(const KdTree& tree, const Vector3d& q, Worst&& worst, Scan&& scan) {
@@ -70,10 +101,9 @@ void squared_distances(const KdTree::Leaf& leaf, const Vector3d& q, double* d2) 
   }
 }
 
-/// The k nearest of q except the point `self`.
-void find_nearest(const KdTree& tree, const Vector3d& q, Index self, std::size_t k,
-                  std::vector<Neighbor>& out) {
-  Nearest best(k, out);
+/// Offers the points near q, except the point `self`, to `best`.
+template <class Best>
+void gather_nearest(const KdTree& tree, const Vector3d& q, Index self, Best& best) {
   search(
       tree, q, [&]() -> const Neighbor& { return best.worst(); },
       [&](const KdTree::Leaf& leaf) {
@@ -83,6 +113,20 @@ void find_nearest(const KdTree& tree, const Vector3d& q, Index self, std::size_t
           if (const Neighbor candidate = {leaf.id[i], d2[i]}; candidate < best.worst() && leaf.id[i] != self)
             best.offer(candidate);
       });
+}
+
+/// The k nearest of q except the point `self`.
+void find_nearest(const KdTree& tree, const Vector3d& q, Index self, std::size_t k,
+                  std::vector<Neighbor>& out) {
+  constexpr std::size_t kMany = 64;
+  if (k <= kMany) {
+    Nearest best(k, out);
+    gather_nearest(tree, q, self, best);
+  } else {
+    NearestMany best(k, out);
+    gather_nearest(tree, q, self, best);
+    best.finish();
+  }
 }
 
 }  // namespace

@@ -31,8 +31,12 @@ Patches::Patches(const HeightField& field, std::size_t members, std::vector<Inde
     : field_(field), members_(std::min(members, field.size())), seeds_(std::move(seeds)) {
   reach_ =
       std::clamp<std::size_t>((members_ * seeds_.size() + field.size() - 1) / field.size(), 1, kMostOver);
+  over_.assign(field_.size() * reach_, kNone);
+  over_weight_.assign(field_.size() * reach_, 0);
   fit(0, seeds_.size(), sigma, context);
-  cover(context);
+  std::vector<Index> all(field_.size());
+  std::iota(all.begin(), all.end(), Index{0});
+  cover(all, context);
   // A place between sheets or at the end of something thin may be in no patch, or only at the rim of one.
   const std::vector<Index> missing = uncovered();
   if (missing.empty()) return;
@@ -40,7 +44,7 @@ Patches::Patches(const HeightField& field, std::size_t members, std::vector<Inde
   const std::vector<Index> more = thin(field.guide(), missing, context);
   seeds_.insert(seeds_.end(), more.begin(), more.end());
   fit(first, seeds_.size(), sigma, context);
-  cover(context);
+  cover(missing, context);
 }
 
 void Patches::fit(std::size_t first, std::size_t last, const std::vector<double>& sigma,
@@ -127,21 +131,21 @@ void Patches::fit_one(std::size_t s, const std::vector<double>& sigma,
   patch.weight = v / (v + std::max(0.0, excess));
 }
 
-void Patches::cover(const Context& context) {
+void Patches::cover(const std::vector<Index>& points, const Context& context) {
   Positions centres(patches_.size());
   for (std::size_t s = 0; s < patches_.size(); ++s) centres[s] = patches_[s].centre;
   const rfs_mesh::SpatialIndex index(centres, context);
-  over_.assign(field_.size() * reach_, kNone);
-  over_weight_.assign(field_.size() * reach_, 0);
-  for_blocks(context, field_.size(), 1024, [&](std::size_t begin, std::size_t end) {
+  for_blocks(context, points.size(), 1024, [&](std::size_t begin, std::size_t end) {
     std::vector<rfs_mesh::Neighbor> near;
-    for (std::size_t i = begin; i < end; ++i) {
+    for (std::size_t p = begin; p < end; ++p) {
+      const Index i = points[p];
       index.nearest(field_.guide()[i], int(reach_), near);
       for (std::size_t k = 0; k < near.size(); ++k) {
         const Patch& patch = patches_[near[k].index];
         const double inside = std::max(0.0, 1 - near[k].squared_distance / patch.square);
-        over_[i * reach_ + k] = near[k].index;
-        over_weight_[i * reach_ + k] = float(inside * inside * same_sheet(patch.axis, field_.normals()[i]));
+        over_[std::size_t(i) * reach_ + k] = near[k].index;
+        over_weight_[std::size_t(i) * reach_ + k] =
+            float(inside * inside * same_sheet(patch.axis, field_.normals()[i]));
       }
     }
   });

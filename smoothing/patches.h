@@ -56,7 +56,7 @@ class Patches {
 
   void fit(std::size_t first, std::size_t last, const std::vector<double>& sigma, const Context& context);
   void fit_one(std::size_t s, const std::vector<double>& sigma, std::vector<rfs_mesh::Neighbor>& near);
-  void cover(const Context& context);
+  void cover(const std::vector<Index>& points, const Context& context);
   std::vector<Index> uncovered() const;
 
   const HeightField& field_;
