@@ -33,7 +33,8 @@ struct AutomaticReport {
 
 /// The smoothed places of mesh.positions (n x 3). `sigma`: standard deviation of the noise along the normal,
 /// world units; below 0.05 spacings the points come back as they are. `spacing`: h, world units.
-/// O(n log n); about 450 bytes a point beside the mesh. Parallel, the same bits for any number of threads.
+/// O(n log n); at most about 650 bytes a point beside the mesh. Parallel, the same bits for any number of
+/// threads.
 Positions automatic_smoothing(const rfs_mesh::Mesh& mesh, double sigma, double spacing,
                               AutomaticReport& report, const Context& context);
 

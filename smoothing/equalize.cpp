@@ -5,11 +5,11 @@
 #include <cmath>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
 #include "rfsmooth/rfs_mesh/neighbors.h"
 #include "rfsmooth/rfs_mesh/parallel.h"
+#include "rfsmooth/smoothing/plane_normal.h"
 
 namespace rfsmooth::smoothing {
 
@@ -39,22 +39,6 @@ struct Frame {
                n;
   }
 };
-
-Eigen::Vector3d plane_normal(const Positions& points, std::size_t i, rfs_mesh::Adjacency::Row near) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-  for (const Index j : near) {
-    const Eigen::Vector3d d = points[j] - points[i];
-    sum += d;
-    spread += d * d.transpose();
-  }
-  spread -= sum * sum.transpose() / double(near.size() + 1);
-  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>()
-      .computeDirect(spread)
-      .eigenvectors()
-      .col(0)
-      .normalized();
-}
 
 /// Whether the directions to the nearest neighbours leave no wide gap.
 bool surrounded(const Frame& f, const Positions& points, std::size_t i, rfs_mesh::Adjacency::Row near) {

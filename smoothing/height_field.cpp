@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
-
 #include "rfsmooth/rfs_mesh/parallel.h"
+#include "rfsmooth/smoothing/plane_normal.h"
 
 namespace rfsmooth::smoothing {
 
@@ -14,24 +13,6 @@ namespace {
 constexpr int kNear = 32;           // neighbours over which values are averaged
 constexpr std::size_t kPlane = 24;  // neighbours of the plane that gives the normal
 constexpr double kSameSheet = 0.5;  // cosine of 60 degrees
-
-Eigen::Vector3d plane_normal(const Positions& points, std::size_t i, rfs_mesh::Adjacency::Row near) {
-  const std::size_t count = std::min(near.size(), kPlane);
-  // Moments about the point itself: the centre is subtracted afterwards.
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-  for (std::size_t k = 0; k < count; ++k) {
-    const Eigen::Vector3d d = points[near[k]] - points[i];
-    sum += d;
-    spread += d * d.transpose();
-  }
-  spread -= sum * sum.transpose() / double(count + 1);
-  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>()
-      .computeDirect(spread)
-      .eigenvectors()
-      .col(0)
-      .normalized();
-}
 
 }  // namespace
 
@@ -45,7 +26,8 @@ HeightField::HeightField(Positions guide, const Positions& data, const Context& 
   normals_.resize(size());
   heights_.resize(size());
   for_each_index(context, size(), [&](std::size_t i) {
-    normals_[i] = plane_normal(guide_, i, near_[i]);
+    const auto near = near_[i];
+    normals_[i] = plane_normal(guide_, i, {near.begin(), near.begin() + std::min(near.size(), kPlane)});
     if (!normals_[i].allFinite()) normals_[i] = Eigen::Vector3d::UnitZ();
     heights_[i] = normals_[i].dot(data[i] - guide_[i]);
   });
