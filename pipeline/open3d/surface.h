@@ -12,9 +12,9 @@ namespace rfsmooth::open3d {
 /// Closes the surface over every gap: `points` and `normals` are n x 3 in the same frame, normals unit length
 /// and consistently oriented (outward gives outward faces); `spacing` > 0 in world units sets the finest
 /// octree cell, so the depth is about log2(extent / spacing), between 4 and 12. Faces far from the points are
-/// invented: see pipeline/reconstruct.h. Errors: no_usable_points if Poisson makes no surface. \throw
-/// std::invalid_argument if the sizes differ or spacing <= 0. The result depends on Open3D's solver, not on
-/// `context.threads`, up to its rounding.
+/// invented: see trim_far_faces in pipeline/surface_cleanup.h. Errors: no_usable_points if Poisson makes no
+/// surface. \throw std::invalid_argument if the sizes differ or spacing <= 0. The result depends on Open3D's
+/// solver, not on `context.threads`, up to its rounding.
 Result<rfs_mesh::Mesh> poisson(const Positions& points, const Positions& normals, double spacing,
                                const Context& context);
 
