@@ -34,7 +34,7 @@ std::vector<double> face_areas(const Mesh& mesh, const Context& context);
 Positions face_normals(const Mesh& mesh, const Context& context);
 
 /// n unit normals: the mean of the incident faces' normals, weighted by area; zero where there are none or
-/// they cancel. They agree across the mesh only if the faces' orientations do (orient.h).
+/// they cancel. They agree across the mesh only if the faces' orientations do.
 Positions vertex_normals(const Mesh& mesh, const Context& context);
 
 /// The total area of the faces.
