@@ -1,0 +1,54 @@
+#include "rfsmooth/pipeline/normals.h"
+
+#include <limits>
+
+#include "rfsmooth/rfs_mesh/orient.h"
+#include "rfsmooth/rfs_mesh/parallel.h"
+#include "rfsmooth/rfs_mesh/rfs_mesh.h"
+
+namespace rfsmooth::pipeline {
+
+namespace {
+
+template <class T>
+T value_or_fail(Result<T> result) {
+  if (!result.ok()) throw Failure(result.error());
+  return std::move(result).value();
+}
+
+NormalsReport run(const double* xyz, std::size_t n, const NormalsOptions& options, const Context& context,
+                  double* normals) {
+  NormalsReport report;
+  report.points = n;
+  const rfs_mesh::WorkingCloud cloud = value_or_fail(rfs_mesh::make_working_cloud(xyz, n, context));
+  report.finite = cloud.finite();
+  const rfs_mesh::Connection connection = value_or_fail(rfs_mesh::connect(cloud.points, {}, context));
+  context.report("normals", 0);
+  Positions side(cloud.points.size());
+  for_each_index(context, side.size(), [&](std::size_t i) { side[i] = connection.surfaces[i].normal; });
+  std::optional<Eigen::Vector3d> viewpoint = options.viewpoint;
+  if (viewpoint) *viewpoint -= cloud.origin;
+  report.parts = orient(connection.mesh, connection.emst, connection.bridges, viewpoint, side, context);
+  context.check_stop();
+  for (std::size_t i = 0; i < n; ++i) {
+    const Index p = cloud.of_input[i];
+    for (int axis = 0; axis < 3; ++axis)
+      normals[3 * i + std::size_t(axis)] =
+          p == kNone ? std::numeric_limits<double>::quiet_NaN() : side[p][axis];
+  }
+  context.report("normals", 1);
+  return report;
+}
+
+}  // namespace
+
+Result<NormalsReport> estimate_normals(const double* xyz, std::size_t n, const NormalsOptions& options,
+                                       const Context& context, double* normals) {
+  return guarded([&] {
+    NormalsReport report;
+    in_arena(context, [&] { report = run(xyz, n, options, context, normals); });
+    return report;
+  });
+}
+
+}  // namespace rfsmooth::pipeline
