@@ -1,4 +1,5 @@
 /// rfsmooth denoise: a cloud in, the same cloud without the noise out.
+#include <cmath>
 #include <memory>
 
 #include <fmt/format.h>
@@ -15,9 +16,12 @@ namespace {
 
 using nlohmann::ordered_json;
 
+constexpr const char* kDisplacement = "displacement";
+
 struct Options {
   pipeline::DenoiseOptions denoise;
   std::optional<std::string> strength_field;
+  bool write_displacement = false;
   JobOptions job;
 
   template <class Self, class Visit>
@@ -25,6 +29,8 @@ struct Options {
     pipeline::DenoiseOptions::describe(self.denoise, visit);
     visit(OptionInfo{"strength-field", "field in [0, 1] of the input: 0 stays, 1 is smoothed fully", ""},
           self.strength_field);
+    visit(OptionInfo{"write-displacement", "add a field 'displacement': how far each point moved", ""},
+          self.write_displacement);
   }
 };
 
@@ -53,18 +59,41 @@ void tell(const pipeline::DenoiseReport& done, const pipeline::io::Cloud& cloud,
                              done.edges, done.bridges, done.faceless, done.swaps));
 }
 
+/// Fields that could not be added, told before the work. \throw Failure.
+void check_fields(const Options& options, const pipeline::io::Cloud& cloud) {
+  if (options.write_displacement)
+    pipeline::io::check_field(cloud, kDisplacement, pipeline::io::Scalar::float32);
+}
+
+/// How far each point is from `before`, as the file now has it: rounded to the coordinates' own type. 0 for
+/// points that are not finite.
+void write_displacement(pipeline::io::Cloud& cloud, const std::vector<double>& before,
+                        const Context& context) {
+  const std::vector<double> after = pipeline::io::positions(cloud, context);
+  std::vector<double> distance(cloud.size(), 0);
+  for (std::size_t i = 0; i < distance.size(); ++i) {
+    const double moved = std::hypot(after[3 * i] - before[3 * i], after[3 * i + 1] - before[3 * i + 1],
+                                    after[3 * i + 2] - before[3 * i + 2]);
+    if (std::isfinite(moved)) distance[i] = moved;
+  }
+  pipeline::io::set_field(cloud, kDisplacement, pipeline::io::Scalar::float32, distance, context);
+}
+
 std::string denoise_cloud(const Options& options, pipeline::io::Cloud& cloud, const Job& job,
                           const Context& context, Console& console, std::vector<pipeline::StageTime>& stages,
                           ordered_json& entry) {
   const std::size_t n = cloud.size();
+  check_fields(options, cloud);
   if (const auto error = refuse_without_memory(job.input, pipeline::denoise_memory(n))) throw Failure(*error);
   std::vector<double> xyz = pipeline::io::positions(cloud, context);
+  const std::vector<double> before = options.write_displacement ? xyz : std::vector<double>{};
   const std::vector<double> strength =
       options.strength_field ? strengths(cloud, *options.strength_field, context) : std::vector<double>{};
   const auto result = pipeline::denoise(xyz.data(), n, options.denoise, context, strength);
   if (!result.ok()) throw Failure({result.error().code, job.input + ": " + result.error().message});
   const pipeline::DenoiseReport& done = result.value();
   pipeline::io::set_positions(cloud, xyz.data(), context);
+  if (options.write_displacement) write_displacement(cloud, before, context);
   stages.insert(stages.end(), done.seconds.begin(), done.seconds.end());
   tell(done, cloud, job, console);
   enter(done, options, entry);
@@ -91,7 +120,11 @@ Command denoise_command() {
   command.description =
       "Reads a cloud (PLY, PCD, XYZ; the format is found by content), connects its points to a rough mesh "
       "(EMST, SDG, RFS-mesh), smooths the mesh, and writes the same cloud with x, y, z replaced: every other "
-      "field, the order and the number of points stay. Points that are not finite stay as they are.\n\n"
+      "field, the order and the number of points stay. Points that are not finite stay as they are. Fields "
+      "that "
+      "are asked for (--write-displacement) come behind the points' other fields, or take the place of the "
+      "one "
+      "of that name.\n\n"
       "- stands for standard input or output; --format names the format where there is no extension. Without "
       "-o "
       "exactly two names are taken, IN and OUT; with -o every name is an input. Existing files are replaced "

@@ -3,6 +3,8 @@
 #include <cstring>
 #include <stdexcept>
 
+#include <fmt/format.h>
+
 namespace rfsmooth::pipeline::io {
 namespace {
 
@@ -89,10 +91,27 @@ std::vector<double> field_values(const Cloud& cloud, std::size_t field, const Co
 void set_field(Cloud& cloud, const std::string& name, Scalar type, const std::vector<double>& values,
                const Context& context) {
   if (values.size() != cloud.size()) throw std::invalid_argument("set_field: not one value per point");
+  check_field(cloud, name, type);
   if (const auto present = find_field(cloud, name))
     scatter(cloud.points(), {*present}, values.data(), context);
   else
     append_field(cloud.points(), Field{name, type}, values.data(), context);
+}
+
+void check_field(const Cloud& cloud, const std::string& name, Scalar type) {
+  const auto present = find_field(cloud, name);
+  if (!present) return;
+  const Field& field = cloud.points().fields[*present];
+  if (!field.is_plain())
+    throw Failure(
+        {ErrorCode::usage,
+         fmt::format("the points have a field '{}' already, a {}; it cannot take one value per point", name,
+                     field.is_list() ? "list" : "row of several values")});
+  if (is_float(type) && !is_float(field.type))
+    throw Failure({ErrorCode::usage,
+                   fmt::format("the points have a field '{}' already, of whole numbers ({}); it cannot "
+                               "take values of type {}",
+                               name, name_of(field.type), name_of(type))});
 }
 
 void select_points(Cloud& cloud, const std::vector<std::size_t>& rows, const Context& context) {

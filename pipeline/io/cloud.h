@@ -85,10 +85,18 @@ std::optional<std::size_t> find_field(const Cloud& cloud, std::string_view name)
 /// array.
 std::vector<double> field_values(const Cloud& cloud, std::size_t field, const Context& context = {});
 
-/// Writes a field of the points: replaces the plain one of that name (keeping its type) or appends a new one
-/// of `type`.
+/// Writes a field of the points, the one way in which any stage adds one (displacement, outlier, normals):
+///
+/// - none of that name: it is appended behind the points' last field, as `type`; every other byte stays.
+/// - one of that name (the first of several): its values are replaced in place, in its own type.
+///
+/// \throw Failure (usage) if the present one cannot take the values: `check_field` says so beforehand.
 void set_field(Cloud& cloud, const std::string& name, Scalar type, const std::vector<double>& values,
                const Context& context = {});
+
+/// Refuses what `set_field` could not do: the field of that name is a list or an array, or holds whole
+/// numbers where `type` has fractions. \throw Failure (usage) naming field and type.
+void check_field(const Cloud& cloud, const std::string& name, Scalar type);
 
 /// Keeps the points `rows` (ascending or in any order); the result is unorganised unless all are kept in
 /// order. Other elements that name points by index (lists called vertex_indices or vertex_index, vertex1,

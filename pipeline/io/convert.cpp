@@ -48,6 +48,11 @@ bool carries(const Cloud& cloud, std::size_t field, Format format, const Context
   return false;
 }
 
+// OFF's columns have no names: those of a file that OFF has no word for stay, one that was added is lost.
+bool is_unnamed(const Field& f) {
+  return f.name.rfind("column_", 0) == 0;
+}
+
 bool is_coordinate(const Cloud& cloud, std::size_t field) {
   return std::find(cloud.xyz.begin(), cloud.xyz.end(), field) != cloud.xyz.end();
 }
@@ -229,13 +234,24 @@ Encoding target_encoding(const Cloud& cloud, Format format, std::optional<Encodi
   return text_only ? Encoding::ascii : Encoding::binary_little_endian;
 }
 
+bool is_writable_as_is(const Cloud& cloud, Format format) {
+  if (format != cloud.format || format != Format::off) return format == cloud.format;
+  const std::vector<std::size_t> in_order = off_fields(cloud);
+  const std::vector<Field>& fields = cloud.points().fields;
+  for (std::size_t f = 0; f < fields.size(); ++f)
+    if (!is_unnamed(fields[f]) && (f >= in_order.size() || in_order[f] != f)) return false;
+  return true;
+}
+
 std::vector<std::string> what_is_lost(const Cloud& cloud, Format format, Encoding encoding,
                                       const Context& context) {
   std::vector<std::string> lost;
   const Table& points = cloud.points();
+  const bool as_is = is_writable_as_is(cloud, format);
   for (std::size_t f = 0; f < points.fields.size(); ++f) {
     const Field& field = points.fields[f];
-    const bool kept = format == cloud.format || is_padding(field) || carries(cloud, f, format, context);
+    const bool kept = (as_is && (format != Format::off || is_unnamed(field))) || is_padding(field) ||
+                      carries(cloud, f, format, context);
     if (!kept)
       lost.push_back(fmt::format("field '{}'", field.name));
     else if (encoding != Encoding::ascii && float_digits_lost(points, f, context))
@@ -297,7 +313,8 @@ Cloud convert(const Cloud& cloud, Format format, const Context& context) {
     Table table = cloud.elements[e];
     const auto list = face_list(table);
     if (format == Format::off && (table.name != "face" || !list)) continue;
-    if (format == Format::off || table.ragged) project(table, {*list}, context);
+    const bool bare = format == Format::off && cloud.format != Format::off;
+    if (bare || (table.ragged && format != Format::off)) project(table, {*list}, context);
     if (cloud.format == Format::off) narrow_face_counts(table, context);
     out.elements.push_back(std::move(table));
   }

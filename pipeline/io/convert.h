@@ -13,6 +13,10 @@ namespace rfsmooth::pipeline::io {
 /// \throw Failure (usage) if `format` has no such encoding.
 Encoding target_encoding(const Cloud& cloud, Format format, std::optional<Encoding> wanted);
 
+/// Whether the cloud's rows can be written as they are: same format, and for OFF, whose columns have no
+/// names, no field that was added out of order or that OFF has no word for.
+bool is_writable_as_is(const Cloud& cloud, Format format);
+
 /// What writing the cloud so would lose, in words; empty if nothing. Not counted as a loss: the type names of
 /// a text without types (XYZ, OFF), padding fields ('_') and the bytes behind the last row.
 std::vector<std::string> what_is_lost(const Cloud& cloud, Format format, Encoding encoding,

@@ -55,7 +55,7 @@ void write(const Cloud& cloud, Format format, const WriteOptions& options, Sink&
           {ErrorCode::usage, fmt::format("{} ({}) cannot carry {}; --drop-unsupported leaves that out",
                                          name_of(format), name_of(encoding), list)});
   }
-  if (format == cloud.format) return write_as_is(cloud, encoding, sink, context);
+  if (is_writable_as_is(cloud, format)) return write_as_is(cloud, encoding, sink, context);
   write_as_is(convert(cloud, format, context), encoding, sink, context);
 }
 
