@@ -17,22 +17,32 @@ using Eigen::Vector3d;
 
 constexpr std::size_t kMostDirections = 32;  ///< vertices of higher degree have no gap worth closing
 
-/// Median EMST edge length within two hops of v: the edges of v, its neighbours and theirs.
-double local_length(const Positions& at, const Adjacency& tree, Index v) {
-  std::array<double, 64> lengths;
+/// Lengths of the EMST edges within two hops of v: the edges of v, its neighbours and theirs; the first of
+/// them where there are more than fit (coincident points are joined to one of them).
+template <std::size_t kMost>
+std::size_t lengths_around(const Positions& at, const Adjacency& tree, Index v,
+                           std::array<double, kMost>& lengths) {
   std::size_t count = 0;
-  const auto add = [&](Index a, Index b) {
-    if (count < lengths.size()) lengths[count++] = (at[a] - at[b]).norm();
+  const auto filled_by = [&](Index a, Index b) {
+    lengths[count++] = (at[a] - at[b]).norm();
+    return count == kMost;
   };
   for (const Index a : tree[v]) {
-    add(v, a);
+    if (filled_by(v, a)) return count;
     for (const Index b : tree[a]) {
       if (b == v) continue;
-      add(a, b);
+      if (filled_by(a, b)) return count;
       for (const Index c : tree[b])
-        if (c != a) add(b, c);
+        if (c != a && filled_by(b, c)) return count;
     }
   }
+  return count;
+}
+
+/// Their median.
+double local_length(const Positions& at, const Adjacency& tree, Index v) {
+  std::array<double, 64> lengths;
+  const std::size_t count = lengths_around(at, tree, v, lengths);
   if (count == 0) return 0;
   const auto middle = lengths.begin() + std::ptrdiff_t(count / 2);
   std::nth_element(lengths.begin(), middle, lengths.begin() + std::ptrdiff_t(count));
@@ -121,9 +131,7 @@ class Rules {
 
   bool within_two_hops(Index v, Index q) const {
     for (const Index a : graph_[v]) {
-      if (a == q) return true;
-      for (const Index b : graph_[a])
-        if (b == q) return true;
+      if (a == q || std::binary_search(graph_[a].begin(), graph_[a].end(), q)) return true;
     }
     return false;
   }

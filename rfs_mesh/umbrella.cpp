@@ -56,21 +56,29 @@ class Opener {
  private:
   double squared(Index a, Index b) const { return (at_[a] - at_[b]).squaredNorm(); }
 
-  /// The 90th percentile of the SDG edges of v and of its neighbours.
-  double long_edge(Index v) const {
-    std::array<double, kMostCandidates> lengths;
+  /// Squared lengths of the SDG edges of v and of its neighbours, the first of them where there are more than
+  /// fit.
+  std::size_t squares_around(Index v, std::array<double, kMostCandidates>& squares) const {
     std::size_t count = 0;
-    const auto add = [&](Index a, Index b) {
-      if (count < lengths.size()) lengths[count++] = squared(a, b);
+    const auto filled_by = [&](Index a, Index b) {
+      squares[count++] = squared(a, b);
+      return count == squares.size();
     };
     for (const Index a : graph_[v]) {
-      add(v, a);
+      if (filled_by(v, a)) return count;
       for (const Index b : graph_[a])
-        if (b != v) add(a, b);
+        if (b != v && filled_by(a, b)) return count;
     }
+    return count;
+  }
+
+  /// Their 90th percentile, as a length.
+  double long_edge(Index v) const {
+    std::array<double, kMostCandidates> squares;
+    const std::size_t count = squares_around(v, squares);
     if (count == 0) return 0;
-    const auto nth = lengths.begin() + std::ptrdiff_t(count * 9 / 10);
-    std::nth_element(lengths.begin(), nth, lengths.begin() + std::ptrdiff_t(count));
+    const auto nth = squares.begin() + std::ptrdiff_t(count * 9 / 10);
+    std::nth_element(squares.begin(), nth, squares.begin() + std::ptrdiff_t(count));
     return std::sqrt(*nth);
   }
 

@@ -9,6 +9,7 @@
 #include "rfsmooth/rfs_mesh/parallel.h"
 
 #include "support/awkward_clouds.h"
+#include "support/connection.h"
 
 using rfsmooth::Context;
 using rfsmooth::Index;
@@ -17,14 +18,11 @@ using rfsmooth::rfs_mesh::Edge;
 using rfsmooth::rfs_mesh::emst;
 using rfsmooth::rfs_mesh::SpatialIndex;
 using rfsmooth::test::AwkwardCloud;
+using rfsmooth::test::joins_all;
+using rfsmooth::test::kruskal_length;
+using rfsmooth::test::total_length;
 
 namespace {
-
-double total_length(const Positions& points, const std::vector<Edge>& edges) {
-  double sum = 0;
-  for (const Edge& e : edges) sum += (points[e[0]] - points[e[1]]).norm();
-  return sum;
-}
 
 /// O(n^2) Prim.
 double prim_length(const Positions& points) {
@@ -48,22 +46,6 @@ double prim_length(const Positions& points) {
   return sum;
 }
 
-/// Components of the graph, by union-find.
-std::size_t component_count(std::size_t n, const std::vector<Edge>& edges) {
-  std::vector<std::size_t> parent(n);
-  for (std::size_t i = 0; i < n; ++i) parent[i] = i;
-  const auto find = [&](std::size_t i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  };
-  for (const Edge& e : edges)
-    if (find(e[0]) != find(e[1])) {
-      parent[find(e[0])] = find(e[1]);
-      --n;
-    }
-  return n;
-}
-
 class Emst : public testing::TestWithParam<AwkwardCloud> {};
 INSTANTIATE_TEST_SUITE_P(Clouds, Emst, testing::ValuesIn(rfsmooth::test::awkward_clouds(2000)),
                          rfsmooth::test::name_of_cloud);
@@ -73,9 +55,10 @@ TEST_P(Emst, IsASpanningTreeOfLeastTotalLength) {
   const SpatialIndex index(points, {});
   const std::vector<Edge> edges = emst(index, {});
   ASSERT_EQ(edges.size(), points.empty() ? 0 : points.size() - 1);
-  EXPECT_EQ(component_count(points.size(), edges), points.empty() ? 0u : 1u);
+  EXPECT_TRUE(joins_all(points.size(), edges));
   const double expected = prim_length(points);
   EXPECT_NEAR(total_length(points, edges), expected, 1e-10 * expected);
+  EXPECT_NEAR(kruskal_length(points), expected, 1e-10 * expected) << "the oracle for larger clouds";
 }
 
 TEST_P(Emst, EdgesAreOrderedByLengthThenIds) {
@@ -126,7 +109,7 @@ TEST(EmstOfMany, TwoClustersAMillionSpacingsApartShareOneLongEdge) {
     points.push_back(p + Eigen::Vector3d(1e6 * spacing, 0, 0));
   const std::vector<Edge> edges = emst(SpatialIndex(points, {}), {});
   ASSERT_EQ(edges.size(), points.size() - 1);
-  EXPECT_EQ(component_count(points.size(), edges), 1u);
+  EXPECT_TRUE(joins_all(points.size(), edges));
   for (std::size_t e = 0; e < edges.size(); ++e)
     EXPECT_EQ(edges[e][0] < 25000 && edges[e][1] >= 25000, e + 1 == edges.size()) << e;
 }

@@ -1,7 +1,6 @@
 #include "rfsmooth/rfs_mesh/rfs_mesh.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
@@ -9,6 +8,7 @@
 #include "rfsmooth/rfs_mesh/measure.h"
 
 #include "support/awkward_clouds.h"
+#include "support/connection.h"
 #include "support/shapes.h"
 
 using namespace rfsmooth;
@@ -22,48 +22,13 @@ Connection connected(const Positions& points, int threads = 0) {
   return connect(points, ConnectOptions{}, context).value();
 }
 
-/// What holds of every connection, whatever the points.
-void expect_sound(const Connection& c, std::size_t n) {
-  EXPECT_EQ(c.mesh.positions.size(), n);
-  EXPECT_TRUE(check(c.mesh).empty());
-  EXPECT_EQ(c.emst.size(), n == 0 ? 0 : n - 1);
-  EXPECT_EQ(c.surfaces.size(), n);
-  EXPECT_TRUE(std::is_sorted(c.sdg.begin(), c.sdg.end()));
-  const EdgeCensus census = edge_census(c.mesh, {});
-  EXPECT_EQ(census.crowded, 0u) << "an edge has more than two faces";
-  EXPECT_EQ(census.loose, c.mesh.loose_edges.size()) << "an edge without a face is not listed as loose";
-  EXPECT_EQ(census.faceless, c.faceless);
-  for (const LocalSurface& s : c.surfaces) {
-    ASSERT_TRUE(s.normal.allFinite() && s.shadow.allFinite() && std::isfinite(s.residual));
-    ASSERT_NEAR(s.normal.norm(), 1, 1e-9);
-  }
-}
-
-/// Whether edges join all n vertices.
-bool joins_all(std::size_t n, const std::vector<Edge>& edges, const std::vector<Edge>& more) {
-  std::vector<Index> root(n);
-  std::iota(root.begin(), root.end(), 0);
-  const auto find = [&](Index v) {
-    while (root[v] != v) v = root[v] = root[root[v]];
-    return v;
-  };
-  std::size_t components = n;
-  for (const auto* list : {&edges, &more})
-    for (const Edge& e : *list)
-      if (const Index a = find(e[0]), b = find(e[1]); a != b) {
-        root[a] = b;
-        --components;
-      }
-  return components <= 1;
-}
-
 class CleanShape : public testing::TestWithParam<test::Shape> {};
 
 void expect_papers_proportions(const test::Shape& shape, const Positions& points) {
   const Connection c = connected(points);
-  expect_sound(c, points.size());
+  test::expect_sound(c, points.size());
   const double n = double(points.size());
-  EXPECT_TRUE(joins_all(points.size(), c.sdg, c.bridges));
+  EXPECT_TRUE(test::joins_all(points.size(), c.sdg, c.bridges));
   EXPECT_GE(double(c.sdg.size()), 1.4 * n);
   EXPECT_LE(double(c.sdg.size()), 2.8 * n);
   EXPECT_GE(double(c.mesh.faces.size()), 1.6 * n);
@@ -133,8 +98,8 @@ TEST_P(AwkwardConnection, IsSound) {
   const Positions& points = GetParam().points;
   const auto c = connect(points, ConnectOptions{}, Context{});
   ASSERT_TRUE(c.ok()) << c.error().message;
-  expect_sound(c.value(), points.size());
-  EXPECT_TRUE(joins_all(points.size(), c.value().sdg, c.value().bridges));
+  test::expect_sound(c.value(), points.size());
+  EXPECT_TRUE(test::joins_all(points.size(), c.value().sdg, c.value().bridges));
 }
 
 INSTANTIATE_TEST_SUITE_P(Clouds, AwkwardConnection, testing::ValuesIn(test::awkward_clouds(3000)),
@@ -174,7 +139,7 @@ TEST_P(NoisySphere, MeshStaysASurface) {
   const double unit = std::sqrt(sphere.area / double(clean.size()));
   const Positions points = with_noise(clean, noise * unit, 2);
   const Connection c = connected(points);
-  expect_sound(c, points.size());
+  test::expect_sound(c, points.size());
   EXPECT_NEAR(c.noise.sigma, noise * unit, 0.2 * noise * unit);
   std::size_t long_edges = 0;
   for (Index a = 0; a < points.size(); ++a)
