@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "rfsmooth/pipeline/outliers.h"
 #include "rfsmooth/rfs_mesh/parallel.h"
 #include "rfsmooth/rfs_mesh/points.h"
 
@@ -65,6 +66,8 @@ bool alternate(rfs_mesh::Mesh& mesh, const DenoiseOptions& options, const std::v
     report.noise_left = chosen->left;
     report.effective.flow.noise = chosen->noise;
     report.guide_strength = chosen->guide_strength;
+    report.equalized_rms = chosen->equalized;
+    report.equalized_largest = chosen->equalized_most;
   }
   return flow->limits_moves();
 }
@@ -137,6 +140,31 @@ std::vector<double> working_strengths(const std::vector<double>& strength,
   return working;
 }
 
+/// Takes the outliers out of the working cloud: like rows that are not finite they stay and influence
+/// nothing.
+void set_aside(const std::vector<char>& outlier, rfs_mesh::WorkingCloud& cloud, DenoiseReport& report) {
+  if (std::find(outlier.begin(), outlier.end(), 1) == outlier.end()) return;
+  std::vector<Index> renumbered(outlier.size(), kNone);
+  Index next = 0;
+  for (std::size_t p = 0; p < outlier.size(); ++p) {
+    if (outlier[p] != 0) continue;
+    renumbered[p] = next;
+    cloud.points[next] = cloud.points[p];
+    cloud.multiplicity[next] = cloud.multiplicity[p];
+    ++next;
+  }
+  cloud.points.resize(next);
+  cloud.multiplicity.resize(next);
+  report.outlier.assign(cloud.of_input.size(), 0);
+  for (std::size_t i = 0; i < cloud.of_input.size(); ++i) {
+    Index& p = cloud.of_input[i];
+    if (p == kNone) continue;
+    report.outlier[i] = outlier[p];
+    report.outliers += std::size_t(outlier[p]);
+    p = renumbered[p];
+  }
+}
+
 DenoiseReport run(double* xyz, std::size_t n, const DenoiseOptions& options, const Context& context,
                   const std::vector<double>& strength) {
   DenoiseReport report;
@@ -149,6 +177,10 @@ DenoiseReport run(double* xyz, std::size_t n, const DenoiseOptions& options, con
     cloud = value_or_fail(rfs_mesh::make_working_cloud(xyz, n, context));
     report.finite = cloud.finite();
     report.distinct = cloud.points.size();
+  }
+  if (options.outliers != "smooth") {
+    const Stopwatch watch(report.seconds, "outliers");
+    set_aside(find_outliers(cloud.points, context), cloud, report);
   }
 
   auto connection = value_or_fail(rfs_mesh::connect(cloud.points, options.connect, context));

@@ -1,12 +1,13 @@
 /// The main entry: a cloud in, the same cloud without the noise out.
 ///
-///     working cloud -> connect (EMST -> SDG -> RFS-mesh) -> { smooth one step -> swap edges } x iterations
+///     working cloud -> outliers set aside -> connect (EMST -> SDG -> RFS-mesh)
+///         -> { smooth one step -> swap edges } x iterations
 ///
 /// Vollmer, Mencl, Mueller 1999, section 7: "after each smoothing step" the dihedral angles are improved by
 /// edge swaps, so that the rough mesh and the smooth positions find each other.
 ///
 /// Differs from the paper: a point moves at most the median length of its edges in the RFS-mesh, and points
-/// that no face reaches stay where they are.
+/// that no face reaches stay where they are, as do outliers (outliers.h), which are not connected at all.
 #pragma once
 
 #include <cstddef>
@@ -24,6 +25,10 @@ namespace rfsmooth::pipeline {
 
 struct DenoiseOptions {
   smoothing::FlowOptions flow;
+  /// What to do about outliers. Those found stay where they are and pull nobody, whichever of the first three
+  /// it is: the rows of an array stay, and removing or marking is for the caller, who reads
+  /// DenoiseReport::outlier (the command does). smooth: none are looked for.
+  std::string outliers = "keep";
   bool swap = true;  ///< alternate each step with a pass of dihedral edge swaps (Vollmer 7)
   rfs_mesh::ConnectOptions connect;
   rfs_mesh::SwapOptions swaps;
@@ -31,6 +36,12 @@ struct DenoiseOptions {
   template <class Self, class Visit>
   static void describe(Self& self, Visit&& visit) {
     smoothing::FlowOptions::describe(self.flow, visit);
+    OptionInfo found{"outliers",
+                     "points with no surface near: left in place and out of the smoothing, marked in a field "
+                     "'outlier', removed, or smoothed like all others",
+                     ""};
+    found.choices = {"keep", "mark", "remove", "smooth"};
+    visit(found, self.outliers);
     visit(OptionInfo{"swap", "alternate each step with dihedral edge swaps", ""}, self.swap);
     rfs_mesh::ConnectOptions::describe(self.connect, visit);
     rfs_mesh::SwapOptions::describe(self.swaps, visit);
@@ -43,18 +54,23 @@ struct StageTime {
 };
 
 struct DenoiseReport {
-  DenoiseOptions effective;  ///< the options with every automatically chosen value filled in; gives the same
-                             ///< bytes when used again
-  std::size_t points = 0;    ///< rows given
-  std::size_t finite = 0;    ///< rows worked on
-  std::size_t distinct = 0;  ///< distinct positions among them
-  std::size_t moved = 0;     ///< rows whose coordinates changed
+  DenoiseOptions effective;   ///< the options with every automatically chosen value filled in; gives the same
+                              ///< bytes when used again
+  std::size_t points = 0;     ///< rows given
+  std::size_t finite = 0;     ///< rows worked on
+  std::size_t distinct = 0;   ///< distinct positions among them
+  std::size_t moved = 0;      ///< rows whose coordinates changed
+  std::size_t outliers = 0;   ///< rows with no surface near them
+  std::vector<char> outlier;  ///< n: which; empty if there are none
   double spacing = 0;     ///< mean distance to the nearest neighbour, world units; 0 with fewer than 2 points
   double noise = 0;       ///< standard deviation along the normal, as measured before; world units
   double noise_left = 0;  ///< estimate of what is left of it; as before where the flow cannot tell
-  double guide_strength = 0;  ///< of the automatic flow's guide, dimensionless; 0 for other flows
-  double largest_move = 0;    ///< world units
-  double rms_move = 0;        ///< over the finite rows, world units
+  double equalized_rms = 0;  ///< how far points went along the surface to lie evenly, root mean square, world
+                             ///< units; 0 for flows that do not even them out
+  double equalized_largest = 0;  ///< the farthest
+  double guide_strength = 0;     ///< of the automatic flow's guide, dimensionless; 0 for other flows
+  double largest_move = 0;       ///< world units
+  double rms_move = 0;           ///< over the finite rows, world units
   std::size_t faces = 0, edges = 0, sdg_edges = 0, bridges = 0, faceless = 0, swaps = 0;
   std::vector<StageTime> seconds;  ///< in the order first done
 };

@@ -28,6 +28,7 @@ struct AutomaticReport {
   double guide_strength = 0;  ///< c of the guide's fairing, dimensionless
   double left = 0;            ///< estimate of the noise left, root mean square along the normal, world units
   double equalized = 0;       ///< root mean square move along the surface afterwards, world units
+  double equalized_most = 0;  ///< the largest of them
   std::size_t stranded = 0;   ///< points that the fairing had left beside the surface
 };
 

@@ -88,9 +88,9 @@ Frame make_frame(const Positions& points, const std::vector<Eigen::Vector3d>& no
 
 }  // namespace
 
-double equalize(Positions& points, double most, const Context& context) {
+Equalized equalize(Positions& points, double most, const Context& context) {
   const std::size_t n = points.size();
-  if (n <= std::size_t(kNear) || !(most > 0)) return 0;
+  if (n <= std::size_t(kNear) || !(most > 0)) return {};
   const rfs_mesh::SpatialIndex index(points, context);
   const rfs_mesh::NeighborTable near = index.nearest(kNear, context);
   std::vector<Eigen::Vector3d> normals(n);
@@ -128,8 +128,11 @@ double equalize(Positions& points, double most, const Context& context) {
     next = now;
   }
   points = std::move(now);
-  return std::sqrt(sum_over(context, n, 0.0, [&](std::size_t i) { return moved[i].squaredNorm(); }) /
-                   double(n));
+  Equalized done;
+  done.rms =
+      std::sqrt(sum_over(context, n, 0.0, [&](std::size_t i) { return moved[i].squaredNorm(); }) / double(n));
+  for (const Eigen::Vector2d& m : moved) done.largest = std::max(done.largest, m.norm());
+  return done;
 }
 
 }  // namespace rfsmooth::smoothing

@@ -18,9 +18,14 @@
 
 namespace rfsmooth::smoothing {
 
+/// How far the points went along the surface, world units.
+struct Equalized {
+  double rms = 0, largest = 0;
+};
+
 /// Moves `points` (n x 3, near a surface). No point moves farther along the surface than half the local
-/// distance between points, nor than `most` (world units). Returns the root mean square of the moves. O(n log
-/// n), parallel, the same bits for any number of threads.
-double equalize(Positions& points, double most, const Context& context);
+/// distance between points, nor than `most` (world units). O(n log n), parallel, the same bits for any number
+/// of threads.
+Equalized equalize(Positions& points, double most, const Context& context);
 
 }  // namespace rfsmooth::smoothing

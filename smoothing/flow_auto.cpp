@@ -29,8 +29,11 @@ class AutomaticFlow : public Flow {
     }
     report_.emplace();
     mesh.positions = automatic_smoothing(mesh, strength_ * sigma, spacing, *report_, context);
-    if (equalize_ && report_->guide_strength > 0)
-      report_->equalized = equalize(mesh.positions, kMostSigma * strength_ * sigma, context);
+    if (equalize_ && report_->guide_strength > 0) {
+      const Equalized moved = equalize(mesh.positions, kMostSigma * strength_ * sigma, context);
+      report_->equalized = moved.rms;
+      report_->equalized_most = moved.largest;
+    }
     report_->noise = sigma;
   }
 

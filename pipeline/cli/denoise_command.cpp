@@ -1,5 +1,7 @@
 /// rfsmooth denoise: a cloud in, the same cloud without the noise out.
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 
 #include <fmt/format.h>
@@ -16,12 +18,13 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr const char* kDisplacement = "displacement";
+constexpr const char *kDisplacement = "displacement", *kOutlier = "outlier";
 
 struct Options {
   pipeline::DenoiseOptions denoise;
   std::optional<std::string> strength_field;
   bool write_displacement = false;
+  bool mark_outliers = false;
   JobOptions job;
 
   template <class Self, class Visit>
@@ -31,7 +34,12 @@ struct Options {
           self.strength_field);
     visit(OptionInfo{"write-displacement", "add a field 'displacement': how far each point moved", ""},
           self.write_displacement);
+    visit(OptionInfo{"mark-outliers", "add a field 'outlier': 1 for points with no surface near, else 0", ""},
+          self.mark_outliers);
   }
+
+  bool marks() const { return mark_outliers || denoise.outliers == "mark"; }
+  bool removes() const { return denoise.outliers == "remove"; }
 };
 
 void enter(const pipeline::DenoiseReport& done, const Options& options, ordered_json& entry) {
@@ -42,8 +50,13 @@ void enter(const pipeline::DenoiseReport& done, const Options& options, ordered_
                      {"moved", done.moved},         {"faces", done.faces},     {"edges", done.edges},
                      {"sdg_edges", done.sdg_edges}, {"bridges", done.bridges}, {"faceless", done.faceless},
                      {"swaps", done.swaps}};
+  entry["counts"]["outliers"] = done.outliers;
+  entry["counts"]["removed"] = options.removes() ? done.outliers : 0;
   entry["spacing"] = done.spacing;
   entry["noise"] = done.noise;
+  entry["noise_left"] = done.noise_left;
+  entry["guide_strength"] = done.guide_strength;
+  entry["equalized"] = {{"rms", done.equalized_rms}, {"largest", done.equalized_largest}};
   entry["largest_move"] = done.largest_move;
   entry["rms_move"] = done.rms_move;
 }
@@ -63,6 +76,7 @@ void tell(const pipeline::DenoiseReport& done, const pipeline::io::Cloud& cloud,
 void check_fields(const Options& options, const pipeline::io::Cloud& cloud) {
   if (options.write_displacement)
     pipeline::io::check_field(cloud, kDisplacement, pipeline::io::Scalar::float32);
+  if (options.marks()) pipeline::io::check_field(cloud, kOutlier, pipeline::io::Scalar::uint8);
 }
 
 /// How far each point is from `before`, as the file now has it: rounded to the coordinates' own type. 0 for
@@ -79,6 +93,28 @@ void write_displacement(pipeline::io::Cloud& cloud, const std::vector<double>& b
   pipeline::io::set_field(cloud, kDisplacement, pipeline::io::Scalar::float32, distance, context);
 }
 
+/// Drops the outliers, the others in their order. An organised cloud keeps its grid: there they become NaN,
+/// as a sensor writes where it saw nothing (before `set_positions`, in `xyz`).
+void remove_outliers(pipeline::io::Cloud& cloud, const std::vector<char>& outlier, const Context& context) {
+  std::vector<std::size_t> rows;
+  for (std::size_t i = 0; i < outlier.size(); ++i)
+    if (outlier[i] == 0) rows.push_back(i);
+  pipeline::io::select_points(cloud, rows, context);
+}
+
+bool keeps_grid(const pipeline::io::Cloud& cloud) {
+  bool has_nan = cloud.organised();
+  for (const std::size_t f : cloud.xyz) has_nan = has_nan && is_float(cloud.points().fields[f].type);
+  return has_nan;
+}
+
+/// "; 3 outliers removed", or nothing.
+std::string said_of_outliers(const pipeline::DenoiseReport& done, const Options& options) {
+  if (done.outliers == 0) return "";
+  const char* what = options.removes() ? "removed" : options.marks() ? "marked" : "left in place";
+  return fmt::format("; {} outlier{} {}", done.outliers, done.outliers == 1 ? "" : "s", what);
+}
+
 std::string denoise_cloud(const Options& options, pipeline::io::Cloud& cloud, const Job& job,
                           const Context& context, Console& console, std::vector<pipeline::StageTime>& stages,
                           ordered_json& entry) {
@@ -92,18 +128,32 @@ std::string denoise_cloud(const Options& options, pipeline::io::Cloud& cloud, co
   const auto result = pipeline::denoise(xyz.data(), n, options.denoise, context, strength);
   if (!result.ok()) throw Failure({result.error().code, job.input + ": " + result.error().message});
   const pipeline::DenoiseReport& done = result.value();
+  const bool some_removed = options.removes() && done.outliers > 0,
+             as_nan = some_removed && keeps_grid(cloud);
+  if (as_nan)
+    for (std::size_t i = 0; i < n; ++i)
+      if (done.outlier[i] != 0) std::fill_n(&xyz[3 * i], 3, std::numeric_limits<double>::quiet_NaN());
   pipeline::io::set_positions(cloud, xyz.data(), context);
   if (options.write_displacement) write_displacement(cloud, before, context);
+  if (options.marks()) {
+    std::vector<double> flags(done.outlier.begin(), done.outlier.end());
+    flags.resize(n, 0);
+    pipeline::io::set_field(cloud, kOutlier, pipeline::io::Scalar::uint8, flags, context);
+  }
+  if (some_removed && !as_nan) remove_outliers(cloud, done.outlier, context);
   stages.insert(stages.end(), done.seconds.begin(), done.seconds.end());
   tell(done, cloud, job, console);
   enter(done, options, entry);
-  return fmt::format("{} points, {} finite; spacing {:.4g}; largest move {:.4g}, rms {:.4g}", done.points,
-                     done.finite, done.spacing, done.largest_move, done.rms_move);
+  return fmt::format("{} points, {} finite{}; spacing {:.4g}; largest move {:.4g}, rms {:.4g}", done.points,
+                     done.finite, said_of_outliers(done, options), done.spacing, done.largest_move,
+                     done.rms_move);
 }
 
 int run(const Options& options, const Invocation& typed) {
   // Wrong options are told before any file is touched.
   if (const auto valid = smoothing::complete(options.denoise.flow); !valid.ok()) throw Failure(valid.error());
+  if (options.mark_outliers && options.denoise.outliers == "smooth")
+    throw Failure({ErrorCode::usage, "--mark-outliers has nothing to mark with --outliers smooth"});
   return run_cloud_jobs("denoise", options.job, typed, [&](auto&&... all) {
     return denoise_cloud(options, std::forward<decltype(all)>(all)...);
   });
@@ -122,7 +172,8 @@ Command denoise_command() {
       "(EMST, SDG, RFS-mesh), smooths the mesh, and writes the same cloud with x, y, z replaced: every other "
       "field, the order and the number of points stay. Points that are not finite stay as they are. Fields "
       "that "
-      "are asked for (--write-displacement) come behind the points' other fields, or take the place of the "
+      "are asked for (--write-displacement, --mark-outliers) come behind the points' other fields, or take "
+      "the place of the "
       "one "
       "of that name.\n\n"
       "- stands for standard input or output; --format names the format where there is no extension. Without "

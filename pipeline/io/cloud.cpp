@@ -1,5 +1,6 @@
 #include "rfsmooth/pipeline/io/cloud.h"
 
+#include <algorithm>
 #include <cstring>
 #include <stdexcept>
 
@@ -124,6 +125,10 @@ void select_points(Cloud& cloud, const std::vector<std::size_t>& rows, const Con
   select(cloud.points(), rows);
   cloud.width = rows.size();
   cloud.height = 1;
+  const auto says_grid = [](const Note& note) {
+    return note.line.rfind("obj_info num_cols", 0) == 0 || note.line.rfind("obj_info num_rows", 0) == 0;
+  };
+  cloud.notes.erase(std::remove_if(cloud.notes.begin(), cloud.notes.end(), says_grid), cloud.notes.end());
   for (std::size_t e = cloud.elements.size(); e-- > 0;) {
     if (e == cloud.vertex || !names_points(cloud.elements[e])) continue;
     context.warn("element '" + cloud.elements[e].name +

@@ -1,0 +1,203 @@
+/// Strays are found; nothing of a clean or a merely noisy cloud is called one.
+#include "rfsmooth/pipeline/outliers.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include "rfsmooth/clouds/sampling.h"
+#include "rfsmooth/clouds/scanner.h"
+#include "rfsmooth/clouds/shapes.h"
+#include "rfsmooth/rfs_mesh/points.h"
+
+namespace rfsmooth::pipeline {
+namespace {
+
+/// Flags by row, whatever the order of the rows: as `denoise` calls it.
+std::vector<char> find(const Positions& points, int threads = 0) {
+  Context context;
+  context.threads = threads;
+  const auto cloud = rfs_mesh::make_working_cloud(points.data()->data(), points.size(), context).value();
+  const std::vector<char> found = find_outliers(cloud.points, context);
+  std::vector<char> by_row(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) by_row[i] = found[cloud.of_input[i]];
+  return by_row;
+}
+
+std::size_t count(const std::vector<char>& flags) {
+  return std::size_t(std::count(flags.begin(), flags.end(), 1));
+}
+
+Positions noisy(Positions points, double spacings) {
+  clouds::add_noise(points, spacings * clouds::mean_spacing(points), 7);
+  return points;
+}
+
+Positions grid(int columns, int rows, double step) {
+  Positions points;
+  for (int i = 0; i < columns; ++i)
+    for (int j = 0; j < rows; ++j) points.emplace_back(step * i, j, 0);
+  return points;
+}
+
+Positions random_plane(std::size_t n, double power) {
+  std::mt19937_64 engine(5);
+  std::uniform_real_distribution<double> uniform;
+  Positions points;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double x = std::pow(uniform(engine), power);
+    points.emplace_back(x, uniform(engine), 0);
+  }
+  return points;
+}
+
+TEST(Outliers, CleanCloudsHaveNone) {
+  EXPECT_EQ(count(find(grid(60, 60, 1))), 0u) << "an open regular grid, rims and corners";
+  EXPECT_EQ(count(find(grid(60, 60, 5))), 0u) << "rows farther apart than their points";
+  EXPECT_EQ(count(find(grid(60, 60, 20))), 0u) << "scan lines";
+  EXPECT_EQ(count(find(random_plane(5000, 1))), 0u);
+  EXPECT_EQ(count(find(random_plane(5000, 3))), 0u) << "a density gradient";
+  for (const char* shape : {"sphere", "cube", "l_part", "plate", "wavy_sheet", "two_density_sphere"})
+    EXPECT_EQ(count(find(clouds::sample(*clouds::make_shape(shape), 4000, 1))), 0u) << shape;
+}
+
+TEST(Outliers, SparsePartsAndThinPartsAreNoOutliers) {
+  Positions two = clouds::sample(*clouds::make_sphere(), 4000, 1), small;
+  for (const auto& p : clouds::sample(*clouds::make_sphere(), 60, 2))
+    small.push_back(p + Eigen::Vector3d(5, 0, 0));
+  two.insert(two.end(), small.begin(), small.end());
+  EXPECT_EQ(count(find(two)), 0u) << "two clusters, one 67 times thinner";
+  EXPECT_EQ(count(find(clouds::sample(*clouds::make_plate(0.01), 4000, 1))), 0u);
+  std::mt19937_64 engine(5);
+  std::uniform_real_distribution<double> uniform;
+  Positions helix, cone;
+  for (int i = 0; i < 4000; ++i) {
+    const double t = 50 * uniform(engine), z = uniform(engine);
+    helix.emplace_back(std::cos(t), std::sin(t), 0.1 * t);
+    cone.emplace_back(0.1 * z * std::cos(t), 0.1 * z * std::sin(t), z);
+  }
+  EXPECT_EQ(count(find(helix)), 0u) << "a wire";
+  EXPECT_EQ(count(find(cone)), 0u) << "a needle";
+}
+
+TEST(Outliers, GaussianNoiseHasNearlyNone) {
+  for (const char* shape : {"sphere", "l_part", "plate", "wavy_sheet"}) {
+    const Positions clean = clouds::sample(*clouds::make_shape(shape), 4000, 1);
+    for (const double spacings : {0.3, 1.0, 3.0})
+      EXPECT_LE(count(find(noisy(clean, spacings))), 1u) << shape << " at " << spacings;
+  }
+}
+
+/// Strays in the box around a shape: those that lie beyond six sigma and four spacings must be found.
+TEST(Outliers, StraysAreFound) {
+  constexpr std::size_t kPoints = 5000;
+  std::mt19937_64 engine(11);
+  std::uniform_real_distribution<double> uniform(-1.2, 1.2);
+  for (const char* name : {"sphere", "torus", "l_part"}) {
+    const auto shape = clouds::make_shape(name);
+    for (const double spacings : {0.0, 0.5, 1.0}) {
+      Positions points = clouds::sample(*shape, kPoints, 1);
+      const double spacing = clouds::mean_spacing(points);
+      points = noisy(points, spacings);
+      std::size_t far = 0, found = 0;
+      for (int i = 0; i < 80; ++i) points.emplace_back(uniform(engine), uniform(engine), uniform(engine));
+      const std::vector<char> flags = find(points);
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        const double distance = std::abs(shape->signed_distance(points[i]));
+        if (i < kPoints) {
+          EXPECT_EQ(flags[i], 0) << name << " at " << spacings << ": point " << i;
+          continue;
+        }
+        if (distance < std::max(4.0, 6 * spacings) * spacing) continue;
+        ++far;
+        found += std::size_t(flags[i]);
+      }
+      EXPECT_GT(far, 20u);
+      EXPECT_GE(double(found), 0.85 * double(far)) << name << " at " << spacings;
+    }
+  }
+}
+
+TEST(Outliers, AFewStraysTogetherAreFoundToo) {
+  Positions points = clouds::sample(*clouds::make_sphere(), 4000, 1);
+  const std::size_t n = points.size();
+  for (const double x : {2.0, 2.01, 2.02}) points.emplace_back(x, 0, 0);  // three together
+  points.emplace_back(0, 0, 0);                                           // inside
+  points.emplace_back(0, 0, -30);                                         // far out
+  const std::vector<char> flags = find(points);
+  EXPECT_EQ(count(flags), 5u);
+  for (std::size_t i = n; i < points.size(); ++i) EXPECT_EQ(flags[i], 1) << i;
+}
+
+TEST(Outliers, APointBesideARimIsOneIfFarEnough) {
+  Positions points = grid(40, 40, 1);
+  points.emplace_back(60, 20, 0);    // in the plane, 20 steps beyond the rim
+  points.emplace_back(40.5, 20, 0);  // in the plane, just beyond it
+  const std::vector<char> flags = find(points);
+  EXPECT_EQ(flags[1600], 1);
+  EXPECT_EQ(flags[1601], 0);
+  EXPECT_EQ(count(flags), 1u);
+}
+
+/// Returns that lie between two surfaces because the beam met both.
+TEST(Outliers, MixedPixelsAreFound) {
+  clouds::ScannerOptions options;
+  options.views = 4;
+  options.noise = 0.004;
+  options.beam = 0.8;
+  for (const char* name : {"torus", "l_part"}) {
+    Positions points;
+    std::vector<char> mixed, surface;
+    for (const auto& seen : clouds::scan(*clouds::make_shape(name), options, {})) {
+      if (seen.kind == clouds::ReturnKind::none) continue;
+      points.push_back(seen.measured);
+      surface.push_back(seen.kind == clouds::ReturnKind::surface);
+      mixed.push_back(seen.kind == clouds::ReturnKind::mixed && (seen.measured - seen.truth).norm() > 0.15);
+    }
+    const std::vector<char> flags = find(points);
+    std::size_t right = 0, wrong = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      right += std::size_t(flags[i] != 0 && mixed[i] != 0);
+      wrong += std::size_t(flags[i] != 0 && surface[i] != 0);
+    }
+    EXPECT_GE(double(right), 0.7 * double(count(mixed))) << name;
+    EXPECT_LE(wrong, points.size() / 2000) << name;
+  }
+}
+
+TEST(Outliers, AreTheSameTurnedScaledShuffledAndOnAnyNumberOfThreads) {
+  Positions points = noisy(clouds::sample(*clouds::make_torus(), 3000, 1), 0.5);
+  std::mt19937_64 engine(3);
+  std::uniform_real_distribution<double> uniform(-1.5, 1.5);
+  for (int i = 0; i < 40; ++i) points.emplace_back(uniform(engine), uniform(engine), uniform(engine));
+  const std::vector<char> flags = find(points, 1);
+  ASSERT_GT(count(flags), 10u);
+  EXPECT_EQ(find(points, 4), flags);
+  const Eigen::Matrix3d turn =
+      Eigen::AngleAxisd(0.4, Eigen::Vector3d(1, 2, -1).normalized()).toRotationMatrix();
+  Positions turned = points;
+  for (auto& p : turned) p = 1000 * (turn * p) + Eigen::Vector3d(500000, 4649776, 130);
+  EXPECT_EQ(find(turned), flags);
+  Positions backwards(points.rbegin(), points.rend());
+  std::vector<char> reversed = find(backwards);
+  std::reverse(reversed.begin(), reversed.end());
+  EXPECT_EQ(reversed, flags);
+}
+
+TEST(Outliers, SmallCloudsHaveNone) {
+  for (const std::size_t n : {1, 2, 8, 9, 50, 99}) {
+    Positions points = clouds::sample(*clouds::make_sphere(), n, 1);
+    points.back() *= 100;
+    EXPECT_EQ(count(find(points)), 0u) << n;
+  }
+  Positions line;
+  for (int i = 0; i < 300; ++i) line.emplace_back(i, 0, 0);
+  EXPECT_EQ(count(find(line)), 0u);
+  EXPECT_TRUE(find_outliers({}, {}).empty());
+}
+
+}  // namespace
+}  // namespace rfsmooth::pipeline
