@@ -39,11 +39,13 @@ struct MeshView {
   std::size_t m = 0;
 };
 
+/// What is known of the surface: a mesh, a clean cloud, or both.
 struct Truth {
   std::optional<MeshView> mesh;    ///< gives p2s, P2M, shrinkage
   std::optional<CloudView> cloud;  ///< gives CD
 };
 
+/// How to compare.
 struct CompareOptions {
   bool signed_normals = false;  ///< the cloud's normals claim a side: angles up to 180 degrees instead of 90
 };
@@ -86,6 +88,7 @@ struct Measures {
   }
 };
 
+/// The figures of a comparison; empty where the truth does not give them.
 struct CompareReport {
   std::size_t points = 0;        ///< rows of the cloud
   std::size_t finite = 0;        ///< rows measured

@@ -23,6 +23,7 @@
 
 namespace rfsmooth::pipeline {
 
+/// How to denoise: the flow, the swaps between its steps, the rough mesh.
 struct DenoiseOptions {
   smoothing::FlowOptions flow;
   /// What to do about outliers. Those found stay where they are and pull nobody, whichever of the first three
@@ -48,11 +49,13 @@ struct DenoiseOptions {
   }
 };
 
+/// How long a stage took.
 struct StageTime {
   std::string name;
   double seconds = 0;
 };
 
+/// What was measured and done.
 struct DenoiseReport {
   DenoiseOptions effective;   ///< the options with every automatically chosen value filled in; gives the same
                               ///< bytes when used again

@@ -17,12 +17,14 @@
 
 namespace rfsmooth::pipeline {
 
+/// Which side the normals are on.
 struct NormalsOptions {
   /// Where the scanner stood, world units: the points that it can see face it, and what they are connected to
   /// follows. Empty: closed shapes face outward, open ones away from their centre.
   std::optional<Eigen::Vector3d> viewpoint;
 };
 
+/// What was done.
 struct NormalsReport {
   std::size_t points = 0;  ///< rows given
   std::size_t finite = 0;  ///< rows that got a normal

@@ -18,6 +18,7 @@
 
 namespace rfsmooth::pipeline {
 
+/// An axis-aligned box.
 struct Box {
   Eigen::Vector3d lower, upper;
   double squared_distance(const Eigen::Vector3d& p) const;
@@ -50,6 +51,7 @@ class BoxTree {
 /// The nearest point of a cloud.
 class PointTree {
  public:
+  /// What was found nearest.
   struct Hit {
     Index point = kNone;
     double squared = 0;
@@ -74,6 +76,7 @@ struct TrianglePoint {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
   int feature = 0;
 };
+/// The point of the triangle nearest to `query`.
 TrianglePoint nearest_on_triangle(const Eigen::Vector3d& query,
                                   const std::array<Eigen::Vector3d, 3>& triangle);
 
@@ -81,6 +84,7 @@ TrianglePoint nearest_on_triangle(const Eigen::Vector3d& query,
 /// unindexed soup works.
 class TrueSurface {
  public:
+  /// What was found nearest.
   struct Hit {
     Index face = kNone;
     double squared = 0;

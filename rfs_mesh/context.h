@@ -11,8 +11,10 @@
 
 namespace rfsmooth {
 
+/// How much a message matters.
 enum class LogLevel { debug, info, warning };
 
+/// What every stage is given beside its data: threads, seed, callbacks.
 struct Context {
   /// Number of threads; 0 = all cores. The result is the same for every value.
   int threads = 0;

@@ -17,6 +17,7 @@
 
 namespace rfsmooth::rfs_mesh {
 
+/// When a swap is worth it.
 struct SwapOptions {
   /// Gain below which a swap is not worth it (and rounding could undo it next time).
   double least_gain = 1e-3;

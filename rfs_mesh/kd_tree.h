@@ -20,6 +20,7 @@
 
 namespace rfsmooth::rfs_mesh {
 
+/// A balanced tree over points in leaves of eight.
 class KdTree {
  public:
   static constexpr std::uint32_t kLeaf = 8;  ///< points in a leaf
@@ -30,6 +31,7 @@ class KdTree {
     Index id[kLeaf];
   };
 
+  /// What is known of the points below a node.
   struct Node {
     Eigen::Vector3d low, high;  ///< tight box
     Index least_id;             ///< smallest id in it: decides ties of distance

@@ -19,6 +19,7 @@
 
 namespace rfsmooth::rfs_mesh {
 
+/// The surface around a point, as its neighbours show it.
 struct LocalSurface {
   Eigen::Vector3d normal;  ///< unit; its side is arbitrary
   Eigen::Vector3d shadow;  ///< the point moved along the normal onto its quadric, same frame as the points

@@ -59,6 +59,7 @@ struct EdgeCensus {
   std::size_t crowded = 0;   ///< edges with more: none in an RFS-mesh
   std::size_t faceless = 0;  ///< vertices without a face
 };
+/// Counts the edges by their faces.
 EdgeCensus edge_census(const Mesh& mesh, const Context& context);
 
 }  // namespace rfsmooth::rfs_mesh

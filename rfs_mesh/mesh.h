@@ -12,6 +12,7 @@
 
 namespace rfsmooth::rfs_mesh {
 
+/// Three different vertices; their order is the orientation.
 using Face = std::array<Index, 3>;
 using Edge = std::array<Index, 2>;  ///< {a, b} with a < b
 
@@ -20,6 +21,7 @@ struct Adjacency {
   std::vector<Index> start;  ///< n + 1
   std::vector<Index> items;
 
+  /// The neighbours of one vertex.
   struct Row {
     const Index* first;
     const Index* last;

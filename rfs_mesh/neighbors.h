@@ -22,6 +22,7 @@
 
 namespace rfsmooth::rfs_mesh {
 
+/// A point and how far it is.
 struct Neighbor {
   Index index;
   double squared_distance;

@@ -22,6 +22,7 @@
 
 namespace rfsmooth::rfs_mesh {
 
+/// The noise of a cloud.
 struct NoiseField {
   double sigma = 0;            ///< standard deviation along the normal, world units: a low quantile
   std::size_t neighbours = 0;  ///< m

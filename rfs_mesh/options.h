@@ -23,6 +23,7 @@
 
 namespace rfsmooth {
 
+/// What the tables of `describe` say of an option.
 struct OptionInfo {
   std::string_view name;  ///< long option without the dashes, words joined by '-'
   std::string_view help;  ///< one line: what it means
@@ -45,9 +46,12 @@ template <class Options>
 Result<Done> validate(const Options& options);
 
 namespace detail {
+/// What is wrong with the value of that option, if anything.
 std::optional<Error> check_range(const OptionInfo& info, double value);
+/// The same for a name.
 std::optional<Error> check_choice(const OptionInfo& info, const std::string& value);
 
+/// Visits an option table and keeps the first thing that is wrong.
 struct Validator {
   std::optional<Error> error;
   void note(std::optional<Error> e) {

@@ -20,6 +20,7 @@ namespace rfsmooth {
 
 /// Index of a point, vertex or face. At most 2^32 - 2 of them.
 using Index = std::uint32_t;
+/// No point.
 inline constexpr Index kNone = std::numeric_limits<Index>::max();
 
 /// n x 3, row i = point i; contiguous doubles.
@@ -29,6 +30,7 @@ using Positions = std::vector<Eigen::Vector3d>;
 
 namespace rfsmooth::rfs_mesh {
 
+/// The working points and where the caller's rows went.
 struct WorkingCloud {
   Eigen::Vector3d origin =
       Eigen::Vector3d::Zero();      ///< centre of the finite points' bounding box; world = origin + point

@@ -25,6 +25,7 @@
 
 namespace rfsmooth::rfs_mesh {
 
+/// How to connect.
 struct ConnectOptions {
   int neighbours = 24;       ///< nearest neighbours looked at; about two and a half rings of a surface mesh
   double shadow_from = 0.3;  ///< noise / spacing from which tests are made on the shadow

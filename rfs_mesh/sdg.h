@@ -23,6 +23,7 @@
 
 namespace rfsmooth::rfs_mesh {
 
+/// The thresholds of the rules, each with its reason.
 struct SdgOptions {
   /// Longer edges jump over what lies between; an EMST edge is the shortest way, 2.5 of them span one missing
   /// neighbour on either side.
@@ -84,6 +85,7 @@ struct Terrain {
   double noise = 0;                           ///< standard deviation of `at` along the normal, world units
 };
 
+/// The graph.
 struct Sdg {
   std::vector<Edge> edges;           ///< tree and added edges, ascending; bridges are not among them
   std::vector<Edge> bridges;         ///< tree edges by rule (C), ascending: edges + bridges is connected

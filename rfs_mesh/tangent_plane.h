@@ -8,6 +8,7 @@
 
 namespace rfsmooth::rfs_mesh {
 
+/// Degrees to radians.
 inline double radians(double degrees) {
   return degrees * (M_PI / 180);
 }

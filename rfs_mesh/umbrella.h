@@ -18,6 +18,7 @@ namespace rfsmooth::rfs_mesh {
 
 inline constexpr int kMostRibs = 10;  ///< ribs of an umbrella: 360 / 30 degrees, less what the gaps eat
 
+/// The thresholds of umbrellas, each with its reason.
 struct UmbrellaOptions {
   /// Neighbours are looked for within this factor of the longest (90th percentile) SDG edge around the
   /// vertex.

@@ -23,6 +23,7 @@
 
 namespace rfsmooth::smoothing {
 
+/// What the flow measured and chose.
 struct AutomaticReport {
   double noise = 0;           ///< measured or stated, standard deviation along the normal, world units
   double guide_strength = 0;  ///< c of the guide's fairing, dimensionless

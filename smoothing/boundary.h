@@ -23,6 +23,7 @@ namespace rfsmooth::smoothing {
 /// Makes a flow on a mesh (perhaps the closed one) under constraints (perhaps with the boundary fixed).
 using FlowMaker = std::function<std::unique_ptr<Flow>(const rfs_mesh::Mesh&, const Constraints&)>;
 
+/// The flow that `make` makes, with the rule of that name.
 std::unique_ptr<Flow> with_boundary_rule(const std::string& rule, const rfs_mesh::Mesh& mesh,
                                          const Constraints& constraints, const Context& context,
                                          const FlowMaker& make);

@@ -26,6 +26,7 @@ using Numbers = Eigen::Array<Scalar, Eigen::Dynamic, 1>;
 inline Eigen::Vector3d allowed_part(const AllowedMoves& allowed, std::size_t i, const Eigen::Vector3d& move) {
   return allowed(i, move);
 }
+/// The same; the fourth number is not a coordinate.
 inline Eigen::Vector4f allowed_part(const AllowedMoves& allowed, std::size_t i, const Eigen::Vector4f& move) {
   if (allowed.all_free()) return move;
   Eigen::Vector4f part = Eigen::Vector4f::Zero();
@@ -68,6 +69,7 @@ ResidualSums residual_sums(const Context& context, std::size_t n, const Scales<S
       });
 }
 
+/// How far the iteration came.
 struct Iterated {
   int iterations = 0;
   double norm = 0;  ///< of the recursive residual

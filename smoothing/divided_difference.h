@@ -17,6 +17,7 @@
 
 namespace rfsmooth::smoothing {
 
+/// The second derivatives at every vertex, from its neighbours.
 class DividedDifferences {
  public:
   /// Charts from mesh.positions. \param chart "tangent": neighbours projected to the tangent plane;

@@ -25,6 +25,7 @@ class Speed {
   virtual void connectivity_changed(const rfs_mesh::Mesh&, const Context&) {}
 };
 
+/// Whether a step reads the positions before it or those already moved.
 enum class Update { simultaneous, sequential };
 
 /// A flow that adds lambda F. Positions that would not be finite stay where they are.

@@ -16,6 +16,7 @@
 
 namespace rfsmooth::smoothing {
 
+/// The matrix of a fairing, laid out for fast products.
 template <class Vector>
 class FairingMatrix {
  public:

@@ -13,6 +13,7 @@
 
 namespace rfsmooth::smoothing {
 
+/// Heights of the data over the guide.
 class HeightField {
  public:
   /// \param guide n x 3, near the surface; n >= 2.

@@ -17,6 +17,7 @@
 
 namespace rfsmooth::smoothing {
 
+/// Symmetric weights over masses on a graph.
 struct Operator {
   std::vector<double> weight;  ///< w_ij per item of rows(), symmetric; empty = all 1
   std::vector<double> mass;    ///< n: m_i > 0, also for vertices without any weight

@@ -27,6 +27,7 @@ struct Prediction {
   std::vector<char> covered;   ///< n: whether any patch reaches the point
 };
 
+/// Overlapping quadrics over one number of points.
 class Patches {
  public:
   /// Patches of `members` points each (at most the number of points) around the points `seeds`, evenly

@@ -17,8 +17,10 @@
 
 namespace rfsmooth::smoothing {
 
+/// What a flow keeps: the enclosed volume, the area, or the volume under a height field.
 enum class Invariant { volume, area, height_field };
 
+/// Wraps a flow so that the mesh keeps the invariant.
 std::unique_ptr<Flow> make_preserving(std::unique_ptr<Flow> inner, const rfs_mesh::Mesh& mesh,
                                       Invariant invariant, AllowedMoves allowed, const Context& context);
 

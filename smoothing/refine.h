@@ -17,6 +17,7 @@
 
 namespace rfsmooth::smoothing {
 
+/// How to refine.
 struct RefineOptions {
   int levels = 1;               ///< each multiplies the faces by four
   std::string chart = "mixed";  ///< how neighbours get their parameters

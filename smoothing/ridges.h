@@ -25,6 +25,7 @@ struct PrincipalCurvatures {
   Positions normal;                  ///< unit
 };
 
+/// The principal curvatures at every vertex.
 PrincipalCurvatures principal_curvatures(const rfs_mesh::Mesh& mesh, const Context& context);
 
 /// n: 1 = ridge, -1 = ravine, 0 = neither. Vertices whose one-ring polygon the plane does not cross twice

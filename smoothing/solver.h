@@ -30,12 +30,14 @@
 
 namespace rfsmooth::smoothing {
 
+/// When to stop.
 struct SolverOptions {
   double tolerance = 1e-5;    ///< of the residual, relative to the centred right side
   int max_iterations = 5000;  ///< then the last iterate is returned with converged = false
   bool linf = false;          ///< stop on the largest instead of the root mean square residual
 };
 
+/// How it ended.
 struct SolverReport {
   int iterations = 0;   ///< products with A in the iteration
   double residual = 0;  ///< reached, relative, in the norm of the options

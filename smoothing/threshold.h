@@ -15,6 +15,7 @@
 
 namespace rfsmooth::smoothing {
 
+/// Where the threshold comes from.
 struct ThresholdRule {
   int rings = 0;          ///< 0 = constant, 1 or 2 = mean over that many rings
   double constant = 0.1;  ///< T of the constant rule, x mean edge length of the first mesh
@@ -22,6 +23,7 @@ struct ThresholdRule {
   double lambda = 1;      ///< the wrapped flow's step length
 };
 
+/// Wraps a flow by the rule.
 std::unique_ptr<Flow> make_threshold(std::unique_ptr<Flow> inner, const rfs_mesh::Mesh& mesh,
                                      const ThresholdRule& rule, const Context& context);
 

@@ -12,6 +12,7 @@ namespace rfsmooth::pipeline::io {
 template <class T>
 struct DefaultInit : std::allocator<T> {
   template <class U>
+  /// For containers of another type.
   struct rebind {  // NOLINT(readability-identifier-naming): the standard's name
     using other = DefaultInit<U>;
   };
@@ -28,6 +29,7 @@ struct DefaultInit : std::allocator<T> {
   }
 };
 
+/// Bytes that are not cleared first.
 using Bytes = std::vector<char, DefaultInit<char>>;
 
 }  // namespace rfsmooth::pipeline::io

@@ -17,7 +17,9 @@
 
 namespace rfsmooth::pipeline::io {
 
+/// The kind of file.
 enum class Format { ply, pcd, xyz, off };
+/// How its numbers are written.
 enum class Encoding { ascii, binary_little_endian, binary_big_endian, binary_compressed };
 
 std::string_view name_of(Format format);      ///< "ply", "pcd", "xyz", "off"
@@ -40,6 +42,7 @@ struct XyzStyle {
   char separator = ' ';              ///< between those names
 };
 
+/// A file in memory: every element and field, also those nobody here understands.
 struct Cloud {
   Format format = Format::ply;
   Encoding encoding = Encoding::binary_little_endian;

@@ -16,6 +16,7 @@ std::size_t size_of(Scalar type);       ///< bytes
 bool is_float(Scalar type);             ///< float32 or float64
 std::string_view name_of(Scalar type);  ///< "float32", "uint8", ...
 
+/// A column of a table.
 struct Field {
   std::string name;
   Scalar type = Scalar::float32;

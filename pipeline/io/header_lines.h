@@ -10,6 +10,7 @@
 
 namespace rfsmooth::pipeline::io {
 
+/// Reads a file's header line by line, counting.
 class HeaderLines {
  public:
   HeaderLines(const Source& source, const Context& context) : source_(source), context_(context) {}

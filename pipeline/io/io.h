@@ -21,10 +21,12 @@
 
 namespace rfsmooth::pipeline::io {
 
+/// How to read.
 struct ReadOptions {
   std::optional<Format> format;  ///< empty: told by the content
 };
 
+/// How to write.
 struct WriteOptions {
   std::optional<Format> format;      ///< empty: told by the extension of the path, else the cloud's own
   std::optional<Encoding> encoding;  ///< empty: the cloud's own, or the target format's nearest to it
@@ -63,6 +65,7 @@ std::optional<Format> format_of_extension(const std::filesystem::path& path);
 /// The format of that name ("ply", "pcd", "xyz", "off"), if any; likewise encodings ("binary" is
 /// little-endian).
 std::optional<Format> format_by_name(std::string_view name);
+/// The encoding of that name, if any.
 std::optional<Encoding> encoding_by_name(std::string_view name);
 
 }  // namespace rfsmooth::pipeline::io

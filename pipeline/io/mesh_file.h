@@ -8,6 +8,7 @@
 
 namespace rfsmooth::pipeline::io {
 
+/// A mesh and the file it came from.
 struct MeshFile {
   Cloud cloud;                        ///< the file; write it with write_cloud after set_positions
   std::vector<rfs_mesh::Face> faces;  ///< m x 3: its polygons split into fans; no repeated corners
@@ -19,6 +20,7 @@ struct MeshFile {
 /// connectivity is right.
 Result<MeshFile> read_mesh(const std::filesystem::path& path, const ReadOptions& options,
                            const Context& context);
+/// The same from bytes; `name` is for messages.
 Result<MeshFile> parse_mesh(std::string_view bytes, const std::string& name, const ReadOptions& options,
                             const Context& context);
 
@@ -35,6 +37,7 @@ std::vector<rfs_mesh::Edge> edges_of(const Cloud& cloud, const Context& context 
 /// (int vertex1, int vertex2); replaces what was there under that name. Rows are binary. Only PLY and OFF can
 /// carry faces, only PLY edges: set cloud.format or write with that format.
 void set_faces(Cloud& cloud, const std::vector<rfs_mesh::Face>& faces);
+/// See `set_faces`.
 void set_edges(Cloud& cloud, const std::vector<rfs_mesh::Edge>& edges);
 
 /// A binary PLY of points (float64), triangles and edges; elements without rows are left out.

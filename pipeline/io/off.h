@@ -14,6 +14,7 @@ Cloud read_off(const Source& source, const Context& context);
 /// Everything before the first vertex, as we write it: prefixes by the points' fields.
 std::string off_header(const Cloud& cloud);
 
+/// Writes the whole file.
 void write_off(const Cloud& cloud, Sink& sink, const Context& context);
 
 /// The fields an OFF file of the points' kind would have, by index into the points' fields, in OFF's order: x

@@ -52,6 +52,7 @@ void read_text_rows(Table& table, TextCursor& cursor, const Context& context);
 
 /// Writes the rows as bytes or as text; a table that is the other kind is converted on the way.
 void write_binary_rows(const Table& table, bool big_endian, Sink& sink, const Context& context);
+/// See `write_binary_rows`.
 void write_text_rows(const Table& table, Sink& sink, const Context& context);
 
 }  // namespace rfsmooth::pipeline::io

@@ -12,6 +12,7 @@
 
 namespace rfsmooth::pipeline::io {
 
+/// A file's bytes, mapped where that is possible.
 class Source {
  public:
   /// Opens a file; what has no size (a pipe, a terminal) is read into memory first.

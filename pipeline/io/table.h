@@ -22,6 +22,7 @@ struct Interlude {
   std::string text;
 };
 
+/// An element of a file: rows of fields, kept as the file has them.
 struct Table {
   std::string name;           ///< "vertex", "face", ...
   std::vector<Field> fields;  ///< in file order; names may repeat
@@ -53,6 +54,7 @@ struct Lists {
   std::vector<std::uint64_t> start;  ///< count + 1
   std::vector<double> values;
 };
+/// Reads the list `field` of every row.
 Lists gather_lists(const Table& table, std::size_t field, const Context& context);
 
 /// Writes values back into plain fields, each in its own type; a value that equals the present one (or both
@@ -72,6 +74,7 @@ void project(Table& table, const std::vector<std::size_t>& which, const Context&
 /// Turns the array field `which` into a list, each row's count in front, and a list whose length is `count`
 /// in every row back into an array.
 void insert_list_counts(Table& table, std::size_t which, Scalar count_type, const Context& context);
+/// See `insert_list_counts`.
 void remove_list_counts(Table& table, std::size_t which, std::size_t count, const Context& context);
 
 /// Whether float32 holds all the digits that the text of the plain fields `which` has.
@@ -80,6 +83,7 @@ bool text_fits_float32(const Table& table, const std::vector<std::size_t>& which
 /// The same rows as text, values separated by a blank, or as bytes in the fields' types.
 /// Both leave a table alone that is so already. Ragged values are dropped.
 void make_text(Table& table, const Context& context);
+/// See `make_text`.
 void make_binary(Table& table, const Context& context);
 
 }  // namespace rfsmooth::pipeline::io

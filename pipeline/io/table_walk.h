@@ -10,8 +10,10 @@
 
 namespace rfsmooth::pipeline::io {
 
+/// Rows handled as one piece of parallel work.
 inline constexpr std::size_t kRowsPerBlock = 8192;
 
+/// The count of type `type` that stands at p.
 inline std::size_t list_size(Scalar type, const char* p) {
   return std::size_t(load(type, p));
 }

@@ -16,6 +16,7 @@ enum class Separators {
   space_comma,  ///< also ',' and ';' (XYZ)
 };
 
+/// Whether c stands between two values.
 inline bool is_separator(char c, Separators s) {
   return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\v' || c == '\f' ||
          (s == Separators::space_comma && (c == ',' || c == ';'));

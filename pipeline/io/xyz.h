@@ -16,6 +16,7 @@ Cloud read_xyz(const Source& source, const Context& context);
 /// What stands before the first point, as we write it.
 std::string xyz_header(const Cloud& cloud);
 
+/// Writes the whole file.
 void write_xyz(const Cloud& cloud, Sink& sink, const Context& context);
 
 }  // namespace rfsmooth::pipeline::io

@@ -69,7 +69,7 @@ class Denoise : public ::pcl::Filter<PointT>, public DenoiseSettings {
 
   Denoise() { this->filter_name_ = "Denoise"; }
 
-  /// As ::pcl::Filter::filter; without an input cloud the output is empty instead of untouched.
+  /// As in the base class; without an input cloud the output is empty instead of untouched.
   /// `output` may be the input cloud.
   void filter(PointCloud& output);
 
