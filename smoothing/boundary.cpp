@@ -5,6 +5,7 @@
 #include "rfsmooth/rfs_mesh/parallel.h"
 #include "rfsmooth/smoothing/constraint.h"
 #include "rfsmooth/smoothing/operator.h"
+#include "rfsmooth/smoothing/wrapped_flow.h"
 
 namespace rfsmooth::smoothing {
 
@@ -48,10 +49,10 @@ Constraints with_fixed_boundary(const Constraints& constraints, const Adjacency&
 }
 
 /// The boundary smooths itself as a curve, then the flow moves the rest.
-class BoundaryCurve : public Flow {
+class BoundaryCurve : public WrappedFlow {
  public:
   BoundaryCurve(std::unique_ptr<Flow> inner, Adjacency curve, AllowedMoves allowed)
-      : inner_(std::move(inner)), curve_(std::move(curve)), allowed_(std::move(allowed)) {}
+      : WrappedFlow(std::move(inner)), curve_(std::move(curve)), allowed_(std::move(allowed)) {}
 
   void step(Mesh& mesh, const Context& context) override {
     const Positions& x = mesh.positions;
@@ -71,24 +72,17 @@ class BoundaryCurve : public Flow {
     inner_->step(mesh, context);
   }
 
-  void connectivity_changed(const Mesh& mesh, const Context& context) override {
-    inner_->connectivity_changed(mesh, context);
-  }
-  int solver_iterations() const override { return inner_->solver_iterations(); }
-  bool limits_moves() const override { return inner_->limits_moves(); }
-  std::optional<AutomaticReport> automatic() const override { return inner_->automatic(); }
-
  private:
-  std::unique_ptr<Flow> inner_;
   Adjacency curve_;
   AllowedMoves allowed_;
 };
 
 /// The mesh with a virtual vertex over every boundary loop.
-class VirtualVertices : public Flow {
+class VirtualVertices : public WrappedFlow {
  public:
   VirtualVertices(const Mesh& mesh, const Constraints& constraints, const FlowMaker& make,
-                  const Context& context) {
+                  const Context& context)
+      : WrappedFlow(nullptr) {
     close(mesh, context);
     Constraints all = constraints;
     if (!all.strength.empty()) all.strength.resize(closed_.positions.size(), 1);
@@ -103,11 +97,8 @@ class VirtualVertices : public Flow {
 
   void connectivity_changed(const Mesh& mesh, const Context& context) override {
     close(mesh, context);
-    inner_->connectivity_changed(closed_, context);
+    WrappedFlow::connectivity_changed(closed_, context);
   }
-  int solver_iterations() const override { return inner_->solver_iterations(); }
-  bool limits_moves() const override { return inner_->limits_moves(); }
-  std::optional<AutomaticReport> automatic() const override { return inner_->automatic(); }
 
  private:
   /// Rebuilds closed_; a flow under way keeps its number of vertices, so later loops beyond it stay open.
@@ -157,7 +148,6 @@ class VirtualVertices : public Flow {
 
   Mesh closed_;
   std::vector<std::vector<Index>> loops_;
-  std::unique_ptr<Flow> inner_;
 };
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "rfsmooth/rfs_mesh/parallel.h"
+#include "rfsmooth/smoothing/wrapped_flow.h"
 
 namespace rfsmooth::smoothing {
 
@@ -53,10 +54,10 @@ Vector3d AllowedMoves::projected(std::size_t i, const Vector3d& move) const {
 
 namespace {
 
-class Constrained : public Flow {
+class Constrained : public WrappedFlow {
  public:
   Constrained(std::unique_ptr<Flow> inner, AllowedMoves allowed)
-      : inner_(std::move(inner)), allowed_(std::move(allowed)) {}
+      : WrappedFlow(std::move(inner)), allowed_(std::move(allowed)) {}
 
   void step(rfs_mesh::Mesh& mesh, const Context& context) override {
     before_ = mesh.positions;
@@ -67,15 +68,7 @@ class Constrained : public Flow {
     });
   }
 
-  void connectivity_changed(const rfs_mesh::Mesh& mesh, const Context& context) override {
-    inner_->connectivity_changed(mesh, context);
-  }
-  int solver_iterations() const override { return inner_->solver_iterations(); }
-  bool limits_moves() const override { return inner_->limits_moves(); }
-  std::optional<AutomaticReport> automatic() const override { return inner_->automatic(); }
-
  private:
-  std::unique_ptr<Flow> inner_;
   AllowedMoves allowed_;
   Positions before_;
 };

@@ -7,6 +7,7 @@
 #include "rfsmooth/rfs_mesh/measure.h"
 #include "rfsmooth/rfs_mesh/parallel.h"
 #include "rfsmooth/smoothing/surface.h"
+#include "rfsmooth/smoothing/wrapped_flow.h"
 
 namespace rfsmooth::smoothing {
 
@@ -15,11 +16,11 @@ using rfs_mesh::Face;
 
 namespace {
 
-class Preserving : public Flow {
+class Preserving : public WrappedFlow {
  public:
   Preserving(std::unique_ptr<Flow> inner, const rfs_mesh::Mesh& mesh, Invariant invariant,
              AllowedMoves allowed, const Context& context)
-      : inner_(std::move(inner)), invariant_(invariant), allowed_(std::move(allowed)) {
+      : WrappedFlow(std::move(inner)), invariant_(invariant), allowed_(std::move(allowed)) {
     connect(mesh);
     target_ = measure(mesh.positions, context);
   }
@@ -63,12 +64,9 @@ class Preserving : public Flow {
   }
 
   void connectivity_changed(const rfs_mesh::Mesh& mesh, const Context& context) override {
-    inner_->connectivity_changed(mesh, context);
+    WrappedFlow::connectivity_changed(mesh, context);
     connect(mesh);
   }
-  int solver_iterations() const override { return inner_->solver_iterations(); }
-  bool limits_moves() const override { return inner_->limits_moves(); }
-  std::optional<AutomaticReport> automatic() const override { return inner_->automatic(); }
   bool applies_constraints() const override { return inner_->applies_constraints(); }
 
  private:
@@ -101,7 +99,6 @@ class Preserving : public Flow {
     return area;
   }
 
-  std::unique_ptr<Flow> inner_;
   Invariant invariant_;
   AllowedMoves allowed_;
   std::vector<Face> faces_;

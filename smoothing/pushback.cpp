@@ -1,6 +1,7 @@
 #include "rfsmooth/smoothing/pushback.h"
 
 #include "rfsmooth/rfs_mesh/parallel.h"
+#include "rfsmooth/smoothing/wrapped_flow.h"
 
 namespace rfsmooth::smoothing {
 
@@ -8,10 +9,10 @@ using Eigen::Vector3d;
 
 namespace {
 
-class PushBack : public Flow {
+class PushBack : public WrappedFlow {
  public:
   PushBack(std::unique_ptr<Flow> inner, const rfs_mesh::Mesh& mesh, double alpha, double beta)
-      : inner_(std::move(inner)), alpha_(alpha), beta_(beta), original_(mesh.positions) {}
+      : WrappedFlow(std::move(inner)), alpha_(alpha), beta_(beta), original_(mesh.positions) {}
 
   void step(rfs_mesh::Mesh& mesh, const Context& context) override {
     Positions& p = mesh.positions;
@@ -34,15 +35,7 @@ class PushBack : public Flow {
     });
   }
 
-  void connectivity_changed(const rfs_mesh::Mesh& mesh, const Context& context) override {
-    inner_->connectivity_changed(mesh, context);
-  }
-  int solver_iterations() const override { return inner_->solver_iterations(); }
-  bool limits_moves() const override { return inner_->limits_moves(); }
-  std::optional<AutomaticReport> automatic() const override { return inner_->automatic(); }
-
  private:
-  std::unique_ptr<Flow> inner_;
   double alpha_, beta_;
   Positions original_, before_, difference_;
 };

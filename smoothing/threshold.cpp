@@ -4,6 +4,7 @@
 
 #include "rfsmooth/rfs_mesh/parallel.h"
 #include "rfsmooth/smoothing/operator.h"
+#include "rfsmooth/smoothing/wrapped_flow.h"
 
 namespace rfsmooth::smoothing {
 
@@ -11,10 +12,10 @@ using Eigen::Vector3d;
 
 namespace {
 
-class Threshold : public Flow {
+class Threshold : public WrappedFlow {
  public:
   Threshold(std::unique_ptr<Flow> inner, const ThresholdRule& rule, double unit)
-      : inner_(std::move(inner)), rule_(rule), unit_(unit) {}
+      : WrappedFlow(std::move(inner)), rule_(rule), unit_(unit) {}
 
   void step(rfs_mesh::Mesh& mesh, const Context& context) override {
     before_ = mesh.positions;
@@ -34,12 +35,6 @@ class Threshold : public Flow {
     });
   }
 
-  void connectivity_changed(const rfs_mesh::Mesh& mesh, const Context& context) override {
-    inner_->connectivity_changed(mesh, context);
-  }
-  int solver_iterations() const override { return inner_->solver_iterations(); }
-  bool limits_moves() const override { return inner_->limits_moves(); }
-  std::optional<AutomaticReport> automatic() const override { return inner_->automatic(); }
   bool applies_constraints() const override { return inner_->applies_constraints(); }
 
  private:
@@ -62,7 +57,6 @@ class Threshold : public Flow {
     });
   }
 
-  std::unique_ptr<Flow> inner_;
   ThresholdRule rule_;
   double unit_;
   int steps_ = 0;

@@ -52,16 +52,6 @@ double membrane(const Mesh& mesh) {
   return sum;
 }
 
-double area(const Mesh& mesh) {
-  double sum = 0;
-  for (const auto& f : mesh.faces)
-    sum += (mesh.positions[f[1]] - mesh.positions[f[0]])
-               .cross(mesh.positions[f[2]] - mesh.positions[f[0]])
-               .norm() /
-           2;
-  return sum;
-}
-
 TEST(Energy, LaplacianLowersTheMembraneEnergy) {
   falls(flow("laplacian"), 10, membrane);
 }
@@ -72,15 +62,15 @@ TEST(Energy, BilaplacianAndHcLowerTheThinPlateEnergy) {
 }
 
 TEST(Energy, CurvatureFlowsLowerTheArea) {
-  falls(flow("curvature"), 10, area);
+  falls(flow("curvature"), 10, support::area);
   FlowOptions normalised = flow("curvature");
   normalised.normalised = true;
-  falls(normalised, 10, area);
+  falls(normalised, 10, support::area);
   FlowOptions implicit = flow("implicit");
   implicit.op = "curvature";
   implicit.order = 1;
   implicit.dt = 1;
-  falls(implicit, 5, area);
+  falls(implicit, 5, support::area);
 }
 
 TEST(Energy, ImplicitFairingLowersTheEnergyOfItsOrder) {

@@ -105,24 +105,15 @@ TEST(Tufted, AnImplicitStepStaysInTheBoundingBoxOfANonManifoldMeshTheCurvatureOp
 // Signed weights keep the energy of the operator positive, and every vertex is limited to its own stable
 // step: what explicit curvature flow rests on where meshes are not manifold.
 TEST(SignedCotangents, CurvatureFlowLowersTheAreaOfANonManifoldMesh) {
-  const auto area = [](const Mesh& mesh) {
-    double sum = 0;
-    for (const auto& f : mesh.faces)
-      sum += (mesh.positions[f[1]] - mesh.positions[f[0]])
-                 .cross(mesh.positions[f[2]] - mesh.positions[f[0]])
-                 .norm() /
-             2;
-    return sum;
-  };
   Mesh mesh = needle_book();
   FlowOptions o;
   o.flow = "curvature";
   o.iterations = 1;
-  double before = area(mesh);
+  double before = support::area(mesh);
   for (int step = 0; step < 20; ++step) {
     ASSERT_TRUE(smooth(mesh, o, {}).ok());
-    EXPECT_LT(area(mesh), before);
-    before = area(mesh);
+    EXPECT_LT(support::area(mesh), before);
+    before = support::area(mesh);
   }
 }
 

@@ -161,6 +161,22 @@ void add_noise(Mesh& mesh, double sigma, unsigned seed) {
     for (int axis = 0; axis < 3; ++axis) p[axis] += gauss(engine);
 }
 
+Mesh permuted(const Mesh& mesh, const std::vector<Index>& place) {
+  Mesh out;
+  out.positions.resize(mesh.positions.size());
+  for (Index i = 0; i < place.size(); ++i) out.positions[place[i]] = mesh.positions[i];
+  for (const rfs_mesh::Face& f : mesh.faces) out.faces.push_back({place[f[0]], place[f[1]], place[f[2]]});
+  rebuild_adjacency(out, {});
+  return out;
+}
+
+double area(const Mesh& mesh) {
+  const Positions& at = mesh.positions;
+  double sum = 0;
+  for (const auto& f : mesh.faces) sum += (at[f[1]] - at[f[0]]).cross(at[f[2]] - at[f[0]]).norm() / 2;
+  return sum;
+}
+
 double enclosed_volume(const Mesh& mesh) {
   double volume = 0;
   for (const Face& f : mesh.faces)

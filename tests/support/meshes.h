@@ -35,6 +35,12 @@ std::vector<rfs_mesh::Mesh> all_small();
 /// Adds Gaussian noise of standard deviation sigma per coordinate, the same for the same seed.
 void add_noise(rfs_mesh::Mesh& mesh, double sigma, unsigned seed);
 
+/// The mesh with vertex i at place[i].
+rfs_mesh::Mesh permuted(const rfs_mesh::Mesh& mesh, const std::vector<Index>& place);
+
+/// Sum of the triangles' areas.
+double area(const rfs_mesh::Mesh& mesh);
+
 /// Enclosed volume of a closed, oriented mesh (divergence theorem).
 double enclosed_volume(const rfs_mesh::Mesh& mesh);
 
