@@ -16,12 +16,6 @@ namespace rfsmooth::pipeline {
 
 namespace {
 
-template <class T>
-T value_or_fail(Result<T> result) {
-  if (!result.ok()) throw Failure(result.error());
-  return std::move(result).value();
-}
-
 /// Adds the time since it was made to the stage's entry.
 class Stopwatch {
  public:
@@ -46,7 +40,7 @@ class Stopwatch {
 bool alternate(rfs_mesh::Mesh& mesh, const DenoiseOptions& options, const std::vector<double>& strength,
                DenoiseReport& report, const Context& context) {
   const int steps = *options.flow.iterations;
-  const auto flow = value_or_fail(smoothing::make_flow(mesh, options.flow, context, {{}, strength}));
+  const auto flow = value_or_throw(smoothing::make_flow(mesh, options.flow, context, {{}, strength}));
   for (int step = 0; step < steps; ++step) {
     context.report("smooth", double(step) / steps);
     {
@@ -64,7 +58,8 @@ bool alternate(rfs_mesh::Mesh& mesh, const DenoiseOptions& options, const std::v
   if (const auto chosen = flow->automatic()) {
     report.noise = chosen->noise;
     report.noise_left = chosen->left;
-    report.effective.flow.noise = chosen->noise;
+    report.effective.flow.noise = Length{chosen->noise, false};
+    report.stranded = chosen->stranded;
     report.guide_strength = chosen->guide_strength;
     report.equalized_rms = chosen->equalized;
     report.equalized_largest = chosen->equalized_most;
@@ -174,7 +169,7 @@ DenoiseReport run(double* xyz, std::size_t n, const DenoiseOptions& options, con
   {
     const Stopwatch watch(report.seconds, "prepare");
     context.report("prepare", 0);
-    cloud = value_or_fail(rfs_mesh::make_working_cloud(xyz, n, context));
+    cloud = value_or_throw(rfs_mesh::make_working_cloud(xyz, n, context));
     report.finite = cloud.finite();
     report.distinct = cloud.points.size();
   }
@@ -183,7 +178,7 @@ DenoiseReport run(double* xyz, std::size_t n, const DenoiseOptions& options, con
     set_aside(find_outliers(cloud.points, context), cloud, report);
   }
 
-  auto connection = value_or_fail(rfs_mesh::connect(cloud.points, options.connect, context));
+  auto connection = value_or_throw(rfs_mesh::connect(cloud.points, options.connect, context));
   for (auto& stage : connection.seconds) report.seconds.push_back({std::move(stage.stage), stage.seconds});
   report.spacing = connection.noise.spacing;
   report.noise = connection.noise.sigma;
@@ -220,12 +215,10 @@ Result<DenoiseReport> denoise(double* xyz, std::size_t n, const DenoiseOptions& 
     throw std::invalid_argument("the strengths are not one per row");
   for (const double s : strength)
     if (!(s >= 0 && s <= 1)) throw std::invalid_argument("a strength is outside [0, 1]");
-  if (const auto valid = validate(options); !valid.ok()) return valid.error();
-  DenoiseOptions effective = options;
-  auto flow = smoothing::complete(options.flow);
-  if (!flow.ok()) return flow.error();
-  effective.flow = std::move(flow).value();
   return guarded([&] {
+    value_or_throw(validate(options));
+    DenoiseOptions effective = options;
+    effective.flow = value_or_throw(smoothing::complete(options.flow));
     DenoiseReport report;
     in_arena(context, [&] { report = run(xyz, n, effective, context, strength); });
     return report;

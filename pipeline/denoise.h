@@ -72,6 +72,7 @@ struct DenoiseReport {
                              ///< units; 0 for flows that do not even them out
   double equalized_largest = 0;  ///< the farthest
   double guide_strength = 0;     ///< of the automatic flow's guide, dimensionless; 0 for other flows
+  std::size_t stranded = 0;      ///< points that the automatic flow's fairing had left beside the surface
   double largest_move = 0;       ///< world units
   double rms_move = 0;           ///< over the finite rows, world units
   std::size_t faces = 0, edges = 0, sdg_edges = 0, bridges = 0, faceless = 0, swaps = 0;

@@ -10,19 +10,13 @@ namespace rfsmooth::pipeline {
 
 namespace {
 
-template <class T>
-T value_or_fail(Result<T> result) {
-  if (!result.ok()) throw Failure(result.error());
-  return std::move(result).value();
-}
-
 NormalsReport run(const double* xyz, std::size_t n, const NormalsOptions& options, const Context& context,
                   double* normals) {
   NormalsReport report;
   report.points = n;
-  const rfs_mesh::WorkingCloud cloud = value_or_fail(rfs_mesh::make_working_cloud(xyz, n, context));
+  const rfs_mesh::WorkingCloud cloud = value_or_throw(rfs_mesh::make_working_cloud(xyz, n, context));
   report.finite = cloud.finite();
-  const rfs_mesh::Connection connection = value_or_fail(rfs_mesh::connect(cloud.points, {}, context));
+  const rfs_mesh::Connection connection = value_or_throw(rfs_mesh::connect(cloud.points, {}, context));
   context.report("normals", 0);
   Positions side(cloud.points.size());
   for_each_index(context, side.size(), [&](std::size_t i) { side[i] = connection.surfaces[i].normal; });

@@ -22,6 +22,9 @@ void for_blocks(const Context& context, std::size_t n, std::size_t grain,
     body(block * grain, std::min(n, (block + 1) * grain));
   };
   if (blocks == 1) return run(0);
+  // Outside in_arena (reading and writing files, say) the caller's number of threads holds too.
+  if (context.threads > 0 && context.threads < tbb::this_task_arena::max_concurrency())
+    return in_arena(context, [&] { for_blocks(context, n, grain, body); });
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, blocks, 1),
                     [&](const tbb::blocked_range<std::size_t>& r) {
                       for (std::size_t block = r.begin(); block != r.end(); ++block) run(block);

@@ -17,7 +17,8 @@ namespace rfsmooth {
 void in_arena(const Context& context, const std::function<void()>& body);
 
 /// Calls `body(begin, end)` over [0, n) in blocks of `grain` (the same blocks for any number of threads), in
-/// parallel. \throw Failure if `context.stop` is set; whatever `body` throws.
+/// parallel on at most `context.threads` threads. \throw Failure if `context.stop` is set; whatever `body`
+/// throws.
 void for_blocks(const Context& context, std::size_t n, std::size_t grain,
                 const std::function<void(std::size_t begin, std::size_t end)>& body);
 

@@ -43,9 +43,11 @@ std::size_t WorkingCloud::finite() const {
   return n;
 }
 
-Result<WorkingCloud> make_working_cloud(const double* xyz, std::size_t n, const Context& context) {
+namespace {
+
+WorkingCloud make(const double* xyz, std::size_t n, const Context& context) {
   if (n >= kNone)
-    return Error{ErrorCode::usage, fmt::format("{} points; at most {} are supported", n, kNone - 1)};
+    throw Failure({ErrorCode::usage, fmt::format("{} points; at most {} are supported", n, kNone - 1)});
   const auto point = [xyz](std::size_t i) { return Vector3d(xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]); };
 
   const Box box = reduce_blocks(
@@ -58,17 +60,17 @@ Result<WorkingCloud> make_working_cloud(const double* xyz, std::size_t n, const 
       },
       Box::join);
   if (box.finite == 0)
-    return Error{ErrorCode::no_usable_points,
-                 n == 0 ? "the cloud has no points" : fmt::format("none of the {} points is finite", n)};
+    throw Failure({ErrorCode::no_usable_points,
+                   n == 0 ? "the cloud has no points" : fmt::format("none of the {} points is finite", n)});
 
   WorkingCloud cloud;
   cloud.origin = 0.5 * box.low + 0.5 * box.high;
   const double extent = (0.5 * box.high - 0.5 * box.low).maxCoeff() * 2;
   constexpr double kLargest = 1e100, kSmallest = 1e-100;
   if (extent > kLargest || (extent > 0 && extent < kSmallest))
-    return Error{ErrorCode::no_usable_points,
-                 fmt::format("the points extend over {:g}; rescale the cloud to between {:g} and {:g}",
-                             extent, kSmallest, kLargest)};
+    throw Failure({ErrorCode::no_usable_points,
+                   fmt::format("the points extend over {:g}; rescale the cloud to between {:g} and {:g}",
+                               extent, kSmallest, kLargest)});
 
   // Morton code on a 2^21 grid over the box; points in one cell are ordered by their coordinates.
   const double to_cell = extent > 0 ? kMortonCells / extent : 0;
@@ -105,6 +107,12 @@ Result<WorkingCloud> make_working_cloud(const double* xyz, std::size_t n, const 
     cloud.of_input[keyed[s].input] = Index(cloud.points.size() - 1);
   }
   return cloud;
+}
+
+}  // namespace
+
+Result<WorkingCloud> make_working_cloud(const double* xyz, std::size_t n, const Context& context) {
+  return guarded([&] { return make(xyz, n, context); });
 }
 
 }  // namespace rfsmooth::rfs_mesh

@@ -79,4 +79,11 @@ auto guarded(Body&& body) -> Result<decltype(body())> {
   }
 }
 
+/// The value of a result inside a front door. \throw Failure with its error if there is none.
+template <class T>
+T value_or_throw(Result<T> result) {
+  if (!result.ok()) throw Failure(result.error());
+  return std::move(result).value();
+}
+
 }  // namespace rfsmooth

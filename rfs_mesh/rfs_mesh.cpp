@@ -23,18 +23,19 @@ class Stages {
   template <class Body>
   auto run(const char* stage, double fraction, Body&& body) {
     context_.report(stage, fraction);
-    const Stopwatch watch{seconds_, stage};
+    seconds_.push_back({stage, 0});
+    const Stopwatch watch{seconds_, seconds_.size() - 1};
     return body();
   }
 
  private:
   struct Stopwatch {
     std::vector<Seconds>& seconds;
-    const char* stage;
+    std::size_t entry;  // made before: a destructor must not allocate
     std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
     ~Stopwatch() {
       const std::chrono::duration<double> d = std::chrono::steady_clock::now() - start;
-      seconds.push_back({stage, d.count()});
+      seconds[entry].seconds = d.count();
     }
   };
   std::vector<Seconds>& seconds_;
@@ -137,8 +138,8 @@ Result<Connection> connect(const Positions& points, const ConnectOptions& option
                            const Positions* guide) {
   if (guide != nullptr && guide->size() != points.size())
     throw std::invalid_argument("connect: guide must hold one position per point");
-  if (const auto valid = validate(options); !valid.ok()) return valid.error();
   return guarded([&] {
+    value_or_throw(validate(options));
     Connection connection;
     in_arena(context, [&] { connection = connect_all(points, options, context, guide); });
     return connection;

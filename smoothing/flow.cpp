@@ -136,27 +136,24 @@ Result<const FlowEntry*> find_flow(std::string_view name) {
 }
 
 Result<FlowOptions> complete(const FlowOptions& options) {
-  const auto entry = find_flow(options.flow);
-  if (!entry.ok()) return entry.error();
-  if (const auto valid = validate(options); !valid.ok()) return valid.error();
   return guarded([&] {
+    const FlowEntry& entry = *value_or_throw(find_flow(options.flow));
+    value_or_throw(validate(options));
     FlowOptions full = options;
     const FlowOptions standard = modifier_defaults();
     Fields own, common;
-    FlowOptions::describe(entry.value()->defaults, own);
-    FlowOptions::describe(full, FillEmpty{*entry.value(), own.at, true});
+    FlowOptions::describe(entry.defaults, own);
+    FlowOptions::describe(full, FillEmpty{entry, own.at, true});
     FlowOptions::describe(standard, common);
-    FlowOptions::describe(full, FillEmpty{*entry.value(), common.at, false});
+    FlowOptions::describe(full, FillEmpty{entry, common.at, false});
     return full;
   });
 }
 
 Result<std::unique_ptr<Flow>> make_flow(const rfs_mesh::Mesh& mesh, const FlowOptions& options,
                                         const Context& context, const Constraints& constraints) {
-  const auto full = complete(options);
-  if (!full.ok()) return full.error();
   return guarded([&] {
-    const FlowOptions& o = full.value();
+    const FlowOptions o = value_or_throw(complete(options));
     const FlowEntry& entry = *find_flow(o.flow).value();
     return with_boundary_rule(
         *o.boundary, mesh, constraints, context,
@@ -200,13 +197,12 @@ FlowReport run_reordered(rfs_mesh::Mesh& mesh, const FlowOptions& options, const
 
 Result<FlowReport> smooth(rfs_mesh::Mesh& mesh, const FlowOptions& options, const Context& context,
                           const Constraints& constraints) {
-  const auto full = complete(options);
-  if (!full.ok()) return full.error();
-  const Positions original = mesh.positions;
+  Positions original;
   auto result = guarded([&] {
+    const FlowOptions o = value_or_throw(complete(options));
+    original = mesh.positions;
     FlowReport report;
     in_arena(context, [&] {
-      const FlowOptions& o = full.value();
       const bool any_order = !o.update || *o.update == "simultaneous";
       report = any_order && *o.iterations > 0 && is_scattered(mesh, context)
                    ? run_reordered(mesh, o, context, constraints)
@@ -223,7 +219,8 @@ Result<FlowReport> smooth(rfs_mesh::Mesh& mesh, const FlowOptions& options, cons
     });
     return report;
   });
-  if (!result.ok()) mesh.positions = original;
+  // Bringing them back needs no memory; there are none if the options were wrong.
+  if (!result.ok() && !original.empty()) mesh.positions.swap(original);
   return result;
 }
 

@@ -24,7 +24,7 @@ struct FlowOptions {
   std::optional<int> iterations;  ///< steps
   std::optional<double>
       strength;                  ///< auto: 0 = nothing, 1 = as the noise asks for, 2 = as for twice the noise
-  std::optional<double> noise;   ///< auto: standard deviation along the normal, world units; empty = measured
+  std::optional<Length> noise;   ///< auto: standard deviation along the normal; empty = measured
   std::optional<bool> equalize;  ///< auto: evens the points out along the surface afterwards
   std::optional<double> lambda;  ///< step length of explicit flows, dimensionless
   std::optional<double> mu;      ///< Taubin: length of the inflating step, > lambda
@@ -69,7 +69,8 @@ struct FlowOptions {
     visit(OptionInfo{"iterations", "number of steps", "steps", 0, 1000000}, self.iterations);
     visit(OptionInfo{"strength", "auto: times the strength that the noise asks for", "", 0, 10},
           self.strength);
-    visit(OptionInfo{"noise", "auto: its standard deviation along the normal", "world units", 0, 1e300},
+    visit(OptionInfo{"noise", "auto: its standard deviation along the normal", "world units or x spacing", 0,
+                     1e300},
           self.noise);
     visit(
         OptionInfo{"equalize", "auto: even the points out along the surface, by half a spacing at most", ""},

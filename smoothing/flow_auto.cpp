@@ -25,7 +25,7 @@ class AutomaticFlow : public Flow {
     {
       const rfs_mesh::SpatialIndex index(mesh.positions, context);
       spacing = mean_spacing(mesh.positions, index.nearest(1, context), context);
-      sigma = noise_ ? *noise_ : rfs_mesh::measure_noise(index, context).sigma;
+      sigma = noise_ ? noise_->resolve(spacing) : rfs_mesh::measure_noise(index, context).sigma;
     }
     report_.emplace();
     mesh.positions = automatic_smoothing(mesh, strength_ * sigma, spacing, *report_, context);
@@ -41,7 +41,7 @@ class AutomaticFlow : public Flow {
   std::optional<AutomaticReport> automatic() const override { return report_; }
 
  private:
-  std::optional<double> noise_;
+  std::optional<Length> noise_;
   double strength_;
   bool equalize_;
   std::optional<AutomaticReport> report_;

@@ -138,8 +138,8 @@ Mesh split(const Mesh& mesh, std::vector<Edge>& curve, const Context& context) {
 
 Result<Mesh> refine(const Mesh& mesh, const RefineOptions& options, const Context& context,
                     const std::vector<Edge>& sharp) {
-  if (const auto valid = validate(options); !valid.ok()) return valid.error();
   return guarded([&] {
+    value_or_throw(validate(options));
     Mesh fine = mesh;
     in_arena(context, [&] {
       std::vector<Edge> curve = boundary_edges(mesh);

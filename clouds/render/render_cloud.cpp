@@ -59,12 +59,6 @@ std::optional<Vector3d> vector_of(const std::vector<double>& v) {
   return out;
 }
 
-template <class T>
-T value_or_throw(Result<T> result) {
-  if (!result) throw Failure(result.error());
-  return std::move(result).value();
-}
-
 /// Middle of the finite points, so that large coordinates lose nothing on the way to the picture.
 Vector3d middle(const io::Cloud& cloud) {
   const std::vector<double> xyz = io::positions(cloud);

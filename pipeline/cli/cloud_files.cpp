@@ -15,12 +15,6 @@ using nlohmann::ordered_json;
 
 namespace {
 
-template <class T>
-T value_or_fail(Result<T> result) {
-  if (!result.ok()) throw Failure(result.error());
-  return std::move(result).value();
-}
-
 io::WriteOptions write_options(const FileOptions& options) {
   io::WriteOptions out;
   if (options.format) out.format = io::format_by_name(*options.format);
@@ -43,7 +37,7 @@ void check_target(const std::string& output, const FileOptions& options) {
           {ErrorCode::usage, "standard output (-) has no extension: --format must name the format"});
     return;
   }
-  value_or_fail(io::check_output(output, write_options(options)));
+  value_or_throw(io::check_output(output, write_options(options)));
 }
 
 void need_free_stdout(const std::vector<Job>& jobs, const RunOptions& options) {
@@ -73,11 +67,11 @@ void store_cloud(const io::Cloud& cloud, const std::string& output, const FileOp
   const auto start = std::chrono::steady_clock::now();
   context.report("write", 0);
   if (output == "-") {
-    const std::string bytes = value_or_fail(io::serialize_cloud(cloud, write_options(options), context));
+    const std::string bytes = value_or_throw(io::serialize_cloud(cloud, write_options(options), context));
     if (std::fwrite(bytes.data(), 1, bytes.size(), stdout) != bytes.size() || std::fflush(stdout) != 0)
       throw Failure({ErrorCode::cannot_write, "cannot write to standard output"});
   } else {
-    value_or_fail(io::write_cloud(cloud, output, write_options(options), context));
+    value_or_throw(io::write_cloud(cloud, output, write_options(options), context));
   }
   stages.push_back({"write", seconds_since(start)});
 }

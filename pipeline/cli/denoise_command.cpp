@@ -46,10 +46,10 @@ void enter(const pipeline::DenoiseReport& done, const Options& options, ordered_
   Options used = options;
   used.denoise = done.effective;
   entry["options"] = effective_options(used, options.job.files);
-  entry["counts"] = {{"points", done.points},       {"finite", done.finite},   {"distinct", done.distinct},
-                     {"moved", done.moved},         {"faces", done.faces},     {"edges", done.edges},
-                     {"sdg_edges", done.sdg_edges}, {"bridges", done.bridges}, {"faceless", done.faceless},
-                     {"swaps", done.swaps}};
+  entry["counts"] = {{"points", done.points},       {"finite", done.finite},    {"distinct", done.distinct},
+                     {"moved", done.moved},         {"faces", done.faces},      {"edges", done.edges},
+                     {"sdg_edges", done.sdg_edges}, {"bridges", done.bridges},  {"faceless", done.faceless},
+                     {"swaps", done.swaps},         {"stranded", done.stranded}};
   entry["counts"]["outliers"] = done.outliers;
   entry["counts"]["removed"] = options.removes() ? done.outliers : 0;
   entry["spacing"] = done.spacing;

@@ -122,6 +122,11 @@ void select_points(Cloud& cloud, const std::vector<std::size_t>& rows, const Con
     all = all && rows[i] == i;
   }
   if (all) return;
+  std::vector<std::string> warnings;  // made before anything changes: memory may run out
+  for (std::size_t e = 0; e < cloud.elements.size(); ++e)
+    if (e != cloud.vertex && names_points(cloud.elements[e]))
+      warnings.push_back("element '" + cloud.elements[e].name +
+                         "' names points by index and is left out with the points removed");
   select(cloud.points(), rows);
   cloud.width = rows.size();
   cloud.height = 1;
@@ -129,12 +134,9 @@ void select_points(Cloud& cloud, const std::vector<std::size_t>& rows, const Con
     return note.line.rfind("obj_info num_cols", 0) == 0 || note.line.rfind("obj_info num_rows", 0) == 0;
   };
   cloud.notes.erase(std::remove_if(cloud.notes.begin(), cloud.notes.end(), says_grid), cloud.notes.end());
-  for (std::size_t e = cloud.elements.size(); e-- > 0;) {
-    if (e == cloud.vertex || !names_points(cloud.elements[e])) continue;
-    context.warn("element '" + cloud.elements[e].name +
-                 "' names points by index and is left out with the points removed");
-    forget_element(cloud, e);
-  }
+  for (std::size_t e = cloud.elements.size(); e-- > 0;)
+    if (e != cloud.vertex && names_points(cloud.elements[e])) forget_element(cloud, e);
+  for (const std::string& warning : warnings) context.warn(warning);
 }
 
 Cloud make_cloud(const double* xyz, std::size_t n, Scalar type) {

@@ -21,7 +21,10 @@ bool same(double a, double b) {
 void scatter_binary(Table& table, const std::vector<std::size_t>& which, const double* values,
                     const Context& context) {
   const Locator locate(table);
-  for_blocks(context, table.count, kRowsPerBlock, [&](std::size_t begin, std::size_t end) {
+  context.check_stop();
+  Context to_the_end = context;  // in place: all rows or none
+  to_the_end.stop = nullptr;
+  for_blocks(to_the_end, table.count, kRowsPerBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       for (std::size_t k = 0; k < which.size(); ++k) {
         char* p = const_cast<char*>(locate(table.row(i).data(), which[k]));

@@ -19,6 +19,8 @@ void append_field(Table& table, const Field& field, const double* values, const 
   if (!field.is_plain())
     throw std::invalid_argument("append_field: '" + field.name + "' is not one value per row");
   const Table& old = table;
+  std::vector<Field> fields = table.fields;  // made before anything changes: memory may run out
+  fields.push_back(field);
   if (table.text) {
     rebuild(table, context, [&](std::size_t i, std::string& out) {
       const std::string_view row = old.row(i);
@@ -40,7 +42,7 @@ void append_field(Table& table, const Field& field, const double* values, const 
     });
     if (fixed) table.start.clear();
   }
-  table.fields.push_back(field);
+  table.fields = std::move(fields);
 }
 
 void insert_list_counts(Table& table, std::size_t which, Scalar count_type, const Context& context) {

@@ -99,7 +99,7 @@ std::optional<double> parse_real(std::string_view word) {
 }
 
 std::optional<std::uint64_t> parse_integer(std::string_view word, Scalar type) {
-  if (word.size() > 1 && word.front() == '+' && word[1] != '-') word.remove_prefix(1);
+  if (word.size() > 1 && word.front() == '+' && word[1] != '-' && word[1] != '+') word.remove_prefix(1);
   switch (type) {
     case Scalar::int8:
       return integer_as<std::int8_t>(word);

@@ -127,6 +127,49 @@ TEST_F(DenoiseCommand, ReportSaysWhatWasDoneAndConfigDoesItAgain) {
   EXPECT_FALSE(take("one.ply") == take("three.ply")) << "the command line wins";
 }
 
+TEST_F(DenoiseCommand, ReportOfTheAutomaticFlowSaysEverythingItChose) {
+  put("in.ply", noisy_plane(20).bytes());
+  const Ran first = run({"denoise", "in.ply", "one.ply", "--threads", "2", "--report", "report.json"});
+  ASSERT_EQ(first.code, 0) << first.err;
+  const auto report = nlohmann::json::parse(take("report.json"));
+  EXPECT_THAT(rfsmooth({"--version"}).out, HasSubstr(report["rfsmooth"].get<std::string>()));
+  EXPECT_EQ(report["input"]["format"], "ply");
+  EXPECT_EQ(report["input"]["fields"].size(), 5u);
+  EXPECT_EQ(report["output"]["path"], "one.ply");
+  EXPECT_EQ(report["threads"], 2);
+  EXPECT_EQ(report["options"]["flow"], "auto");
+  // Chosen, not asked for: iterations, strength, the measured noise, evening out.
+  EXPECT_EQ(report["options"]["iterations"], 1);
+  EXPECT_EQ(report["options"]["strength"], 1);
+  EXPECT_EQ(report["options"]["equalize"], true);
+  EXPECT_EQ(report["options"]["noise"], report["noise"]);
+  EXPECT_GT(report["noise"], 0);
+  EXPECT_LT(report["noise_left"], report["noise"]);
+  EXPECT_GT(report["guide_strength"], 0);
+  EXPECT_GT(report["equalized"]["rms"], 0);
+  EXPECT_GT(report["largest_move"], report["rms_move"]);
+  for (const char* count : {"points", "finite", "distinct", "moved", "faces", "edges", "bridges", "stranded"})
+    EXPECT_TRUE(report["counts"].contains(count)) << count;
+  for (const char* stage : {"read", "prepare", "emst", "sdg", "rfs-mesh", "smooth", "write"})
+    EXPECT_TRUE(report["seconds"].contains(stage)) << stage;
+  const Ran again = run({"denoise", "--config", "report.json", "in.ply", "two.ply", "--threads", "1"});
+  ASSERT_EQ(again.code, 0) << again.err;
+  EXPECT_TRUE(take("one.ply") == take("two.ply"));
+}
+
+TEST_F(DenoiseCommand, ThreadsBindsEveryThreadOfTheProgram) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the sanitizer has threads of its own";
+#endif
+  put("in.ply", noisy_plane(150).bytes());
+  for (const std::size_t threads : {1u, 2u, 3u}) {
+    const Ran ran = run({"denoise", "--force", "--threads", std::to_string(threads), "in.ply", "out.ply"});
+    ASSERT_EQ(ran.code, 0) << ran.err;
+    EXPECT_GE(ran.most_threads, 1u);
+    EXPECT_LE(ran.most_threads, threads);
+  }
+}
+
 TEST_F(DenoiseCommand, ConfigAloneRunsTheReportAgain) {
   put("in.ply", noisy_plane(10).bytes());
   ASSERT_EQ(run({"denoise", "--flow", "hc", "in.ply", "out.ply", "--report", "r.json"}).code, 0);

@@ -1,5 +1,9 @@
 /// Options are strict: numbers, ranges, words, names; every mistake is exit code 2, says what would be right,
 /// and touches no file.
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -49,12 +53,36 @@ INSTANTIATE_TEST_SUITE_P(
                       Mistake{"NegativeCount", {"--iterations", "-3"}, "between 0 and"},
                       Mistake{"HugeCount", {"--iterations", "99999999999999"}, "whole number"},
                       Mistake{"ZeroThreads", {"--threads", "0"}, "between 1 and"},
+                      Mistake{"LengthOfAnotherUnit", {"--noise", "2m"}, "such as 0.02"},
+                      Mistake{"LengthWithoutNumber", {"--noise", "x"}, "such as 0.02"},
+                      Mistake{"NegativeLength", {"--noise", "-2x"}, "between 0 and"},
+                      Mistake{"MisspeltAuto", {"--noise", "atuo"}, "or 'auto'"},
                       Mistake{"MissingValue", {"--beta"}, "--beta"},
                       Mistake{"GivenTwice", {"--beta", "0.6", "--beta", "0.7"}, "--beta"},
                       Mistake{"OptionOfAnotherFlow", {"--flow", "laplacian", "--beta", "0.6"}, "--beta"},
                       Mistake{"FlagWithValue", {"--force=maybe"}, "--force"},
                       Mistake{"UnknownShort", {"-z"}, "unknown option -z"}),
     [](const auto& test) { return test.param.name; });
+
+class Lengths : public InFolder {
+ protected:
+  nlohmann::json report(const std::string& noise) const {
+    const Ran ran =
+        run({"denoise", "--noise", noise, "in.ply", "out.ply", "--force", "--report", "report.json"});
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    return nlohmann::json::parse(take("report.json"));
+  }
+};
+
+TEST_F(Lengths, AreWorldUnitsTimesTheSpacingOrAuto) {
+  put("in.ply", noisy_plane(20).bytes());
+  EXPECT_EQ(report("0.02")["noise"], 0.02);
+  const auto times = report("0.5x");
+  EXPECT_NEAR(times["noise"].get<double>(), 0.5 * times["spacing"].get<double>(), 1e-12);
+  EXPECT_EQ(times["options"]["noise"], times["noise"]) << "the report says the length in world units";
+  // Measured: the plane's noise is 0.2.
+  EXPECT_NEAR(report("auto")["noise"].get<double>(), 0.2, 0.06);
+}
 
 TEST(Help, EveryOptionIsThereWithItsDefaultAndRange) {
   const Ran shorter = rfsmooth({"denoise", "-h"}), complete = rfsmooth({"denoise", "--help"});
@@ -88,6 +116,84 @@ TEST(Help, ManualPagesNameEveryOptionOfTheHelp) {
     }
     EXPECT_GT(found, 0u) << command;
   }
+}
+
+TEST(Help, ExitCodesAreDocumentedThereAndInTheReadme) {
+  std::ifstream file(std::filesystem::path(RFSMOOTH_SOURCE) / "README.md");
+  const std::string readme((std::istreambuf_iterator<char>(file)), {});
+  const std::string codes = readme.substr(readme.find("Exit codes: "), 400);
+  const std::string overview = rfsmooth({"--help"}).out;
+  for (const char* command : {"denoise", "mesh", "smooth-mesh", "info", "compare"}) {
+    const std::string help = rfsmooth({command, "--help"}).out;
+    const std::size_t at = help.find("exit codes:");
+    ASSERT_NE(at, std::string::npos) << command;
+    for (const char* code : {"0 ", "1 ", "2 ", "3 ", "4 ", "5 ", "6 ", "130 "}) {
+      EXPECT_THAT(help.substr(at), HasSubstr(code)) << command;
+      EXPECT_THAT(codes, HasSubstr(code));
+    }
+  }
+}
+
+TEST(Help, ManualPagesAreCleanToTheirFormatter) {
+  if (run_program("groff", {"--version"}).code != 0) GTEST_SKIP() << "no groff here";
+  for (const char* command : {"denoise", "mesh", "smooth-mesh", "info", "compare", "flows"}) {
+    RunSetup setup;
+    setup.input = rfsmooth({"man", command}).out;
+    const Ran ran = run_program("groff", {"-man", "-Tutf8", "-ww", "-z"}, setup);
+    EXPECT_EQ(ran.code, 0);
+    EXPECT_EQ(ran.err, "") << command;
+  }
+}
+
+class Installed : public InFolder {};
+
+TEST_F(Installed, TheCommandItsManualPagesAndCompletions) {
+  const Ran ran =
+      run_program("cmake", {"--install", RFSMOOTH_BINARY, "--prefix", at("usr"), "--component", "command"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  RunSetup setup;
+  const auto text = [&](const std::string& name) { return take("usr/" + name); };
+  EXPECT_EQ(run_program(at("usr/bin/rfsmooth"), {"--version"}).code, 0);
+  EXPECT_EQ(text("share/man/man1/rfsmooth.1"), rfsmooth({"man"}).out);
+  for (const char* command : {"denoise", "mesh", "smooth-mesh", "info", "compare", "flows"})
+    EXPECT_EQ(text(std::string("share/man/man1/rfsmooth-") + command + ".1"), rfsmooth({"man", command}).out);
+  EXPECT_EQ(text("share/bash-completion/completions/rfsmooth"), rfsmooth({"completion", "bash"}).out);
+  EXPECT_EQ(text("share/zsh/site-functions/_rfsmooth"), rfsmooth({"completion", "zsh"}).out);
+}
+
+class ZshCompletion : public InFolder {};
+
+TEST_F(ZshCompletion, OffersOptionsAndWords) {
+  if (run_program("zsh", {"--version"}).code != 0) GTEST_SKIP() << "no zsh here";
+  put("_rfsmooth", rfsmooth({"completion", "zsh"}).out);
+  EXPECT_EQ(run_program("zsh", {"-n", at("_rfsmooth")}).err, "") << "syntax";
+  // A shell in a pseudo-terminal; what is typed there is completed by TAB. Numbered prompts say when it is
+  // ready.
+  put("type.zsh", R"(
+zmodload zsh/zpty
+zpty shell 'TERM=dumb zsh -f -i'
+expect() { zpty -r -m shell reply "*$1*" || exit 1 }
+zpty -w shell "PROMPT= RPROMPT=; stty -echo; fpath=($PWD \$fpath); autoload -Uz compinit; compinit -u -D; print READY''1"
+expect READY1
+n=1
+for typed in "$@"; do
+  (( ++n ))
+  # The line is printed after TAB completed it, then thrown away.
+  zpty -w -n shell "$typed"$'	'$''"print -r -- 'GOT:"$''"' READY''$n"$'
+'
+  expect READY$n
+  print -r -- "${${reply##*GOT:}%%READY*}"
+done
+)");
+  const auto completed = [&](const std::string& typed) {
+    RunSetup setup;
+    setup.folder = at("");
+    return run_program("zsh", {"-f", "type.zsh", typed}, setup).out;
+  };
+  EXPECT_THAT(completed("rfsmooth den"), HasSubstr("rfsmooth denoise"));
+  EXPECT_THAT(completed("rfsmooth denoise --rep"), HasSubstr("--report"));
+  EXPECT_THAT(completed("rfsmooth denoise --flow lapl"), HasSubstr("--flow laplacian"));
+  EXPECT_THAT(completed("rfsmooth mesh --stage sd"), HasSubstr("--stage sdg"));
 }
 
 TEST(Completion, BashOffersOptionsAndWords) {

@@ -2,7 +2,9 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <regex>
 #include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -40,6 +42,35 @@ TEST(Readme, TheGalleryShowsEveryFlowAndItsPicturesAreThere) {
       EXPECT_THAT(text_of("clouds/" + picture), HasSubstr("PNG")) << kHow;
     }
   }
+}
+
+/// The words in backticks that look like a test's name: Suite.Name.
+std::vector<std::string> tests_named_in(const std::string& text) {
+  static const std::regex kName("`([A-Z][A-Za-z]*\\.[A-Z][A-Za-z]*)`");
+  std::vector<std::string> names;
+  for (std::sregex_iterator it(text.begin(), text.end(), kName), end; it != end; ++it)
+    names.push_back((*it)[1]);
+  return names;
+}
+
+TEST(Readme, EveryPromiseNamesTestsThatExist) {
+  const Ran list = run_program("ctest", {"-N", "--test-dir", RFSMOOTH_BINARY});
+  ASSERT_EQ(list.code, 0) << list.err;
+  const std::string page = text_of("README.md");
+  const std::size_t from = page.find("## What you can rely on"), to = page.find("\n## ", from + 1);
+  const std::string section = page.substr(from, to - from);
+  std::size_t promises = 0;
+  for (std::size_t at = section.find("\n- "); at != std::string::npos; ++promises) {
+    const std::size_t next = section.find("\n- ", at + 1);
+    const std::string promise = section.substr(at, next - at);
+    at = next;
+    const auto names = tests_named_in(promise);
+    EXPECT_FALSE(names.empty()) << "no test keeps this promise:" << promise;
+    for (const std::string& name : names)
+      // "Test #7: Suite.Name" or "Test #7: Prefix/Suite.Name/parameter"
+      EXPECT_TRUE(std::regex_search(list.out, std::regex("[ /]" + name + "(/|\\s|$)"))) << "no test " << name;
+  }
+  EXPECT_GE(promises, 15u);
 }
 
 }  // namespace

@@ -1,16 +1,22 @@
 #include "cli/run_command.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstring>
+#include <filesystem>
+#include <iterator>
+#include <optional>
 #include <stdexcept>
 #include <thread>
 
 #include <fcntl.h>
 #include <poll.h>
+#include <pty.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
+#include <termios.h>
 #include <unistd.h>
 
 namespace rfsmooth::test {
@@ -29,6 +35,26 @@ struct Pipe {
     write_end = ends[1];
   }
 };
+
+/// A pseudo-terminal that leaves line ends as they are.
+Pipe open_terminal() {
+  Pipe ends;
+  close(ends.read_end);
+  close(ends.write_end);
+  termios plain{};
+  cfmakeraw(&plain);
+  if (openpty(&ends.read_end, &ends.write_end, nullptr, &plain, nullptr) != 0)
+    throw std::runtime_error("openpty");
+  fcntl(ends.read_end, F_SETFD, FD_CLOEXEC);
+  fcntl(ends.write_end, F_SETFD, FD_CLOEXEC);
+  return ends;
+}
+
+std::size_t threads_of(pid_t child) {
+  std::error_code gone;
+  const std::filesystem::directory_iterator tasks("/proc/" + std::to_string(child) + "/task", gone);
+  return gone ? 0 : std::size_t(std::distance(begin(tasks), end(tasks)));
+}
 
 void close_and_forget(int& descriptor) {
   if (descriptor >= 0) close(descriptor);
@@ -58,7 +84,8 @@ void close_and_forget(int& descriptor) {
 
 Ran run_program(const std::string& program, const std::vector<std::string>& arguments,
                 const RunSetup& setup) {
-  Pipe in, out, err;
+  Pipe in, out;
+  Pipe err = setup.terminal ? open_terminal() : Pipe();
   const pid_t child = fork();
   if (child < 0) throw std::runtime_error("fork");
   if (child == 0) become(program, arguments, setup, in, out, err);
@@ -71,7 +98,13 @@ Ran run_program(const std::string& program, const std::vector<std::string>& argu
   Ran ran;
   std::size_t written = 0;
   const auto start = Clock::now();
-  bool interrupted = setup.interrupt_after_ms < 0;
+  std::optional<Clock::time_point> interrupted;
+  const auto interrupt_now = [&](Clock::duration elapsed) {
+    if (interrupted) return false;
+    if (setup.interrupt_after_ms >= 0 && elapsed > std::chrono::milliseconds(setup.interrupt_after_ms))
+      return true;
+    return !setup.interrupt_when.empty() && ran.err.find(setup.interrupt_when) != std::string::npos;
+  };
   while (out.read_end >= 0 || err.read_end >= 0) {
     if (in.write_end >= 0 && written == setup.input.size() && !setup.hold_input_open)
       close_and_forget(in.write_end);
@@ -97,9 +130,10 @@ Ran run_program(const std::string& program, const std::vector<std::string>& argu
         close_and_forget(in.write_end);
     }
     const auto elapsed = Clock::now() - start;
-    if (!interrupted && elapsed > std::chrono::milliseconds(setup.interrupt_after_ms)) {
+    ran.most_threads = std::max(ran.most_threads, threads_of(child));
+    if (interrupt_now(elapsed)) {
       kill(child, SIGINT);
-      interrupted = true;
+      interrupted = Clock::now();
     }
     if (elapsed > kLimit) kill(child, SIGKILL);
   }
@@ -107,6 +141,8 @@ Ran run_program(const std::string& program, const std::vector<std::string>& argu
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
+  if (interrupted)
+    ran.seconds_after_interrupt = std::chrono::duration<double>(Clock::now() - *interrupted).count();
   ran.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   return ran;
 }

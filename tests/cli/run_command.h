@@ -1,4 +1,4 @@
-/// Runs the real binary and says what it did: exit code, stdout, stderr, time.
+/// Runs the real binary and says what it did: exit code, stdout, stderr.
 #pragma once
 
 #include <string>
@@ -9,6 +9,8 @@ namespace rfsmooth::test {
 struct Ran {
   int code = -1;  ///< exit code; 128 + signal if it was killed
   std::string out, err;
+  std::size_t most_threads = 0;        ///< seen at once
+  double seconds_after_interrupt = 0;  ///< from the signal to the end; 0 without one
 };
 
 struct RunSetup {
@@ -18,6 +20,8 @@ struct RunSetup {
   std::vector<std::string> environment;  ///< "NAME=value", added
   std::size_t address_space = 0;         ///< bytes; 0 = no limit
   int interrupt_after_ms = -1;           ///< sends SIGINT then; -1 = never
+  std::string interrupt_when;            ///< sends SIGINT when stderr says this
+  bool terminal = false;                 ///< stderr is a terminal
 };
 
 /// `arguments` do not include the program. A run of more than four minutes is killed (code 137).

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Fuzzes every target for SECONDS each (default 20) with the committed corpus as a start; stops at the first finding,
-# whose input is left in build/fuzz/findings. bash tests/fuzz/run.sh [SECONDS] [TARGET...]
+# Fuzzes every target for SECONDS each (default 20), as many at a time as there are cores (or JOBS), with the committed corpus
+# as a start. The inputs of findings are left in build/fuzz/findings; the exit code says whether there were any.
+#   bash tests/fuzz/run.sh [SECONDS] [TARGET...]        bash tests/fuzz/run.sh 600: ten minutes each
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 seconds=${1:-20}
@@ -10,13 +11,22 @@ cmake --build --preset fuzz
 targets=("$@")
 [ ${#targets[@]} -gt 0 ] || mapfile -t targets < <(cd build/fuzz/tests/fuzz && ls fuzz_*)
 mkdir -p build/fuzz/findings
-for target in "${targets[@]}"; do
-  name=${target#fuzz_}
+
+fuzz() { # TARGET
+  local name=${1#fuzz_} log
+  log="build/fuzz/$name.log"
   mkdir -p "build/fuzz/corpus/$name"
-  committed="tests/fuzz/corpus/${name#read_}"
-  [ -d "$committed" ] || committed=""
-  echo "== $target, $seconds s"
-  "build/fuzz/tests/fuzz/$target" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=4096 -print_final_stats=0 \
-    -verbosity=0 -artifact_prefix="build/fuzz/findings/$name-" "build/fuzz/corpus/$name" $committed
-done
-echo "no finding"
+  local committed="tests/fuzz/corpus/${name#read_}"
+  # libFuzzer ends in an error at its first finding.
+  if nice -n 10 "build/fuzz/tests/fuzz/$1" -max_total_time="$seconds" -timeout=60 -rss_limit_mb=4096 -max_len=4096 -print_final_stats=1 \
+      -verbosity=0 -artifact_prefix="build/fuzz/findings/$name-" "build/fuzz/corpus/$name" "$committed" > "$log" 2>&1; then
+    echo "$1: $seconds s, $(sed -n 's/^stat::number_of_executed_units: *//p' "$log") inputs, no finding"
+  else
+    echo "$1: FOUND SOMETHING"
+    tail -n 40 "$log"
+    return 1
+  fi
+}
+export -f fuzz
+export seconds
+printf '%s\n' "${targets[@]}" | xargs -P "${JOBS:-$(nproc)}" -I{} bash -c 'fuzz {}'

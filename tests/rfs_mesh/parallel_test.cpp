@@ -1,7 +1,11 @@
 #include "rfsmooth/rfs_mesh/parallel.h"
 
+#include <chrono>
 #include <cmath>
+#include <mutex>
 #include <random>
+#include <set>
+#include <thread>
 
 #include <gtest/gtest.h>
 
@@ -22,6 +26,21 @@ TEST(Parallel, SumHasTheSameBitsForAnyThreadCount) {
     });
     if (threads == 1) first = sum;
     EXPECT_EQ(sum, first) << threads;
+  }
+}
+
+TEST(Parallel, ThreadsBindsLoopsOutsideAnArenaToo) {
+  for (const int threads : {1, 2}) {
+    Context context;
+    context.threads = threads;
+    std::mutex guard;
+    std::set<std::thread::id> seen;
+    for_blocks(context, 1000, 1, [&](std::size_t, std::size_t) {
+      std::this_thread::sleep_for(std::chrono::microseconds(50));
+      const std::lock_guard<std::mutex> lock(guard);
+      seen.insert(std::this_thread::get_id());
+    });
+    EXPECT_LE(int(seen.size()), threads);
   }
 }
 

@@ -121,6 +121,8 @@ INSTANTIATE_TEST_SUITE_P(
         Broken{"OffBadCount", "OFF\nx 0 0\n", "'x'"},
         Broken{"OffFewVertices", "OFF\n2 0 0\n1 2 3\n", "row 2 of 2"},
         Broken{"OffBadFace", "OFF\n1 1 0\n1 2 3\n3 0 0\n", "line 4"},
+        Broken{"OffTwoSigns", "OFF\n1 1 0\n1 2 3\n1 ++0\n", "'++0'"},
+        Broken{"TwoSigns", kPly + "property int i\nend_header\n1 2 3 ++4\n", "'++4'"},
         Broken{"OffHuge", "OFF\n4000000000 0 0\n1 2 3\n", "4000000000"}),
     [](const auto& tested) { return std::string(tested.param.name); });
 
