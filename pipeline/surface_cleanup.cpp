@@ -23,15 +23,7 @@ std::vector<Index> nearest_points(const Mesh& mesh, const Positions& points, con
   return nearest;
 }
 
-void trim_far_faces(Mesh& mesh, const Positions& points, double length, const Context& context) {
-  const std::vector<Index> nearest = nearest_points(mesh, points, context);
-  std::vector<char> far(nearest.size());
-  for_each_index(context, nearest.size(),
-                 [&](std::size_t v) { far[v] = (mesh.positions[v] - points[nearest[v]]).norm() > length; });
-  mesh.faces.erase(std::remove_if(mesh.faces.begin(), mesh.faces.end(),
-                                  [&](const Face& f) { return far[f[0]] || far[f[1]] || far[f[2]]; }),
-                   mesh.faces.end());
-
+void drop_unused_vertices(Mesh& mesh, const Context& context) {
   std::vector<Index> renamed(mesh.positions.size(), kNone);
   for (const Face& f : mesh.faces)
     for (const Index v : f) renamed[v] = 0;
@@ -46,6 +38,17 @@ void trim_far_faces(Mesh& mesh, const Positions& points, double length, const Co
     for (Index& v : f) v = renamed[v];
   mesh.loose_edges.clear();
   rebuild_adjacency(mesh, context);
+}
+
+void trim_far_faces(Mesh& mesh, const Positions& points, double length, const Context& context) {
+  const std::vector<Index> nearest = nearest_points(mesh, points, context);
+  std::vector<char> far(nearest.size());
+  for_each_index(context, nearest.size(),
+                 [&](std::size_t v) { far[v] = (mesh.positions[v] - points[nearest[v]]).norm() > length; });
+  mesh.faces.erase(std::remove_if(mesh.faces.begin(), mesh.faces.end(),
+                                  [&](const Face& f) { return far[f[0]] || far[f[1]] || far[f[2]]; }),
+                   mesh.faces.end());
+  drop_unused_vertices(mesh, context);
 }
 
 }  // namespace rfsmooth::pipeline

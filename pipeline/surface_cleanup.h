@@ -15,6 +15,9 @@ namespace rfsmooth::pipeline {
 /// measured. `points` must not be empty. O(m log n), parallel, deterministic.
 void trim_far_faces(rfs_mesh::Mesh& mesh, const Positions& points, double length, const Context& context);
 
+/// Drops the vertices no face needs, and all loose edges. The others keep their order.
+void drop_unused_vertices(rfs_mesh::Mesh& mesh, const Context& context);
+
 /// The nearest of the n points to each vertex of the mesh: whose colour it takes.
 std::vector<Index> nearest_points(const rfs_mesh::Mesh& mesh, const Positions& points,
                                   const Context& context);

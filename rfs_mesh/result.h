@@ -19,6 +19,7 @@ enum class ErrorCode {
   no_usable_points = 4,  ///< no finite point to work on
   cannot_write = 5,      ///< the target cannot be created, replaced or completed
   out_of_memory = 6,     ///< not enough memory, estimated before starting or met on the way
+  not_installed = 127,   ///< a program or library that the work needs is not there
   cancelled = 130,       ///< the caller asked to stop
 };
 

@@ -1,5 +1,6 @@
 #include "rfsmooth/cgal/advancing_front.h"
 
+#include <algorithm>
 #include <array>
 #include <iterator>
 
@@ -29,6 +30,12 @@ struct Perimeter {
   }
 };
 
+/// The same face, turned so that its least corner comes first.
+rfs_mesh::Face least_first(const rfs_mesh::Face& f) {
+  if (f[0] < f[1] && f[0] < f[2]) return f;
+  return f[1] < f[2] ? rfs_mesh::Face{f[1], f[2], f[0]} : rfs_mesh::Face{f[2], f[0], f[1]};
+}
+
 }  // namespace
 
 Result<rfs_mesh::Mesh> advancing_front(const Positions& points, double longest_edge, const Context& context) {
@@ -43,9 +50,17 @@ Result<rfs_mesh::Mesh> advancing_front(const Positions& points, double longest_e
     return Error{ErrorCode::no_usable_points, "the advancing front finds no surface in these points"};
   rfs_mesh::Mesh mesh;
   mesh.positions = points;
-  for (const auto& t : triangles) mesh.faces.push_back({Index(t[0]), Index(t[1]), Index(t[2])});
+  for (const auto& t : triangles) mesh.faces.push_back(least_first({Index(t[0]), Index(t[1]), Index(t[2])}));
+  // CGAL's order depends on where its nodes lie in memory; which faces there are does not.
+  std::sort(mesh.faces.begin(), mesh.faces.end());
   rebuild_adjacency(mesh, context);
   return mesh;
+}
+
+pipeline::SurfaceMethod advancing_front_method() {
+  return {"advancing-front", [](const pipeline::SurfaceInput& input, const Context& context) {
+            return advancing_front(input.points, 0, context);
+          }};
 }
 
 }  // namespace rfsmooth::cgal

@@ -3,6 +3,7 @@
 /// makes the binary so.
 #pragma once
 
+#include "rfsmooth/pipeline/reconstruct.h"
 #include "rfsmooth/rfs_mesh/context.h"
 #include "rfsmooth/rfs_mesh/mesh.h"
 #include "rfsmooth/rfs_mesh/result.h"
@@ -14,5 +15,8 @@ namespace rfsmooth::cgal {
 /// crossing gaps. Errors: no_usable_points if there is no surface. O(n log n), one thread, deterministic; not
 /// interruptible.
 Result<rfs_mesh::Mesh> advancing_front(const Positions& points, double longest_edge, const Context& context);
+
+/// The same as a method of pipeline/reconstruct.h.
+pipeline::SurfaceMethod advancing_front_method();
 
 }  // namespace rfsmooth::cgal

@@ -1,4 +1,5 @@
 #include "rfsmooth/pipeline/cli/command.h"
+#include "rfsmooth/pipeline/cli/reconstruct_command.h"
 #include "rfsmooth/smoothing/flow.h"
 
 namespace rfsmooth::cli {
@@ -15,7 +16,7 @@ void polish(Command& command) {
 }
 
 std::vector<Command> all_commands() {
-  return {denoise_command(), mesh_command(),  smooth_mesh_command(), info_command(),
+  return {denoise_command(), mesh_command(),  smooth_mesh_command(), reconstruct_command(), info_command(),
           compare_command(), flows_command(), man_command(),         completion_command()};
 }
 

@@ -58,6 +58,7 @@ const std::vector<ExitCode>& exit_codes() {
       {4, "no usable points in the input"},
       {5, "output cannot be written, or exists and --force was not given"},
       {6, "not enough memory (estimated before starting, or met on the way)"},
+      {127, "reconstruct needs a program or a library that is not installed"},
       {130, "cancelled (Ctrl-C); no file is left behind"}};
   return codes;
 }

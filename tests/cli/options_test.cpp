@@ -98,7 +98,7 @@ TEST(Help, EveryOptionIsThereWithItsDefaultAndRange) {
 }
 
 TEST(Help, ManualPagesNameEveryOptionOfTheHelp) {
-  for (const char* command : {"denoise", "mesh", "smooth-mesh", "info", "compare", "flows"}) {
+  for (const char* command : {"denoise", "mesh", "smooth-mesh", "reconstruct", "info", "compare", "flows"}) {
     const Ran help = rfsmooth({command, "--help"}), man = rfsmooth({"man", command});
     ASSERT_EQ(man.code, 0);
     EXPECT_THAT(man.out, ::testing::StartsWith(".TH "));

@@ -1,0 +1,84 @@
+#include "rfsmooth/pipeline/cli/program.h"
+
+#include <cstdio>
+#include <exception>
+#include <new>
+
+#include <fmt/format.h>
+
+#include "rfsmooth/pipeline/cli/config.h"
+#include "rfsmooth/pipeline/cli/console.h"
+#include "rfsmooth/pipeline/cli/help.h"
+#include "rfsmooth/pipeline/cli/parse.h"
+#include "rfsmooth/pipeline/cli/stop.h"
+
+namespace rfsmooth::cli {
+
+namespace {
+
+/// stdout is checked when it is closed: a full disk or a closed pipe must not end in exit code 0.
+int close_stdout(int code) {
+  if (std::fclose(stdout) == 0 || code != 0) return code;
+  Console({}).error("cannot write to standard output");
+  return int(ErrorCode::cannot_write);
+}
+
+int print(const std::string& text) {
+  std::fputs(text.c_str(), stdout);
+  return 0;
+}
+
+/// Assigns the options: those of --config first, then what was typed. The files come from the config if none
+/// were typed.
+Invocation with_config(const Command& command, Invocation typed) {
+  std::vector<CommandOption> options = command.options;
+  const auto assign_all = [&](const auto& values) {
+    for (const auto& [name, text] : values) assign(*find_option(options, name), text);
+  };
+  bool output_typed = false;
+  for (const auto& [name, text] : typed.options) {
+    output_typed = output_typed || name == "output";
+    if (name != "config") continue;
+    Config config = read_config(text, command);
+    assign_all(config.options);
+    if (typed.arguments.empty() && !output_typed) typed.arguments = std::move(config.arguments);
+  }
+  assign_all(typed.options);
+  return typed;
+}
+
+int run(int argc, const char* const* argv, const std::vector<Command>& commands) {
+  const Parsed parsed = parse(argc, argv, commands);
+  const Invocation& typed = parsed.invocation;
+  if (parsed.command == nullptr) {
+    if (typed.version) return print("rfsmooth " RFSMOOTH_VERSION "\n");
+    if (typed.short_help || typed.long_help) return print(overview(commands, typed.long_help));
+    fmt::print(stderr, "{}", overview(commands, false));
+    return int(ErrorCode::usage);
+  }
+  const Command& command = *parsed.command;
+  if (typed.short_help || typed.long_help) return print(help_of(command, typed.long_help));
+  return command.run(with_config(command, typed));
+}
+
+}  // namespace
+
+int run_program(int argc, const char* const* argv, const std::vector<Command>& commands) {
+  int code = int(ErrorCode::internal);
+  try {
+    catch_signals();
+    code = run(argc, argv, commands);
+  } catch (const Failure& failure) {
+    code = int(failure.error.code);
+    Console({}).error(failure.error.message);
+    if (failure.error.code == ErrorCode::usage) fmt::print(stderr, "see: rfsmooth --help\n");
+  } catch (const std::bad_alloc&) {
+    code = int(ErrorCode::out_of_memory);
+    Console({}).error("not enough memory");
+  } catch (const std::exception& bug) {
+    Console({}).error(fmt::format("internal error, please report it: {}", bug.what()));
+  }
+  return close_stdout(code);
+}
+
+}  // namespace rfsmooth::cli

@@ -1,0 +1,156 @@
+#include "rfsmooth/pipeline/cli/reconstruct_command.h"
+
+#include <filesystem>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "rfsmooth/pipeline/cli/cloud_jobs.h"
+#include "rfsmooth/pipeline/cli/memory.h"
+#include "rfsmooth/pipeline/cli/surface_file.h"
+
+namespace rfsmooth::cli {
+
+namespace {
+
+using nlohmann::ordered_json;
+
+struct Options {
+  pipeline::ReconstructOptions reconstruct;
+  JobOptions job;
+};
+
+/// Told before the work: the output must be able to hold faces.
+void check_format(const Job& job, const FileOptions& options) {
+  std::optional<pipeline::io::Format> format;
+  if (options.format)
+    format = pipeline::io::format_by_name(*options.format);
+  else if (job.output != "-")
+    format = pipeline::io::format_of_extension(job.output);
+  using pipeline::io::Format;
+  if (format && *format != Format::ply && *format != Format::off)
+    throw Failure({ErrorCode::usage, fmt::format("{}: {} cannot hold a surface; use PLY or OFF", job.output,
+                                                 pipeline::io::name_of(*format))});
+}
+
+std::string text_of(const pipeline::Topology& found) {
+  std::string text = fmt::format("{} vertices, {} faces, {} {}", found.vertices, found.faces,
+                                 found.components, found.components == 1 ? "piece" : "pieces");
+  if (found.closed_manifold()) return fmt::format("{}; closed, genus {}", text, found.genus);
+  if (found.boundary_loops > 0)
+    text +=
+        fmt::format("; {} {}", found.boundary_loops, found.boundary_loops == 1 ? "rim" : "rims and holes");
+  return text + (found.manifold() ? "" : "; not a manifold");
+}
+
+void enter(const pipeline::Reconstruction& made, const Options& options, ordered_json& entry) {
+  Options used = options;
+  if (options.reconstruct.denoise) used.reconstruct.denoising = made.report.denoised.effective;
+  entry["options"] = effective_options(used.reconstruct, options.job.files);
+  const pipeline::Topology& found = made.report.topology;
+  entry["counts"] = {{"points", entry["input"]["points"]},
+                     {"vertices", found.vertices},
+                     {"faces", found.faces},
+                     {"components", found.components},
+                     {"boundary_edges", found.boundary_edges},
+                     {"boundary_loops", found.boundary_loops},
+                     {"crowded_edges", found.crowded_edges},
+                     {"disagreeing_edges", found.disagreeing_edges},
+                     {"pinched_vertices", found.pinched_vertices}};
+  entry["closed_manifold"] = found.closed_manifold();
+  entry["genus"] = found.manifold() ? ordered_json(found.genus) : ordered_json(nullptr);
+  entry["spacing"] = made.report.spacing;
+  if (options.reconstruct.denoise) entry["noise"] = made.report.denoised.noise;
+}
+
+std::string reconstruct_cloud(const Options& options, const pipeline::SurfaceMethod& method,
+                              pipeline::io::Cloud& cloud, const Job& job, const Context& context,
+                              std::vector<pipeline::StageTime>& stages, ordered_json& entry) {
+  check_format(job, options.job.files);
+  if (const auto error = refuse_without_memory(job.input, pipeline::denoise_memory(cloud.size())))
+    throw Failure(*error);
+  auto result =
+      pipeline::reconstruct(pipeline::io::positions(cloud, context), options.reconstruct, method, context);
+  if (!result.ok()) throw Failure({result.error().code, job.input + ": " + result.error().message});
+  const pipeline::Reconstruction& made = result.value();
+  cloud = surface_file(std::move(cloud), made, context);
+  stages.insert(stages.end(), made.report.seconds.begin(), made.report.seconds.end());
+  enter(made, options, entry);
+  return text_of(made.report.topology);
+}
+
+const pipeline::SurfaceMethod& find_method(const std::vector<pipeline::SurfaceMethod>& methods,
+                                           const std::string& name) {
+  std::vector<std::string> names;
+  for (const auto& method : methods) {
+    if (method.name == name) return method;
+    names.push_back(method.name);
+  }
+  throw Failure(
+      {ErrorCode::not_installed,
+       fmt::format("--method {} is not in this rfsmooth-reconstruct, which was built without {}; it has {}",
+                   name, name == "advancing-front" ? "CGAL" : "Open3D", fmt::join(names, ", "))});
+}
+
+/// The arguments that say the same again.
+std::vector<std::string> as_typed(const Invocation& typed, const std::vector<CommandOption>& options) {
+  std::vector<std::string> words;
+  for (const auto& [name, text] : typed.options) {
+    bool flag = false;
+    for (const CommandOption& o : options) flag = flag || (o.name == name && o.kind == ValueKind::flag);
+    if (flag)
+      words.push_back((text == "true" ? "--" : "--no-") + name);
+    else
+      words.push_back("--" + name + "=" + text);
+  }
+  words.insert(words.end(), typed.arguments.begin(), typed.arguments.end());
+  return words;
+}
+
+Command table(const std::shared_ptr<Options>& options) {
+  Command command;
+  command.name = "reconstruct";
+  command.summary = "make a surface from a noisy cloud";
+  command.usage = {"[options] IN OUT.ply"};
+  command.description =
+      "Takes the noise out of a cloud, as rfsmooth denoise does, and makes a triangle mesh of it. "
+      "advancing-front (CGAL) puts triangles between the points themselves. Colours and other fields of the "
+      "points are carried to the vertices.\n\n"
+      "The work is done by the program rfsmooth-reconstruct, which links those libraries and may be "
+      "installed or not; without it the exit code is 127.";
+  collect(options->reconstruct, command.options);
+  collect(options->job, command.options);
+  polish(command);
+  return command;
+}
+
+}  // namespace
+
+Command reconstruct_command() {
+  const auto options = std::make_shared<Options>();
+  Command command = table(options);
+  command.run = [options, known = command.options](const Invocation& typed) {
+    if (const auto valid = smoothing::complete(options->reconstruct.denoising.flow); !valid.ok())
+      throw Failure(valid.error());
+    return become_program("rfsmooth-reconstruct", as_typed(typed, known));
+  };
+  return command;
+}
+
+Command reconstruct_command(std::vector<pipeline::SurfaceMethod> methods) {
+  const auto options = std::make_shared<Options>();
+  Command command = table(options);
+  command.run = [options, methods = std::move(methods)](const Invocation& typed) {
+    if (const auto valid = smoothing::complete(options->reconstruct.denoising.flow); !valid.ok())
+      throw Failure(valid.error());
+    const pipeline::SurfaceMethod& method = find_method(methods, options->reconstruct.method);
+    return run_cloud_jobs("reconstruct", options->job, typed,
+                          [&](pipeline::io::Cloud& cloud, const Job& job, const Context& context, Console&,
+                              std::vector<pipeline::StageTime>& stages, ordered_json& entry) {
+                            return reconstruct_cloud(*options, method, cloud, job, context, stages, entry);
+                          });
+  };
+  return command;
+}
+
+}  // namespace rfsmooth::cli

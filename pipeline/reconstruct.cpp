@@ -1,0 +1,96 @@
+#include "rfsmooth/pipeline/reconstruct.h"
+
+#include <chrono>
+
+#include "rfsmooth/pipeline/surface_cleanup.h"
+#include "rfsmooth/rfs_mesh/local_surface.h"
+#include "rfsmooth/rfs_mesh/neighbors.h"
+#include "rfsmooth/rfs_mesh/parallel.h"
+#include "rfsmooth/rfs_mesh/points.h"
+
+namespace rfsmooth::pipeline {
+
+namespace {
+
+template <class T>
+T value_or_fail(Result<T> result) {
+  if (!result.ok()) throw Failure(result.error());
+  return std::move(result).value();
+}
+
+/// Appends the time since the last lap.
+class Laps {
+ public:
+  explicit Laps(std::vector<StageTime>& stages) : stages_(stages) {}
+  void lap(const std::string& name) {
+    const auto now = std::chrono::steady_clock::now();
+    stages_.push_back({name, std::chrono::duration<double>(now - start_).count()});
+    start_ = now;
+  }
+  void restart() { start_ = std::chrono::steady_clock::now(); }
+
+ private:
+  std::vector<StageTime>& stages_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+double spacing_of(const Positions& points, const Context& context) {
+  const rfs_mesh::SpatialIndex index(points, context);
+  return rfs_mesh::mean_spacing(points, index.nearest(1, context), context);
+}
+
+/// The first row of each working point.
+std::vector<std::size_t> first_rows(const rfs_mesh::WorkingCloud& cloud) {
+  std::vector<std::size_t> row(cloud.points.size());
+  for (std::size_t i = cloud.of_input.size(); i-- > 0;)
+    if (cloud.of_input[i] != kNone) row[cloud.of_input[i]] = i;
+  return row;
+}
+
+Reconstruction run(std::vector<double> xyz, const ReconstructOptions& options, const SurfaceMethod& method,
+                   const Context& context) {
+  Reconstruction made;
+  ReconstructReport& report = made.report;
+  const std::size_t n = xyz.size() / 3;
+  if (options.denoise) {
+    report.denoised = value_or_fail(denoise(xyz.data(), n, options.denoising, context));
+    report.seconds = report.denoised.seconds;
+  }
+  Laps laps(report.seconds);
+  context.report("prepare", 0);
+  const rfs_mesh::WorkingCloud cloud = value_or_fail(rfs_mesh::make_working_cloud(xyz.data(), n, context));
+  if (cloud.points.size() < 4)
+    throw Failure({ErrorCode::no_usable_points, "a surface needs four distinct points at least"});
+  SurfaceInput input;
+  input.points = cloud.points;
+  in_arena(context, [&] { report.spacing = input.spacing = spacing_of(cloud.points, context); });
+  laps.lap("spacing");
+
+  context.report(method.name, 0);
+  made.mesh = value_or_fail(method.run(input, context));
+  context.report(method.name, 1);
+  laps.lap(method.name);
+
+  in_arena(context, [&] {
+    drop_unused_vertices(made.mesh, context);
+    const std::vector<std::size_t> rows = first_rows(cloud);
+    made.row.reserve(made.mesh.positions.size());
+    for (const Index p : nearest_points(made.mesh, cloud.points, context)) made.row.push_back(rows[p]);
+    for (Eigen::Vector3d& p : made.mesh.positions) p += cloud.origin;
+    report.topology = topology(made.mesh.positions.size(), made.mesh.faces);
+  });
+  if (made.mesh.faces.empty())
+    throw Failure({ErrorCode::no_usable_points, method.name + " finds no surface in these points"});
+  laps.lap("finish");
+  return made;
+}
+
+}  // namespace
+
+Result<Reconstruction> reconstruct(std::vector<double> xyz, const ReconstructOptions& options,
+                                   const SurfaceMethod& method, const Context& context) {
+  if (const auto valid = validate(options); !valid.ok()) return valid.error();
+  return guarded([&] { return run(std::move(xyz), options, method, context); });
+}
+
+}  // namespace rfsmooth::pipeline

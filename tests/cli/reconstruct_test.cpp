@@ -1,0 +1,140 @@
+// rfsmooth reconstruct: the command hands the work to rfsmooth-reconstruct, which keeps every contract of the
+// command.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "rfsmooth/pipeline/io/mesh_file.h"
+#include "rfsmooth/pipeline/topology.h"
+
+#include "cli/folder.h"
+
+using ::testing::HasSubstr;
+
+namespace rfsmooth::test {
+namespace {
+
+namespace io = pipeline::io;
+
+/// Points of the unit sphere along a spiral, nearly even, each coloured by its octant.
+io::Cloud coloured_sphere(std::size_t n) {
+  std::vector<double> xyz;
+  std::array<std::vector<double>, 3> colours;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double z = 1 - (2 * double(i) + 1) / double(n), r = std::sqrt(1 - z * z),
+                 turn = 2.399963 * double(i);
+    for (const double c : {r * std::cos(turn), r * std::sin(turn), z}) {
+      colours[xyz.size() % 3].push_back(c > 0 ? 200 : 50);
+      xyz.push_back(c);
+    }
+  }
+  io::Cloud cloud = io::make_cloud(xyz.data(), n, io::Scalar::float32);
+  const char* const names[] = {"red", "green", "blue"};
+  for (std::size_t k = 0; k < 3; ++k) io::set_field(cloud, names[k], io::Scalar::uint8, colours[k]);
+  return cloud;
+}
+
+class Reconstruct : public InFolder {
+ protected:
+  void SetUp() override {
+    if (!std::filesystem::exists(RFSMOOTH_RECONSTRUCT)) GTEST_SKIP() << "built without CGAL";
+    put("in.ply", io::serialize_cloud(coloured_sphere(600), {}, {}).value());
+  }
+};
+
+TEST_F(Reconstruct, ClosedSurfaceWithTheColoursOfItsPoints) {
+  const Ran ran = run({"reconstruct", "--method", "advancing-front", "in.ply", "out.ply"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  EXPECT_EQ(ran.out, "");
+  EXPECT_THAT(ran.err, HasSubstr("closed, genus 0"));
+  const auto read = io::read_mesh(at("out.ply"), {}, {});
+  ASSERT_TRUE(read.ok());
+  const io::Cloud& cloud = read.value().cloud;
+  const pipeline::Topology found = pipeline::topology(cloud.size(), read.value().faces);
+  EXPECT_TRUE(found.closed_manifold());
+  EXPECT_EQ(found.components, 1u);
+  const std::vector<double> xyz = io::positions(cloud);
+  const char* const names[] = {"red", "green", "blue"};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::vector<double> colour = io::field_values(cloud, io::find_field(cloud, names[k]).value());
+    for (std::size_t i = 0; i < colour.size(); ++i)
+      if (std::abs(xyz[3 * i + k]) > 0.1) {
+        EXPECT_EQ(colour[i], xyz[3 * i + k] > 0 ? 200 : 50);
+      }
+  }
+}
+
+TEST_F(Reconstruct, ReportIsTakenBackByConfig) {
+  ASSERT_EQ(run({"reconstruct", "in.ply", "a.ply", "--no-denoise", "--report", "a.json"}).code, 0);
+  const auto report = nlohmann::json::parse(take("a.json"));
+  EXPECT_EQ(report["command"], "reconstruct");
+  EXPECT_EQ(report["options"]["denoise"], false);
+  EXPECT_EQ(report["closed_manifold"], true);
+  EXPECT_EQ(report["counts"]["vertices"], 600);
+  ASSERT_EQ(run({"reconstruct", "--config", "a.json", "in.ply", "b.ply"}).code, 0);
+  EXPECT_TRUE(take("a.ply") == take("b.ply"));
+}
+
+TEST_F(Reconstruct, SameBytesForAnyNumberOfThreads) {
+  ASSERT_EQ(run({"reconstruct", "in.ply", "a.ply", "--threads", "1"}).code, 0);
+  ASSERT_EQ(run({"reconstruct", "in.ply", "b.ply", "--threads", "4"}).code, 0);
+  EXPECT_TRUE(take("a.ply") == take("b.ply"));
+}
+
+TEST_F(Reconstruct, NothingIsReplacedWithoutForce) {
+  put("out.ply", "mine");
+  EXPECT_EQ(run({"reconstruct", "in.ply", "out.ply"}).code, 5);
+  EXPECT_EQ(take("out.ply"), "mine");
+  EXPECT_EQ(run({"reconstruct", "in.ply", "out.ply", "--force"}).code, 0);
+  EXPECT_NE(take("out.ply"), "mine");
+}
+
+TEST_F(Reconstruct, StandardOutputTakesTheSurface) {
+  ASSERT_EQ(run({"reconstruct", "in.ply", "out.ply"}).code, 0);
+  const Ran ran = run({"reconstruct", "in.ply", "-", "--format", "ply", "--quiet"});
+  EXPECT_EQ(ran.code, 0);
+  EXPECT_EQ(ran.err, "");
+  EXPECT_TRUE(ran.out == take("out.ply"));
+}
+
+TEST_F(Reconstruct, MistakesHaveTheirExitCodesAndLeaveNoFile) {
+  put("three.xyz", "0 0 0\n1 0 0\n0 1 0\n");
+  EXPECT_EQ(run({"reconstruct", "in.ply", "out.pcd"}).code, 2);
+  EXPECT_EQ(run({"reconstruct", "in.ply", "out.ply", "--method", "magic"}).code, 2);
+  EXPECT_EQ(run({"reconstruct", "in.ply", "out.ply", "--flow", "taubin", "--beta", "0.5"}).code, 2);
+  EXPECT_EQ(run({"reconstruct", "in.ply"}).code, 2);
+  EXPECT_EQ(run({"reconstruct", "none.ply", "out.ply"}).code, 3);
+  EXPECT_EQ(run({"reconstruct", "three.xyz", "out.ply"}).code, 4);
+  EXPECT_EQ(run({"reconstruct", "in.ply", "no/folder/out.ply"}).code, 5);
+  EXPECT_EQ(names(), (std::vector<std::string>{"in.ply", "three.xyz"}));
+}
+
+TEST_F(Reconstruct, TheProgramStandsAloneToo) {
+  RunSetup setup;
+  setup.folder = at("");
+  const Ran ran = run_program(RFSMOOTH_RECONSTRUCT, {"in.ply", "out.ply"}, setup);
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  EXPECT_TRUE(there("out.ply"));
+  EXPECT_EQ(run_program(RFSMOOTH_RECONSTRUCT, {"--version"}).out, rfsmooth({"--version"}).out);
+}
+
+TEST_F(InFolder, ReconstructWithoutItsProgramSaysWhatIsMissing) {
+  std::filesystem::copy_file(RFSMOOTH_COMMAND, at("alone"));
+  RunSetup setup;
+  setup.environment = {"PATH=" + at("")};
+  const Ran ran = run_program(at("alone"), {"reconstruct", "in.ply", "out.ply"}, setup);
+  EXPECT_EQ(ran.code, 127);
+  EXPECT_EQ(ran.out, "");
+  EXPECT_THAT(ran.err, HasSubstr("rfsmooth-reconstruct is not installed"));
+  EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1);
+  EXPECT_EQ(run_program(at("alone"), {"reconstruct", "--methd", "x"}, setup).code, 2)
+      << "options are still strict";
+}
+
+}  // namespace
+}  // namespace rfsmooth::test

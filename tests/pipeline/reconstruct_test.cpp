@@ -1,0 +1,104 @@
+#include "rfsmooth/pipeline/reconstruct.h"
+
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+using namespace rfsmooth;
+using namespace rfsmooth::pipeline;
+
+namespace {
+
+constexpr double kFar = 5e5;  // a scan in map coordinates
+
+/// A grid in the plane, far from the origin, with a row that is not finite and one that comes twice.
+std::vector<double> grid_rows(int side) {
+  std::vector<double> xyz = {std::nan(""), 0, 0};
+  for (int y = 0; y < side; ++y)
+    for (int x = 0; x < side; ++x) xyz.insert(xyz.end(), {kFar + x, y + 0.5, 0});
+  xyz.insert(xyz.end(), {kFar, 0.5, 0});
+  return xyz;
+}
+
+/// Joins every point to its right and upper neighbour.
+Result<rfs_mesh::Mesh> join_grid(const SurfaceInput& input, const Context& context) {
+  rfs_mesh::Mesh mesh;
+  mesh.positions = input.points;
+  const auto at = [&](const Eigen::Vector3d& p) {
+    for (Index i = 0; i < input.points.size(); ++i)
+      if ((input.points[i] - p).norm() < 0.1) return i;
+    return kNone;
+  };
+  for (Index i = 0; i < input.points.size(); ++i) {
+    const Index right = at(input.points[i] + Eigen::Vector3d(1, 0, 0)),
+                up = at(input.points[i] + Eigen::Vector3d(0, 1, 0));
+    if (right != kNone && up != kNone) mesh.faces.push_back({i, right, up});
+  }
+  rebuild_adjacency(mesh, context);
+  return mesh;
+}
+
+ReconstructOptions without_denoising() {
+  ReconstructOptions options;
+  options.denoise = false;
+  return options;
+}
+
+TEST(Reconstruct, VerticesKnowTheirRowsAndLieInTheWorld) {
+  const std::vector<double> xyz = grid_rows(5);
+  const auto made = reconstruct(xyz, without_denoising(), {"join", join_grid}, {});
+  ASSERT_TRUE(made.ok()) << made.error().message;
+  const Reconstruction& surface = made.value();
+  EXPECT_NEAR(surface.report.spacing, 1, 1e-9);
+  EXPECT_EQ(surface.mesh.positions.size(), 24u) << "the last corner has no face";
+  ASSERT_EQ(surface.row.size(), 24u);
+  for (std::size_t v = 0; v < 24; ++v)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      EXPECT_NEAR(surface.mesh.positions[v][Eigen::Index(axis)], xyz[3 * surface.row[v] + axis], 1e-9);
+  EXPECT_EQ(surface.report.topology.components, 1u);
+}
+
+TEST(Reconstruct, NoiseIsTakenOutFirst) {
+  std::vector<double> xyz;
+  for (int y = 0; y < 12; ++y)
+    for (int x = 0; x < 12; ++x)
+      xyz.insert(xyz.end(), {double(x), double(y), 0.3 * std::sin(37.0 * x * y + 11.0 * x + 5.0 * y)});
+  const auto height = [](const ReconstructOptions& options, const std::vector<double>& rows) {
+    double sum = 0;
+    const auto made = reconstruct(rows, options,
+                                  {"all",
+                                   [](const SurfaceInput& input, const Context&) {
+                                     rfs_mesh::Mesh mesh;
+                                     mesh.positions = input.points;
+                                     for (Index i = 0; i + 2 < input.points.size(); ++i)
+                                       mesh.faces.push_back({i, i + 1, i + 2});
+                                     return Result<rfs_mesh::Mesh>(mesh);
+                                   }},
+                                  {});
+    for (const auto& p : made.value().mesh.positions) sum += p.z() * p.z();
+    return sum;
+  };
+  EXPECT_LT(height({}, xyz), 0.5 * height(without_denoising(), xyz));
+}
+
+TEST(Reconstruct, ErrorsOfTheMethodAndTheCloudComeThrough) {
+  const auto fails = [](const SurfaceInput&, const Context&) -> Result<rfs_mesh::Mesh> {
+    return Error{ErrorCode::no_usable_points, "no surface here"};
+  };
+  const auto failed = reconstruct(grid_rows(3), without_denoising(), {"fails", fails}, {});
+  ASSERT_FALSE(failed.ok());
+  EXPECT_EQ(failed.error().message, "no surface here");
+  const auto empty = [](const SurfaceInput&, const Context&) -> Result<rfs_mesh::Mesh> {
+    return rfs_mesh::Mesh{};
+  };
+  EXPECT_EQ(reconstruct(grid_rows(3), without_denoising(), {"empty", empty}, {}).error().code,
+            ErrorCode::no_usable_points);
+  const double nan = std::nan("");
+  EXPECT_EQ(reconstruct({nan, nan, nan}, {}, {"join", join_grid}, {}).error().code,
+            ErrorCode::no_usable_points);
+  EXPECT_EQ(reconstruct({0, 0, 0, 1, 0, 0}, {}, {"join", join_grid}, {}).error().code,
+            ErrorCode::no_usable_points);
+}
+
+}  // namespace
