@@ -8,6 +8,7 @@
 #include <CGAL/jet_estimate_normals.h>
 #include <CGAL/jet_smooth_point_set.h>
 #include <CGAL/mst_orient_normals.h>
+#include <CGAL/pca_estimate_normals.h>
 #include <CGAL/property_map.h>
 #include <CGAL/wlop_simplify_and_regularize_point_set.h>
 #include <tbb/global_control.h>
@@ -95,6 +96,21 @@ Smoothed cgal_wlop(const Positions& points, double radius, int threads) {
     result.source.push_back(cloud[first + i].second);
   }
   return result;
+}
+
+Normals cgal_normals(const Positions& points, int k, int threads) {
+  using Oriented = std::tuple<Point, Kernel::Vector_3, Index>;
+  const Threads limit(threads);
+  std::vector<Oriented> cloud;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    cloud.emplace_back(to_cgal(points[i]), Kernel::Vector_3(0, 0, 0), Index(i));
+  const auto maps = CGAL::parameters::point_map(CGAL::Nth_of_tuple_property_map<0, Oriented>())
+                        .normal_map(CGAL::Nth_of_tuple_property_map<1, Oriented>());
+  CGAL::pca_estimate_normals<CGAL::Parallel_tag>(cloud, unsigned(k), maps);
+  CGAL::mst_orient_normals(cloud, unsigned(k), maps);
+  Normals normals(points.size());
+  for (const auto& [p, n, i] : cloud) normals[i] = Eigen::Vector3d(n.x(), n.y(), n.z()).normalized();
+  return normals;
 }
 
 }  // namespace rfsmooth::bench::peers

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <limits>
 
+#include <pcl/features/normal_3d_omp.h>
 #include <pcl/filters/statistical_outlier_removal.h>
 #include <pcl/point_types.h>
 #include <pcl/search/kdtree.h>
@@ -87,6 +88,18 @@ Smoothed pcl_outliers_mls(const Positions& points, double deviations, int k, int
   Smoothed result = moving_least_squares(inliers, k, threads);
   for (auto& row : result.source) row = Index(kept[row]);
   return result;
+}
+
+Normals pcl_normals(const Positions& points, int k, int threads) {
+  ::pcl::NormalEstimationOMP<::pcl::PointXYZ, ::pcl::Normal> estimation(static_cast<unsigned int>(threads));
+  estimation.setInputCloud(to_pcl(points));
+  estimation.setSearchMethod(Tree::Ptr(new Tree(false)));
+  estimation.setKSearch(k);
+  ::pcl::PointCloud<::pcl::Normal> out;
+  estimation.compute(out);
+  Normals normals;
+  for (const auto& n : out) normals.emplace_back(double(n.normal_x), double(n.normal_y), double(n.normal_z));
+  return normals;
 }
 
 }  // namespace rfsmooth::bench::peers

@@ -32,4 +32,14 @@ Smoothed pcl_mls(const Positions& points, int k, int threads);
 /// pcl::StatisticalOutlierRemoval (50 neighbours, `deviations` standard deviations), then pcl_mls.
 Smoothed pcl_outliers_mls(const Positions& points, double deviations, int k, int threads);
 
+/// Unit normals, n x 3 in the order of the points.
+using Normals = std::vector<Eigen::Vector3d>;
+
+/// CGAL::pca_estimate_normals and CGAL::mst_orient_normals, both on the k nearest points. Normals that CGAL
+/// could not orient keep the side that they had.
+Normals cgal_normals(const Positions& points, int k, int threads);
+
+/// pcl::NormalEstimationOMP on the k nearest points; the side of each normal means nothing.
+Normals pcl_normals(const Positions& points, int k, int threads);
+
 }  // namespace rfsmooth::bench::peers
