@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "rfsmooth/rfs_mesh/bilateral_normals.h"
 #include "rfsmooth/rfs_mesh/orient.h"
 #include "rfsmooth/rfs_mesh/parallel.h"
 #include "rfsmooth/rfs_mesh/rfs_mesh.h"
@@ -9,6 +10,8 @@
 namespace rfsmooth::pipeline {
 
 namespace {
+
+constexpr int kFiltered = 64;  // neighbours over which normals are made calm
 
 NormalsReport run(const double* xyz, std::size_t n, const NormalsOptions& options, const Context& context,
                   double* normals) {
@@ -20,6 +23,10 @@ NormalsReport run(const double* xyz, std::size_t n, const NormalsOptions& option
   context.report("normals", 0);
   Positions side(cloud.points.size());
   for_each_index(context, side.size(), [&](std::size_t i) { side[i] = connection.surfaces[i].normal; });
+  {
+    const rfs_mesh::SpatialIndex index(cloud.points, context);
+    bilateral_normals(cloud.points, index.nearest(kFiltered, context), side, context);
+  }
   std::optional<Eigen::Vector3d> viewpoint = options.viewpoint;
   if (viewpoint) *viewpoint -= cloud.origin;
   report.parts = orient(connection.mesh, connection.emst, connection.bridges, viewpoint, side, context);

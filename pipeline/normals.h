@@ -1,7 +1,8 @@
 /// Unit normals of a smoothed cloud, on one side: outward on closed shapes, towards the scanner where it is
 /// known.
 ///
-///     cloud -> working cloud -> connect (EMST, RFS-mesh) -> local quadrics -> orient (rfs_mesh/orient.h)
+///     cloud -> working cloud -> connect (EMST, RFS-mesh) -> local quadrics -> bilateral normals ->
+///     orient (rfs_mesh/orient.h)
 ///
 /// Meant for what `denoise` gives back, and for any cloud: neighbourhoods are as wide as its noise asks.
 #pragma once

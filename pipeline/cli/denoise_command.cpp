@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "rfsmooth/pipeline/cli/cloud_jobs.h"
+#include "rfsmooth/pipeline/cli/cloud_normals.h"
 #include "rfsmooth/pipeline/cli/command.h"
 #include "rfsmooth/pipeline/cli/constraint_fields.h"
 #include "rfsmooth/pipeline/cli/memory.h"
@@ -25,6 +26,7 @@ struct Options {
   std::optional<std::string> strength_field;
   bool write_displacement = false;
   bool mark_outliers = false;
+  NormalsFields normals;
   JobOptions job;
 
   template <class Self, class Visit>
@@ -36,6 +38,7 @@ struct Options {
           self.write_displacement);
     visit(OptionInfo{"mark-outliers", "add a field 'outlier': 1 for points with no surface near, else 0", ""},
           self.mark_outliers);
+    NormalsFields::describe(self.normals, visit);
   }
 
   bool marks() const { return mark_outliers || denoise.outliers == "mark"; }
@@ -61,13 +64,15 @@ void enter(const pipeline::DenoiseReport& done, const Options& options, ordered_
   entry["rms_move"] = done.rms_move;
 }
 
-void tell(const pipeline::DenoiseReport& done, const pipeline::io::Cloud& cloud, const Job& job,
-          Console& console) {
+void tell(const pipeline::DenoiseReport& done, const Options& options, const pipeline::io::Cloud& cloud,
+          const Job& job, Console& console) {
   if (done.finite < done.points)
     console.detail(fmt::format("{}: {} points are not finite; they stay as they are", job.input,
                                done.points - done.finite));
-  if (done.moved > 0 && has_normals(cloud))
-    console.warn(fmt::format("{}: the normals are kept; they now describe the old positions", job.input));
+  if (done.moved > 0 && has_normals(cloud) && !options.normals.normals)
+    console.warn(fmt::format(
+        "{}: the normals are kept and stale: they describe the old positions (--normals makes new ones)",
+        job.input));
   console.detail(fmt::format("{} faces, {} edges, {} bridges, {} points without a face, {} swaps", done.faces,
                              done.edges, done.bridges, done.faceless, done.swaps));
 }
@@ -77,6 +82,7 @@ void check_fields(const Options& options, const pipeline::io::Cloud& cloud) {
   if (options.write_displacement)
     pipeline::io::check_field(cloud, kDisplacement, pipeline::io::Scalar::float32);
   if (options.marks()) pipeline::io::check_field(cloud, kOutlier, pipeline::io::Scalar::uint8);
+  check_normals(options.normals, cloud);
 }
 
 /// How far each point is from `before`, as the file now has it: rounded to the coordinates' own type. 0 for
@@ -130,9 +136,11 @@ std::string denoise_cloud(const Options& options, pipeline::io::Cloud& cloud, co
   const pipeline::DenoiseReport& done = result.value();
   const bool some_removed = options.removes() && done.outliers > 0,
              as_nan = some_removed && keeps_grid(cloud);
-  if (as_nan)
+  const auto blank_outliers = [&] {
     for (std::size_t i = 0; i < n; ++i)
       if (done.outlier[i] != 0) std::fill_n(&xyz[3 * i], 3, std::numeric_limits<double>::quiet_NaN());
+  };
+  if (as_nan) blank_outliers();
   pipeline::io::set_positions(cloud, xyz.data(), context);
   if (options.write_displacement) write_displacement(cloud, before, context);
   if (options.marks()) {
@@ -140,10 +148,12 @@ std::string denoise_cloud(const Options& options, pipeline::io::Cloud& cloud, co
     flags.resize(n, 0);
     pipeline::io::set_field(cloud, kOutlier, pipeline::io::Scalar::uint8, flags, context);
   }
-  if (some_removed && !as_nan) remove_outliers(cloud, done.outlier, context);
   stages.insert(stages.end(), done.seconds.begin(), done.seconds.end());
-  tell(done, cloud, job, console);
+  tell(done, options, cloud, job, console);
   enter(done, options, entry);
+  if (some_removed) blank_outliers();  // normals are of the points that stay
+  write_normals(options.normals, cloud, xyz.data(), job.output, options.job.files, context, stages, entry);
+  if (some_removed && !as_nan) remove_outliers(cloud, done.outlier, context);
   return fmt::format("{} points, {} finite{}; spacing {:.4g}; largest move {:.4g}, rms {:.4g}", done.points,
                      done.finite, said_of_outliers(done, options), done.spacing, done.largest_move,
                      done.rms_move);
@@ -154,6 +164,7 @@ int run(const Options& options, const Invocation& typed) {
   if (const auto valid = smoothing::complete(options.denoise.flow); !valid.ok()) throw Failure(valid.error());
   if (options.mark_outliers && options.denoise.outliers == "smooth")
     throw Failure({ErrorCode::usage, "--mark-outliers has nothing to mark with --outliers smooth"});
+  check(options.normals);
   return run_cloud_jobs("denoise", options.job, typed, [&](auto&&... all) {
     return denoise_cloud(options, std::forward<decltype(all)>(all)...);
   });
@@ -172,7 +183,8 @@ Command denoise_command() {
       "(EMST, SDG, RFS-mesh), smooths the mesh, and writes the same cloud with x, y, z replaced: every other "
       "field, the order and the number of points stay. Points that are not finite stay as they are. Fields "
       "that "
-      "are asked for (--write-displacement, --mark-outliers) come behind the points' other fields, or take "
+      "are asked for (--write-displacement, --mark-outliers, --normals) come behind the points' other "
+      "fields, or take "
       "the place of the "
       "one "
       "of that name.\n\n"

@@ -1,0 +1,60 @@
+#include "rfsmooth/pipeline/viewpoint.h"
+
+#include <array>
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+#include "rfsmooth/pipeline/io/text.h"
+#include "rfsmooth/rfs_mesh/parallel.h"
+
+namespace rfsmooth::pipeline {
+
+using Eigen::Vector3d;
+
+bool seen_from(const Vector3d& viewpoint, const double* xyz, std::size_t width, std::size_t height,
+               const Context& context) {
+  constexpr double kShare = 0.9;  // noise and edges of depth turn some triangles over
+  struct Sides {
+    std::size_t one = 0, other = 0;
+  };
+  const auto ray = [&](std::size_t row, std::size_t column) {
+    const double* p = xyz + 3 * (row * width + column);
+    return Vector3d(p[0] - viewpoint[0], p[1] - viewpoint[1], p[2] - viewpoint[2]);
+  };
+  const Sides sides = reduce_blocks(
+      context, height > 1 ? height - 1 : 0, Sides{},
+      [&](std::size_t begin, std::size_t end) {
+        Sides s;
+        for (std::size_t row = begin; row < end; ++row)
+          for (std::size_t column = 0; column + 1 < width; ++column) {
+            const double volume = ray(row, column).dot(ray(row, column + 1).cross(ray(row + 1, column)));
+            s.one += volume > 0 ? 1 : 0;
+            s.other += volume < 0 ? 1 : 0;
+          }
+        return s;
+      },
+      [](Sides a, const Sides& b) {
+        return Sides{a.one + b.one, a.other + b.other};
+      },
+      16);
+  return double(std::max(sides.one, sides.other)) > kShare * double(sides.one + sides.other);
+}
+
+std::optional<Vector3d> recorded_viewpoint(const io::Cloud& cloud, const double* xyz,
+                                           const Context& context) {
+  constexpr std::array<double, 7> kDefault = {0, 0, 0, 1, 0, 0, 0};
+  std::array<double, 7> values{};
+  const char* at = cloud.viewpoint.data();
+  for (double& value : values) {
+    const auto parsed = io::parse_real(io::next_word(at, cloud.viewpoint.data() + cloud.viewpoint.size()));
+    if (!parsed || !std::isfinite(*parsed)) return std::nullopt;
+    value = *parsed;
+  }
+  const Vector3d viewpoint(values[0], values[1], values[2]);
+  if (values != kDefault) return viewpoint;
+  if (cloud.organised() && seen_from(viewpoint, xyz, cloud.width, cloud.height, context)) return viewpoint;
+  return std::nullopt;
+}
+
+}  // namespace rfsmooth::pipeline

@@ -1,0 +1,67 @@
+#include "rfsmooth/rfs_mesh/bilateral_normals.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+
+#include "rfsmooth/rfs_mesh/parallel.h"
+
+namespace rfsmooth::rfs_mesh {
+
+namespace {
+
+using Eigen::Vector3d;
+
+// Chosen on the closed development shapes at 50,000 points and 1 % noise (tests/bench/normals): more passes
+// gain at sharp edges and lose on organic shapes.
+constexpr int kPasses = 3;
+constexpr std::size_t kJudged = 16;  // neighbours that say how calm the normals are
+constexpr std::size_t kMiddle = 6;   // which of them, from the calmest
+constexpr double kTolerance = 1.25;
+constexpr double kCalmest = 0.05, kWildest = 0.4;  // radians
+
+/// |n -+ m|^2: the squared angle, for small ones.
+double apart(const Vector3d& n, const Vector3d& m) {
+  return std::max(0.0, 2 - 2 * std::abs(n.dot(m)));
+}
+
+double tolerance_at(std::size_t i, Adjacency::Row row, const Positions& normals) {
+  std::array<double, kJudged> squares{};
+  const std::size_t count = std::min(kJudged, row.size());
+  for (std::size_t k = 0; k < count; ++k) squares[k] = apart(normals[i], normals[row[k]]);
+  const auto middle = squares.begin() + std::ptrdiff_t(kMiddle * count / kJudged);
+  std::nth_element(squares.begin(), middle, squares.begin() + std::ptrdiff_t(count));
+  return std::clamp(kTolerance * std::sqrt(*middle), kCalmest, kWildest);
+}
+
+Vector3d filtered(std::size_t i, const Positions& points, Adjacency::Row row, const Positions& normals) {
+  const double square = 1.1 * (points[row[row.size() - 1]] - points[i]).squaredNorm();
+  if (!(square > 0)) return normals[i];
+  const double tolerance = tolerance_at(i, row, normals);
+  Vector3d sum = normals[i];
+  for (const Index j : row) {
+    const double near = 1 - (points[j] - points[i]).squaredNorm() / square;
+    const double alike = std::exp(-apart(normals[i], normals[j]) / (2 * tolerance * tolerance));
+    const double weight = near * near * alike;
+    sum += (normals[i].dot(normals[j]) < 0 ? -weight : weight) * normals[j];
+  }
+  return sum.normalized();  // at least as long as the unit vector it starts from
+}
+
+}  // namespace
+
+void bilateral_normals(const Positions& points, const NeighborTable& near, Positions& normals,
+                       const Context& context) {
+  if (normals.size() != points.size() || (near.k > 0 && near.size() != points.size()))
+    throw std::invalid_argument("bilateral_normals: points, neighbours and normals differ in number");
+  if (near.k == 0) return;
+  Positions next(normals.size());
+  for (int pass = 0; pass < kPasses; ++pass) {
+    for_each_index(context, normals.size(),
+                   [&](std::size_t i) { next[i] = filtered(i, points, near[i], normals); });
+    normals.swap(next);
+  }
+}
+
+}  // namespace rfsmooth::rfs_mesh
