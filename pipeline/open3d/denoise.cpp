@@ -5,8 +5,8 @@
 #include <open3d/geometry/KDTreeSearchParam.h>
 #include <open3d/geometry/PointCloud.h>
 
-#include "rfsmooth/rfs_mesh/local_surface.h"
-#include "rfsmooth/rfs_mesh/neighbors.h"
+#include "rfsmooth/pipeline/normal_sides.h"
+#include "rfsmooth/pipeline/normals.h"
 #include "rfsmooth/rfs_mesh/parallel.h"
 #include "rfsmooth/rfs_mesh/points.h"
 
@@ -17,22 +17,18 @@ namespace {
 using ::open3d::geometry::PointCloud;
 using Matrices = std::vector<Eigen::Matrix3d>;
 
-/// A unit normal of the surface through the points for each finite row, on the side of `before` where that
-/// says one; rows that are not finite keep theirs.
-Positions surface_normals(const Positions& points, const Positions& before, const Context& context) {
-  auto working = rfs_mesh::make_working_cloud(points.front().data(), points.size(), context);
-  if (!working.ok()) throw Failure(working.error());
-  const Positions& distinct = working.value().points;
-  const rfs_mesh::SpatialIndex index(distinct, context);
-  constexpr int kNeighbours = 24;  // what connecting looks at too
-  const auto surfaces = rfs_mesh::local_surfaces(distinct, index.nearest(kNeighbours, context), context);
-  Positions normals = before;
-  for_each_index(context, normals.size(), [&](std::size_t i) {
-    const Index p = working.value().of_input[i];
-    if (p == kNone) return;
-    const Eigen::Vector3d& normal = surfaces[p].normal;
-    normals[i] = normal.dot(before[i]) < 0 ? Eigen::Vector3d(-normal) : normal;
-  });
+/// A unit normal of the surface through the points for each finite row, on the side of `before` if there is
+/// one; rows that are not finite keep theirs.
+Positions surface_normals(const Positions& points, const Positions* before, const Context& context) {
+  const std::size_t n = points.size();
+  const double* const xyz = points.front().data();
+  Positions normals(n);
+  const auto done = pipeline::estimate_normals(xyz, n, {}, context, normals.front().data());
+  if (!done.ok()) throw Failure(done.error());
+  if (before == nullptr) return normals;
+  pipeline::keep_sides(xyz, n, before->front().data(), normals.front().data(), context);
+  for (std::size_t i = 0; i < n; ++i)
+    if (!points[i].allFinite()) normals[i] = (*before)[i];
   return normals;
 }
 
@@ -79,8 +75,7 @@ pipeline::DenoiseReport run(PointCloud& cloud, const pipeline::DenoiseOptions& o
   const bool turns = cloud.HasCovariances() && kind == Covariances::turned;
   if (cloud.HasNormals() || turns) {
     context.report("normals", 0);
-    const Positions none(points.size(), Eigen::Vector3d::Zero());
-    normals = surface_normals(points, cloud.HasNormals() ? cloud.normals_ : none, context);
+    normals = surface_normals(points, cloud.HasNormals() ? &cloud.normals_ : nullptr, context);
   }
   if (turns)
     covariances = turned(cloud.covariances_, points, normals, context);

@@ -1,59 +1,95 @@
 #include "rfsmooth/open3d/mesh.h"
 
+#include <stdexcept>
+
 #include <open3d/geometry/PointCloud.h>
 #include <open3d/geometry/TriangleMesh.h>
 
+#include "rfsmooth/rfs_mesh/measure.h"
+#include "rfsmooth/rfs_mesh/orient.h"
 #include "rfsmooth/rfs_mesh/parallel.h"
-#include "rfsmooth/smoothing/surface.h"
 
 namespace rfsmooth::open3d {
 
 using ::open3d::geometry::PointCloud;
 using ::open3d::geometry::TriangleMesh;
 
-std::shared_ptr<TriangleMesh> to_triangle_mesh(const rfs_mesh::Mesh& mesh, bool turn) {
+namespace {
+
+/// The working points in the order in which the cloud has them first: mesh vertex -> row of the cloud.
+std::vector<std::size_t> rows_of(const rfs_mesh::WorkingCloud& working, std::vector<Index>& rank) {
+  std::vector<std::size_t> row;
+  rank.assign(working.points.size(), kNone);
+  for (std::size_t i = 0; i < working.of_input.size(); ++i) {
+    const Index p = working.of_input[i];
+    if (p == kNone || rank[p] != kNone) continue;
+    rank[p] = Index(row.size());
+    row.push_back(i);
+  }
+  return row;
+}
+
+std::shared_ptr<TriangleMesh> make(const PointCloud& cloud, const rfs_mesh::ConnectOptions& options,
+                                   const Context& context) {
+  const std::size_t n = cloud.points_.size();
+  const auto working =
+      rfs_mesh::make_working_cloud(n == 0 ? nullptr : cloud.points_.front().data(), n, context);
+  if (!working.ok()) throw Failure(working.error());
+  auto connected = rfs_mesh::connect(working.value().points, options, context);
+  if (!connected.ok()) throw Failure(connected.error());
+  rfs_mesh::Connection& connection = connected.value();
+  Positions sides;
+  for (std::size_t p = 0; p < connection.surfaces.size(); ++p) {
+    sides.push_back(connection.surfaces[p].normal);
+    connection.mesh.positions[p] =
+        connection.surfaces[p].shadow;  // the noise of an edge says nothing of sides
+  }
+  rfs_mesh::orient(connection.mesh, connection.emst, connection.bridges, {}, sides, context);
+
+  std::vector<Index> rank;
+  const std::vector<std::size_t> row = rows_of(working.value(), rank);
+  rfs_mesh::Mesh mesh;
+  Positions normals;
+  for (const std::size_t i : row) {
+    mesh.positions.push_back(cloud.points_[i]);
+    normals.push_back(sides[working.value().of_input[i]]);
+  }
+  mesh.faces = connection.mesh.faces;
+  for (auto& face : mesh.faces)
+    for (Index& corner : face) corner = rank[corner];
+  auto made = to_triangle_mesh(mesh, normals);
+  if (cloud.HasColors())
+    for (const std::size_t i : row) made->vertex_colors_.push_back(cloud.colors_[i]);
+  return made;
+}
+
+}  // namespace
+
+std::shared_ptr<TriangleMesh> to_triangle_mesh(const rfs_mesh::Mesh& mesh, const Positions& normals) {
+  const bool turn = !normals.empty();
+  if (turn && normals.size() != mesh.positions.size())
+    throw std::invalid_argument("the normals are not one per vertex");
   auto made = std::make_shared<TriangleMesh>();
   made->vertices_ = mesh.positions;
+  made->vertex_normals_ = normals;
   made->triangles_.reserve(mesh.faces.size());
-  for (const rfs_mesh::Face& f : turn ? smoothing::oriented_as_far_as_possible(mesh) : mesh.faces)
-    made->triangles_.emplace_back(int(f[0]), int(f[1]), int(f[2]));
+  for (const rfs_mesh::Face& f : mesh.faces) {
+    const bool over =
+        turn &&
+        rfs_mesh::face_cross(mesh.positions, f).dot(normals[f[0]] + normals[f[1]] + normals[f[2]]) < 0;
+    made->triangles_.emplace_back(int(f[0]), int(f[over ? 2 : 1]), int(f[over ? 1 : 2]));
+  }
   return made;
 }
 
 Result<std::shared_ptr<TriangleMesh>> rough_mesh(const PointCloud& cloud,
                                                  const rfs_mesh::ConnectOptions& options,
                                                  const Context& context) {
-  const std::size_t n = cloud.points_.size();
-  const auto working =
-      rfs_mesh::make_working_cloud(n == 0 ? nullptr : cloud.points_.front().data(), n, context);
-  if (!working.ok()) return working.error();
-  auto connection = [&] {
-    std::optional<Result<rfs_mesh::Connection>> made;
-    in_arena(context, [&] { made.emplace(rfs_mesh::connect(working.value().points, options, context)); });
-    return std::move(*made);
-  }();
-  if (!connection.ok()) return connection.error();
-
-  // The working points in the order in which the cloud has them first, at the cloud's own coordinates.
-  rfs_mesh::Mesh mesh;
-  std::vector<std::size_t> row;
-  std::vector<Index> rank(working.value().points.size(), kNone);
-  for (std::size_t i = 0; i < n; ++i) {
-    const Index p = working.value().of_input[i];
-    if (p == kNone || rank[p] != kNone) continue;
-    rank[p] = Index(row.size());
-    row.push_back(i);
-    mesh.positions.push_back(cloud.points_[i]);
-  }
-  mesh.faces = std::move(connection.value().mesh.faces);
-  for (auto& face : mesh.faces)
-    for (Index& corner : face) corner = rank[corner];
-
-  auto made = to_triangle_mesh(mesh);
-  if (cloud.HasColors())
-    for (const std::size_t i : row) made->vertex_colors_.push_back(cloud.colors_[i]);
-  made->ComputeVertexNormals();
-  return made;
+  return guarded([&] {
+    std::shared_ptr<TriangleMesh> made;
+    in_arena(context, [&] { made = make(cloud, options, context); });
+    return made;
+  });
 }
 
 }  // namespace rfsmooth::open3d

@@ -15,16 +15,16 @@ class TriangleMesh;
 
 namespace rfsmooth::open3d {
 
-/// Vertices and triangles as they are, in order; loose edges have no counterpart. With `turn` the triangles
-/// are turned so that neighbours agree as far as the mesh has two sides, and closed parts face outward: a
-/// viewer that hides back faces then shows no holes that are not there. The caller's frame is the mesh's. O(n
-/// + m).
+/// Vertices and triangles in order, in the mesh's frame; loose edges have no counterpart. With `normals` (one
+/// per vertex) each triangle is turned to the side of its corners' normals, which become the vertices': a
+/// viewer that hides back faces then shows no holes that are not there. O(n + m). \throw
+/// std::invalid_argument for normals of another number.
 std::shared_ptr<::open3d::geometry::TriangleMesh> to_triangle_mesh(const rfs_mesh::Mesh& mesh,
-                                                                   bool turn = true);
+                                                                   const Positions& normals = {});
 
-/// The RFS-mesh that denoising works on, of a cloud's finite, distinct points in their order, turned as by
-/// `to_triangle_mesh`, with the points' colours and, on the points, the mesh's normals. For viewing: the
-/// RFS-mesh may cross itself and have holes.
+/// The RFS-mesh that denoising works on, of a cloud's finite, distinct points in their order, with their
+/// colours and with normals on one side (rfs_mesh/orient.h). For viewing: the RFS-mesh may cross itself and
+/// have holes.
 /// Errors: usage (options), no_usable_points, out_of_memory, cancelled. O(n log n).
 Result<std::shared_ptr<::open3d::geometry::TriangleMesh>> rough_mesh(
     const ::open3d::geometry::PointCloud& cloud, const rfs_mesh::ConnectOptions& options = {},

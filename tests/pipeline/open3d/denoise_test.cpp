@@ -31,7 +31,7 @@ PointCloud noisy_sphere() {
   for (int i = 0; i < 1500; ++i) {
     const Eigen::Vector3d at = gauss().normalized();
     cloud.points_.push_back(at + 0.02 * gauss());
-    cloud.normals_.push_back((at + 0.2 * gauss()).normalized());
+    cloud.normals_.push_back((at + 0.4 * gauss()).normalized());
     cloud.colors_.emplace_back(0.001 * (i % 1000), 0.5, 0.25);
   }
   cloud.EstimateCovariances();
@@ -89,6 +89,16 @@ TEST(Open3dDenoise, NormalsBecomeThoseOfTheSmoothedSurfaceOnTheirSide) {
     EXPECT_GT(outward.normals_[i].dot(outward.points_[i]), 0) << i;
     EXPECT_EQ(inward.normals_[i], -outward.normals_[i]) << i;
   }
+}
+
+TEST(Open3dDenoise, NormalsWithoutACommonSideBecomeOutward) {
+  PointCloud cloud = noisy_sphere();
+  std::mt19937 coin(3);
+  for (auto& normal : cloud.normals_)
+    if (coin() % 2 == 0) normal = -normal;
+  ASSERT_TRUE(denoise(cloud).ok());
+  for (std::size_t i = 0; i < cloud.points_.size(); ++i)
+    EXPECT_GT(cloud.normals_[i].dot(cloud.points_[i]), 0) << i;
 }
 
 TEST(Open3dDenoise, CovariancesAreThoseOfTheSmoothedPoints) {
@@ -217,7 +227,6 @@ TEST(Open3dDenoise, SameBytesForAnyNumberOfThreads) {
 
 TEST(Open3dMesh, TheRoughMeshOfACloudIsThereToLookAt) {
   PointCloud cloud = noisy_sphere();
-  for (auto& p : cloud.points_) p.normalize();
   cloud.points_[10] = cloud.points_[11];                // one vertex for the two
   cloud.points_[20] = Eigen::Vector3d::Constant(kNan);  // none
   const auto made = rough_mesh(cloud);
@@ -231,22 +240,35 @@ TEST(Open3dMesh, TheRoughMeshOfACloudIsThereToLookAt) {
     if (i == 11 || i == 20) continue;
     EXPECT_EQ(mesh.vertices_[row], cloud.points_[i]) << i;
     EXPECT_EQ(mesh.vertex_colors_[row], cloud.colors_[i]) << i;
+    EXPECT_GT(mesh.vertex_normals_[row].dot(cloud.points_[i]), 0) << i;
     ++row;
   }
   EXPECT_GT(mesh.triangles_.size(), 2500u);  // 2 n of a closed surface, but for holes
+  std::size_t outward = 0;
+  for (const auto& t : mesh.triangles_) {
+    const Eigen::Vector3d &a = mesh.vertices_[std::size_t(t[0])], &b = mesh.vertices_[std::size_t(t[1])],
+                          &c = mesh.vertices_[std::size_t(t[2])];
+    outward += (b - a).cross(c - a).dot(a + b + c) > 0;
+  }
+  EXPECT_GT(double(outward), 0.99 * double(mesh.triangles_.size()));
 }
 
-TEST(Open3dMesh, AMeshKeepsItsVerticesAndAsksBeforeTurning) {
+TEST(Open3dMesh, AMeshKeepsItsVerticesAndTurnsToItsNormals) {
   rfs_mesh::Mesh mesh;
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
   mesh.faces = {{0, 1, 2}, {1, 2, 3}};  // the two disagree
-  rfs_mesh::rebuild_adjacency(mesh, {});
-  const auto as_is = to_triangle_mesh(mesh, false), turned = to_triangle_mesh(mesh);
+  const auto as_is = to_triangle_mesh(mesh);
   EXPECT_EQ(as_is->vertices_, mesh.positions);
   ASSERT_EQ(as_is->triangles_.size(), 2u);
   EXPECT_EQ(as_is->triangles_[1], Eigen::Vector3i(1, 2, 3));
-  turned->ComputeTriangleNormals();
-  EXPECT_GT(turned->triangle_normals_[0].dot(turned->triangle_normals_[1]), 0.99);
+  EXPECT_FALSE(as_is->HasVertexNormals());
+
+  const Positions up(4, Eigen::Vector3d::UnitZ());
+  const auto turned = to_triangle_mesh(mesh, up);
+  EXPECT_EQ(turned->triangles_[0], Eigen::Vector3i(0, 1, 2));
+  EXPECT_EQ(turned->triangles_[1], Eigen::Vector3i(1, 3, 2));
+  EXPECT_EQ(turned->vertex_normals_, up);
+  EXPECT_THROW(to_triangle_mesh(mesh, Positions(3)), std::invalid_argument);
 }
 
 TEST(Open3dMesh, NothingToConnectIsAnError) {

@@ -1,0 +1,77 @@
+#include "rfsmooth/pipeline/normal_sides.h"
+
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "rfsmooth/rfs_mesh/neighbors.h"
+#include "rfsmooth/rfs_mesh/parallel.h"
+#include "rfsmooth/rfs_mesh/points.h"
+
+namespace rfsmooth::pipeline {
+
+namespace {
+
+using Vectors = Eigen::Map<const Eigen::Matrix3Xd>;
+
+/// a of every working point: the sum over the rows that share it.
+std::vector<double> agreements(const rfs_mesh::WorkingCloud& cloud, const Vectors& before,
+                               const Vectors& normals) {
+  std::vector<double> a(cloud.points.size(), 0);
+  for (std::size_t i = 0; i < cloud.of_input.size(); ++i) {
+    const Index p = cloud.of_input[i];
+    const auto row = Eigen::Index(i);
+    if (p == kNone) continue;
+    const double length = before.col(row).norm(), dot = normals.col(row).dot(before.col(row));
+    if (length > 0 && std::isfinite(length) && std::isfinite(dot)) a[p] += dot / length;
+  }
+  return a;
+}
+
+}  // namespace
+
+bool keep_sides(const double* xyz, std::size_t n, const double* before, double* normals,
+                const Context& context) {
+  const auto working = rfs_mesh::make_working_cloud(xyz, n, context);
+  if (!working.ok()) return false;
+  const rfs_mesh::WorkingCloud& cloud = working.value();
+  const std::vector<double> a =
+      agreements(cloud, Vectors(before, 3, Eigen::Index(n)), Vectors(normals, 3, Eigen::Index(n)));
+
+  const rfs_mesh::SpatialIndex index(cloud.points, context);
+  constexpr int kNeighbours = 24;  // random sides give sum |v| / sum |a| of sqrt(2 / (25 pi)), about 0.16
+  const rfs_mesh::NeighborTable near = index.nearest(kNeighbours, context);
+  std::vector<double> vote(a.size()), most(a.size());
+  for_each_index(context, a.size(), [&](std::size_t p) {
+    vote[p] = a[p];
+    most[p] = std::abs(a[p]);
+    if (near.k == 0) return;
+    for (const Index q : near[p]) {
+      vote[p] += a[q];
+      most[p] += std::abs(a[q]);
+    }
+  });
+  const auto sums = reduce_blocks(
+      context, a.size(), std::pair<double, double>(0, 0),
+      [&](std::size_t begin, std::size_t end) {
+        std::pair<double, double> sum(0, 0);
+        for (std::size_t p = begin; p < end; ++p) {
+          sum.first += std::abs(vote[p]);
+          sum.second += most[p];
+        }
+        return sum;
+      },
+      [](const auto& s, const auto& t) { return std::pair(s.first + t.first, s.second + t.second); });
+  if (!(sums.first > 0.5 * sums.second)) return false;
+
+  for_each_index(context, n, [&](std::size_t i) {
+    const Index p = cloud.of_input[i];
+    if (p == kNone || vote[p] >= 0) return;
+    for (std::size_t axis = 0; axis < 3; ++axis) normals[3 * i + axis] = -normals[3 * i + axis];
+  });
+  return true;
+}
+
+}  // namespace rfsmooth::pipeline
