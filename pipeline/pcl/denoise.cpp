@@ -8,6 +8,7 @@
 #include <pcl/point_types.h>
 
 #include "rfsmooth/pcl/impl/denoise.hpp"
+#include "rfsmooth/pipeline/normals.h"
 
 namespace rfsmooth::pcl {
 
@@ -26,6 +27,18 @@ bool DenoiseSettings::run(double* xyz, std::size_t n) {
     if (!result.ok()) return fail(result.error().message);
     report_ = std::move(result).value();
     return true;
+  } catch (const std::exception& exception) {
+    return fail(exception.what());
+  }
+}
+
+bool DenoiseSettings::run_normals(const double* xyz, std::size_t n,
+                                  const std::optional<Eigen::Vector3d>& viewpoint, double* normals) {
+  try {
+    pipeline::NormalsOptions options;
+    options.viewpoint = viewpoint;
+    const auto result = pipeline::estimate_normals(xyz, n, options, context_, normals);
+    return result.ok() || fail(result.error().message);
   } catch (const std::exception& exception) {
     return fail(exception.what());
   }

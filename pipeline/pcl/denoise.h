@@ -18,9 +18,10 @@
 /// determinism: see pipeline/denoise.h.
 #pragma once
 
+#include <optional>
 #include <string>
 
-#include <pcl/filters/filter_indices.h>
+#include <pcl/filters/filter.h>
 
 #include "rfsmooth/pipeline/denoise.h"
 
@@ -51,6 +52,11 @@ class DenoiseSettings {
   /// Denoises n x 3 coordinates in place; false, with the status set and PCL_ERROR printed, if it cannot be
   /// done.
   bool run(double* xyz, std::size_t n);
+
+  /// Writes unit normals of n x 3 coordinates (pipeline/normals.h); false as for `run`.
+  bool run_normals(const double* xyz, std::size_t n, const std::optional<Eigen::Vector3d>& viewpoint,
+                   double* normals);
+
   bool fail(const std::string& why);
 
   pipeline::DenoiseOptions options_;

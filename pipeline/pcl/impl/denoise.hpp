@@ -13,7 +13,7 @@ namespace rfsmooth::pcl {
 
 namespace detail {
 
-/// The coordinates named by `indices`, n x 3; false if one is out of range.
+/// What `at(i, to)` says of the points named by `indices`, n x 3; false if one is out of range.
 template <typename At>
 bool gather(const ::pcl::Indices& indices, std::size_t size, const At& at, std::vector<double>& xyz) {
   xyz.resize(3 * indices.size());
@@ -22,6 +22,32 @@ bool gather(const ::pcl::Indices& indices, std::size_t size, const At& at, std::
     at(std::size_t(indices[row]), &xyz[3 * row]);
   }
   return true;
+}
+
+/// The coordinates of a cloud's points.
+template <typename PointT>
+bool gather(const ::pcl::PointCloud<PointT>& cloud, const ::pcl::Indices& indices, std::vector<double>& xyz) {
+  const auto at = [&](std::size_t i, double* to) {
+    to[0] = cloud[i].x;
+    to[1] = cloud[i].y;
+    to[2] = cloud[i].z;
+  };
+  return gather(indices, cloud.size(), at, xyz);
+}
+
+/// Writes the coordinates that changed.
+template <typename PointT>
+void scatter(const std::vector<double>& before, const std::vector<double>& after,
+             const ::pcl::Indices& indices, ::pcl::PointCloud<PointT>& cloud) {
+  const auto set = [&](float& coordinate, std::size_t k) {
+    if (after[k] != before[k] && std::isfinite(after[k])) coordinate = static_cast<float>(after[k]);
+  };
+  for (std::size_t row = 0; row < indices.size(); ++row) {
+    PointT& point = cloud[std::size_t(indices[row])];
+    set(point.x, 3 * row);
+    set(point.y, 3 * row + 1);
+    set(point.z, 3 * row + 2);
+  }
 }
 
 }  // namespace detail
@@ -40,14 +66,9 @@ template <typename PointT>
 void Denoise<PointT>::applyFilter(PointCloud& output) {
   const PointCloud& input = *this->input_;
   const ::pcl::Indices& indices = *this->indices_;
-  std::vector<double> xyz;
-  const auto at = [&](std::size_t i, double* to) {
-    to[0] = input[i].x;
-    to[1] = input[i].y;
-    to[2] = input[i].z;
-  };
   this->removed_indices_->clear();
-  if (!detail::gather(indices, input.size(), at, xyz)) {
+  std::vector<double> xyz;
+  if (!detail::gather(input, indices, xyz)) {
     fail("an index is outside the cloud");
     output.clear();
     return;
@@ -58,15 +79,7 @@ void Denoise<PointT>::applyFilter(PointCloud& output) {
     return;
   }
   output = input;
-  const auto set = [](float& coordinate, double old_value, double new_value) {
-    if (new_value != old_value && std::isfinite(new_value)) coordinate = static_cast<float>(new_value);
-  };
-  for (std::size_t row = 0; row < indices.size(); ++row) {
-    PointT& point = output[std::size_t(indices[row])];
-    set(point.x, before[3 * row], xyz[3 * row]);
-    set(point.y, before[3 * row + 1], xyz[3 * row + 1]);
-    set(point.z, before[3 * row + 2], xyz[3 * row + 2]);
-  }
+  detail::scatter(before, xyz, indices, output);
 }
 
 }  // namespace rfsmooth::pcl

@@ -1,0 +1,77 @@
+/// Template bodies of rfsmooth/pcl/denoise_surface.h, for point types of your own.
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include <pcl/common/io.h>
+#include <pcl/impl/pcl_base.hpp>
+
+#include "rfsmooth/pcl/denoise_surface.h"
+#include "rfsmooth/pcl/impl/denoise.hpp"
+
+namespace rfsmooth::pcl {
+
+namespace detail {
+
+template <typename PointT>
+void set_normal(PointT& point, double x, double y, double z) {
+  point.normal_x = float(x);
+  point.normal_y = float(y);
+  point.normal_z = float(z);
+}
+
+}  // namespace detail
+
+template <typename PointInT, typename PointOutT>
+void DenoiseSurface<PointInT, PointOutT>::process(PointCloudOut& output) {
+  if (this->input_) {
+    ::pcl::CloudSurfaceProcessing<PointInT, PointOutT>::process(output);
+    return;
+  }
+  fail("no input cloud: call setInputCloud first");
+  output = PointCloudOut();
+}
+
+template <typename PointInT, typename PointOutT>
+void DenoiseSurface<PointInT, PointOutT>::performProcessing(PointCloudOut& output) {
+  static_assert(::pcl::traits::has_normal<PointOutT>::value, "the points of the output need normals");
+  const auto& input = *this->input_;
+  const ::pcl::Indices& indices = *this->indices_;
+  const auto give_up = [&] {
+    const auto header = input.header;  // the output may be the input
+    output = PointCloudOut();
+    output.header = header;
+  };
+  std::vector<double> xyz;
+  if (!detail::gather(input, indices, xyz)) {
+    fail("an index is outside the cloud");
+    return give_up();
+  }
+  const std::vector<double> before = xyz;
+  std::vector<double> normals(xyz.size());
+  std::optional<Eigen::Vector3d> viewpoint = viewpoint_;
+  const Eigen::Vector3f origin = input.sensor_origin_.template head<3>();
+  if (!viewpoint && origin.allFinite() && !origin.isZero(0)) viewpoint = origin.template cast<double>();
+  if (!run(xyz.data(), indices.size()) || !run_normals(xyz.data(), indices.size(), viewpoint, normals.data()))
+    return give_up();
+
+  if (static_cast<const void*>(&output) != static_cast<const void*>(&input))
+    ::pcl::copyPointCloud(input, output);
+  if constexpr (!::pcl::traits::has_normal<PointInT>::value) {
+    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+    for (PointOutT& point : output) detail::set_normal(point, kNan, kNan, kNan);
+  }
+  detail::scatter(before, xyz, indices, output);
+  for (std::size_t row = 0; row < indices.size(); ++row)
+    if (const double* const normal = &normals[3 * row]; std::isfinite(normal[0]))
+      detail::set_normal(output[std::size_t(indices[row])], normal[0], normal[1], normal[2]);
+  for (const PointOutT& point : output)
+    if (!std::isfinite(point.normal_x)) output.is_dense = false;
+}
+
+}  // namespace rfsmooth::pcl
+
+#define PCL_INSTANTIATE_DenoiseSurface(In, Out) \
+  template class PCL_EXPORTS rfsmooth::pcl::DenoiseSurface<In, Out>;
