@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # run.sh SOURCE WORK WAY [BUILD]: builds and runs the examples in the folder WORK the way a user of the library would.
-# WAY: installed (find_package), subdirectory (add_subdirectory), pkgconfig; pcl, cgal (find_package with that component).
+# WAY: installed (find_package), subdirectory (add_subdirectory), pkgconfig; pcl, open3d, cgal (find_package with that
+# component); readme (the README's PCL example, copied out of it into an empty folder).
 # What the build folder BUILD installs is used; without BUILD what is installed in the system.
 set -euo pipefail
 source=$1 work=$2 way=$3 build=${4:-}
@@ -14,35 +15,77 @@ if [ -n "$build" ] && [ "$way" != subdirectory ]; then
   export PKG_CONFIG_PATH="$work/prefix/lib/pkgconfig:$(echo "$work"/prefix/lib/*/pkgconfig)"
 fi
 
-# build EXAMPLE OPTION...: configures and builds tests/consumer/EXAMPLE; the program is $work/build/example.
+# build PROJECT OPTION...: configures and builds the project in a folder; the programs are in $work/build.
 build() {
-  local example=$1
+  local project=$1
   shift
-  cmake -G Ninja -S "$source/tests/consumer/$example" -B "$work/build" -DCMAKE_BUILD_TYPE=Release \
-    ${launcher:+-DCMAKE_CXX_COMPILER_LAUNCHER=$launcher} "${from[@]}" "$@" > "$work/configure.log"
+  cmake -G Ninja -S "$project" -B "$work/build" -DCMAKE_BUILD_TYPE=Release \
+    ${launcher:+-DCMAKE_CXX_COMPILER_LAUNCHER=$launcher} "${from[@]}" "$@" > "$work/configure.log" 2>&1 || { cat "$work/configure.log"; exit 1; }
   cmake --build "$work/build" > "$work/build.log" || { cat "$work/build.log"; exit 1; }
 }
 
+# scan PCD: a unit sphere of 20,000 points with noise of half a spacing.
+scan() {
+  printf 'VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 20000\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 20000\nDATA ascii\n' > "$1"
+  awk 'BEGIN { srand(7)
+    for (i = 0; i < 20000; ++i) {
+      z = 1 - (2 * i + 1) / 20000; r = sqrt(1 - z * z); t = 2.399963 * i; s = 1 + 0.04 * (rand() - 0.5)
+      print s * r * cos(t), s * r * sin(t), s * z } }' >> "$1"
+}
+
+# smooth FILE: fails unless the points of an ascii file (lines of three numbers) lie twice as close to the sphere as the
+# scan's, whose rms error is 0.0115.
+smooth() {
+  awk 'NF == 3 && $1 ~ /^-?[0-9]/ { e = sqrt($1 * $1 + $2 * $2 + $3 * $3) - 1; sum += e * e; ++n }
+    END { rms = sqrt(sum / n); print FILENAME ": " n " points, rms error " rms; exit !(n > 1000 && rms < 0.0058) }' "$1"
+}
+
+# written_in README FILE: the lines of the indented block after the mark of that name.
+written_in() {
+  awk -v mark="<!-- $2 -->" '$0 == mark { on = 1; next } on && /^ *$/ { print ""; next } on && !/^    / { exit } on { print substr($0, 5) }' "$1"
+}
+
+examples="$source/tests/consumer"
 case "$way" in
   installed)
-    build core
+    build "$examples/core"
     "$work/build/example" ;;
   subdirectory)
-    build core -DRFSMOOTH_SOURCE_DIR="$source" -DRFSMOOTH_BUILD_CLI=OFF -DRFSMOOTH_WITH_PCL=OFF -DRFSMOOTH_WITH_OPEN3D=OFF -DRFSMOOTH_WITH_CGAL=OFF
-    "$work/build/example" ;;
+    build "$examples/subdirectory" -DRFSMOOTH_SOURCE_DIR="$source" -DRFSMOOTH_BUILD_CLI=OFF -DRFSMOOTH_WITH_CGAL=OFF
+    "$work/build/example"
+    scan "$work/scan.pcd"
+    if [ -x "$work/build/pcl_example" ]; then
+      "$work/build/pcl_example" "$work/scan.pcd" "$work/pcl.pcd"
+      smooth "$work/pcl.pcd"
+    fi
+    if [ -x "$work/build/open3d_example" ]; then
+      "$work/build/open3d_example" "$work/scan.pcd" "$work/open3d.xyz"
+      smooth "$work/open3d.xyz"
+    fi ;;
   pkgconfig)
-    g++ -std=c++17 -O2 "$source/tests/consumer/core/example.cpp" -o "$work/example" $(pkg-config --cflags --libs rfsmooth)
+    g++ -std=c++17 -O2 "$examples/core/example.cpp" -o "$work/example" $(pkg-config --cflags --libs rfsmooth)
     "$work/example" ;;
   pcl)
-    build pcl
-    {
-      printf 'VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 2500\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 2500\nDATA ascii\n'
-      awk 'BEGIN { for (i = 0; i < 2500; ++i) print i % 50, int(i / 50), 0.4 * sin(12.9898 * i) }'
-    } > "$work/rough.pcd"
-    "$work/build/example" "$work/rough.pcd" "$work/cleaned.pcd" 2> /dev/null
-    test -s "$work/cleaned.pcd" ;;
+    build "$examples/pcl"
+    scan "$work/scan.pcd"
+    "$work/build/example" "$work/scan.pcd" "$work/cleaned.pcd"
+    smooth "$work/cleaned.pcd"
+    "$work/build/pipeline" "$work/scan.pcd" "$work/surface.ply"
+    smooth "$work/surface.ply" ;;
+  open3d)
+    build "$examples/open3d"
+    scan "$work/scan.pcd"
+    "$work/build/example" "$work/scan.pcd" "$work/cleaned.xyz"
+    smooth "$work/cleaned.xyz" ;;
   cgal)
-    build cgal
+    build "$examples/cgal"
     "$work/build/example" ;;
+  readme)
+    mkdir "$work/project"
+    for file in CMakeLists.txt cleanup.cpp; do written_in "$source/README.md" "$file" > "$work/project/$file"; done
+    build "$work/project"
+    scan "$work/in.pcd"
+    "$work/build/cleanup" "$work/in.pcd" "$work/out.pcd"
+    smooth "$work/out.pcd" ;;
   *) echo "no such way: $way"; exit 2 ;;
 esac

@@ -11,5 +11,5 @@ int main(int argc, char** argv) {
   denoise.setInputCloud(cloud);
   pcl::PointCloud<pcl::PointXYZ> cleaned;
   denoise.filter(cleaned);
-  return cleaned.size() == cloud->size() ? pcl::io::savePCDFileBinary(argv[2], cleaned) : 1;
+  return cleaned.size() == cloud->size() ? pcl::io::savePCDFile(argv[2], cleaned) : 1;
 }
