@@ -5,25 +5,21 @@
 /// memory are the tool's; the rounds go over the tools in turn, so that both meet the same load of the
 /// machine.
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
-#include <fstream>
 #include <functional>
 #include <map>
 #include <random>
+#include <sstream>
 #include <string>
 #include <thread>
 
 #include <CLI/CLI.hpp>
 #include <Eigen/Geometry>
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include "peers.h"
 #include "quality/ours.h"
+#include "support/apart.h"
 
 namespace {
 
@@ -60,63 +56,22 @@ struct Run {
   std::map<std::string, double> stages;
 };
 
-double resident(const char* key) {  // kB -> bytes
-  std::ifstream status("/proc/self/status");
-  for (std::string line; std::getline(status, line);)
-    if (line.rfind(key, 0) == 0) return 1024 * std::stod(line.substr(std::strlen(key) + 1));
-  return 0;
-}
-
-double cpu_seconds() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  const auto seconds = [](const timeval& t) { return double(t.tv_sec) + 1e-6 * double(t.tv_usec); };
-  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
-}
-
-/// Runs `tool` on the points in a process of its own. \throw std::runtime_error if it does not come back
-/// well.
-Run run_apart(const Positions& points, const std::function<Positions(Run&)>& tool) {
-  int ends[2];
-  if (pipe(ends) != 0) throw std::runtime_error("no pipe");
-  std::fflush(stdout);
-  const pid_t child = fork();
-  if (child == 0) {
-    close(ends[0]);
-    int code = 1;
-    try {
-      Run run;
-      std::ofstream("/proc/self/clear_refs") << 5;  // the peak starts at what is resident now
-      const double before = resident("VmRSS:"), cpu = cpu_seconds();
-      const auto start = std::chrono::steady_clock::now();
-      const Positions out = tool(run);
-      run.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-      run.cpu = cpu_seconds() - cpu;
-      run.bytes = resident("VmHWM:") - before + 24 * double(points.size());
-      run.hash = hash_points(out);
-      std::string text;
-      char line[256];
-      std::snprintf(line, sizeof line, "%.9g %.9g %.9g %llu\n", run.seconds, run.cpu, run.bytes,
-                    static_cast<unsigned long long>(run.hash));
-      text += line;
-      for (const auto& [name, seconds] : run.stages) text += std::to_string(seconds) + " " + name + "\n";
-      code = write(ends[1], text.data(), text.size()) == ssize_t(text.size()) ? 0 : 1;
-    } catch (const std::exception& e) {
-      std::fprintf(stderr, "speed: %s\n", e.what());
-    }
-    _exit(code);
-  }
-  close(ends[1]);
-  std::string text;
-  char buffer[4096];
-  for (ssize_t got; (got = read(ends[0], buffer, sizeof buffer)) > 0;) text.append(buffer, std::size_t(got));
-  close(ends[0]);
-  int status = 0;
-  waitpid(child, &status, 0);
-  if (status != 0) throw std::runtime_error("a run failed");
+/// Runs `tool` on the points in a process of its own.
+Run run_on(const Positions& points, const std::function<Positions(Run&)>& tool) {
+  const Apart apart = run_apart([&](const Measure& measure) {
+    Run run;
+    Positions out;
+    measure([&] { out = tool(run); });
+    std::string text = std::to_string(hash_points(out)) + "\n";
+    for (const auto& [name, seconds] : run.stages) text += std::to_string(seconds) + " " + name + "\n";
+    return text;
+  });
   Run run;
-  std::istringstream in(text);
-  in >> run.seconds >> run.cpu >> run.bytes >> run.hash;
+  run.seconds = apart.cost.seconds;
+  run.cpu = apart.cost.cpu;
+  run.bytes = apart.cost.bytes + 24 * double(points.size());
+  std::istringstream in(apart.said);
+  in >> run.hash;
   for (double seconds = 0; in >> seconds;) {
     std::string name;
     std::getline(in >> std::ws, name);
@@ -126,7 +81,7 @@ Run run_apart(const Positions& points, const std::function<Positions(Run&)>& too
 }
 
 Run ours(const Positions& points, const Variant& variant, int threads) {
-  return run_apart(points, [&](Run& run) {
+  return run_on(points, [&](Run& run) {
     auto result = run_ours(points, variant, threads);
     for (std::size_t i = 0; i < result.report.seconds.size(); ++i)  // numbered: the map keeps their order
       run.stages[std::string(1, char('a' + i % 26)) + " " + result.report.seconds[i].name] =
@@ -136,7 +91,7 @@ Run ours(const Positions& points, const Variant& variant, int threads) {
 }
 
 Run mls(const Positions& points, int threads) {
-  return run_apart(points, [&](Run&) { return peers::pcl_mls(points, 48, threads).points; });
+  return run_on(points, [&](Run&) { return peers::pcl_mls(points, 48, threads).points; });
 }
 
 double median(std::vector<double> values) {
