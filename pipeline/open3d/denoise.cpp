@@ -32,23 +32,20 @@ Positions surface_normals(const Positions& points, const Positions* before, cons
   return normals;
 }
 
-/// Each covariance turned so that its axis of least spread lies along the normal, by the shorter way.
-Matrices turned(const Matrices& covariances, const Positions& points, const Positions& normals,
-                const Context& context) {
-  Matrices out = covariances;
-  for_each_index(context, out.size(), [&](std::size_t i) {
-    if (!points[i].allFinite() || !out[i].allFinite()) return;
-    const Eigen::Vector3d least =
-        Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(out[i]).eigenvectors().col(0);
+/// Turns each covariance so that its axis of least spread lies along the normal, by the shorter way.
+void turn(Matrices& covariances, const Positions& points, const Positions& normals, const Context& context) {
+  for_each_index(context, covariances.size(), [&](std::size_t i) {
+    Eigen::Matrix3d& c = covariances[i];
+    if (!points[i].allFinite() || !c.allFinite()) return;
+    const Eigen::Vector3d least = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(c).eigenvectors().col(0);
     const Eigen::Vector3d onto = least.dot(normals[i]) < 0 ? Eigen::Vector3d(-normals[i]) : normals[i];
-    const Eigen::Matrix3d turn = Eigen::Quaterniond::FromTwoVectors(least, onto).toRotationMatrix();
-    out[i] = turn * out[i] * turn.transpose();
+    const Eigen::Matrix3d rotation = Eigen::Quaterniond::FromTwoVectors(least, onto).toRotationMatrix();
+    c = rotation * c * rotation.transpose();
   });
-  return out;
 }
 
 /// Open3D's own, of the finite points only: its search is not made for others.
-Matrices estimated(const Matrices& covariances, const Positions& points) {
+void estimate(Matrices& covariances, const Positions& points) {
   PointCloud finite;
   std::vector<std::size_t> row;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -57,37 +54,51 @@ Matrices estimated(const Matrices& covariances, const Positions& points) {
     row.push_back(i);
   }
   finite.EstimateCovariances();
-  Matrices out = covariances;
-  for (std::size_t k = 0; k < row.size(); ++k) out[row[k]] = finite.covariances_[k];
-  return out;
+  for (std::size_t k = 0; k < row.size(); ++k) covariances[row[k]] = finite.covariances_[k];
+}
+
+/// Closes an array that is one per point up over the points that go.
+template <class T, class Allocator>
+void close_up(std::vector<T, Allocator>& rows, const std::vector<char>& gone) {
+  if (rows.size() != gone.size()) return;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    if (gone[i] == 0) rows[kept++] = rows[i];
+  rows.resize(kept);
 }
 
 pipeline::DenoiseReport run(PointCloud& cloud, const pipeline::DenoiseOptions& options,
                             const Context& context, Covariances kind) {
-  Positions points = cloud.points_;
-  auto done =
-      pipeline::denoise(points.empty() ? nullptr : points.front().data(), points.size(), options, context);
-  if (!done.ok()) throw Failure(done.error());
-  if (done.value().moved == 0) return std::move(done).value();
-
-  Positions normals;
-  Matrices covariances;
-  const bool turns = cloud.HasCovariances() && kind == Covariances::turned;
-  if (cloud.HasNormals() || turns) {
-    context.report("normals", 0);
-    normals = surface_normals(points, cloud.HasNormals() ? &cloud.normals_ : nullptr, context);
+  PointCloud made = cloud;
+  const std::size_t n = made.points_.size();
+  auto result = pipeline::denoise(n == 0 ? nullptr : made.points_.front().data(), n, options, context);
+  if (!result.ok()) throw Failure(result.error());
+  const pipeline::DenoiseReport& done = result.value();
+  const bool removes = options.outliers == "remove" && done.outliers > 0;
+  if (done.moved == 0 && !removes) return done;
+  if (removes) {
+    close_up(made.normals_, done.outlier);
+    close_up(made.colors_, done.outlier);
+    close_up(made.covariances_, done.outlier);
+    close_up(made.points_, done.outlier);
   }
-  if (turns)
-    covariances = turned(cloud.covariances_, points, normals, context);
-  else if (cloud.HasCovariances())
-    covariances = estimated(cloud.covariances_, points);
+
+  const bool turns = made.HasCovariances() && kind == Covariances::turned;
+  if (made.HasNormals() || turns) {
+    context.report("normals", 0);
+    Positions normals = surface_normals(made.points_, made.HasNormals() ? &made.normals_ : nullptr, context);
+    if (turns) turn(made.covariances_, made.points_, normals, context);
+    if (made.HasNormals()) made.normals_ = std::move(normals);
+  }
+  if (made.HasCovariances() && !turns) estimate(made.covariances_, made.points_);
   context.check_stop();
 
   // Nothing below can fail.
-  cloud.points_.swap(points);
-  if (cloud.HasNormals()) cloud.normals_.swap(normals);
-  if (cloud.HasCovariances()) cloud.covariances_.swap(covariances);
-  return std::move(done).value();
+  cloud.points_.swap(made.points_);
+  cloud.normals_.swap(made.normals_);
+  cloud.colors_.swap(made.colors_);
+  cloud.covariances_.swap(made.covariances_);
+  return done;
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "rfsmooth/pcl/denoise.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include <pcl/PCLPointCloud2.h>
@@ -30,6 +31,16 @@ bool DenoiseSettings::run(double* xyz, std::size_t n) {
   } catch (const std::exception& exception) {
     return fail(exception.what());
   }
+}
+
+::pcl::Indices DenoiseSettings::removed(const ::pcl::Indices& indices) const {
+  ::pcl::Indices gone;
+  if (options_.outliers != "remove") return gone;
+  for (std::size_t row = 0; row < report_.outlier.size(); ++row)
+    if (report_.outlier[row] != 0) gone.push_back(indices[row]);
+  std::sort(gone.begin(), gone.end());
+  gone.erase(std::unique(gone.begin(), gone.end()), gone.end());
+  return gone;
 }
 
 bool DenoiseSettings::run_normals(const double* xyz, std::size_t n,
@@ -150,6 +161,30 @@ void Denoise<::pcl::PCLPointCloud2>::applyFilter(PCLPointCloud2& output) {
     for (int axis = 0; axis < 3; ++axis)
       if (const double value = xyz[3 * row + axis]; value != before[3 * row + axis] && std::isfinite(value))
         coordinates.set(&output.data[offset_of(std::size_t((*indices_)[row]))], axis, value);
+
+  const ::pcl::Indices gone = removed(*indices_);
+  if (extract_removed_indices_) *removed_indices_ = gone;
+  if (gone.empty()) return;
+  if (keep_organized_) {
+    for (const auto i : gone)
+      for (int axis = 0; axis < 3; ++axis)
+        coordinates.set(&output.data[offset_of(std::size_t(i))], axis, user_filter_value_);
+    if (!std::isfinite(user_filter_value_)) output.is_dense = 0;
+    return;
+  }
+  // Closes up: rows in order, without the padding of the organised cloud.
+  std::size_t kept = 0, next = 0;
+  for (std::size_t i = 0; i < size; ++i) {
+    if (next < gone.size() && std::size_t(gone[next]) == i) {
+      ++next;
+      continue;
+    }
+    std::memmove(&output.data[kept++ * output.point_step], &output.data[offset_of(i)], output.point_step);
+  }
+  output.width = std::uint32_t(kept);
+  output.height = 1;
+  output.row_step = output.width * output.point_step;
+  output.data.resize(output.row_step);
 }
 
 }  // namespace rfsmooth::pcl

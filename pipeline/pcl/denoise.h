@@ -10,6 +10,10 @@
 /// order and count stay. Coordinates are computed in double around a local origin and rounded once, to
 /// nearest. Points outside the indices influence nothing.
 ///
+/// Only `setOutliers("remove")` takes points away, by PCL's rules: the rest closes up to height 1, or, with
+/// `setKeepOrganized(true)`, the removed ones stay as NaN (`setUserFilterValue`) and is_dense becomes false.
+/// A filter made with `true` tells which: `getRemovedIndices()`.
+///
 /// Nothing throws through `filter` and nothing aborts: an unusable input (none set, no finite point, an index
 /// out of range, an option out of range) gives a PCL_ERROR, an empty output and a line in `getStatus()`.
 ///
@@ -18,6 +22,7 @@
 /// determinism: see pipeline/denoise.h.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -37,6 +42,16 @@ class DenoiseSettings {
   /// The flow by name ("auto", "hc", ...; see `rfsmooth flows`).
   void setFlow(const std::string& name) { options_.flow.flow = name; }
   const std::string& getFlow() const { return options_.flow.flow; }
+
+  /// What becomes of points with no surface near: "keep" (default: left in place, pulling nobody), "remove",
+  /// "smooth" (none are looked for).
+  void setOutliers(const std::string& what) { options_.outliers = what; }
+  const std::string& getOutliers() const { return options_.outliers; }
+
+  /// Whether removed points stay in the cloud with their coordinates set to the filter value (default: NaN).
+  void setKeepOrganized(bool keep) { keep_organized_ = keep; }
+  bool getKeepOrganized() const { return keep_organized_; }
+  void setUserFilterValue(float value) { user_filter_value_ = value; }
 
   /// Number of threads; 0 (default) = all cores. The result is the same for every value.
   void setNumberOfThreads(unsigned int threads = 0) { context_.threads = static_cast<int>(threads); }
@@ -59,13 +74,18 @@ class DenoiseSettings {
 
   bool fail(const std::string& why);
 
+  /// Those of `indices`, the rows of the last run, that are to be removed: ascending, each once.
+  ::pcl::Indices removed(const ::pcl::Indices& indices) const;
+
   pipeline::DenoiseOptions options_;
   pipeline::DenoiseReport report_;
   Context context_;
   std::string status_;
+  bool keep_organized_ = false;
+  float user_filter_value_ = std::numeric_limits<float>::quiet_NaN();
 };
 
-/// The filter (see the top of this file). `filter(indices)` gives the indices it works on.
+/// The filter (see the top of this file).
 template <typename PointT>
 class Denoise : public ::pcl::Filter<PointT>, public DenoiseSettings {
  public:
@@ -73,7 +93,9 @@ class Denoise : public ::pcl::Filter<PointT>, public DenoiseSettings {
   using ConstPtr = ::pcl::shared_ptr<const Denoise<PointT>>;
   using PointCloud = typename ::pcl::Filter<PointT>::PointCloud;
 
-  Denoise() { this->filter_name_ = "Denoise"; }
+  explicit Denoise(bool extract_removed_indices = false) : ::pcl::Filter<PointT>(extract_removed_indices) {
+    this->filter_name_ = "Denoise";
+  }
 
   /// As in the base class; without an input cloud the output is empty instead of untouched.
   /// `output` may be the input cloud.
@@ -87,7 +109,10 @@ class Denoise : public ::pcl::Filter<PointT>, public DenoiseSettings {
 template <>
 class Denoise<::pcl::PCLPointCloud2> : public ::pcl::Filter<::pcl::PCLPointCloud2>, public DenoiseSettings {
  public:
-  Denoise() { filter_name_ = "Denoise"; }
+  explicit Denoise(bool extract_removed_indices = false)
+      : ::pcl::Filter<::pcl::PCLPointCloud2>(extract_removed_indices) {
+    filter_name_ = "Denoise";
+  }
   void filter(PCLPointCloud2& output);
 
  protected:

@@ -50,6 +50,25 @@ void scatter(const std::vector<double>& before, const std::vector<double>& after
   }
 }
 
+/// Takes `gone` (ascending) out of the cloud; or, with `keep`, sets its coordinates to `value`.
+template <typename PointT>
+void remove(const ::pcl::Indices& gone, bool keep, float value, ::pcl::PointCloud<PointT>& cloud) {
+  if (gone.empty()) return;
+  if (keep) {
+    for (const auto i : gone)
+      cloud[std::size_t(i)].x = cloud[std::size_t(i)].y = cloud[std::size_t(i)].z = value;
+    if (!std::isfinite(value)) cloud.is_dense = false;
+    return;
+  }
+  std::size_t kept = 0, next = 0;
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    if (next < gone.size() && std::size_t(gone[next]) == i)
+      ++next;
+    else
+      cloud[kept++] = cloud[i];
+  cloud.resize(kept);  // width = kept, height = 1
+}
+
 }  // namespace detail
 
 template <typename PointT>
@@ -80,6 +99,9 @@ void Denoise<PointT>::applyFilter(PointCloud& output) {
   }
   output = input;
   detail::scatter(before, xyz, indices, output);
+  const ::pcl::Indices gone = removed(indices);
+  if (this->extract_removed_indices_) *this->removed_indices_ = gone;
+  detail::remove(gone, keep_organized_, user_filter_value_, output);
 }
 
 }  // namespace rfsmooth::pcl

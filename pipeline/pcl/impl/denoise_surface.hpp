@@ -37,6 +37,7 @@ void DenoiseSurface<PointInT, PointOutT>::process(PointCloudOut& output) {
 template <typename PointInT, typename PointOutT>
 void DenoiseSurface<PointInT, PointOutT>::performProcessing(PointCloudOut& output) {
   static_assert(::pcl::traits::has_normal<PointOutT>::value, "the points of the output need normals");
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   const auto& input = *this->input_;
   const ::pcl::Indices& indices = *this->indices_;
   const auto give_up = [&] {
@@ -54,19 +55,25 @@ void DenoiseSurface<PointInT, PointOutT>::performProcessing(PointCloudOut& outpu
   std::optional<Eigen::Vector3d> viewpoint = viewpoint_;
   const Eigen::Vector3f origin = input.sensor_origin_.template head<3>();
   if (!viewpoint && origin.allFinite() && !origin.isZero(0)) viewpoint = origin.template cast<double>();
-  if (!run(xyz.data(), indices.size()) || !run_normals(xyz.data(), indices.size(), viewpoint, normals.data()))
-    return give_up();
+  if (!run(xyz.data(), indices.size())) return give_up();
+  const ::pcl::Indices gone = removed(indices);
+  std::vector<double> surface = xyz;
+  if (!gone.empty())
+    for (std::size_t row = 0; row < indices.size(); ++row)
+      if (getReport().outlier[row] != 0) surface[3 * row] = kNan;
+  if (!run_normals(surface.data(), indices.size(), viewpoint, normals.data())) return give_up();
 
   if (static_cast<const void*>(&output) != static_cast<const void*>(&input))
     ::pcl::copyPointCloud(input, output);
   if constexpr (!::pcl::traits::has_normal<PointInT>::value) {
-    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
     for (PointOutT& point : output) detail::set_normal(point, kNan, kNan, kNan);
   }
   detail::scatter(before, xyz, indices, output);
   for (std::size_t row = 0; row < indices.size(); ++row)
     if (const double* const normal = &normals[3 * row]; std::isfinite(normal[0]))
       detail::set_normal(output[std::size_t(indices[row])], normal[0], normal[1], normal[2]);
+  for (const auto i : gone) detail::set_normal(output[std::size_t(i)], kNan, kNan, kNan);
+  detail::remove(gone, keep_organized_, user_filter_value_, output);
   for (const PointOutT& point : output)
     if (!std::isfinite(point.normal_x)) output.is_dense = false;
 }
