@@ -192,6 +192,29 @@ TEST(Open3dDenoise, ArraysThatAreNotOnePerPointAreLeftAlone) {
   EXPECT_TRUE(same_bytes(cloud.colors_, before.colors_));
 }
 
+TEST(Open3dDenoise, OutliersGoWithAllTheyHaveWhereAskedFor) {
+  PointCloud cloud = noisy_sphere();
+  cloud.points_[700] *= 3;
+  PointCloud kept = cloud;
+  const auto first = denoise(kept);
+  ASSERT_TRUE(first.ok());
+  EXPECT_EQ(first.value().outliers, 1u);
+  EXPECT_EQ(kept.points_[700], cloud.points_[700]);
+  EXPECT_EQ(kept.points_.size(), 1500u);
+
+  PointCloud removed = cloud;
+  pipeline::DenoiseOptions options;
+  options.outliers = "remove";
+  ASSERT_TRUE(denoise(removed, options).ok());
+  ASSERT_EQ(removed.points_.size(), 1499u);
+  EXPECT_TRUE(removed.HasNormals() && removed.HasColors() && removed.HasCovariances());
+  for (std::size_t i = 0; i < 1499; ++i) {
+    EXPECT_EQ(removed.points_[i], kept.points_[i < 700 ? i : i + 1]) << i;
+    EXPECT_EQ(removed.colors_[i], cloud.colors_[i < 700 ? i : i + 1]) << i;
+    EXPECT_GT(removed.normals_[i].dot(removed.points_[i]), 0) << i;
+  }
+}
+
 TEST(Open3dDenoise, ErrorsAndCancellingLeaveTheCloudAsItWas) {
   PointCloud empty;
   EXPECT_EQ(denoise(empty).error().code, ErrorCode::no_usable_points);

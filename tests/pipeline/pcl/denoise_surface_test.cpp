@@ -196,6 +196,23 @@ TEST(PclDenoiseSurfaceDense, IsToldByTheNormals) {
   EXPECT_TRUE((processed<::pcl::PointXYZ, ::pcl::PointNormal>(whole).is_dense));
 }
 
+TEST(PclDenoiseSurfaceOutliers, GoOrStayWithoutANormal) {
+  const auto cloud = sheet<::pcl::PointXYZ>();
+  (*cloud)[1300].z += 30;
+  DenoiseSurface<::pcl::PointXYZ, ::pcl::PointNormal> denoise;
+  denoise.setInputCloud(cloud);
+  denoise.setOutliers("remove");
+  ::pcl::PointCloud<::pcl::PointNormal> out;
+  denoise.process(out);
+  EXPECT_EQ(out.size(), 2999u);
+  EXPECT_EQ(out.height, 1u);
+  denoise.setKeepOrganized(true);
+  denoise.process(out);
+  EXPECT_EQ(out.height, 50u);
+  EXPECT_TRUE(std::isnan(out[1300].x) && std::isnan(out[1300].normal_z));
+  EXPECT_FALSE(out.is_dense);
+}
+
 TEST(PclDenoiseSurfaceThreads, SameBytesForAnyNumber) {
   const auto cloud = sheet<::pcl::PointXYZ>();
   ::pcl::PointCloud<::pcl::PointNormal> first;

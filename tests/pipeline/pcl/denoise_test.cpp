@@ -1,5 +1,6 @@
 #include "rfsmooth/pcl/denoise.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -110,6 +111,73 @@ TYPED_TEST(PclDenoise, UnusableInputIsAStatusAndAnEmptyCloud) {
   EXPECT_NE(other.getStatus(), "");
 }
 
+/// The sheet with three strays far above it, and their indices.
+template <typename PointT>
+typename ::pcl::PointCloud<PointT>::Ptr sheet_with_strays(::pcl::Indices& strays) {
+  const auto cloud = sheet<PointT>();
+  strays = {125, 1300, 2750};
+  for (const auto i : strays) (*cloud)[std::size_t(i)].z += 30;
+  return cloud;
+}
+
+TYPED_TEST(PclDenoise, NothingIsRemovedUnlessAskedFor) {
+  ::pcl::Indices strays;
+  const auto cloud = sheet_with_strays<TypeParam>(strays);
+  Denoise<TypeParam> denoise(true);
+  denoise.setInputCloud(cloud);
+  ::pcl::PointCloud<TypeParam> out;
+  denoise.filter(out);
+  EXPECT_EQ(denoise.getReport().outliers, 3u);
+  EXPECT_TRUE(denoise.getRemovedIndices()->empty());
+  expect_same_but_xyz(*cloud, out);
+  for (const auto i : strays)
+    EXPECT_EQ(std::memcmp(&out[std::size_t(i)].x, &(*cloud)[std::size_t(i)].x, 12), 0) << i;
+}
+
+TYPED_TEST(PclDenoise, RemovedPointsFollowPclsRules) {
+  ::pcl::Indices strays;
+  const auto cloud = sheet_with_strays<TypeParam>(strays);
+  Denoise<TypeParam> denoise(true);
+  denoise.setInputCloud(cloud);
+  ::pcl::PointCloud<TypeParam> all, out;
+  denoise.filter(all);
+
+  denoise.setOutliers("remove");
+  denoise.filter(out);
+  EXPECT_EQ(*denoise.getRemovedIndices(), strays);
+  ASSERT_EQ(out.size(), cloud->size() - 3);
+  EXPECT_EQ(out.width, out.size());
+  EXPECT_EQ(out.height, 1u);
+  std::size_t k = 0;
+  for (std::size_t i = 0; i < cloud->size(); ++i)
+    if (std::find(strays.begin(), strays.end(), int(i)) == strays.end()) {
+      ASSERT_EQ(std::memcmp(&out[k++], &all[i], sizeof(TypeParam)), 0) << i;
+    }
+
+  cloud->is_dense = true;
+  denoise.setKeepOrganized(true);
+  denoise.filter(out);
+  EXPECT_EQ(*denoise.getRemovedIndices(), strays);
+  EXPECT_EQ(out.width, 60u);
+  EXPECT_EQ(out.height, 50u);
+  EXPECT_FALSE(out.is_dense);
+  for (const auto i : strays) {
+    EXPECT_TRUE(std::isnan(out[std::size_t(i)].x) && std::isnan(out[std::size_t(i)].z)) << i;
+    EXPECT_EQ(rfsmooth::test::rest(out[std::size_t(i)]), rfsmooth::test::rest((*cloud)[std::size_t(i)])) << i;
+  }
+  denoise.setUserFilterValue(-1);
+  denoise.filter(*cloud);  // in place
+  EXPECT_TRUE(cloud->is_dense);
+  for (const auto i : strays) EXPECT_EQ((*cloud)[std::size_t(i)].z, -1) << i;
+
+  Denoise<TypeParam> unasked;  // made without `true`: like every PCL filter it keeps no list
+  unasked.setInputCloud(sheet_with_strays<TypeParam>(strays));
+  unasked.setOutliers("remove");
+  unasked.filter(out);
+  EXPECT_EQ(out.size(), 2997u);
+  EXPECT_TRUE(unasked.getRemovedIndices()->empty());
+}
+
 TEST(PclDenoiseThreads, SameBytesForAnyNumber) {
   const auto cloud = sheet<::pcl::PointXYZ>();
   ::pcl::PointCloud<::pcl::PointXYZ> first;
@@ -153,6 +221,38 @@ TEST(PclDenoiseCloud2, AnyFieldsSameCoordinatesAsTheTypedFilter) {
   const ::pcl::PCLPointCloud2 separate = out;
   untyped.filter(*message);
   EXPECT_EQ(message->data, separate.data) << "in place";
+}
+
+TEST(PclDenoiseCloud2, RemovesAsTheTypedFilterDoes) {
+  ::pcl::Indices strays;
+  const auto cloud = sheet_with_strays<TimedPoint>(strays);
+  const auto message = ::pcl::make_shared<::pcl::PCLPointCloud2>();
+  ::pcl::toPCLPointCloud2(*cloud, *message);
+  for (const bool keep : {false, true}) {
+    Denoise<TimedPoint> typed;
+    typed.setOutliers("remove");
+    typed.setKeepOrganized(keep);
+    typed.setInputCloud(cloud);
+    ::pcl::PointCloud<TimedPoint> expected, got;
+    typed.filter(expected);
+    Denoise<::pcl::PCLPointCloud2> untyped(true);
+    untyped.setOutliers("remove");
+    untyped.setKeepOrganized(keep);
+    untyped.setInputCloud(message);
+    ::pcl::PCLPointCloud2 out;
+    untyped.filter(out);
+    EXPECT_EQ(*untyped.getRemovedIndices(), strays);
+    EXPECT_EQ(out.data.size(), std::size_t(out.row_step) * out.height);
+    ::pcl::fromPCLPointCloud2(out, got);
+    ASSERT_EQ(got.size(), expected.size());
+    EXPECT_EQ(got.width, expected.width);
+    EXPECT_EQ(got.height, expected.height);
+    EXPECT_EQ(bool(out.is_dense), expected.is_dense);
+    for (std::size_t i = 0; i < got.size(); ++i) {
+      ASSERT_EQ(std::memcmp(&got[i].x, &expected[i].x, 12), 0) << i;
+      ASSERT_EQ(got[i].ring, expected[i].ring) << i;
+    }
+  }
 }
 
 TEST(PclDenoiseCloud2, DoublesKeepUtmPrecision) {
