@@ -43,6 +43,12 @@ class DenoiseSettings {
   void setFlow(const std::string& name) { options_.flow.flow = name; }
   const std::string& getFlow() const { return options_.flow.flow; }
 
+  /// Times the strength that the measured noise asks for (default 1; 0 = nothing moves).
+  void setStrength(double strength) { options_.flow.strength = strength; }
+
+  /// The standard deviation of the noise along the normal, world units, instead of measuring it.
+  void setNoise(double sigma) { options_.flow.noise = sigma; }
+
   /// What becomes of points with no surface near: "keep" (default: left in place, pulling nobody), "remove",
   /// "smooth" (none are looked for).
   void setOutliers(const std::string& what) { options_.outliers = what; }

@@ -178,6 +178,25 @@ TYPED_TEST(PclDenoise, RemovedPointsFollowPclsRules) {
   EXPECT_TRUE(unasked.getRemovedIndices()->empty());
 }
 
+TEST(PclDenoiseSetters, ReachTheOptions) {
+  const auto cloud = sheet<::pcl::PointXYZ>();
+  ::pcl::PointCloud<::pcl::PointXYZ> out;
+  const auto moved = [&](const auto& set) {
+    Denoise<::pcl::PointXYZ> denoise;
+    denoise.setInputCloud(cloud);
+    set(denoise);
+    denoise.filter(out);
+    EXPECT_EQ(denoise.getStatus(), "");
+    return denoise.getReport().rms_move;
+  };
+  const double usual = moved([](auto&) {});
+  EXPECT_EQ(moved([](auto& denoise) { denoise.setStrength(0); }), 0);
+  EXPECT_EQ(moved([](auto& denoise) { denoise.setNoise(0); }), 0);
+  EXPECT_LT(moved([](auto& denoise) { denoise.setStrength(0.3); }), usual);
+  EXPECT_GT(moved([](auto& denoise) { denoise.setNoise(1); }), usual);
+  EXPECT_NE(moved([](auto& denoise) { denoise.setFlow("laplacian"); }), usual);
+}
+
 TEST(PclDenoiseThreads, SameBytesForAnyNumber) {
   const auto cloud = sheet<::pcl::PointXYZ>();
   ::pcl::PointCloud<::pcl::PointXYZ> first;
