@@ -14,6 +14,7 @@ void print_ratios(const Plan& plan, const Results& results, const std::string& o
 void print_no_harm(const Plan& plan, Cases& cases, const Variant& variant);  ///< clean clouds stay
 void print_thin_plate(const Plan& plan, const Variant& variant);             ///< two sides stay apart
 void print_open_sheet(const Plan& plan, const Variant& variant);             ///< the rim does not shrink
+void print_outliers(const Plan& plan, Cases& cases);  ///< planted ones are found, others are not
 void print_repeatability(const Plan& plan, Cases& cases,
                          const Variant& variant);  ///< same bytes; cleaned stays
 

@@ -104,6 +104,7 @@ int run(int argc, char** argv) {
     print_no_harm(plan, cases, variants.front());
     print_thin_plate(plan, variants.front());
     print_open_sheet(plan, variants.front());
+    print_outliers(plan, cases);
     print_repeatability(plan, cases, variants.front());
   }
   if (!csv.empty()) write_csv(csv, results);
