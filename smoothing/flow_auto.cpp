@@ -1,4 +1,6 @@
 /// The automatic flow (automatic.h): strength chosen at every point from the data.
+#include <algorithm>
+
 #include "rfsmooth/rfs_mesh/local_surface.h"
 #include "rfsmooth/rfs_mesh/noise.h"
 #include "rfsmooth/rfs_mesh/parallel.h"
@@ -14,6 +16,10 @@ namespace {
 /// small.
 constexpr double kMostSigma = 0.5;
 
+/// Sigma of a point's own neighbourhood: no point moves farther, whatever the figure for the whole cloud
+/// says. The flow itself lets them move by 5 and 0.5 along the surface.
+constexpr double kMostLocalSigma = 6;
+
 class AutomaticFlow : public Flow {
  public:
   explicit AutomaticFlow(const FlowOptions& options)
@@ -22,18 +28,26 @@ class AutomaticFlow : public Flow {
   void step(rfs_mesh::Mesh& mesh, const Context& context) override {
     if (mesh.positions.size() < 2) return;
     double sigma = 0, spacing = 0;
+    std::vector<double> local;  // empty: as everywhere
     {
       const rfs_mesh::SpatialIndex index(mesh.positions, context);
       spacing = mean_spacing(mesh.positions, index.nearest(1, context), context);
-      sigma = noise_ ? noise_->resolve(spacing) : rfs_mesh::measure_noise(index, context).sigma;
+      rfs_mesh::NoiseField noise = rfs_mesh::measure_noise(index, context);
+      sigma = noise_ ? noise_->resolve(spacing) : noise.sigma;
+      local = std::move(noise.local);
+      // The field has the shape of the measured noise and the size of the stated one.
+      if (noise.sigma > 0)
+        for (double& v : local) v *= sigma / noise.sigma;
     }
     report_.emplace();
+    const Positions before = local.empty() ? Positions() : mesh.positions;
     mesh.positions = automatic_smoothing(mesh, strength_ * sigma, spacing, *report_, context);
     if (equalize_ && report_->guide_strength > 0) {
       const Equalized moved = equalize(mesh.positions, kMostSigma * strength_ * sigma, context);
       report_->equalized = moved.rms;
       report_->equalized_most = moved.largest;
     }
+    if (!local.empty()) limit(before, local, mesh.positions, context);
     report_->noise = sigma;
   }
 
@@ -41,6 +55,15 @@ class AutomaticFlow : public Flow {
   std::optional<AutomaticReport> automatic() const override { return report_; }
 
  private:
+  void limit(const Positions& before, const std::vector<double>& local, Positions& points,
+             const Context& context) const {
+    for_each_index(context, points.size(), [&](std::size_t i) {
+      const double most = kMostLocalSigma * std::max(1.0, strength_) * local[i];
+      const Eigen::Vector3d move = points[i] - before[i];
+      if (const double length = move.norm(); length > most) points[i] = before[i] + most / length * move;
+    });
+  }
+
   std::optional<Length> noise_;
   double strength_;
   bool equalize_;

@@ -3,10 +3,13 @@
 #include <cmath>
 #include <cstring>
 
+#include <Eigen/SVD>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "rfsmooth/pipeline/io/io.h"
+#include "rfsmooth/rfs_mesh/noise.h"
+#include "rfsmooth/rfs_mesh/points.h"
 
 #include "cli/folder.h"
 
@@ -92,7 +95,70 @@ class Scans : public InFolder {
   }
 };
 
-class RawScans : public Scans, public ::testing::WithParamInterface<const char*> {
+/// The `count` points nearest to the finite point in the middle of the file, in their order: a scan's own
+/// noise and density at a size that tests have time for.
+io::Cloud middle_of(io::Cloud cloud, std::size_t count) {
+  const std::vector<double> xyz = io::positions(cloud);
+  std::vector<std::size_t> rows;
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    if (std::isfinite(xyz[3 * i] + xyz[3 * i + 1] + xyz[3 * i + 2])) rows.push_back(i);
+  const Eigen::Vector3d middle(&xyz[3 * rows[rows.size() / 2]]);
+  const auto nearer = [&](std::size_t a, std::size_t b) {
+    return (Eigen::Map<const Eigen::Vector3d>(&xyz[3 * a]) - middle).squaredNorm() <
+           (Eigen::Map<const Eigen::Vector3d>(&xyz[3 * b]) - middle).squaredNorm();
+  };
+  count = std::min(count, rows.size());
+  std::nth_element(rows.begin(), rows.begin() + std::ptrdiff_t(count - 1), rows.end(), nearer);
+  rows.resize(count);
+  std::sort(rows.begin(), rows.end());
+  io::select_points(cloud, rows);
+  return cloud;
+}
+
+#ifdef __SANITIZE_ADDRESS__
+constexpr std::size_t kMiddle = 4000;
+#else
+constexpr std::size_t kMiddle = 12000;
+#endif
+
+/// The noise around every row, as the library measures it; 0 for rows that are not finite.
+std::vector<double> local_noise(const std::vector<double>& xyz) {
+  const auto cloud = rfs_mesh::make_working_cloud(xyz.data(), xyz.size() / 3, {}).value();
+  const rfs_mesh::SpatialIndex index(cloud.points, {});
+  const auto noise = rfs_mesh::measure_noise(index, {});
+  std::vector<double> by_row(xyz.size() / 3, 0);
+  for (std::size_t i = 0; i < by_row.size(); ++i)
+    if (cloud.of_input[i] != kNone) by_row[i] = noise.local[cloud.of_input[i]];
+  return by_row;
+}
+
+/// The automatic flow on the middle of a scan: no point moves more than six times the noise around it, beyond
+/// the rounding of the coordinates' own type.
+class CalmScans : public Scans {
+ protected:
+  void expect_small_moves(const std::string& input) {
+    const io::Cloud before = middle_of(read(input), kMiddle);
+    const std::string extension = std::filesystem::path(input).extension().string();
+    ASSERT_TRUE(io::write_cloud(before, at("in" + extension), {}, {}).ok());
+    const Ran ran = run({"denoise", "--outliers", "smooth", "in" + extension, "out" + extension});
+    ASSERT_EQ(ran.code, 0) << ran.err;
+    const auto old_xyz = io::positions(before), new_xyz = io::positions(read(at("out" + extension)));
+    const std::vector<double> noise = local_noise(old_xyz);
+    for (std::size_t i = 0; i < noise.size(); ++i) {
+      double square = 0, rounding = 0;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const std::size_t k = 3 * i + axis;
+        square += std::pow(new_xyz[k] - old_xyz[k], 2);
+        const double widest = std::abs(old_xyz[k]) + std::abs(new_xyz[k]);
+        if (before.points().fields[before.xyz[axis]].type == io::Scalar::float32)
+          rounding += 0x1p-23 * widest;
+      }
+      ASSERT_LE(std::sqrt(square), 6.001 * noise[i] + rounding) << "row " << i;
+    }
+  }
+};
+
+class RawScans : public CalmScans, public ::testing::WithParamInterface<const char*> {
  protected:
   std::string path() const { return std::string(RFSMOOTH_SCANS_DIR) + "/" + GetParam(); }
   void SetUp() override {
@@ -135,6 +201,11 @@ INSTANTIATE_TEST_SUITE_P(Files, DefaultFlow,
                          ::testing::Values("table_scene_mug_stereo_textured.pcd", "mOSD_learn0.pcd",
                                            "cturtle.pcd", "room_scan1.pcd", "terrain_samp11-utm.pcd"),
                          name_of_scan);
+
+TEST_P(RawScans, NoPointMovesFarBeyondTheNoiseAroundIt) {
+  expect_small_moves(path());
+}
+
 INSTANTIATE_TEST_SUITE_P(Files, RawScans,
                          ::testing::Values("milk_cartoon_all_small_clorox.pcd",
                                            "table_scene_mug_stereo_textured.pcd", "mOSD_learn0.pcd",
@@ -142,7 +213,7 @@ INSTANTIATE_TEST_SUITE_P(Files, RawScans,
                          name_of_scan);
 
 /// building.ply and b9_training.ply of CGAL's data archive (Debian: libcgal-demo).
-class CgalData : public Scans, public ::testing::WithParamInterface<const char*> {
+class CgalData : public CalmScans, public ::testing::WithParamInterface<const char*> {
  protected:
   void SetUp() override {
     if (!std::filesystem::exists(RFSMOOTH_CGAL_DATA))
@@ -162,8 +233,35 @@ TEST_P(CgalData, OnlyFinitePointsMove) {
   expect_cleaned(at(GetParam()));
 }
 
+TEST_P(CgalData, NoPointMovesFarBeyondTheNoiseAroundIt) {
+  expect_small_moves(at(GetParam()));
+}
+
 INSTANTIATE_TEST_SUITE_P(Files, CgalData, ::testing::Values("building.ply", "b9_training.ply"),
                          [](const auto& test) { return std::string(test.param, test.index == 0 ? 8 : 11); });
+
+/// Root mean square distance of n x 3 points to the plane through them.
+double off_plane(const std::vector<double>& xyz) {
+  const Eigen::Map<const Eigen::Matrix3Xd> points(xyz.data(), 3, Eigen::Index(xyz.size() / 3));
+  const Eigen::Matrix3Xd d = points.colwise() - points.rowwise().mean();
+  return Eigen::JacobiSVD<Eigen::Matrix3Xd>(d).singularValues()[2] / std::sqrt(double(points.cols()));
+}
+
+TEST_F(Scans, ThePlaneOfAnRgbdScanComesOutFlatter) {
+  const std::string path = std::string(RFSMOOTH_SCANS_DIR) + "/mOSD_learn0.pcd";
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << "no scan " << path << " (set RFSMOOTH_SCANS_DIR)";
+  io::Cloud plane = read(path);
+  const std::vector<double> label = io::field_values(plane, io::find_field(plane, "label").value());
+  std::vector<std::size_t> rows;
+  for (std::size_t i = 0; i < label.size(); ++i)
+    if (label[i] == 1) rows.push_back(i);
+  io::select_points(plane, rows);
+  plane = middle_of(std::move(plane), kMiddle);
+  ASSERT_TRUE(io::write_cloud(plane, at("in.pcd"), {}, {}).ok());
+  const Ran ran = run({"denoise", "in.pcd", "out.pcd"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  EXPECT_LT(off_plane(io::positions(read(at("out.pcd")))), off_plane(io::positions(plane)));
+}
 
 TEST_F(Scans, UtmDoublesKeepTheirPrecision) {
   // Two grids of 100 x 100 points with steps of 1 mm at UTM coordinates: float could not tell them apart.
