@@ -19,10 +19,13 @@ namespace {
 constexpr int kNear = 24;             // neighbours of the frame and its quadric
 constexpr std::size_t kPushers = 12;  // neighbours that push
 constexpr double kReach = 1.9;        // R in local distances between points
-constexpr double kStep = 0.2;         // of R f
-constexpr int kSteps = 4;
-constexpr double kMost = 0.5;         // of the local distance
+constexpr double kGain = 0.4;         // step / (sigma/d)^2, in R f
+constexpr double kStep = 0.3;         // the longest
+constexpr int kSteps = 6;
+constexpr double kMost = 0.5;  // of the local distance
+constexpr double kMostSigmas = 0.7;
 constexpr double kSameNormal = 0.85;  // cosine: a neighbour beyond it means an edge
+constexpr double kEdgeNormal = 0.6;   // cosine: the same, so near that the point stays
 constexpr double kWidestGap = 2.4;    // radians between neighbours' directions: wider means a rim
 
 /// A point's surface: x(u, v) = p + u t + v b + (c3 u^2 + c4 u v + c5 v^2 + c1 u + c2 v) n.
@@ -30,7 +33,8 @@ struct Frame {
   Eigen::Vector3d t, b, n;
   Eigen::Matrix<double, 5, 1> quadric = Eigen::Matrix<double, 5, 1>::Zero();
   double distance = 0;  ///< between points near here, as on a hexagonal grid
-  bool movable = false, rim = false;
+  bool movable = false, rim = false, slides = false;
+  Eigen::Vector2d along = Eigen::Vector2d::Zero();  ///< the edge that a sliding point stays beside, unit
 
   Eigen::Vector3d at(const Eigen::Vector3d& p, const Eigen::Vector2d& m) const {
     const double u = m.x(), v = m.y();
@@ -67,8 +71,17 @@ Frame make_frame(const Positions& points, const std::vector<Eigen::Vector3d>& no
   f.distance = reach * std::sqrt(2 * M_PI / std::sqrt(3.0) / double(near.size()));
   f.rim = !surrounded(f, points, i, near);
   if (f.rim) return f;
-  for (std::size_t k = 0; k < kPushers; ++k)
-    if (std::abs(normals[near[k]].dot(f.n)) < kSameNormal) return f;
+  // Beside an edge the points beyond it push harder than those on this side, being nearer through the air.
+  double least = kSameNormal;
+  for (std::size_t k = 0; k < kPushers; ++k) {
+    const double cosine = std::abs(normals[near[k]].dot(f.n));
+    if (cosine < kEdgeNormal) return f;
+    if (cosine >= least) continue;
+    least = cosine;
+    const Eigen::Vector3d edge = f.n.cross(normals[near[k]]);
+    f.along = Eigen::Vector2d(edge.dot(f.t), edge.dot(f.b)).normalized();
+    f.slides = true;
+  }
   Matrix5 a = Matrix5::Zero();
   Vector5 right = Vector5::Zero();
   for (const Index j : near) {
@@ -88,9 +101,9 @@ Frame make_frame(const Positions& points, const std::vector<Eigen::Vector3d>& no
 
 }  // namespace
 
-Equalized equalize(Positions& points, double most, const Context& context) {
+Equalized equalize(Positions& points, double sigma, double spacing, const Context& context) {
   const std::size_t n = points.size();
-  if (n <= std::size_t(kNear) || !(most > 0)) return {};
+  if (n <= std::size_t(kNear) || !(sigma > 0)) return {};
   const rfs_mesh::SpatialIndex index(points, context);
   const rfs_mesh::NeighborTable near = index.nearest(kNear, context);
   std::vector<Eigen::Vector3d> normals(n);
@@ -117,10 +130,13 @@ Equalized equalize(Positions& points, double most, const Context& context) {
         const Eigen::Vector3d d = now[i] - now[near[i][k]];
         const double length = d.norm();
         if (!(length > 0) || length >= reach) continue;
-        force += (1 - length / reach) / length * Eigen::Vector2d(d.dot(f.t), d.dot(f.b));
+        const double overlap = 1 - length / reach;
+        force += overlap * overlap / length * Eigen::Vector2d(d.dot(f.t), d.dot(f.b));
       }
-      moved[i] += kStep * reach * force;
-      const double limit = std::min(kMost * f.distance, most);
+      if (f.slides) force = f.along * f.along.dot(force);
+      const double share = sigma / f.distance;
+      moved[i] += std::min(kStep, kGain * share * share) * reach * force;
+      const double limit = std::min(kMost * std::min(f.distance, spacing), kMostSigmas * sigma);
       if (const double length = moved[i].norm(); length > limit) moved[i] *= limit / length;
       next[i] = f.at(points[i], moved[i]);
     });

@@ -2,13 +2,18 @@
 ///
 /// Every point is pushed along its tangent plane by the neighbours that are too near,
 ///
-///     f_i = sum_j max(0, 1 - d_ij / R) (x_i - x_j)_tangential / d_ij,
+///     f_i = sum_j max(0, 1 - d_ij / R)^2 (x_i - x_j)_tangential / d_ij,
 ///
-/// R a little less than twice the local distance between points, a few small steps long; and it stays on the
-/// surface: its height over the tangent plane follows a quadric fitted to the smoothed neighbours. Points
-/// whose neighbours do not surround them (rims) or do not share their normal (edges, corners, strays) stay.
-/// Repulsion in the tangent plane with a height corrected for curvature: Huang et al. 2009 (WLOP) without its
-/// attraction; ours.
+/// in a few small steps of 0.4 (sigma / d)^2 R f_i, d the local distance between points and R a little less
+/// than twice that; and it stays on the surface: its height over the tangent plane follows a quadric fitted
+/// to the smoothed neighbours. Points beside an edge, whose neighbours face elsewhere, slide along it only;
+/// those on it, and those that their neighbours do not surround (rims, strays), stay.
+///
+/// The step is sigma^2 because the mean of where a point was before noise sigma moved it is its place plus
+/// sigma^2 times the gradient of the logarithm of the density of noisy places (Tweedie; Efron 2011), and f
+/// stands for that gradient in a cloud whose points keep their distance. So little noise moves points little,
+/// and what was even stays even. Repulsion in the tangent plane with a height corrected for curvature: Huang
+/// et al. 2009 (WLOP) without its attraction; the rest is ours.
 #pragma once
 
 #include <vector>
@@ -23,9 +28,10 @@ struct Equalized {
   double rms = 0, largest = 0;
 };
 
-/// Moves `points` (n x 3, near a surface). No point moves farther along the surface than half the local
-/// distance between points, nor than `most` (world units). O(n log n), parallel, the same bits for any number
-/// of threads.
-Equalized equalize(Positions& points, double most, const Context& context);
+/// Moves `points` (n x 3, near a surface), which noise with standard deviation `sigma` (world units) had
+/// moved. No point moves farther along the surface than half the local distance between points, half of
+/// `spacing` (world units), or 0.7 sigma: noise has hardly carried it farther. O(n log n), parallel, the same
+/// bits for any number of threads.
+Equalized equalize(Positions& points, double sigma, double spacing, const Context& context);
 
 }  // namespace rfsmooth::smoothing

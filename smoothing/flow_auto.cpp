@@ -12,10 +12,6 @@ namespace rfsmooth::smoothing {
 
 namespace {
 
-/// Sigma: noise has not carried points far along the surface; 1 and 2 sigma cost Chamfer distance where it is
-/// small.
-constexpr double kMostSigma = 0.5;
-
 /// Sigma of a point's own neighbourhood: no point moves farther, whatever the figure for the whole cloud
 /// says. Six is the goal, and two measurements of the field differ by a third; 4 costs the development shapes
 /// nothing.
@@ -44,7 +40,7 @@ class AutomaticFlow : public Flow {
     const Positions before = local.empty() ? Positions() : mesh.positions;
     mesh.positions = automatic_smoothing(mesh, strength_ * sigma, spacing, *report_, context);
     if (equalize_ && report_->guide_strength > 0) {
-      const Equalized moved = equalize(mesh.positions, kMostSigma * strength_ * sigma, context);
+      const Equalized moved = equalize(mesh.positions, strength_ * sigma, spacing, context);
       report_->equalized = moved.rms;
       report_->equalized_most = moved.largest;
     }

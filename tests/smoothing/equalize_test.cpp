@@ -5,6 +5,8 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include "rfsmooth/clouds/sampling.h"
+#include "rfsmooth/clouds/shapes.h"
 #include "rfsmooth/rfs_mesh/neighbors.h"
 
 #include "support/shapes.h"
@@ -38,7 +40,7 @@ Positions random_sphere(std::size_t n) {
 TEST(Equalize, EvensAClumpedSphereAndStaysOnIt) {
   Positions points = random_sphere(4000);
   const Positions before = points;
-  const double spacing = std::sqrt(4 * M_PI / 4000), moved = equalize(points, 1, {}).rms;
+  const double spacing = std::sqrt(4 * M_PI / 4000), moved = equalize(points, 1, 1, {}).rms;
   EXPECT_LT(unevenness(points), 0.7 * unevenness(before));
   EXPECT_GT(moved, 0);
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -51,10 +53,10 @@ TEST(Equalize, EvensAClumpedSphereAndStaysOnIt) {
 TEST(Equalize, NoPointMovesFartherThanAsked) {
   Positions points = random_sphere(2000);
   const Positions before = points;
-  equalize(points, 0.001, {});
+  equalize(points, 0.001 / 0.7, 1, {});
   for (std::size_t i = 0; i < points.size(); ++i) EXPECT_LT((points[i] - before[i]).norm(), 0.0011);
   points = before;
-  EXPECT_EQ(equalize(points, 0, {}).largest, 0);
+  EXPECT_EQ(equalize(points, 0, 1, {}).largest, 0);
   EXPECT_EQ(points, before);
 }
 
@@ -63,7 +65,7 @@ TEST(Equalize, ARegularGridAndItsRimStayWhereTheyAre) {
   for (int i = 0; i < 30; ++i)
     for (int j = 0; j < 30; ++j) points.emplace_back(i, j, 0);
   const Positions before = points;
-  equalize(points, 1, {});
+  equalize(points, 1, 1, {});
   for (std::size_t i = 0; i < points.size(); ++i) EXPECT_LT((points[i] - before[i]).norm(), 0.05) << i;
 }
 
@@ -72,12 +74,74 @@ TEST(Equalize, TheRimOfAnOpenSheetStays) {
   std::uniform_real_distribution<double> uniform(0, 30);
   Positions points;
   for (int i = 0; i < 900; ++i) points.emplace_back(uniform(engine), uniform(engine), 0);
-  equalize(points, 1, {});
+  equalize(points, 1, 1, {});
   for (const auto& p : points) {
     EXPECT_GT(p.minCoeff(), -0.3);
     EXPECT_LT(p.maxCoeff(), 30.3);
     EXPECT_NEAR(p.z(), 0, 1e-9);
   }
+}
+
+TEST(Equalize, TheRimDoesNotMoveInward) {
+  for (const double noise : {0.3, 1.0}) {
+    Positions points = clouds::sample(*clouds::make_wavy_sheet(), 3000, 1);
+    const double spacing = clouds::mean_spacing(points);
+    clouds::add_noise(points, 0.2 * noise * spacing, 2);
+    const Positions before = points;
+    equalize(points, noise * spacing, spacing, {});
+    double inward = 0;
+    std::size_t rim = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const double from_middle = before[i].head<2>().lpNorm<Eigen::Infinity>();
+      if (from_middle < 1 - spacing / 2) continue;
+      inward += from_middle - points[i].head<2>().lpNorm<Eigen::Infinity>();
+      ++rim;
+    }
+    EXPECT_GT(rim, 50u);
+    EXPECT_LT(inward / double(rim), 0.02 * spacing) << noise;
+  }
+}
+
+TEST(Equalize, SharpEdgesStayWhereTheyAre) {
+  const auto shape = clouds::make_cube();
+  Positions points = clouds::sample(*shape, 4000, 1);
+  const double spacing = clouds::mean_spacing(points);
+  const Positions before = points;
+  equalize(points, spacing, spacing, {});
+  double away = 0, off = 0;  // points slide along an edge, but not away from it nor off the faces
+  std::size_t edge = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    off += std::pow(shape->signed_distance(points[i]), 2);
+    if (shape->edge_distance(before[i]) > spacing / 2) continue;
+    away += shape->edge_distance(points[i]) - shape->edge_distance(before[i]);
+    ++edge;
+  }
+  EXPECT_GT(edge, 100u);
+  EXPECT_LT(std::abs(away) / double(edge), 0.05 * spacing);
+  EXPECT_LT(std::sqrt(off / double(points.size())), 0.05 * spacing);
+}
+
+TEST(Equalize, AnEvenCloudStaysAsItIs) {
+  const auto shape = clouds::make_sphere();
+  const Positions before = clouds::sample(*shape, 4000, 1);
+  const double spacing = clouds::mean_spacing(before);
+  Positions points = before;
+  EXPECT_LT(equalize(points, 0.1 * spacing, spacing, {}).rms, 0.02 * spacing)
+      << "little noise, little to undo";
+  points = before;
+  equalize(points, 2 * spacing, spacing, {});
+  EXPECT_LE(unevenness(points), unevenness(before));
+}
+
+TEST(Equalize, NoPointMovesMoreThanHalfASpacing) {
+  Positions points = random_sphere(3000);
+  const Positions before = points;
+  const double spacing = clouds::mean_spacing(points);
+  const auto moved = equalize(points, 10, spacing, {});
+  EXPECT_LE(moved.largest, 0.5 * spacing * (1 + 1e-12));
+  EXPECT_GT(moved.largest, 0.49 * spacing);
+  EXPECT_LE(moved.rms, moved.largest);
+  for (std::size_t i = 0; i < points.size(); ++i) EXPECT_LT((points[i] - before[i]).norm(), 0.55 * spacing);
 }
 
 TEST(Equalize, TurnsWithTheCloudAndIsTheSameForAnyNumberOfThreads) {
@@ -88,10 +152,10 @@ TEST(Equalize, TurnsWithTheCloudAndIsTheSameForAnyNumberOfThreads) {
   Context one, four;
   one.threads = 1;
   four.threads = 4;
-  equalize(points, 1, one);
-  equalize(again, 1, four);
+  equalize(points, 1, 1, one);
+  equalize(again, 1, 1, four);
   EXPECT_EQ(points, again);
-  equalize(turned, 1, four);
+  equalize(turned, 1, 1, four);
   for (std::size_t i = 0; i < points.size(); ++i) EXPECT_LT((turned[i] - turn * points[i]).norm(), 1e-8);
 }
 
@@ -99,11 +163,11 @@ TEST(Equalize, TinyCloudsStay) {
   for (const std::size_t n : {0, 1, 5, 24}) {
     Positions points = random_sphere(n);
     const Positions before = points;
-    equalize(points, 1, {});
+    equalize(points, 1, 1, {});
     EXPECT_EQ(points, before);
   }
   Positions same(100, Eigen::Vector3d(1, 2, 3));
-  equalize(same, 1, {});
+  equalize(same, 1, 1, {});
   for (const auto& p : same) EXPECT_EQ(p, Eigen::Vector3d(1, 2, 3));
 }
 
