@@ -76,10 +76,22 @@ void run_scan(const Files& files, const ScannerOptions& options, std::uint64_t s
   if (!files.truth.empty()) files.write(true_cloud(returns, options, organised), files.truth);
 }
 
+/// n points of a shape of ours, or of the mesh in a file.
+Positions sample_of(const std::string& name, std::size_t n, std::uint64_t seed, Sampling sampling) {
+  if (!io::format_of_extension(name)) return sample(*find_shape(name), n, seed, sampling);
+  const auto file = io::read_mesh(name, {}, {});
+  if (!file) throw Failure(file.error());
+  const std::vector<double> xyz = io::positions(file.value().cloud);
+  rfs_mesh::Mesh mesh;
+  for (std::size_t i = 0; i < xyz.size(); i += 3) mesh.positions.emplace_back(xyz[i], xyz[i + 1], xyz[i + 2]);
+  mesh.faces = file.value().faces;
+  return sample(mesh, n, seed, sampling);
+}
+
 void run_sample(const Files& files, const SampleOptions& options, std::uint64_t seed) {
   must(validate(options));
   const Sampling sampling = options.sampling == "uniform" ? Sampling::uniform : Sampling::poisson_disk;
-  const Positions clean = sample(*find_shape(files.shape), std::size_t(options.points), seed, sampling);
+  const Positions clean = sample_of(files.shape, std::size_t(options.points), seed, sampling);
   Positions noisy = clean;
   add_noise(noisy, options.noise * mean_spacing(clean), seed + 1);
   files.write(plain_cloud(noisy), files.out);
@@ -105,7 +117,9 @@ int run(int argc, char** argv) {
   const auto command = [&](const std::string& name, const std::string& help, bool cloud) {
     CLI::App* sub = app.add_subcommand(name, help);
     sub->add_option("SHAPE", files.shape,
-                    "sphere, torus, cube, l_part, plate, wavy_sheet or two_density_sphere")
+                    name == "sample" ? "a mesh file (.ply, .off), or sphere, torus, cube, l_part, plate, "
+                                       "wavy_sheet, two_density_sphere"
+                                     : "sphere, torus, cube, l_part, plate, wavy_sheet or two_density_sphere")
         ->required();
     sub->add_option("OUT", files.out, cloud ? "cloud to write: .ply, .pcd or .xyz" : "mesh to write: .ply")
         ->required();

@@ -26,12 +26,16 @@ void paste(Image& target, const Image& source, int x, int y) {
       target.at(x + column, y + row) = source.at(column, row);
 }
 
-std::string to_png(const Image& image) {
+std::string to_png(const Image& image, int levels) {
   std::vector<png_byte> bytes(3 * image.pixels.size());
-  for (std::size_t i = 0; i < image.pixels.size(); ++i)
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+    Color color = image.pixels[i].cwiseMax(0.0F).cwiseMin(1.0F);
+    // The brightest channel is rounded and the others go with it, so that no colour changes its hue.
+    const float brightest = color.maxCoeff(), top = float(levels - 1);
+    if (brightest > 0) color *= std::round(top * brightest) / top / brightest;
     for (int channel = 0; channel < 3; ++channel)
-      bytes[3 * i + std::size_t(channel)] =
-          png_byte(std::lround(255 * std::clamp(image.pixels[i][channel], 0.0F, 1.0F)));
+      bytes[3 * i + std::size_t(channel)] = png_byte(std::lround(255 * color[channel]));
+  }
   png_image header{};
   header.version = PNG_IMAGE_VERSION;
   header.width = png_uint_32(image.width);

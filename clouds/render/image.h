@@ -36,7 +36,8 @@ void write_text(Image& image, int x, int y, std::string_view text, const Color& 
 int text_width(std::string_view text, int scale);
 int text_height(int scale);
 
-/// The picture as the bytes of a PNG (8 bits a channel). \throw std::bad_alloc
-std::string to_png(const Image& image);
+/// The picture as the bytes of a PNG (8 bits a channel), in so many levels of brightness. \throw
+/// std::bad_alloc
+std::string to_png(const Image& image, int levels = 256);
 
 }  // namespace rfsmooth::render

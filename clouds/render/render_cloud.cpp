@@ -25,6 +25,7 @@ struct RenderOptions {
   std::string color = "plain";
   std::string field;
   std::optional<double> low, high;
+  int levels = 256;
 
   template <class Self, class Visit>
   static void describe(Self& self, Visit&& visit) {
@@ -38,6 +39,8 @@ struct RenderOptions {
           self.color);
     visit(OptionInfo{"field", "the field to colour by", ""}, self.field);
     visit(OptionInfo{"low", "value at the dark end; empty = from the data", ""}, self.low);
+    visit(OptionInfo{"levels", "of brightness per colour; fewer make a smaller file", "", 2, 256},
+          self.levels);
     visit(OptionInfo{"high", "value at the bright end; empty = from the data", ""}, self.high);
   }
 };
@@ -165,7 +168,8 @@ void run(const Request& request) {
   std::vector<Image> pictures;
   for (const Scene& scene : scenes)
     pictures.push_back(draw(scene, camera, options.width, options.height, how));
-  value_or_throw(io::write_bytes(to_png(page(pictures, request)), request.out, request.force, {}));
+  value_or_throw(
+      io::write_bytes(to_png(page(pictures, request), options.levels), request.out, request.force, {}));
   std::printf("%s\n", request.out.c_str());
 }
 
