@@ -6,6 +6,7 @@
 
 #include "rfsmooth/rfs_mesh/parallel.h"
 #include "rfsmooth/smoothing/height_field.h"
+#include "rfsmooth/smoothing/mixture.h"
 #include "rfsmooth/smoothing/patches.h"
 #include "rfsmooth/smoothing/solver.h"
 #include "rfsmooth/smoothing/stranded.h"
@@ -17,7 +18,7 @@ namespace {
 
 // Chosen on the development shapes (tests/bench/quality) at 10,000 and 50,000 points, noise of 1 to 3 %.
 constexpr std::size_t kMostOverlap = 14;  // patches over a point; a thinning leaves 0.4 of them
-constexpr double kGuide = 10;             // c = kGuide (sigma/h)^2
+constexpr double kGuide = 10;             // c = kGuide (sigma/h)^2, to the fourth power above h
 constexpr double kNarrowest = 52.6;       // m_0 = kNarrowest (sigma/h)^2: a radius of 4.5 sigma
 constexpr double kFewest = 16;            // m_0 at small noise: a quadric has six unknowns
 constexpr double kWidest = 1600;          // the widest patches, and
@@ -27,31 +28,9 @@ constexpr double kStrayFrom = 5;          // sigma
 constexpr double kNoNoise = 0.05;     // spacings: less than this is left alone
 constexpr std::size_t kTooFew = 32;   // points
 constexpr std::size_t kOwnMean = 60;  // from this many members on, patches average; below, near neighbours do
-constexpr double kNearEvidence = 24;  // independent points in two near means, halved
-constexpr double kTolerated = 0.15;   // sigma^2: what a near mean scatters by without meaning anything
-constexpr double kPatchEvidence = 0.8;  // the same of two patch means, per member
-
-/// A running mixture of predictions with weights exp(log_weight), rescaled when a larger one comes.
-struct Mixture {
-  std::vector<double> height, own, weight, log_weight, largest;
-
-  explicit Mixture(const std::vector<double>& data)
-      : height(data),
-        own(data.size(), 1),
-        weight(data.size(), 1),
-        log_weight(data.size(), 0),
-        largest(data.size(), 0) {}
-
-  void add(std::size_t i, const Prediction& p) {
-    const double top = std::max(largest[i], log_weight[i]);
-    const double old = weight[i] * std::exp(largest[i] - top);
-    const double now = p.covered[i] ? std::exp(log_weight[i] - top) : 0;
-    height[i] = (old * height[i] + now * p.height[i]) / (old + now);
-    own[i] = (old * own[i] + now * p.own[i]) / (old + now);
-    weight[i] = old + now;
-    largest[i] = top;
-  }
-};
+constexpr double kNearEvidence = 10;  // nats per sigma^2 of a near mean
+constexpr double kPatchEvidence = 0.25;  // the same of a patch mean, per member (Leung and Barron's 1/4)
+constexpr double kTolerated = 0.15;      // sigma^2: what a near mean scatters by without meaning anything
 
 Positions fair(const rfs_mesh::Mesh& mesh, double strength, const Context& context) {
   const Operator op = umbrella(mesh, context);
@@ -78,16 +57,16 @@ void add_scale(const HeightField& field, std::size_t members, const std::vector<
   });
   // A wide patch is judged over its own width, but must not be far off anywhere near the point either: the
   // few points that it misses by sigmas would be outvoted.
-  std::vector<double> near = field.local_mean(field.local_mean(difference, context), context);
+  const std::vector<double> near = field.local_mean(field.local_mean(difference, context), context);
   const bool wide = members >= kOwnMean;
   if (wide) difference = patches.mean(patches.mean(difference, context), context);
   for_each_index(context, field.size(), [&](std::size_t i) {
     const double against = wide ? kPatchEvidence * double(members) * difference[i] +
                                       kNearEvidence * std::max(0.0, near[i] - kTolerated)
                                 : kNearEvidence * near[i];
-    mixture.log_weight[i] -= against;
-    mixture.add(i, prediction);
+    difference[i] = prediction.covered[i] ? -against : std::nan("");
   });
+  mixture.add(prediction.height, prediction.own, difference, context);
 }
 
 }  // namespace
@@ -99,7 +78,7 @@ Positions automatic_smoothing(const rfs_mesh::Mesh& mesh, double sigma, double s
   report.noise = report.left = sigma;
   if (n < kTooFew || !(sigma > kNoNoise * spacing)) return mesh.positions;
   const double share = sigma / spacing;
-  report.guide_strength = kGuide * share * share;
+  report.guide_strength = kGuide * share * share * std::max(1.0, share * share);
   Positions guide = fair(mesh, report.guide_strength, context);
   context.report("smooth", 0.1);
   report.stranded = land_stranded(mesh, kStrayFrom * sigma, guide, context);
@@ -123,16 +102,18 @@ Positions automatic_smoothing(const rfs_mesh::Mesh& mesh, double sigma, double s
     if (m >= double(n) / 2) break;
   }
 
+  std::vector<double> height, own;
+  mixture.average(height, own, context);
+
   Positions smooth = mesh.positions;
   for_each_index(context, n, [&](std::size_t i) {
-    const Eigen::Vector3d move =
-        field.guide()[i] + mixture.height[i] * field.normals()[i] - mesh.positions[i];
+    const Eigen::Vector3d move = field.guide()[i] + height[i] * field.normals()[i] - mesh.positions[i];
     if (move.allFinite() && move.norm() <= kStrayFrom * sigma) smooth[i] += move;
   });
   const double mean_risk = sum_over(context, n, 0.0,
                                     [&](std::size_t i) {
-                                      const double e = (field.heights()[i] - mixture.height[i]) / sigma;
-                                      return e * e + 2 * mixture.own[i] - 1;
+                                      const double e = (field.heights()[i] - height[i]) / sigma;
+                                      return e * e + 2 * own[i] - 1;
                                     }) /
                            double(n);
   report.left = sigma * std::sqrt(std::clamp(mean_risk, 0.0, 1.0));

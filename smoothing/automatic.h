@@ -1,7 +1,9 @@
 /// The automatic flow: how strongly to smooth is chosen at every point from the data.
 ///
 /// 1. Guide: one implicit fairing of second order on the RFS-mesh, (I + c L^2) g = x with the umbrella and
-///    c = 10 (sigma/h)^2 (Desbrun et al. 1999, 2.6; Kobbelt et al. 1998), sigma the noise, h the spacing.
+///    c = 10 (sigma/h)^2, 10 (sigma/h)^4 above one spacing (Desbrun et al. 1999, 2.6; Kobbelt et al. 1998),
+///    sigma the noise, h the spacing. The more noise there is in a spacing, the more points must be averaged
+///    before neighbours on the guide are neighbours on the surface.
 ///    Points it stranded are landed (stranded.h). The cloud is now a height field z over the guide.
 /// 2. Candidates: overlapping quadrics over m = m_0, 2 m_0, 4 m_0, ... points (patches.h), each scale a
 ///    prediction f_m of every height. The narrowest patch has a radius of about 4.5 sigma: below that the
@@ -11,8 +13,9 @@
 ///    whose mean over a neighbourhood estimates the mean squared error of f_m there, in units of sigma^2,
 ///    without knowing the truth. Each scale is compared with the next narrower one over a neighbourhood of
 ///    its own size (what a patch of m points can see, only a mean over m points can judge), and the scales
-///    are mixed with weights exp(-size of the evidence) (Leung and Barron 2006): smooth places take wide
-///    patches, edges and thin parts narrow ones, and where every patch is worse than the data the data stay.
+///    are mixed with weights exp(-size of the evidence) (Leung and Barron 2006) times how well each serves
+///    the cloud as a whole (mixture.h): smooth places take wide patches, edges and thin parts narrow ones,
+///    and where every patch is worse than the data the data stay.
 ///
 /// One strength for the whole cloud cannot do this: on the development shapes the best single c differs by
 /// 100 times between the flat and the thin parts of one cloud. Points move along the guide's normals from the

@@ -20,20 +20,23 @@ constexpr std::size_t kTooFew = 100;  // points: below, nothing is usual
 std::vector<Index> find_stranded(const rfs_mesh::Mesh& mesh, const Positions& guide, const Context& context) {
   const rfs_mesh::SpatialIndex index(guide, context);
   const rfs_mesh::NeighborTable near = index.nearest(kNear, context);
-  std::vector<double> distance(guide.size());
-  for_each_index(context, guide.size(),
-                 [&](std::size_t i) { distance[i] = (guide[near[i][kTenth]] - guide[i]).norm(); });
   std::vector<char> stranded(guide.size());
-  for_blocks(context, guide.size(), 4096, [&](std::size_t begin, std::size_t end) {
-    std::vector<double> around;
-    for (std::size_t i = begin; i < end; ++i) {
-      around.clear();
-      for (const Index j : near[i]) around.push_back(distance[j]);
-      const auto quartile = around.begin() + std::ptrdiff_t(around.size() / 4);
-      std::nth_element(around.begin(), quartile, around.end());
-      stranded[i] = mesh.one_ring.degree(i) == 0 || distance[i] > kThin * *quartile;
-    }
-  });
+  for_each_index(context, guide.size(), [&](std::size_t i) { stranded[i] = mesh.one_ring.degree(i) == 0; });
+  std::vector<double> distance(guide.size());
+  for (const std::size_t rank : {kTenth, std::size_t(kNear) - 1}) {
+    for_each_index(context, guide.size(),
+                   [&](std::size_t i) { distance[i] = (guide[near[i][rank]] - guide[i]).norm(); });
+    for_blocks(context, guide.size(), 4096, [&](std::size_t begin, std::size_t end) {
+      std::vector<double> around;
+      for (std::size_t i = begin; i < end; ++i) {
+        around.clear();
+        for (const Index j : near[i]) around.push_back(distance[j]);
+        const auto quartile = around.begin() + std::ptrdiff_t(around.size() / 4);
+        std::nth_element(around.begin(), quartile, around.end());
+        if (distance[i] > kThin * *quartile) stranded[i] = 1;
+      }
+    });
+  }
   std::vector<Index> found;
   for (std::size_t i = 0; i < guide.size(); ++i)
     if (stranded[i]) found.push_back(Index(i));
@@ -81,8 +84,9 @@ std::size_t land_stranded(const rfs_mesh::Mesh& mesh, double most, Positions& gu
     std::vector<rfs_mesh::Neighbor> near;
     for (std::size_t k = begin; k < end; ++k) {
       const Eigen::Vector3d& p = mesh.positions[stranded[k]];
-      // Twice: seen from its first landing, the plane is the one below it.
-      const Eigen::Vector3d landed = project(surface, project(surface, p, p, near), p, near);
+      surface.nearest(p, 1, near);
+      const Eigen::Vector3d from = rest[near[0].index];
+      const Eigen::Vector3d landed = project(surface, project(surface, from, p, near), p, near);
       if (landed.allFinite() && (landed - p).norm() < most) guide[stranded[k]] = landed;
     }
   });

@@ -3,8 +3,10 @@
 /// Where noise exceeds the spacing, some points have no face, or only faces among a few others that lie off
 /// the surface like themselves; the fairing, which only knows neighbours, leaves such islands where they are.
 /// They show themselves: the faired points lie densely on the surface and thinly beside it. A point whose
-/// tenth neighbour is farther than 1.7 times what is usual around it (the lower quartile), or that has no
-/// neighbours in the mesh, is projected from its noisy place onto the plane through the nearest others.
+/// tenth or 48th neighbour (islands of a dozen points are dense inside) is farther than 1.7 times what is
+/// usual around it (the lower quartile), or that has no neighbours in the mesh, is projected from its noisy
+/// place onto the plane of the others, taken around the one nearest to it: seen from half-way between two
+/// sheets, the nearest of both would make one plane across.
 #pragma once
 
 #include "rfsmooth/rfs_mesh/mesh.h"

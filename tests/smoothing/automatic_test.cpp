@@ -155,4 +155,25 @@ TEST(Stranded, IslandsBesideTheSurfaceAreLanded) {
   for (std::size_t i = 0; i < 2000; i += 100) EXPECT_EQ(guide[i], mesh.positions[i]) << "too far: a stray";
 }
 
+TEST(Stranded, DenseIslandsHalfWayBetweenTwoSheetsAreLandedOnOneOfThem) {
+  // Two sheets sixteen apart, hexagonal, and between them clusters of fifteen points, denser than the sheets.
+  rfs_mesh::Mesh mesh;
+  for (int side = 0; side < 2; ++side)
+    for (int i = 0; i < 60; ++i)
+      for (int j = 0; j < 60; ++j) mesh.positions.emplace_back(i + 0.5 * (j % 2), 0.866 * j, 16 * side);
+  const std::size_t sheets = mesh.positions.size();
+  for (int k = 0; k < 9; ++k)
+    for (int m = 0; m < 15; ++m)
+      mesh.positions.emplace_back(15 + 15 * (k % 3) + 0.4 * (m % 5), 13 + 13 * (k / 3) + 0.4 * (m / 5), 8.4);
+  const std::size_t n = mesh.positions.size();
+  std::vector<rfs_mesh::Edge> ring;
+  for (Index i = 0; i < Index(n); ++i) ring.push_back({i, Index((i + 1) % n)});
+  mesh.one_ring = rfs_mesh::make_adjacency(n, ring, {});
+  Positions guide = mesh.positions;
+  land_stranded(mesh, 20, guide, {});
+  for (std::size_t i = sheets; i < n; ++i)
+    EXPECT_LT(std::min(std::abs(guide[i].z()), std::abs(guide[i].z() - 16)), 0.01) << i;
+  for (std::size_t i = 0; i < sheets; ++i) EXPECT_NEAR(guide[i].z(), i < sheets / 2 ? 0 : 16, 0.01) << i;
+}
+
 }  // namespace
