@@ -33,8 +33,11 @@ class AutomaticFlow : public Flow {
       sigma = noise_ ? noise_->resolve(spacing) : noise.sigma;
       local = std::move(noise.local);
       // The field has the shape of the measured noise and the size of the stated one.
-      if (noise.sigma > 0)
+      if (noise.sigma > 0) {
         for (double& v : local) v *= sigma / noise.sigma;
+      } else {
+        local.clear();
+      }
     }
     report_.emplace();
     const Positions before = local.empty() ? Positions() : mesh.positions;
