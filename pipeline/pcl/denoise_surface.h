@@ -27,6 +27,7 @@
 
 namespace rfsmooth::pcl {
 
+/// The smoothed cloud with normals (see the top of this file).
 template <typename PointInT, typename PointOutT>
 class DenoiseSurface : public ::pcl::CloudSurfaceProcessing<PointInT, PointOutT>, public DenoiseSettings {
  public:
