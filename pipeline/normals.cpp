@@ -21,15 +21,19 @@ NormalsReport run(const double* xyz, std::size_t n, const NormalsOptions& option
   report.finite = cloud.finite();
   const rfs_mesh::Connection connection = value_or_throw(rfs_mesh::connect(cloud.points, {}, context));
   context.report("normals", 0);
-  Positions side(cloud.points.size());
-  for_each_index(context, side.size(), [&](std::size_t i) { side[i] = connection.surfaces[i].normal; });
+  Positions calm = cloud.points, side(calm.size());
+  for_each_index(context, side.size(), [&](std::size_t i) {
+    side[i] = connection.surfaces[i].normal;
+    if (connection.on_shadow) calm[i] = connection.surfaces[i].shadow;
+  });
   {
-    const rfs_mesh::SpatialIndex index(cloud.points, context);
-    bilateral_normals(cloud.points, index.nearest(kFiltered, context), side, context);
+    const rfs_mesh::SpatialIndex index(calm, context);
+    bilateral_normals(calm, index.nearest(kFiltered, context), side, context);
   }
   std::optional<Eigen::Vector3d> viewpoint = options.viewpoint;
   if (viewpoint) *viewpoint -= cloud.origin;
-  report.parts = orient(connection.mesh, connection.emst, connection.bridges, viewpoint, side, context);
+  report.parts =
+      orient(connection.mesh, connection.emst, connection.bridges, viewpoint, side, context, &calm);
   context.check_stop();
   for (std::size_t i = 0; i < n; ++i) {
     const Index p = cloud.of_input[i];

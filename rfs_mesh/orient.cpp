@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <stdexcept>
 
 #include "rfsmooth/rfs_mesh/collect.h"
+#include "rfsmooth/rfs_mesh/measure.h"
 #include "rfsmooth/rfs_mesh/parallel.h"
+#include "rfsmooth/rfs_mesh/sides.h"
+#include "rfsmooth/rfs_mesh/visible.h"
+#include "rfsmooth/rfs_mesh/winding.h"
 
 namespace rfsmooth::rfs_mesh {
 
@@ -14,17 +17,14 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// An edge and whether the normals at its ends are on one side.
-struct Link {
-  float doubt;  ///< 1 - |a|, 0 = sure
-  bool turned;
-  Index a, b;
-};
-
-bool operator<(const Link& x, const Link& y) {
-  if (x.doubt != y.doubt) return x.doubt < y.doubt;
-  return x.a != y.a ? x.a < y.a : x.b < y.b;
-}
+constexpr std::size_t kSmall = 32;  // points: such a part follows its bridge
+constexpr double kFlat = 0.01;      // volume / (area x extent) below which a part has no outside
+// Chosen on the closed development shapes (tests/bench/normals).
+constexpr std::size_t kSamples = 50000;  // points that the winding number is asked for
+constexpr int kSteps = 4;                // more follow the noise
+constexpr double kClosed = 0.15;         // root mean square of w - 1/2 that a closed surface keeps below
+constexpr double kRest = 0.01;           // share of the samples in other parts that is let pass
+constexpr double kBetter = 0.8;          // of it: what votes must bring to be believed
 
 double agreement(const Vector3d& p, const Vector3d& n, const Vector3d& q, const Vector3d& m) {
   const Vector3d e = q - p;
@@ -33,141 +33,259 @@ double agreement(const Vector3d& p, const Vector3d& n, const Vector3d& q, const 
   return n.dot(m) - 2 * m.dot(e) * n.dot(e) / square;
 }
 
-/// Union-find whose members know their side relative to their root.
-class Sides {
- public:
-  explicit Sides(std::size_t n) : parent_(n), turned_(n, 0), size_(n, 1) {
-    std::iota(parent_.begin(), parent_.end(), Index{0});
-  }
-  struct Root {
-    Index index;
-    bool turned;
-  };
-  Root find(Index i) {
-    bool turned = false;
-    while (parent_[i] != i) {
-      const Index up = parent_[i];
-      turned_[i] ^= turned_[up];  // path halving: now relative to the grandparent
-      parent_[i] = parent_[up];
-      turned ^= turned_[i] != 0;
-      i = parent_[i];
-    }
-    return {i, turned};
-  }
-  void join(Index a, Index b, bool turned) {
-    Root x = find(a), y = find(b);
-    if (x.index == y.index) return;
-    const bool between = turned ^ x.turned ^ y.turned;
-    if (size_[x.index] < size_[y.index] || (size_[x.index] == size_[y.index] && y.index < x.index))
-      std::swap(x, y);
-    parent_[y.index] = x.index;
-    turned_[y.index] = between ? 1 : 0;
-    size_[x.index] += size_[y.index];
-  }
-
- private:
-  std::vector<Index> parent_;
-  std::vector<char> turned_;
-  std::vector<Index> size_;
-};
-
-std::vector<Link> links_of(const Mesh& mesh, const std::vector<Edge>& tree, const std::vector<Edge>& bridges,
-                           const Positions& normals, const Context& context) {
-  const Positions& at = mesh.positions;
-  const auto link = [&](Index a, Index b) {
-    const double s = agreement(at[a], normals[a], at[b], normals[b]);
-    return Link{float(std::max(0.0, 1 - std::abs(s))), s < 0, a, b};
-  };
-  std::vector<Link> links = collect<Link>(context, at.size(), [&](std::size_t i, auto&& emit) {
-    for (const Index j : mesh.one_ring[i])
-      if (j > i) emit(link(Index(i), j));
-  });
-  std::vector<Edge> not_near = bridges;
-  std::sort(not_near.begin(), not_near.end());
-  const std::vector<Link> more = collect<Link>(context, tree.size(), [&](std::size_t e, auto&& emit) {
-    const auto ring = mesh.one_ring[tree[e][0]];
-    if (std::binary_search(ring.begin(), ring.end(), tree[e][1])) return;
-    if (std::binary_search(not_near.begin(), not_near.end(), tree[e])) return;
-    emit(link(tree[e][0], tree[e][1]));
-  });
-  links.insert(links.end(), more.begin(), more.end());
-  parallel_sort(context, links, [](const Link& x, const Link& y) { return x < y; });
-  return links;
-}
-
-/// What the points of a part say together.
-struct Part {
-  Vector3d centre = Vector3d::Zero(), sum = Vector3d::Zero();
-  double area = 0, volume = 0, extent = 0, towards = 0;
-};
-
 bool turn_to_positive(const Vector3d& v) {
   for (const int axis : {2, 1, 0})
     if (v[axis] != 0) return v[axis] < 0;
   return false;
 }
 
+class Orienter {
+ public:
+  Orienter(const Mesh& mesh, const std::vector<Edge>& tree, const std::vector<Edge>& bridges,
+           Positions& normals, const Context& context)
+      : mesh_(mesh),
+        at_(mesh.positions),
+        tree_(tree),
+        bridges_(bridges),
+        normals_(normals),
+        context_(context) {
+    // The side a normal came with must not matter where nothing else decides.
+    for_each_index(context_, normals_.size(), [&](std::size_t i) {
+      if (turn_to_positive(normals_[i])) normals_[i] = -normals_[i];
+    });
+    std::sort(bridges_.begin(), bridges_.end());
+    measure_areas();
+  }
+
+  std::size_t towards(const Vector3d& viewpoint, const Positions& calm) {
+    std::vector<double> votes = seen_squarely(at_, normals_, viewpoint, spacing_, context_);
+    for (double& vote : votes) vote = std::clamp(2 * vote, -1.0, 1.0);
+    apply(grow_regions(at_.size(), links(calm), votes, context_), normals_, votes);
+    return parts_;
+  }
+
+  std::size_t outward(const Positions& calm) {
+    Positions alone = normals_;
+    const Regions parts = grow_regions(at_.size(), links(calm), {}, context_);
+    apply(parts, alone, {});
+    const std::size_t count = parts_;
+    const Samples samples(*this);
+    if (!(samples.area > 0)) {  // points in a line, or too few for a face
+      normals_.swap(alone);
+      return count;
+    }
+    const Winding winding(samples.at, 0.8 * std::sqrt(samples.area / double(samples.at.size())), context_);
+    const std::vector<double> open = openness(winding, samples, parts, alone);
+    if (share_above(kClosed, open, samples, parts) <= kRest) {
+      normals_.swap(alone);
+      return count;
+    }
+    const std::vector<double> votes = gauss_votes(winding, samples);
+    Positions voted = normals_;
+    // On the points themselves: calmer ones may have merged the very sheets that are to be told apart.
+    apply(grow_regions(at_.size(), links(at_), votes, context_), voted, votes);
+    const std::vector<double> still_open = openness(winding, samples, parts, voted);
+    for_each_index(context_, at_.size(), [&](std::size_t i) {
+      const Index part = parts.of_point[i];
+      normals_[i] = open[part] > kClosed && still_open[part] < kBetter * open[part] ? voted[i] : alone[i];
+    });
+    return count;
+  }
+
+ private:
+  /// Points spread evenly over the rows, each standing for several.
+  struct Samples {
+    explicit Samples(const Orienter& o) {
+      const std::size_t n = o.at_.size(), m = std::min(n, kSamples);
+      for (std::size_t s = 0; s < m; ++s) row.push_back(Index(s * n / m));
+      for (const Index i : row) {
+        at.push_back(o.at_[i]);
+        areas.push_back(o.areas_[i] * double(n) / double(m));
+        area += areas.back();
+      }
+    }
+    std::vector<Index> row;
+    Positions at;
+    std::vector<double> areas;
+    double area = 0;
+  };
+
+  std::vector<SideLink> links(const Positions& at) const {
+    const auto link = [&](Index a, Index b) {
+      return SideLink{a, b, float(agreement(at[a], normals_[a], at[b], normals_[b])), 1};
+    };
+    std::vector<SideLink> all = collect<SideLink>(context_, at_.size(), [&](std::size_t i, auto&& emit) {
+      for (const Index j : mesh_.one_ring[i])
+        if (j > i) emit(link(Index(i), j));
+    });
+    const std::vector<SideLink> more =
+        collect<SideLink>(context_, tree_.size(), [&](std::size_t e, auto&& emit) {
+          const auto ring = mesh_.one_ring[tree_[e][0]];
+          if (std::binary_search(ring.begin(), ring.end(), tree_[e][1])) return;
+          if (std::binary_search(bridges_.begin(), bridges_.end(), tree_[e])) return;
+          emit(link(tree_[e][0], tree_[e][1]));
+        });
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+
+  void measure_areas() {
+    const std::vector<double> of_faces = face_areas(mesh_, context_);
+    const Adjacency around = vertex_faces(mesh_, context_);
+    areas_.resize(at_.size());
+    for_each_index(context_, at_.size(), [&](std::size_t i) {
+      double sum = 0;
+      for (const Index f : around[i]) sum += of_faces[f] / 3;
+      areas_[i] = sum;
+    });
+    spacing_ = mean_edge_length(mesh_, context_);
+  }
+
+  /// Turns `normals` by regions and gives each region its side.
+  void apply(Regions regions, Positions& normals, const std::vector<double>& votes) {
+    follow_bridges(regions, votes);
+    const std::size_t n = at_.size();
+    for_each_index(context_, n, [&](std::size_t i) {
+      if (regions.turned[i] != 0) normals[i] = -normals[i];
+    });
+    struct Sum {
+      Vector3d centre = Vector3d::Zero(), normal = Vector3d::Zero();
+      double area = 0, volume = 0, extent = 0, vote = 0;
+    };
+    std::vector<Sum> sums(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      Sum& sum = sums[regions.of_point[i]];
+      sum.centre += areas_[i] * at_[i];
+      sum.area += areas_[i];
+      if (!votes.empty()) sum.vote += regions.turned[i] != 0 ? -votes[i] : votes[i];
+    }
+    for (Sum& sum : sums)
+      if (sum.area > 0) sum.centre /= sum.area;
+    for (std::size_t i = 0; i < n; ++i) {
+      Sum& sum = sums[regions.of_point[i]];
+      sum.volume += areas_[i] * (at_[i] - sum.centre).dot(normals[i]);
+      sum.extent += areas_[i] * (at_[i] - sum.centre).norm();
+      sum.normal += normals[i];
+    }
+    std::vector<char> turn(n, 0);
+    parts_ = 0;
+    for (std::size_t r = 0; r < n; ++r) {
+      if (regions.of_point[r] != r) continue;
+      ++parts_;
+      const Sum& sum = sums[r];
+      if (sum.vote != 0)
+        turn[r] = sum.vote < 0 ? 1 : 0;
+      else if (std::abs(sum.volume) > kFlat * sum.extent)
+        turn[r] = sum.volume < 0 ? 1 : 0;
+      else
+        turn[r] = turn_to_positive(sum.normal) ? 1 : 0;
+    }
+    for_each_index(context_, n, [&](std::size_t i) {
+      if (turn[regions.of_point[i]] != 0) normals[i] = -normals[i];
+    });
+  }
+
+  /// Regions too small to have a side of their own take that of what they hang on.
+  void follow_bridges(Regions& regions, const std::vector<double>& votes) const {
+    const std::size_t n = at_.size();
+    std::vector<std::size_t> size(n, 0);
+    std::vector<char> judged(n, 0);
+    for (std::size_t i = 0; i < n; ++i) {
+      ++size[regions.of_point[i]];
+      if (!votes.empty() && votes[i] != 0) judged[regions.of_point[i]] = 1;
+    }
+    std::vector<SideLink> bridges;
+    for (const Edge& e : bridges_) {
+      const bool turned = regions.turned[e[0]] != regions.turned[e[1]];
+      const double a = agreement(at_[e[0]], normals_[e[0]], at_[e[1]], normals_[e[1]]);
+      bridges.push_back({regions.of_point[e[0]], regions.of_point[e[1]], float(turned ? -a : a), 1});
+    }
+    std::stable_sort(bridges.begin(), bridges.end(), [](const SideLink& x, const SideLink& y) {
+      return std::abs(x.agreement) > std::abs(y.agreement);
+    });
+    Sides sides(n);
+    bool any = false;
+    for (const SideLink& link : bridges) {
+      const Sides::Root a = sides.find(link.a), b = sides.find(link.b);
+      const auto hangs = [&](Index r) { return size[r] < kSmall && judged[r] == 0; };
+      if (a.index == b.index || !(hangs(a.index) || hangs(b.index))) continue;
+      sides.join(a.index, b.index, (link.agreement < 0) != (a.turned != b.turned));
+      const Index root = std::min(a.index, b.index);
+      size[root] = size[a.index] + size[b.index];
+      judged[root] = judged[a.index] != 0 || judged[b.index] != 0 ? 1 : 0;
+      any = true;
+    }
+    if (!any) return;
+    for (std::size_t i = 0; i < n; ++i) {
+      const Sides::Root root = sides.find(regions.of_point[i]);
+      regions.of_point[i] = root.index;
+      if (root.turned) regions.turned[i] = char(1 - regions.turned[i]);
+    }
+  }
+
+  /// By part: the root mean square of w - 1/2.
+  std::vector<double> openness(const Winding& winding, const Samples& samples, const Regions& parts,
+                               const Positions& normals) const {
+    Positions area_vectors;
+    for (std::size_t s = 0; s < samples.row.size(); ++s)
+      area_vectors.push_back(samples.areas[s] * normals[samples.row[s]]);
+    const std::vector<double> w = winding.numbers(area_vectors, context_);
+    std::vector<double> sum(at_.size(), 0), count(at_.size(), 0);
+    for (std::size_t s = 0; s < w.size(); ++s) {
+      const Index part = parts.of_point[samples.row[s]];
+      const double off = std::clamp(w[s], -0.5, 1.5) - 0.5;
+      sum[part] += off * off;
+      count[part] += 1;
+    }
+    for (std::size_t p = 0; p < sum.size(); ++p) sum[p] = count[p] > 0 ? std::sqrt(sum[p] / count[p]) : 0;
+    return sum;
+  }
+
+  /// The share of the samples in parts of more than `limit`.
+  static double share_above(double limit, const std::vector<double>& open, const Samples& samples,
+                            const Regions& parts) {
+    std::size_t above = 0;
+    for (const Index i : samples.row) above += open[parts.of_point[i]] > limit ? 1 : 0;
+    return double(above) / double(samples.row.size());
+  }
+
+  /// n: how surely each sample's normal is on the right side, -1 to 1; 0 for the other points.
+  std::vector<double> gauss_votes(const Winding& winding, const Samples& samples) const {
+    const Positions area_vectors = winding.gauss(kSteps, context_);
+    std::vector<double> vote(samples.row.size()), sizes;
+    for (std::size_t s = 0; s < vote.size(); ++s) vote[s] = normals_[samples.row[s]].dot(area_vectors[s]);
+    for (const double v : vote) sizes.push_back(std::abs(v));
+    const auto middle = sizes.begin() + std::ptrdiff_t(sizes.size() / 2);
+    std::nth_element(sizes.begin(), middle, sizes.end());
+    std::vector<double> votes(at_.size(), 0);
+    for (std::size_t s = 0; s < vote.size(); ++s)
+      if (*middle > 0) votes[samples.row[s]] = std::clamp(vote[s] / *middle, -1.0, 1.0);
+    return votes;
+  }
+
+  const Mesh& mesh_;
+  const Positions& at_;
+  const std::vector<Edge>& tree_;
+  std::vector<Edge> bridges_;
+  Positions& normals_;
+  const Context& context_;
+  std::vector<double> areas_;
+  double spacing_ = 0;
+  std::size_t parts_ = 0;
+};
+
 }  // namespace
 
 std::size_t orient(const Mesh& mesh, const std::vector<Edge>& tree, const std::vector<Edge>& bridges,
-                   const std::optional<Vector3d>& viewpoint, Positions& normals, const Context& context) {
+                   const std::optional<Vector3d>& viewpoint, Positions& normals, const Context& context,
+                   const Positions* calm) {
   const std::size_t n = mesh.positions.size();
-  if (normals.size() != n) throw std::invalid_argument("orient: normals must hold one vector per vertex");
-  const Positions& at = mesh.positions;
-  // The side a normal came with must not matter where nothing else decides.
-  for_each_index(context, n, [&](std::size_t i) {
-    if (turn_to_positive(normals[i])) normals[i] = -normals[i];
-  });
-  Sides sides(n);
-  for (const Link& link : links_of(mesh, tree, bridges, normals, context))
-    sides.join(link.a, link.b, link.turned);
-
-  std::vector<double> area(n);
-  for_each_index(context, n, [&](std::size_t i) {
-    const auto ring = mesh.one_ring[i];
-    double sum = 0;
-    for (const Index j : ring) sum += (at[j] - at[i]).squaredNorm();
-    area[i] = ring.size() > 0 ? sum / double(ring.size()) : 0;
-  });
-  std::vector<Index> root(n);
-  std::vector<Part> parts(n);
-  for (Index i = 0; i < n; ++i) {
-    const auto found = sides.find(i);
-    root[i] = found.index;
-    if (found.turned) normals[i] = -normals[i];
-    parts[root[i]].centre += area[i] * at[i];
-    parts[root[i]].area += area[i];
-  }
-  for (Part& part : parts)
-    if (part.area > 0) part.centre /= part.area;
-  for (Index i = 0; i < n; ++i) {
-    Part& part = parts[root[i]];
-    part.volume += area[i] * (at[i] - part.centre).dot(normals[i]);
-    part.extent += area[i] * (at[i] - part.centre).norm();
-    part.sum += normals[i];
-    if (viewpoint) {
-      const Vector3d ray = *viewpoint - at[i];
-      if (const double d = ray.norm(); d > 0) part.towards += ray.dot(normals[i]) / d;
-    }
-  }
-  constexpr double kFlat = 0.01;
-  std::vector<char> turn(n, 0);
-  std::size_t count = 0;
-  for (Index i = 0; i < n; ++i) {
-    if (root[i] != i) continue;
-    ++count;
-    const Part& part = parts[i];
-    if (viewpoint && part.towards != 0)
-      turn[i] = part.towards < 0 ? 1 : 0;
-    else if (std::abs(part.volume) > kFlat * part.extent)
-      turn[i] = part.volume < 0 ? 1 : 0;
-    else
-      turn[i] = turn_to_positive(part.sum) ? 1 : 0;
-  }
-  for_each_index(context, n, [&](std::size_t i) {
-    if (turn[root[i]] != 0) normals[i] = -normals[i];
-  });
-  return count;
+  if (normals.size() != n || (calm != nullptr && calm->size() != n))
+    throw std::invalid_argument("orient: normals and calm positions must hold one vector per vertex");
+  if (n == 0) return 0;
+  Orienter orienter(mesh, tree, bridges, normals, context);
+  const Positions& at = calm != nullptr ? *calm : mesh.positions;
+  return viewpoint ? orienter.towards(*viewpoint, at) : orienter.outward(at);
 }
 
 }  // namespace rfsmooth::rfs_mesh

@@ -1,0 +1,113 @@
+#include "rfsmooth/rfs_mesh/sides.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "rfsmooth/rfs_mesh/parallel.h"
+
+namespace rfsmooth::rfs_mesh {
+
+namespace {
+
+double clarity(const SideLink& link) {
+  return double(link.agreement) * link.agreement / link.count;
+}
+
+class Growth {
+ public:
+  Growth(std::size_t n, std::vector<SideLink> links, const std::vector<double>& votes, const Context& context)
+      : context_(context), sides_(n), links_(std::move(links)), votes_(votes), best_(n, kNone) {}
+
+  Regions grow() {
+    for (const double least : {0.8, 0.6, 0.4, 0.2, 0.1, 0.0}) {
+      do {
+        bundle();
+      } while (join(least));
+    }
+    Regions regions;
+    const std::size_t n = best_.size();
+    regions.of_point.resize(n);
+    regions.turned.resize(n);
+    for (Index i = 0; i < n; ++i) {
+      const Sides::Root root = sides_.find(i);
+      regions.of_point[i] = root.index;
+      regions.turned[i] = root.turned ? 1 : 0;
+    }
+    return regions;
+  }
+
+ private:
+  /// Renames the ends to their regions, drops what is inside one, adds up what joins the same two.
+  void bundle() {
+    std::size_t kept = 0;
+    for (SideLink link : links_) {
+      const Sides::Root a = sides_.find(link.a), b = sides_.find(link.b);
+      if (a.index == b.index) continue;
+      link.a = std::min(a.index, b.index);
+      link.b = std::max(a.index, b.index);
+      if (a.turned != b.turned) link.agreement = -link.agreement;
+      links_[kept++] = link;
+    }
+    links_.resize(kept);
+    parallel_sort(context_, links_, [](const SideLink& x, const SideLink& y) {
+      return std::tie(x.a, x.b, x.agreement, x.count) < std::tie(y.a, y.b, y.agreement, y.count);
+    });
+    kept = 0;
+    for (std::size_t k = 0; k < links_.size();) {
+      SideLink sum = links_[k++];
+      for (; k < links_.size() && links_[k].a == sum.a && links_[k].b == sum.b; ++k) {
+        sum.agreement += links_[k].agreement;
+        sum.count += links_[k].count;
+      }
+      links_[kept++] = sum;
+    }
+    links_.resize(kept);
+  }
+
+  bool refused(Index a, Index b, float agreement) const {
+    if (votes_.empty()) return false;
+    const double one = votes_[a], other = agreement < 0 ? -votes_[b] : votes_[b];
+    return one * other < 0 && std::min(std::abs(one), std::abs(other)) > std::abs(double(agreement));
+  }
+
+  /// Every region takes its clearest link of at least that clarity. Whether any did.
+  bool join(double least) {
+    std::fill(best_.begin(), best_.end(), kNone);
+    for (Index k = 0; k < links_.size(); ++k) {
+      const SideLink& link = links_[k];
+      const double c = clarity(link);
+      if (c < least || refused(link.a, link.b, link.agreement)) continue;
+      for (const Index r : {link.a, link.b})
+        if (best_[r] == kNone || c > clarity(links_[best_[r]])) best_[r] = k;
+    }
+    bool any = false;
+    for (const Index k : best_) {
+      if (k == kNone) continue;
+      const Sides::Root a = sides_.find(links_[k].a), b = sides_.find(links_[k].b);
+      if (a.index == b.index) continue;
+      const float agreement = a.turned != b.turned ? -links_[k].agreement : links_[k].agreement;
+      if (refused(a.index, b.index, agreement)) continue;  // it has grown since
+      sides_.join(a.index, b.index, agreement < 0);
+      if (!votes_.empty())
+        votes_[std::min(a.index, b.index)] += (agreement < 0 ? -1 : 1) * votes_[std::max(a.index, b.index)];
+      any = true;
+    }
+    return any;
+  }
+
+  const Context& context_;
+  Sides sides_;
+  std::vector<SideLink> links_;
+  std::vector<double> votes_;  ///< of regions, at their lowest point
+  std::vector<Index> best_;
+};
+
+}  // namespace
+
+Regions grow_regions(std::size_t n, std::vector<SideLink> links, const std::vector<double>& votes,
+                     const Context& context) {
+  return Growth(n, std::move(links), votes, context).grow();
+}
+
+}  // namespace rfsmooth::rfs_mesh

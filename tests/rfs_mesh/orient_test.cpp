@@ -1,0 +1,89 @@
+#include "rfsmooth/rfs_mesh/orient.h"
+
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "rfsmooth/rfs_mesh/bilateral_normals.h"
+#include "rfsmooth/rfs_mesh/rfs_mesh.h"
+#include "rfsmooth/rfs_mesh/sides.h"
+
+#include "support/shapes.h"
+
+namespace rfsmooth::rfs_mesh {
+namespace {
+
+using Eigen::Vector3d;
+
+TEST(Sides, RegionsFollowTheLinksOfATree) {
+  // 0 - 1 agree, 1 - 2 do not, 3 is alone.
+  const Regions regions = grow_regions(4, {{0, 1, 0.9f, 1}, {2, 1, -0.7f, 1}}, {}, {});
+  EXPECT_EQ(regions.of_point, (std::vector<Index>{0, 0, 0, 3}));
+  EXPECT_EQ(regions.turned, (std::vector<char>{0, 0, 1, 0}));
+}
+
+TEST(Sides, ManyVoicesOverruleOneSurerLink) {
+  // Two cliques of three whose members agree surely; one sure link between them says "turned", eight doubtful
+  // ones say "alike".
+  std::vector<SideLink> links;
+  for (const Index base : {0u, 3u})
+    for (Index i = 0; i < 3; ++i)
+      for (Index j = 0; j < i; ++j) links.push_back({base + i, base + j, 1, 1});
+  for (Index i = 0; i < 3; ++i)
+    for (Index j = 3; j < 6; ++j) links.push_back({i, j, i == 0 && j == 3 ? -0.85f : 0.6f, 1});
+  const Regions regions = grow_regions(6, links, {}, {});
+  EXPECT_EQ(regions.of_point, std::vector<Index>(6, 0));
+  EXPECT_EQ(regions.turned, std::vector<char>(6, 0));
+}
+
+TEST(Sides, VotesRefuseAJoinThatSpeaksSofter) {
+  const std::vector<SideLink> links = {{0, 1, 0.5f, 1}};
+  EXPECT_EQ(grow_regions(2, links, {1, -0.4}, {}).of_point, (std::vector<Index>{0, 0}));
+  EXPECT_EQ(grow_regions(2, links, {1, -0.6}, {}).of_point, (std::vector<Index>{0, 1}));
+  EXPECT_EQ(grow_regions(2, links, {1, 0.6}, {}).of_point, (std::vector<Index>{0, 0}));
+}
+
+TEST(Orient, DoesNotDependOnTheSideTheNormalsCameWith) {
+  const Positions points = test::poisson_points(test::cube(), 2000, 1);
+  const Connection c = connect(points, {}, {}).value();
+  std::mt19937 engine(3);
+  Positions one, other;
+  for (const auto& s : c.surfaces) {
+    one.push_back(s.normal);
+    other.emplace_back(engine() % 2 == 0 ? s.normal : Vector3d(-s.normal));
+  }
+  EXPECT_EQ(orient(c.mesh, c.emst, c.bridges, {}, one, {}), orient(c.mesh, c.emst, c.bridges, {}, other, {}));
+  EXPECT_EQ(one, other);
+}
+
+TEST(Orient, RefusesAnotherNumberOfNormals) {
+  Mesh mesh;
+  mesh.positions.assign(3, Vector3d::Zero());
+  rebuild_adjacency(mesh, {});
+  Positions normals(2, Vector3d::UnitX());
+  EXPECT_THROW(orient(mesh, {}, {}, {}, normals, {}), std::invalid_argument);
+}
+
+TEST(BilateralNormals, LeaveAPlaneAloneAndKeepAnEdge) {
+  // A roof: two planes at a right angle, exact normals but for noise of a few degrees.
+  std::mt19937 engine(1);
+  std::normal_distribution<double> noise(0, 0.05);
+  Positions points, truth, normals;
+  for (int i = -20; i < 20; ++i)
+    for (int j = 0; j < 40; ++j) {
+      const double u = i + 0.5;
+      points.emplace_back(u, j, -std::abs(u));
+      truth.push_back(Vector3d(u < 0 ? -1 : 1, 0, 1).normalized());
+      const double x = noise(engine), y = noise(engine), z = noise(engine);
+      normals.push_back((truth.back() + Vector3d(x, y, z)).normalized());
+    }
+  const SpatialIndex index(points, {});
+  bilateral_normals(points, index.nearest(32, {}), normals, {});
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    EXPECT_NEAR(normals[i].norm(), 1, 1e-12);
+    EXPECT_GT(normals[i].dot(truth[i]), std::cos(0.06)) << "half of the noise is gone, at the edge, too";
+  }
+}
+
+}  // namespace
+}  // namespace rfsmooth::rfs_mesh
