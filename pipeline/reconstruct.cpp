@@ -1,7 +1,10 @@
 #include "rfsmooth/pipeline/reconstruct.h"
 
 #include <chrono>
+#include <limits>
 
+#include "rfsmooth/pipeline/hole_filling.h"
+#include "rfsmooth/pipeline/normals.h"
 #include "rfsmooth/pipeline/surface_cleanup.h"
 #include "rfsmooth/rfs_mesh/local_surface.h"
 #include "rfsmooth/rfs_mesh/neighbors.h"
@@ -27,7 +30,6 @@ class Laps {
     stages_.push_back({name, std::chrono::duration<double>(now - start_).count()});
     start_ = now;
   }
-  void restart() { start_ = std::chrono::steady_clock::now(); }
 
  private:
   std::vector<StageTime>& stages_;
@@ -47,24 +49,55 @@ std::vector<std::size_t> first_rows(const rfs_mesh::WorkingCloud& cloud) {
   return row;
 }
 
+/// Takes the noise out of the rows and outliers out of the cloud.
+void clean(std::vector<double>& xyz, const DenoiseOptions& options, ReconstructReport& report,
+           const Context& context) {
+  report.denoised = value_or_fail(denoise(xyz.data(), xyz.size() / 3, options, context));
+  report.seconds = report.denoised.seconds;
+  for (std::size_t i = 0; i < report.denoised.outlier.size(); ++i)
+    if (report.denoised.outlier[i]) xyz[3 * i] = std::numeric_limits<double>::quiet_NaN();
+}
+
+/// The normals of the working points.
+Positions working_normals(const std::vector<double>& xyz, const rfs_mesh::WorkingCloud& cloud,
+                          const Context& context) {
+  const std::size_t n = xyz.size() / 3;
+  std::vector<double> of_row(xyz.size());
+  value_or_fail(estimate_normals(xyz.data(), n, {}, context, of_row.data()));
+  Positions normals(cloud.points.size());
+  for (std::size_t i = 0; i < n; ++i)
+    if (const Index p = cloud.of_input[i]; p != kNone) normals[p] = Eigen::Vector3d::Map(&of_row[3 * i]);
+  return normals;
+}
+
+/// What the methods leave undone.
+void clean_up(rfs_mesh::Mesh& mesh, const SurfaceInput& input, const ReconstructOptions& options,
+              bool closes_all, ReconstructReport& report, const Context& context) {
+  constexpr std::size_t kSpeck = 100;
+  report.raw_faces = mesh.faces.size();
+  const double trim = options.trim.resolve(input.spacing),
+               longest = options.fill_holes.resolve(input.spacing);
+  if (closes_all && trim > 0) trim_far_faces(mesh, input.points, trim, context);
+  drop_specks(mesh, kSpeck, context);
+  if (!closes_all && longest > 0) report.filled = fill_holes(mesh, longest, context);
+  drop_unused_vertices(mesh, context);
+}
+
 Reconstruction run(std::vector<double> xyz, const ReconstructOptions& options, const SurfaceMethod& method,
                    const Context& context) {
   Reconstruction made;
   ReconstructReport& report = made.report;
-  const std::size_t n = xyz.size() / 3;
-  if (options.denoise) {
-    report.denoised = value_or_fail(denoise(xyz.data(), n, options.denoising, context));
-    report.seconds = report.denoised.seconds;
-  }
+  if (options.denoise) clean(xyz, options.denoising, report, context);
   Laps laps(report.seconds);
-  context.report("prepare", 0);
-  const rfs_mesh::WorkingCloud cloud = value_or_fail(rfs_mesh::make_working_cloud(xyz.data(), n, context));
+  const rfs_mesh::WorkingCloud cloud =
+      value_or_fail(rfs_mesh::make_working_cloud(xyz.data(), xyz.size() / 3, context));
   if (cloud.points.size() < 4)
     throw Failure({ErrorCode::no_usable_points, "a surface needs four distinct points at least"});
   SurfaceInput input;
   input.points = cloud.points;
+  input.normals = working_normals(xyz, cloud, context);
   in_arena(context, [&] { report.spacing = input.spacing = spacing_of(cloud.points, context); });
-  laps.lap("spacing");
+  laps.lap("normals");
 
   context.report(method.name, 0);
   made.mesh = value_or_fail(method.run(input, context));
@@ -72,7 +105,7 @@ Reconstruction run(std::vector<double> xyz, const ReconstructOptions& options, c
   laps.lap(method.name);
 
   in_arena(context, [&] {
-    drop_unused_vertices(made.mesh, context);
+    clean_up(made.mesh, input, options, method.closes_all, report, context);
     const std::vector<std::size_t> rows = first_rows(cloud);
     made.row.reserve(made.mesh.positions.size());
     for (const Index p : nearest_points(made.mesh, cloud.points, context)) made.row.push_back(rows[p]);
@@ -81,7 +114,7 @@ Reconstruction run(std::vector<double> xyz, const ReconstructOptions& options, c
   });
   if (made.mesh.faces.empty())
     throw Failure({ErrorCode::no_usable_points, method.name + " finds no surface in these points"});
-  laps.lap("finish");
+  laps.lap("clean up");
   return made;
 }
 

@@ -1,7 +1,7 @@
 /// From a noisy cloud to a surface:
 ///
-///     denoise -> distinct points -> a method of reconstruction -> drop specks, fill pinholes -> whose point
-///     is each vertex
+///     denoise -> distinct points -> oriented normals -> a method of reconstruction -> clean up -> whose
+///     point is each vertex
 ///
 /// The methods are other people's (Open3D's, CGAL's) and come in from outside as a `SurfaceMethod`, so that
 /// this room needs neither library; here is what they have in common: the scale they work at, taken from the
@@ -20,16 +20,26 @@
 namespace rfsmooth::pipeline {
 
 struct ReconstructOptions {
-  std::string method = "advancing-front";
+  std::string method = "poisson";
   bool denoise = true;
+  Length trim = {4, true};  ///< Poisson: faces with a corner farther than this from every point go
+  Length fill_holes = {
+      8, true};  ///< the others: the longest edge of a face put into a hole; 0 = none are filled
   DenoiseOptions denoising;
 
   template <class Self, class Visit>
   static void describe(Self& self, Visit&& visit) {
     OptionInfo method{"method", "how the surface is made", ""};
-    method.choices = {"advancing-front"};
+    method.choices = {"poisson", "advancing-front", "ball-pivoting"};
     visit(method, self.method);
     visit(OptionInfo{"denoise", "take the noise out first", ""}, self.denoise);
+    visit(OptionInfo{"trim", "poisson: drop faces that are farther than this from every point; 0 keeps all",
+                     "world units or x spacing", 0},
+          self.trim);
+    visit(OptionInfo{"fill-holes",
+                     "other methods: fill holes that need no edge longer than this; 0 leaves them open",
+                     "world units or x spacing", 0},
+          self.fill_holes);
     DenoiseOptions::describe(self.denoising, visit);
   }
 };
@@ -37,19 +47,25 @@ struct ReconstructOptions {
 /// What a method of reconstruction is given. Points are finite and distinct, around a local origin.
 struct SurfaceInput {
   Positions points;    ///< n x 3
+  Positions normals;   ///< n x 3, unit, on one side (pipeline/normals.h): outward on closed shapes
   double spacing = 0;  ///< mean distance to the nearest neighbour, after denoising; world units
 };
 
 /// A way of making a surface, as the adapters offer it.
 struct SurfaceMethod {
   std::string name;  ///< as --method takes it
+  /// Closes every gap, however wide: its faces far from the points are trimmed. A method that does not leaves
+  /// specks and small holes instead, which are dropped and filled.
+  bool closes_all = false;
   std::function<Result<rfs_mesh::Mesh>(const SurfaceInput& input, const Context& context)> run;
 };
 
 struct ReconstructReport {
-  DenoiseReport denoised;  ///< as it came; all zero if denoising was left out
-  double spacing = 0;      ///< that the method worked with, world units
-  Topology topology;
+  DenoiseReport denoised;     ///< as it came; all zero if denoising was left out
+  double spacing = 0;         ///< that the method worked with, world units
+  std::size_t raw_faces = 0;  ///< that the method made
+  std::size_t filled = 0;     ///< holes filled afterwards
+  Topology topology;          ///< of what is given back
   std::vector<StageTime> seconds;
 };
 
@@ -60,9 +76,10 @@ struct Reconstruction {
   ReconstructReport report;
 };
 
-/// Makes a surface from n x 3 row-major coordinates (world units; rows that are not finite are left out).
-/// Errors: as `denoise`, and what the method says; no_usable_points if there is no surface. The same bytes
-/// for any number of threads if the method's are.
+/// Makes a surface from n x 3 row-major coordinates (world units; rows that are not finite, and outliers that
+/// denoising found, are left out). Pieces of fewer than 100 faces are dropped as specks unless all are so
+/// small. Errors: as `denoise`, and what the method says; no_usable_points if there is no surface. The same
+/// bytes for any number of threads if the method's are.
 Result<Reconstruction> reconstruct(std::vector<double> xyz, const ReconstructOptions& options,
                                    const SurfaceMethod& method, const Context& context);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "rfsmooth/pipeline/face_sides.h"
 #include "rfsmooth/rfs_mesh/neighbors.h"
 #include "rfsmooth/rfs_mesh/parallel.h"
 
@@ -21,6 +22,21 @@ std::vector<Index> nearest_points(const Mesh& mesh, const Positions& points, con
     }
   });
   return nearest;
+}
+
+void drop_specks(Mesh& mesh, std::size_t least, const Context& context) {
+  Groups pieces(mesh.positions.size());
+  for (const Face& f : mesh.faces) {
+    pieces.join(f[0], f[1]);
+    pieces.join(f[1], f[2]);
+  }
+  std::vector<std::size_t> size(mesh.positions.size(), 0);
+  for (const Face& f : mesh.faces) ++size[pieces.of(f[0])];
+  if (mesh.faces.empty() || *std::max_element(size.begin(), size.end()) < least) return;
+  mesh.faces.erase(std::remove_if(mesh.faces.begin(), mesh.faces.end(),
+                                  [&](const Face& f) { return size[pieces.of(f[0])] < least; }),
+                   mesh.faces.end());
+  drop_unused_vertices(mesh, context);
 }
 
 void drop_unused_vertices(Mesh& mesh, const Context& context) {

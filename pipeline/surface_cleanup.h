@@ -15,6 +15,10 @@ namespace rfsmooth::pipeline {
 /// measured. `points` must not be empty. O(m log n), parallel, deterministic.
 void trim_far_faces(rfs_mesh::Mesh& mesh, const Positions& points, double length, const Context& context);
 
+/// Drops the pieces (that hang together through vertices) of fewer than `least` faces, unless all are so
+/// small, then the vertices no face needs.
+void drop_specks(rfs_mesh::Mesh& mesh, std::size_t least, const Context& context);
+
 /// Drops the vertices no face needs, and all loose edges. The others keep their order.
 void drop_unused_vertices(rfs_mesh::Mesh& mesh, const Context& context);
 

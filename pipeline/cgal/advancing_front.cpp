@@ -1,17 +1,19 @@
 #include "rfsmooth/cgal/advancing_front.h"
 
 #include <algorithm>
-#include <array>
-#include <iterator>
+#include <cmath>
 
-#include <CGAL/Advancing_front_surface_reconstruction.h>
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <Eigen/Geometry>
+
+#include "rfsmooth/cgal/front_types.h"
+#include "rfsmooth/cgal/solid.h"
+#include "rfsmooth/pipeline/face_sides.h"
 
 namespace rfsmooth::cgal {
 
 namespace {
 
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using rfs_mesh::Face;
 
 /// The front's next triangle: the smallest circumradius first, never across an edge longer than the limit.
 struct Perimeter {
@@ -30,36 +32,122 @@ struct Perimeter {
   }
 };
 
+/// What the points are multiplied with, so that their spacing is about 1: CGAL's front calls tetrahedra flat
+/// by an absolute volume.
+double scale_of(const Positions& points) {
+  Eigen::Vector3d low = points.front(), high = low;
+  for (const Eigen::Vector3d& p : points) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  const double extent = (high - low).norm();
+  return extent > 0 ? std::sqrt(double(points.size())) / extent : 1;
+}
+
+Delaunay tetrahedra_of(const Positions& points, double scale) {
+  std::vector<std::pair<Kernel::Point_3, std::size_t>> input;
+  input.reserve(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i)
+    input.emplace_back(Kernel::Point_3(scale * points[i].x(), scale * points[i].y(), scale * points[i].z()),
+                       i);
+  return Delaunay(input.begin(), input.end());
+}
+
 /// The same face, turned so that its least corner comes first.
-rfs_mesh::Face least_first(const rfs_mesh::Face& f) {
+Face least_first(const Face& f) {
   if (f[0] < f[1] && f[0] < f[2]) return f;
-  return f[1] < f[2] ? rfs_mesh::Face{f[1], f[2], f[0]} : rfs_mesh::Face{f[2], f[0], f[1]};
+  return f[1] < f[2] ? Face{f[1], f[2], f[0]} : Face{f[2], f[0], f[1]};
+}
+
+template <class Front>
+std::vector<FrontFace> faces_of(const Front& front) {
+  std::vector<FrontFace> faces;
+  const auto& surface = front.triangulation_data_structure_2();
+  for (auto f = surface.faces_begin(); f != surface.faces_end(); ++f) {
+    if (!front.has_on_surface(f)) continue;
+    Face corners;
+    for (int k = 0; k < 3; ++k) corners[std::size_t(k)] = Index(f->vertex(k)->vertex_3()->id());
+    faces.push_back({least_first(corners), f->facet()});
+  }
+  // CGAL's order depends on where its nodes lie in memory; which faces there are does not.
+  std::sort(faces.begin(), faces.end(),
+            [](const FrontFace& f, const FrontFace& g) { return f.corners < g.corners; });
+  return faces;
+}
+
+/// Turns each piece of the front to the side of the normals; without normals, so that the least of its faces
+/// (by sorted corners) has its corners ascending: CGAL's side depends on where its nodes lie in memory.
+void turn(std::vector<FrontFace>& front, const Positions& points, const Positions& normals) {
+  pipeline::Groups pieces(points.size());
+  for (const FrontFace& f : front) {
+    pieces.join(f.corners[0], f.corners[1]);
+    pieces.join(f.corners[1], f.corners[2]);
+  }
+  std::vector<double> agreement(points.size(), 0);
+  std::vector<rfs_mesh::Edge> least(normals.empty() ? points.size() : 0, {kNone, kNone});
+  for (const FrontFace& f : front) {
+    const auto& [a, b, c] = f.corners;
+    if (normals.empty()) {  // a is its least corner, the least vertex of a piece stands for the piece
+      const rfs_mesh::Edge others{std::min(b, c), std::max(b, c)};
+      if (others < least[a]) {
+        least[a] = others;
+        agreement[a] = b < c ? 1 : -1;
+      }
+      continue;
+    }
+    agreement[pieces.of(a)] +=
+        (points[b] - points[a]).cross(points[c] - points[a]).dot(normals[a] + normals[b] + normals[c]);
+  }
+  for (FrontFace& f : front)
+    if (agreement[pieces.of(f.corners[0])] < 0) std::swap(f.corners[1], f.corners[2]);
+}
+
+/// The faces of the solid that the front all but bounds; empty if there is none.
+std::vector<Face> closed(const Delaunay& tetrahedra, const Positions& points,
+                         const std::vector<FrontFace>& front, const Context& context) {
+  // On the closed development shapes at 2 % noise (10,000 and 50,000 points) at least 0.95 of the front is
+  // kept, but where thin walls have run into each other (rotor); on open sheets as much is invented as is
+  // kept.
+  constexpr double kLeastKept = 0.95, kMostInvented = 0.05;
+  Solid solid = solid_of(tetrahedra, points, front, context);
+  if (solid.kept < kLeastKept || solid.invented > kMostInvented) return {};
+  return std::move(solid.faces);
 }
 
 }  // namespace
 
-Result<rfs_mesh::Mesh> advancing_front(const Positions& points, double longest_edge, const Context& context) {
+Result<rfs_mesh::Mesh> advancing_front(const Positions& points, const Positions& normals, double longest_edge,
+                                       const Context& context) {
+  if (!normals.empty() && normals.size() != points.size())
+    throw std::invalid_argument("one normal per point is needed, or none");
+  const Error none{ErrorCode::no_usable_points, "the advancing front finds no surface in these points"};
+  if (points.size() < 3) return none;
   context.report("advancing front", 0);
-  std::vector<Kernel::Point_3> input;
-  input.reserve(points.size());
-  for (const Eigen::Vector3d& p : points) input.emplace_back(p.x(), p.y(), p.z());
-  std::vector<std::array<std::size_t, 3>> triangles;
-  CGAL::advancing_front_surface_reconstruction(input.begin(), input.end(), std::back_inserter(triangles),
-                                               Perimeter{longest_edge});
-  if (triangles.empty())
-    return Error{ErrorCode::no_usable_points, "the advancing front finds no surface in these points"};
+  const double scale = scale_of(points);
+  Delaunay tetrahedra = tetrahedra_of(points, scale);
+  const bool in_space = tetrahedra.dimension() == 3;  // CGAL adds a point of its own to points in a plane
+  CGAL::Advancing_front_surface_reconstruction<Delaunay, Perimeter> run(tetrahedra,
+                                                                        Perimeter{scale * longest_edge});
+  run.run();
+  std::vector<FrontFace> front = faces_of(run);
+  if (front.empty()) return none;
+
   rfs_mesh::Mesh mesh;
   mesh.positions = points;
-  for (const auto& t : triangles) mesh.faces.push_back(least_first({Index(t[0]), Index(t[1]), Index(t[2])}));
-  // CGAL's order depends on where its nodes lie in memory; which faces there are does not.
+  turn(front, points, normals);
+  if (!normals.empty() && in_space && longest_edge == 0)
+    mesh.faces = closed(tetrahedra, points, front, context);
+  if (mesh.faces.empty())
+    for (const FrontFace& f : front) mesh.faces.push_back(f.corners);
+  for (Face& f : mesh.faces) f = least_first(f);
   std::sort(mesh.faces.begin(), mesh.faces.end());
   rebuild_adjacency(mesh, context);
   return mesh;
 }
 
 pipeline::SurfaceMethod advancing_front_method() {
-  return {"advancing-front", [](const pipeline::SurfaceInput& input, const Context& context) {
-            return advancing_front(input.points, 0, context);
+  return {"advancing-front", false, [](const pipeline::SurfaceInput& input, const Context& context) {
+            return advancing_front(input.points, input.normals, 0, context);
           }};
 }
 

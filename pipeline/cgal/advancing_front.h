@@ -1,6 +1,10 @@
 /// Surface reconstruction by CGAL's advancing front (Cohen-Steiner and Da 2004): a Delaunay-based surface
-/// through the points themselves, without normals. The package is GPL-3.0-or-later: linking rfsmooth::cgal
-/// makes the binary so.
+/// through the points themselves. The package is GPL-3.0-or-later: linking rfsmooth::cgal makes the binary
+/// so.
+///
+/// Differs from the paper: where the front all but bounds a solid, the boundary of that solid is given back
+/// (solid.h): slits and welds of the front are mended with other facets of the same Delaunay tetrahedra, and
+/// a closed shape comes out closed.
 #pragma once
 
 #include "rfsmooth/pipeline/reconstruct.h"
@@ -10,11 +14,13 @@
 
 namespace rfsmooth::cgal {
 
-/// The vertices are the points, in order (those the front does not reach have no face); faces are oriented
-/// consistently within each component. `longest_edge` in world units (0 = no limit) keeps the front from
-/// crossing gaps. Errors: no_usable_points if there is no surface. O(n log n), one thread, deterministic; not
-/// interruptible.
-Result<rfs_mesh::Mesh> advancing_front(const Positions& points, double longest_edge, const Context& context);
+/// The vertices are the points, in order (those the surface does not reach have no face); faces are oriented
+/// consistently within each piece. `normals`: n x 3, on one side: pieces are turned to agree with them, and a
+/// front that all but bounds a solid is closed; empty: neither. `longest_edge` in world units (0 = no limit)
+/// keeps the front from crossing gaps. Errors: no_usable_points if there is no surface. O(n log n), one
+/// thread, deterministic; not interruptible.
+Result<rfs_mesh::Mesh> advancing_front(const Positions& points, const Positions& normals, double longest_edge,
+                                       const Context& context);
 
 /// The same as a method of pipeline/reconstruct.h.
 pipeline::SurfaceMethod advancing_front_method();

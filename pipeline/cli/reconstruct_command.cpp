@@ -51,6 +51,8 @@ void enter(const pipeline::Reconstruction& made, const Options& options, ordered
   entry["counts"] = {{"points", entry["input"]["points"]},
                      {"vertices", found.vertices},
                      {"faces", found.faces},
+                     {"raw_faces", made.report.raw_faces},
+                     {"filled_holes", made.report.filled},
                      {"components", found.components},
                      {"boundary_edges", found.boundary_edges},
                      {"boundary_loops", found.boundary_loops},
@@ -113,11 +115,14 @@ Command table(const std::shared_ptr<Options>& options) {
   command.summary = "make a surface from a noisy cloud";
   command.usage = {"[options] IN OUT.ply"};
   command.description =
-      "Takes the noise out of a cloud, as rfsmooth denoise does, and makes a triangle mesh of it. "
-      "advancing-front (CGAL) puts triangles between the points themselves. Colours and other fields of the "
-      "points are carried to the vertices.\n\n"
+      "Takes the noise out of a cloud, as rfsmooth denoise does, gives the points normals on one side, and "
+      "makes a triangle mesh of them. poisson (Open3D's screened Poisson) makes a smooth surface near the "
+      "points and closes gaps; what it invents far from every point is trimmed. advancing-front (CGAL) and "
+      "ball-pivoting (Open3D) put triangles between the points themselves: specks are dropped, slits filled, "
+      "and where an advancing front all but bounds a solid, it is closed. All scales come from the measured "
+      "spacing. Outliers are left out. Colours and other fields of the points go to the vertices.\n\n"
       "The work is done by the program rfsmooth-reconstruct, which links those libraries and may be "
-      "installed or not; without it the exit code is 127.";
+      "installed or not; without it, or without the library that a method needs, the exit code is 127.";
   collect(options->reconstruct, command.options);
   collect(options->job, command.options);
   polish(command);

@@ -49,8 +49,9 @@ Result<rfs_mesh::Mesh> poisson(const Positions& points, const Positions& normals
                                const Context& context) {
   const PointCloud cloud = to_open3d(points, normals, spacing);
   context.report("Poisson", 0);
+  constexpr int kThreads = 1;  // with more its sums, and so the bytes, depend on who comes first
   const auto surface = std::get<0>(TriangleMesh::CreateFromPointCloudPoisson(
-      cloud, depth_for(cloud, spacing), 0.0F, 1.1F, false, context.threads > 0 ? context.threads : -1));
+      cloud, depth_for(cloud, spacing), 0.0F, 1.1F, false, kThreads));
   return from_open3d(*surface, "Poisson reconstruction", context);
 }
 
@@ -61,6 +62,15 @@ Result<rfs_mesh::Mesh> ball_pivoting(const Positions& points, const Positions& n
   const auto surface =
       TriangleMesh::CreateFromPointCloudBallPivoting(cloud, {spacing, 2 * spacing, 4 * spacing});
   return from_open3d(*surface, "ball pivoting", context);
+}
+
+std::vector<pipeline::SurfaceMethod> surface_methods() {
+  const auto adapted = [](const auto& method) {
+    return [method](const pipeline::SurfaceInput& input, const Context& context) {
+      return method(input.points, input.normals, input.spacing, context);
+    };
+  };
+  return {{"poisson", true, adapted(poisson)}, {"ball-pivoting", false, adapted(ball_pivoting)}};
 }
 
 }  // namespace rfsmooth::open3d

@@ -3,6 +3,7 @@
 /// surface.cpp.
 #pragma once
 
+#include "rfsmooth/pipeline/reconstruct.h"
 #include "rfsmooth/rfs_mesh/context.h"
 #include "rfsmooth/rfs_mesh/mesh.h"
 #include "rfsmooth/rfs_mesh/result.h"
@@ -22,5 +23,8 @@ Result<rfs_mesh::Mesh> poisson(const Positions& points, const Positions& normals
 /// holes where no ball rests on three points. Arguments and errors as for `poisson`.
 Result<rfs_mesh::Mesh> ball_pivoting(const Positions& points, const Positions& normals, double spacing,
                                      const Context& context);
+
+/// Both as methods of pipeline/reconstruct.h: "poisson" and "ball-pivoting".
+std::vector<pipeline::SurfaceMethod> surface_methods();
 
 }  // namespace rfsmooth::open3d

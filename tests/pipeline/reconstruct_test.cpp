@@ -42,12 +42,13 @@ Result<rfs_mesh::Mesh> join_grid(const SurfaceInput& input, const Context& conte
 ReconstructOptions without_denoising() {
   ReconstructOptions options;
   options.denoise = false;
+  options.fill_holes.value = 0;
   return options;
 }
 
 TEST(Reconstruct, VerticesKnowTheirRowsAndLieInTheWorld) {
   const std::vector<double> xyz = grid_rows(5);
-  const auto made = reconstruct(xyz, without_denoising(), {"join", join_grid}, {});
+  const auto made = reconstruct(xyz, without_denoising(), {"join", false, join_grid}, {});
   ASSERT_TRUE(made.ok()) << made.error().message;
   const Reconstruction& surface = made.value();
   EXPECT_NEAR(surface.report.spacing, 1, 1e-9);
@@ -67,7 +68,7 @@ TEST(Reconstruct, NoiseIsTakenOutFirst) {
   const auto height = [](const ReconstructOptions& options, const std::vector<double>& rows) {
     double sum = 0;
     const auto made = reconstruct(rows, options,
-                                  {"all",
+                                  {"all", false,
                                    [](const SurfaceInput& input, const Context&) {
                                      rfs_mesh::Mesh mesh;
                                      mesh.positions = input.points;
@@ -79,25 +80,27 @@ TEST(Reconstruct, NoiseIsTakenOutFirst) {
     for (const auto& p : made.value().mesh.positions) sum += p.z() * p.z();
     return sum;
   };
-  EXPECT_LT(height({}, xyz), 0.5 * height(without_denoising(), xyz));
+  ReconstructOptions denoising;
+  denoising.fill_holes.value = 0;
+  EXPECT_LT(height(denoising, xyz), 0.5 * height(without_denoising(), xyz));
 }
 
 TEST(Reconstruct, ErrorsOfTheMethodAndTheCloudComeThrough) {
   const auto fails = [](const SurfaceInput&, const Context&) -> Result<rfs_mesh::Mesh> {
     return Error{ErrorCode::no_usable_points, "no surface here"};
   };
-  const auto failed = reconstruct(grid_rows(3), without_denoising(), {"fails", fails}, {});
+  const auto failed = reconstruct(grid_rows(3), without_denoising(), {"fails", false, fails}, {});
   ASSERT_FALSE(failed.ok());
   EXPECT_EQ(failed.error().message, "no surface here");
   const auto empty = [](const SurfaceInput&, const Context&) -> Result<rfs_mesh::Mesh> {
     return rfs_mesh::Mesh{};
   };
-  EXPECT_EQ(reconstruct(grid_rows(3), without_denoising(), {"empty", empty}, {}).error().code,
+  EXPECT_EQ(reconstruct(grid_rows(3), without_denoising(), {"empty", false, empty}, {}).error().code,
             ErrorCode::no_usable_points);
   const double nan = std::nan("");
-  EXPECT_EQ(reconstruct({nan, nan, nan}, {}, {"join", join_grid}, {}).error().code,
+  EXPECT_EQ(reconstruct({nan, nan, nan}, {}, {"join", false, join_grid}, {}).error().code,
             ErrorCode::no_usable_points);
-  EXPECT_EQ(reconstruct({0, 0, 0, 1, 0, 0}, {}, {"join", join_grid}, {}).error().code,
+  EXPECT_EQ(reconstruct({0, 0, 0, 1, 0, 0}, {}, {"join", false, join_grid}, {}).error().code,
             ErrorCode::no_usable_points);
 }
 

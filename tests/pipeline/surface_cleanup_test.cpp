@@ -56,4 +56,17 @@ TEST(NearestPoints, AVertexTakesThePointItLiesOn) {
   for (Index v = 0; v < nearest.size(); ++v) EXPECT_EQ(nearest[v], v);
 }
 
+TEST(DropSpecks, SmallPiecesGoUnlessAllAreSmall) {
+  rfs_mesh::Mesh mesh = grid();
+  const auto n = Index(mesh.positions.size());
+  for (int k = 0; k < 3; ++k) mesh.positions.emplace_back(100 + k, k * k, 0);
+  mesh.faces.push_back({n, n + 1, n + 2});
+  rebuild_adjacency(mesh, {});
+  drop_specks(mesh, 2, {});
+  EXPECT_EQ(mesh.faces, grid().faces);
+  EXPECT_EQ(mesh.positions, grid().positions);
+  drop_specks(mesh, 100000, {});
+  EXPECT_EQ(mesh.faces, grid().faces);
+}
+
 }  // namespace
