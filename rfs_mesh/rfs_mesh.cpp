@@ -48,19 +48,43 @@ Positions shadows(const std::vector<LocalSurface>& surfaces, const Context& cont
   return at;
 }
 
-/// The positions to test on, where they are not the points, with their own neighbours and tree.
+/// What the tests are made on: positions, the surface through each, their own neighbours and tree.
 struct Ground {
   Positions at;
+  std::vector<LocalSurface> surfaces;
   NeighborTable near;
   std::vector<Edge> tree;
 };
 
-Ground ground_at(Positions at, int k, const Context& context) {
+/// The ground at smoothed positions that the caller gives.
+Ground ground_at(const Positions& guide, int k, const Context& context) {
   Ground ground;
-  ground.at = std::move(at);
+  ground.at = guide;
   const SpatialIndex index(ground.at, context);
   ground.near = index.nearest(k, context);
   ground.tree = emst(index, ground.near, context);
+  ground.surfaces = local_surfaces(ground.at, ground.near, context);
+  return ground;
+}
+
+/// A quadric through m points leaves about a third of the noise in the shadow at the m that noise_scale
+/// picks.
+constexpr double kNoiseLeft = 1.0 / 3;
+
+/// The ground at the shadows of the points. Quadrics no wider than the neighbourhoods looked at are fitted a
+/// second time, on the shadows; wider ones have the better normals already.
+Ground shadow_ground(std::vector<LocalSurface> surfaces, const NoiseScale& scale, int k,
+                     const Context& context) {
+  Ground ground;
+  ground.surfaces = std::move(surfaces);
+  ground.at = shadows(ground.surfaces, context);
+  const SpatialIndex index(ground.at, context);
+  ground.near = index.nearest(k, context);
+  ground.tree = emst(index, ground.near, context);
+  if (scale.neighbours > std::size_t(k)) return ground;
+  const NoiseScale left = {kNoiseLeft * scale.sigma, scale.neighbours};
+  ground.surfaces = shared_local_surfaces(index, ground.near, left, scale.neighbours, context);
+  ground.at = shadows(ground.surfaces, context);
   return ground;
 }
 
@@ -76,11 +100,10 @@ std::vector<Edge> loose_edges(std::size_t n, const std::vector<Face>& faces, con
   });
 }
 
-Connection connect_all(const Positions& points, const ConnectOptions& options, const Context& context,
-                       const Positions* guide) {
-  Connection c;
-  Stages stages(c.seconds, context);
-  c.mesh.positions = points;
+/// The first stages, up to the surfaces: what is measured on the points themselves. Fills emst, noise and
+/// on_shadow of `c`; returns what the tests are made on.
+Ground survey(const Positions& points, const ConnectOptions& options, const Context& context,
+              const Positions* guide, Connection& c, Stages& stages) {
   const std::size_t n = points.size();
   const SpatialIndex index = stages.run("index", 0, [&] { return SpatialIndex(points, context); });
   NeighborTable near =
@@ -90,45 +113,49 @@ Connection connect_all(const Positions& points, const ConnectOptions& options, c
   c.noise.sigma = scale.sigma;
   c.emst = stages.run("emst", 0.2, [&] { return emst(index, near, context); });
 
-  Ground ground;
-  double noise = scale.sigma;
   c.on_shadow = guide == nullptr && n > 0 && scale.sigma > options.shadow_from * c.noise.spacing;
-  const bool moved = guide != nullptr || c.on_shadow;
-  const auto k = std::size_t(options.neighbours);
-  const bool wide = c.on_shadow && scale.neighbours > k;
-  c.surfaces = stages.run("local surfaces", 0.4, [&] {
-    return wide ? wide_local_surfaces(index, scale, k, context) : local_surfaces(points, near, context);
+  auto surfaces = stages.run("local surfaces", 0.4, [&] {
+    const auto least = std::min(std::size_t(options.neighbours), scale.neighbours);
+    return c.on_shadow ? shared_local_surfaces(index, near, scale, least, context)
+                       : local_surfaces(points, near, context);
   });
   c.noise.field.resize(n);
-  for_each_index(context, n, [&](std::size_t i) { c.noise.field[i] = c.surfaces[i].residual; });
-  if (moved) {
-    near = NeighborTable();  // neighbours among the noisy points: not needed any more
-    stages.run(guide != nullptr ? "guide" : "shadow", 0.5, [&] {
-      ground =
-          ground_at(guide != nullptr ? *guide : shadows(c.surfaces, context), options.neighbours, context);
-      // A wide quadric's normal is better than any from the shadows; a narrow one's is not.
-      if (guide != nullptr || !wide) c.surfaces = local_surfaces(ground.at, ground.near, context);
-      if (guide == nullptr && !wide) ground.at = shadows(c.surfaces, context);
-    });
-  }
-  // A quadric through m points leaves about a third of the noise in the shadow at the m that noise_scale
-  // picks.
-  if (moved) noise = guide != nullptr ? 0 : noise / 3;
-  const Terrain terrain{moved ? ground.at : points, c.surfaces, moved ? ground.near : near, noise};
+  for_each_index(context, n, [&](std::size_t i) { c.noise.field[i] = surfaces[i].residual; });
+  if (guide == nullptr && !c.on_shadow) return {points, std::move(surfaces), std::move(near), c.emst};
+  near = NeighborTable();  // neighbours among the noisy points: not needed any more
+  return stages.run(guide != nullptr ? "guide" : "shadow", 0.5, [&] {
+    return guide != nullptr ? ground_at(*guide, options.neighbours, context)
+                            : shadow_ground(std::move(surfaces), scale, options.neighbours, context);
+  });
+}
 
-  Sdg sdg = stages.run("sdg", 0.6,
-                       [&] { return make_sdg(terrain, moved ? ground.tree : c.emst, options.sdg, context); });
+Connection connect_all(const Positions& points, const ConnectOptions& options, const Context& context,
+                       const Positions* guide) {
+  Connection c;
+  Stages stages(c.seconds, context);
+  const std::size_t n = points.size();
+  Ground ground = survey(points, options, context, guide, c, stages);
+  const double noise = guide != nullptr ? 0 : c.on_shadow ? kNoiseLeft * c.noise.sigma : c.noise.sigma;
+  const Terrain terrain{ground.at, ground.surfaces, ground.near, noise};
+
+  Sdg sdg = stages.run("sdg", 0.6, [&] { return make_sdg(terrain, ground.tree, options.sdg, context); });
   c.sdg = std::move(sdg.edges);
   c.bridges = std::move(sdg.bridges);
+  std::vector<Edge>().swap(ground.tree);
   const ProposedFaces proposed = stages.run("umbrellas", 0.75, [&] {
     const Adjacency graph = make_adjacency(n, c.sdg, context);
-    return proposed_faces(open_umbrellas(terrain, graph, options.umbrella, context), context);
+    const std::vector<Umbrella> umbrellas = open_umbrellas(terrain, graph, options.umbrella, context);
+    ground.near = NeighborTable();
+    return proposed_faces(umbrellas, context);
   });
   stages.run("rfs-mesh", 0.9, [&] {
-    c.mesh.faces = keep_flattest_pairs(terrain.at, proposed, context);
+    c.mesh.faces = keep_flattest_pairs(ground.at, proposed, context);
     c.mesh.loose_edges = loose_edges(n, c.mesh.faces, c.sdg, c.faceless, context);
+    c.mesh.positions = points;
+    Positions().swap(ground.at);
     rebuild_adjacency(c.mesh, context);
   });
+  c.surfaces = std::move(ground.surfaces);
   return c;
 }
 

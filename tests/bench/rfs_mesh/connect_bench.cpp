@@ -28,6 +28,7 @@
 #include <unistd.h>
 
 #include "rfsmooth/rfs_mesh/edge_swap.h"
+#include "rfsmooth/rfs_mesh/morton.h"
 #include "rfsmooth/rfs_mesh/parallel.h"
 #include "rfsmooth/rfs_mesh/rfs_mesh.h"
 
@@ -155,19 +156,33 @@ Figures medians(const std::vector<Figures>& rounds) {
   return result;
 }
 
+/// In Morton order, without the library's own function: that would start threads.
+Positions noisy_sphere(std::size_t n, double noise) {
+  const double sigma = noise * std::sqrt(4 * M_PI / double(n));
+  std::mt19937_64 engine(2);
+  std::normal_distribution<double> normal;
+  Positions points = test::random_points(test::unit_sphere(), n, 1);
+  for (auto& p : points) {
+    const double x = normal(engine), y = normal(engine), z = normal(engine);
+    p += sigma * Eigen::Vector3d(x, y, z);
+  }
+  Eigen::Vector3d low = points[0], high = points[0];
+  for (const auto& p : points) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  std::vector<std::pair<std::uint64_t, std::size_t>> order(n);
+  for (std::size_t i = 0; i < n; ++i)
+    order[i] = {morton_code(points[i], low, kMortonCells / (high - low).maxCoeff()), i};
+  std::sort(order.begin(), order.end());
+  Positions sorted;
+  sorted.reserve(n);
+  for (const auto& [code, i] : order) sorted.push_back(points[i]);
+  return sorted;
+}
+
 void speed_at(std::size_t n, double noise, int threads, int rounds) {
-  const double unit = std::sqrt(4 * M_PI / double(n));
-  // In a process of its own, too, a working cloud is made with threads; so it is made there.
-  const auto cloud = [&] {
-    Context one;
-    one.threads = 1;
-    Positions points;
-    in_arena(one, [&] {
-      points = bench::with_noise(test::random_points(test::unit_sphere(), n, 1), noise * unit, 2).points;
-    });
-    return points;
-  };
-  const Positions points = cloud();
+  const Positions points = noisy_sphere(n, noise);
   std::vector<Figures> own, peer;
   std::vector<double> wall, cpu;
   for (int round = 0; round < rounds; ++round) {
