@@ -1,11 +1,28 @@
 #include "rfsmooth/rfs_mesh/parallel.h"
 
+#include <stdexcept>
+
 #include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include "rfsmooth/rfs_mesh/thread_limit.h"
+
 namespace rfsmooth {
+
+struct ThreadLimit::Control {
+  tbb::global_control limit;
+};
+
+ThreadLimit::ThreadLimit(int threads) {
+  if (threads < 1) throw std::invalid_argument("ThreadLimit: at least one thread is needed");
+  const auto most = std::size_t(std::min(threads, tbb::info::default_concurrency()));
+  control_.reset(new Control{tbb::global_control(tbb::global_control::max_allowed_parallelism, most)});
+}
+
+ThreadLimit::~ThreadLimit() = default;
 
 void in_arena(const Context& context, const std::function<void()>& body) {
   // More threads than cores gain nothing, and TBB would print a warning.

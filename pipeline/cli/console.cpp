@@ -52,6 +52,7 @@ void Console::error(const std::string& line) {
 }
 
 Context Console::context(int threads) {
+  if (threads > 0) limit_.emplace(threads);
   Context context;
   context.threads = threads;
   context.stop = &stop_flag();

@@ -3,11 +3,13 @@
 #pragma once
 
 #include <chrono>
+#include <optional>
 #include <string>
 #include <string_view>
 
 #include "rfsmooth/rfs_mesh/context.h"
 #include "rfsmooth/rfs_mesh/options.h"
+#include "rfsmooth/rfs_mesh/thread_limit.h"
 
 namespace rfsmooth::cli {
 
@@ -39,7 +41,8 @@ class Console {
   /// Number of points, for the rate beside the bar.
   void set_points(std::size_t points) { points_ = points; }
 
-  /// A Context that logs and reports here and stops on Ctrl-C.
+  /// A Context that logs and reports here and stops on Ctrl-C. `threads` (0 = all cores) binds the whole
+  /// program while the console lives.
   Context context(int threads);
 
  private:
@@ -52,6 +55,7 @@ class Console {
   bool drawn_ = false;
   std::size_t points_ = 0;
   std::string stage_;
+  std::optional<ThreadLimit> limit_;
   Clock::time_point stage_start_, last_draw_;
 };
 
