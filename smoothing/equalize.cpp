@@ -26,6 +26,7 @@ constexpr double kMost = 0.5;  // of the local distance
 constexpr double kMostSigmas = 0.7;
 constexpr double kSameNormal = 0.85;  // cosine: a neighbour beyond it means an edge
 constexpr double kEdgeNormal = 0.6;   // cosine: the same, so near that the point stays
+constexpr std::size_t kFewest = 10;   // points of the quadric, twice its unknowns
 constexpr double kWidestGap = 2.4;    // radians between neighbours' directions: wider means a rim
 
 /// A point's surface: x(u, v) = p + u t + v b + (c3 u^2 + c4 u v + c5 v^2 + c1 u + c2 v) n.
@@ -84,9 +85,11 @@ Frame make_frame(const Positions& points, const std::vector<Eigen::Vector3d>& no
   }
   Matrix5 a = Matrix5::Zero();
   Vector5 right = Vector5::Zero();
+  std::size_t same = 0;
   for (const Index j : near) {
     const Eigen::Vector3d d = (points[j] - points[i]) / reach;
     if (std::abs(normals[j].dot(f.n)) < kSameNormal) continue;
+    ++same;
     const double u = d.dot(f.t), v = d.dot(f.b), w = 1.1 - d.squaredNorm();
     const Vector5 g = (Vector5() << u, v, u * u, u * v, v * v).finished();
     a += w * g * g.transpose();
@@ -95,7 +98,7 @@ Frame make_frame(const Positions& points, const std::vector<Eigen::Vector3d>& no
   a.diagonal().array() += 1e-9;
   f.quadric = a.llt().solve(right);
   f.quadric.tail<3>() /= reach;
-  f.movable = f.quadric.allFinite();
+  f.movable = same >= kFewest && f.quadric.allFinite();
   return f;
 }
 

@@ -47,7 +47,7 @@ class DenoiseSettings {
   void setStrength(double strength) { options_.flow.strength = strength; }
 
   /// The standard deviation of the noise along the normal, world units, instead of measuring it.
-  void setNoise(double sigma) { options_.flow.noise = sigma; }
+  void setNoise(double sigma) { options_.flow.noise = Length{sigma, false}; }
 
   /// What becomes of points with no surface near: "keep" (default: left in place, pulling nobody), "remove",
   /// "smooth" (none are looked for).
