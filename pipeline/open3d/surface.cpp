@@ -50,8 +50,8 @@ Result<rfs_mesh::Mesh> poisson(const Positions& points, const Positions& normals
   const PointCloud cloud = to_open3d(points, normals, spacing);
   context.report("Poisson", 0);
   constexpr int kThreads = 1;  // with more its sums, and so the bytes, depend on who comes first
-  const auto surface = std::get<0>(TriangleMesh::CreateFromPointCloudPoisson(
-      cloud, depth_for(cloud, spacing), 0.0F, 1.1F, false, kThreads));
+  const auto surface = std::get<0>(TriangleMesh::CreateFromPointCloudPoisson(cloud, depth_for(cloud, spacing),
+                                                                             0.0F, 1.1F, false, kThreads));
   return from_open3d(*surface, "Poisson reconstruction", context);
 }
 
