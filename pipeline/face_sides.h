@@ -10,6 +10,7 @@
 
 namespace rfsmooth::pipeline {
 
+/// A face and the side it is seen from.
 struct FaceSide {
   Index a, b;    ///< the edge, a < b
   Index face;    ///< whose side it is

@@ -19,6 +19,7 @@
 
 namespace rfsmooth::pipeline {
 
+/// How to reconstruct.
 struct ReconstructOptions {
   std::string method = "poisson";
   bool denoise = true;
@@ -60,6 +61,7 @@ struct SurfaceMethod {
   std::function<Result<rfs_mesh::Mesh>(const SurfaceInput& input, const Context& context)> run;
 };
 
+/// What was done.
 struct ReconstructReport {
   DenoiseReport denoised;     ///< as it came; all zero if denoising was left out
   double spacing = 0;         ///< that the method worked with, world units
@@ -69,6 +71,7 @@ struct ReconstructReport {
   std::vector<StageTime> seconds;
 };
 
+/// The surface, and what was done.
 struct Reconstruction {
   rfs_mesh::Mesh mesh;  ///< world units; every vertex has a face
   std::vector<std::size_t>

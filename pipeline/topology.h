@@ -12,6 +12,7 @@
 
 namespace rfsmooth::pipeline {
 
+/// How the faces of a mesh hang together.
 struct Topology {
   std::size_t vertices = 0;  ///< that a face uses
   std::size_t edges = 0, faces = 0;

@@ -28,6 +28,7 @@ class Sides {
   explicit Sides(std::size_t n) : parent_(n), turned_(n, 0) {
     std::iota(parent_.begin(), parent_.end(), Index{0});
   }
+  /// Where a member hangs.
   struct Root {
     Index index;
     bool turned;
@@ -54,12 +55,14 @@ class Sides {
   std::vector<char> turned_;
 };
 
+/// How well the sides of two points, or regions, agree.
 struct SideLink {
   Index a, b;
   float agreement;  ///< of all links in it
   float count;      ///< how many links it stands for, 1 to begin with
 };
 
+/// Which points have found one side together.
 struct Regions {
   std::vector<Index> of_point;  ///< n: the region's lowest point
   std::vector<char> turned;     ///< n: 1 where the normal is on the other side than the lowest point's

@@ -24,6 +24,7 @@
 
 namespace rfsmooth::rfs_mesh {
 
+/// The winding number of the points and their normals.
 class Winding {
  public:
   /// \param points n x 3, kept by reference; \param softening e, world units, > 0. O(n log n).

@@ -16,6 +16,7 @@
 
 namespace rfsmooth::smoothing {
 
+/// Candidate heights, mixed by their evidence.
 class Mixture {
  public:
   /// \param data n: the heights themselves are the first candidate, all their own, with evidence 0.

@@ -65,8 +65,13 @@ if wanted rfsmooth; then
     test -s /usr/share/zsh/vendor-completions/_rfsmooth'
 fi
 if wanted librfsmooth-dev; then in_clean_system librfsmooth-dev "$(deb librfsmooth-dev)" "$(consumer installed pkgconfig)"; fi
-for part in pcl cgal; do
+for part in pcl open3d cgal; do
   package=librfsmooth-$part-dev
   if wanted $package; then in_clean_system $package "$(deb librfsmooth-dev $package)" "$(consumer $part)"; fi
 done
+if wanted rfsmooth-reconstruct; then
+  in_clean_system rfsmooth-reconstruct "$(deb rfsmooth rfsmooth-reconstruct)" '
+    rfsmooth reconstruct --method advancing-front --force /tmp/sphere_scan.ply /tmp/surface.ply
+    echo "said: $(grep -a -m 1 "^element face" /tmp/surface.ply)"'
+fi
 echo "packages: clean"

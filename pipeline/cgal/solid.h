@@ -26,6 +26,7 @@ struct FrontFace {
   Delaunay::Facet facet;
 };
 
+/// What the front bounds.
 struct Solid {
   std::vector<rfs_mesh::Face> faces;  ///< its boundary, a closed manifold; right-hand side outside
   double kept = 0;      ///< area of its faces that are the front's, as a share of the front's area

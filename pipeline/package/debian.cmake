@@ -22,15 +22,16 @@ string(REPLACE "\n\n" "\n.\n" LICENCE_TEXT "${LICENCE_TEXT}")
 string(REPLACE "\n" "\n " LICENCE_TEXT " ${LICENCE_TEXT}")
 string(TIMESTAMP MADE "%a, %d %b %Y %H:%M:%S +0000" UTC)  # SOURCE_DATE_EPOCH, where it is set
 
-# debian_package(component COMPONENT NAME name SECTION section DEPENDS list SUMMARY line DESCRIPTION text [GPL]):
-# what cpack makes of an installed component. dpkg-shlibdeps adds the shared libraries to DEPENDS. No ';' in the texts.
+# debian_package(component COMPONENT NAME name SECTION section [DEPENDS list] [SUGGESTS list] SUMMARY line
+# DESCRIPTION text [GPL]): what cpack makes of an installed component. dpkg-shlibdeps adds the shared libraries to DEPENDS. No ';' in the texts.
 macro(debian_package component)
-  cmake_parse_arguments(P "GPL" "NAME;SECTION;DEPENDS;SUMMARY;DESCRIPTION" "" ${ARGN})
+  cmake_parse_arguments(P "GPL" "NAME;SECTION;DEPENDS;SUGGESTS;SUMMARY;DESCRIPTION" "" ${ARGN})
   string(TOUPPER ${component} upper)
   list(APPEND CPACK_COMPONENTS_ALL ${component})
   set(CPACK_DEBIAN_${upper}_PACKAGE_NAME ${P_NAME})
   set(CPACK_DEBIAN_${upper}_PACKAGE_SECTION ${P_SECTION})
   set(CPACK_DEBIAN_${upper}_PACKAGE_DEPENDS "${P_DEPENDS}")
+  set(CPACK_DEBIAN_${upper}_PACKAGE_SUGGESTS "${P_SUGGESTS}")
   set(CPACK_DEBIAN_${upper}_DESCRIPTION "${P_SUMMARY}\n${P_DESCRIPTION}")
 
   set(PACKAGE ${P_NAME})
@@ -50,6 +51,7 @@ set(core_dev "librfsmooth-dev (= ${PROJECT_VERSION})")
 if(TARGET rfsmooth_command)
   debian_package(command NAME rfsmooth SECTION science
     SUMMARY "takes the noise out of 3-D scans"
+    SUGGESTS rfsmooth-reconstruct
     DESCRIPTION "Gives back the same point cloud with the noise gone: every point, every
 field, in the same order. Reads and writes PLY, PCD and XYZ files. The
 strength is chosen at every point from the noise that is measured first, so
@@ -64,13 +66,15 @@ if("pcl" IN_LIST components)
   debian_package(pcl NAME librfsmooth-pcl-dev SECTION libdevel
     DEPENDS "${core_dev}, libpcl-dev"
     SUMMARY "takes the noise out of 3-D scans - PCL filter"
-    DESCRIPTION "rfsmooth::pcl::Denoise, a pcl::Filter for any point type.")
+    DESCRIPTION "rfsmooth::pcl::Denoise, a pcl::Filter for any point type, and DenoiseSurface,
+which gives oriented normals too.")
 endif()
 if("open3d" IN_LIST components)
   debian_package(open3d NAME librfsmooth-open3d-dev SECTION libdevel
     DEPENDS "${core_dev}, libopen3d-dev"
     SUMMARY "takes the noise out of 3-D scans - Open3D bridge"
-    DESCRIPTION "Between rfsmooth and the Open3D library.")
+    DESCRIPTION "Denoises Open3D's point clouds in place, makes its meshes from rfsmooth's and
+hands clouds to its surface reconstruction.")
 endif()
 if("cgal" IN_LIST components)
   debian_package(cgal NAME librfsmooth-cgal-dev SECTION libdevel GPL
@@ -84,7 +88,6 @@ if(TARGET rfsmooth_reconstruct)
     DEPENDS "rfsmooth (= ${PROJECT_VERSION})"
     SUMMARY "takes the noise out of 3-D scans - surface reconstruction"
     DESCRIPTION "The program behind 'rfsmooth reconstruct': from a noisy point cloud to a
-surface mesh, by Open3D's screened Poisson and ball pivoting or CGAL's
-advancing front.")
+surface mesh.")
 endif()
 include(CPack)
