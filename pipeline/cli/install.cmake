@@ -20,6 +20,7 @@ add_custom_command(
 add_custom_target(rfsmooth_docs ALL DEPENDS ${pages} ${completions})
 
 install(TARGETS rfsmooth_command DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT command)
+list(FILTER pages EXCLUDE REGEX "/rfsmooth-reconstruct[.]")  # goes with that program
 install(FILES ${pages} DESTINATION "${CMAKE_INSTALL_MANDIR}/man1" COMPONENT command)
 install(FILES "${doc_dir}/rfsmooth" DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions" COMPONENT command)
 # Where zsh looks: Debian's keeps what packages bring apart from what an administrator puts under /usr/local.
