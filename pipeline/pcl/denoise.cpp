@@ -68,7 +68,8 @@ struct Coordinates {
       const auto* field = find(cloud, kNames[axis]);
       const bool usable = field != nullptr && (field->datatype == ::pcl::PCLPointField::FLOAT32 ||
                                                field->datatype == ::pcl::PCLPointField::FLOAT64);
-      if (!usable || (axis > 0 && field->datatype != type)) {
+      const std::size_t size = usable && field->datatype == ::pcl::PCLPointField::FLOAT64 ? 8 : 4;
+      if (!usable || field->offset + size > cloud.point_step || (axis > 0 && field->datatype != type)) {
         type = 0;
         return;
       }
@@ -128,7 +129,7 @@ void Denoise<::pcl::PCLPointCloud2>::applyFilter(PCLPointCloud2& output) {
   };
   const Coordinates coordinates(input);
   if (coordinates.type == 0) {
-    fail("the cloud needs fields x, y and z, all FLOAT32 or all FLOAT64");
+    fail("the cloud needs fields x, y and z inside its point_step, all FLOAT32 or all FLOAT64");
     return give_up();
   }
   if (input.is_bigendian != 0 || input.data.size() < size * input.point_step) {

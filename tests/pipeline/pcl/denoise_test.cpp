@@ -242,6 +242,90 @@ TEST(PclDenoiseCloud2, AnyFieldsSameCoordinatesAsTheTypedFilter) {
   EXPECT_EQ(message->data, separate.data) << "in place";
 }
 
+::pcl::PCLPointField field(const char* name, std::size_t offset, std::uint8_t type, std::size_t count) {
+  ::pcl::PCLPointField made;
+  made.name = name;
+  made.offset = std::uint32_t(offset);
+  made.datatype = type;
+  made.count = std::uint32_t(count);
+  return made;
+}
+
+/// The sheet as a camera's driver may send it: z before x, an array, rows with padding behind them.
+::pcl::PCLPointCloud2::Ptr padded_sheet() {
+  const auto points = sheet<::pcl::PointXYZ>();
+  auto cloud = ::pcl::make_shared<::pcl::PCLPointCloud2>();
+  cloud->width = 60;
+  cloud->height = 50;
+  cloud->point_step = 23;
+  cloud->row_step = 60 * 23 + 17;
+  cloud->fields = {
+      field("histogram", 0, ::pcl::PCLPointField::UINT8, 7), field("z", 7, ::pcl::PCLPointField::FLOAT32, 1),
+      field("x", 11, ::pcl::PCLPointField::FLOAT32, 1), field("y", 19, ::pcl::PCLPointField::FLOAT32, 1)};
+  cloud->data.resize(std::size_t(cloud->row_step) * 50);
+  for (std::size_t i = 0; i < cloud->data.size(); ++i) cloud->data[i] = std::uint8_t(i * 31);
+  for (std::size_t i = 0; i < points->size(); ++i) {
+    std::uint8_t* const at = &cloud->data[i / 60 * cloud->row_step + i % 60 * 23];
+    std::memcpy(at + 7, &(*points)[i].z, 4);
+    std::memcpy(at + 11, &(*points)[i].x, 4);
+    std::memcpy(at + 19, &(*points)[i].y, 4);
+  }
+  return cloud;
+}
+
+TEST(PclDenoiseCloud2, PaddingArraysAndFieldsInAnyOrderStay) {
+  const auto cloud = padded_sheet();
+  const auto points = sheet<::pcl::PointXYZ>();
+  Denoise<::pcl::PointXYZ> typed;
+  typed.setInputCloud(points);
+  ::pcl::PointCloud<::pcl::PointXYZ> expected;
+  typed.filter(expected);
+  Denoise<::pcl::PCLPointCloud2> denoise;
+  denoise.setInputCloud(cloud);
+  ::pcl::PCLPointCloud2 out;
+  denoise.filter(out);
+  ASSERT_EQ(denoise.getStatus(), "");
+  auto bytes = cloud->data;  // and nothing else has changed
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    std::uint8_t* const at = &bytes[i / 60 * cloud->row_step + i % 60 * 23];
+    std::memcpy(at + 7, &expected[i].z, 4);
+    std::memcpy(at + 11, &expected[i].x, 4);
+    std::memcpy(at + 19, &expected[i].y, 4);
+  }
+  EXPECT_EQ(out.data, bytes);
+  EXPECT_EQ(out.row_step, cloud->row_step);
+  EXPECT_EQ(out.point_step, cloud->point_step);
+}
+
+TEST(PclDenoiseCloud2, UnusableInputIsAStatusAndAnEmptyCloud) {
+  const auto expect_refused = [](Denoise<::pcl::PCLPointCloud2>& denoise, const char* what) {
+    ::pcl::PCLPointCloud2 out = *padded_sheet();
+    denoise.filter(out);
+    EXPECT_TRUE(out.data.empty()) << what;
+    EXPECT_EQ(out.width * out.height, 0u) << what;
+    EXPECT_NE(denoise.getStatus(), "") << what;
+  };
+  const auto refused = [&](const char* what, const auto& spoil) {
+    const auto cloud = padded_sheet();
+    spoil(*cloud);
+    auto denoise = quiet_filter<::pcl::PCLPointCloud2>();
+    denoise.setInputCloud(cloud);
+    expect_refused(denoise, what);
+  };
+  refused("short", [](auto& cloud) { cloud.data.resize(cloud.data.size() - 30); });
+  refused("big-endian", [](auto& cloud) { cloud.is_bigendian = 1; });
+  refused("no z", [](auto& cloud) { cloud.fields[1].name = "w"; });
+  refused("an integer x", [](auto& cloud) { cloud.fields[2].datatype = ::pcl::PCLPointField::INT32; });
+  refused("x beyond the point", [](auto& cloud) { cloud.fields[2].offset = 20; });
+  refused("no numbers", [](auto& cloud) { std::fill(cloud.data.begin(), cloud.data.end(), 0xFF); });
+
+  auto denoise = quiet_filter<::pcl::PCLPointCloud2>();
+  expect_refused(denoise, "no input");
+  denoise.setInputCloud(padded_sheet());
+  denoise.setIndices(::pcl::make_shared<::pcl::Indices>(::pcl::Indices{0, 3000}));
+  expect_refused(denoise, "an index outside");
+}
+
 TEST(PclDenoiseCloud2, RemovesAsTheTypedFilterDoes) {
   ::pcl::Indices strays;
   const auto cloud = sheet_with_strays<TimedPoint>(strays);
