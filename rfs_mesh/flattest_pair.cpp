@@ -1,10 +1,13 @@
 #include "rfsmooth/rfs_mesh/flattest_pair.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <limits>
 #include <tuple>
+
+#include <Eigen/Geometry>
 
 #include "rfsmooth/rfs_mesh/collect.h"
 #include "rfsmooth/rfs_mesh/measure.h"
@@ -20,7 +23,23 @@ constexpr int kRounds = 3;
 
 /// Dihedral angles count as equal within this step (10 degrees): on a smooth surface the flattest of several
 /// pairs is an accident of sampling, and votes and quality choose better.
-constexpr double kAngleStep = 0.17453292519943295;
+constexpr int kAngleSteps = 18;
+
+/// How far two faces (p, q, r) and (q, p, s) are folded at their edge, in steps: 0 = flat.
+int fold(const Eigen::Vector3d& p, const Eigen::Vector3d& q, const Eigen::Vector3d& r,
+         const Eigen::Vector3d& s) {
+  static const auto cosines = [] {
+    std::array<double, kAngleSteps> c{};
+    for (int k = 0; k < kAngleSteps; ++k) c[std::size_t(k)] = std::cos(M_PI * (k + 1) / kAngleSteps);
+    return c;
+  }();
+  const Eigen::Vector3d e = q - p, m = e.cross(r - p), n = (s - p).cross(e);
+  const double both = std::sqrt(m.squaredNorm() * n.squaredNorm()), dot = m.dot(n);
+  if (!(both > 0)) return kAngleSteps;
+  int steps = 0;
+  while (steps + 1 < kAngleSteps && dot <= cosines[std::size_t(steps)] * both) ++steps;
+  return steps;
+}
 
 enum class State : std::uint8_t { contender, kept, out };
 
@@ -77,7 +96,10 @@ class Chooser {
   /// Every edge from a to a higher index.
   void decide_edges_of(Index a, std::vector<Wing>& wings) {
     wings.clear();
-    for (const Index f : around_[a]) {
+    const auto faces = around_[a];
+    if (std::none_of(faces.begin(), faces.end(), [&](Index f) { return state_[f] == State::contender; }))
+      return;
+    for (const Index f : faces) {
       if (state_[f] == State::out) continue;
       const Face& v = proposed_.faces[f];
       for (int k = 0; k < 3; ++k) {
@@ -123,8 +145,8 @@ class Chooser {
   }
 
   Merit merit(Index a, const Wing& x, const Wing& y) const {
-    const double angle = dihedral_angle(at_[a], at_[x.other_end], at_[x.opposite], at_[y.opposite]);
-    return {-int((M_PI - angle) / kAngleStep), proposed_.votes[x.face] + proposed_.votes[y.face],
+    return {-fold(at_[a], at_[x.other_end], at_[x.opposite], at_[y.opposite]),
+            proposed_.votes[x.face] + proposed_.votes[y.face],
             double(quality_[x.face]) + double(quality_[y.face]), std::min(x.face, y.face),
             std::max(x.face, y.face)};
   }

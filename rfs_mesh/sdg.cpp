@@ -92,10 +92,9 @@ class Rules {
       }
     if (widest <= radians(degree <= 2 ? options_.gap_sparse : options_.gap)) return kNone;
     const double clearance = radians(options_.gap_clearance);
-    for (const Index q : terrain_.near[v]) {
-      const double into = turn(from, plane.angle(at_[q] - at_[v]));
-      if (into >= clearance && into <= widest - clearance && admissible(v, q, options_.lune)) return q;
-    }
+    const Sector inside(from + clearance, widest - 2 * clearance);
+    for (const Index q : terrain_.near[v])
+      if (inside.holds(plane.project(at_[q] - at_[v])) && admissible(v, q, options_.lune)) return q;
     return kNone;
   }
 
@@ -116,9 +115,9 @@ class Rules {
 
   /// Whether d rises more than `most` over its run along the surface at v, beyond what noise explains.
   bool steep(Index v, const Vector3d& d, double most) const {
-    const double rise = std::abs(normal(v).dot(d));
-    const double run = std::sqrt(std::max(0.0, d.squaredNorm() - rise * rise));
-    return rise > most * run + terrain_.noise;
+    const double rise = std::abs(normal(v).dot(d)), over = rise - terrain_.noise;
+    const double squared_run = std::max(0.0, d.squaredNorm() - rise * rise);
+    return over > 0 && over * over > most * most * squared_run;
   }
 
   bool admissible(Index v, Index q, double lune) const {

@@ -1,6 +1,7 @@
 /// Directions around a point in its tangent plane; internal to the connection stage.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include <Eigen/Core>
@@ -13,6 +14,20 @@ inline double radians(double degrees) {
   return degrees * (M_PI / 180);
 }
 
+/// The direction of (x, y) in (-pi, pi], within 1.5e-5 radians (a thousandth of a degree, which no threshold
+/// here is worth), 0 for the zero vector: four times as fast as std::atan2, and it is asked tens of times a
+/// point. The minimax polynomial of atan on [0, 1] of degree 11.
+inline double direction(double x, double y) {
+  const double ax = std::abs(x), ay = std::abs(y), large = std::max(ax, ay), small = std::min(ax, ay);
+  const double z = large > 0 ? small / large : 0, s = z * z;
+  double angle =
+      z * (0.99997726 +
+           s * (-0.33262347 + s * (0.19354346 + s * (-0.11643287 + s * (0.05265332 + s * -0.01172120)))));
+  angle = ay > ax ? 0.5 * M_PI - angle : angle;
+  angle = x < 0 ? M_PI - angle : angle;
+  return y < 0 ? -angle : angle;
+}
+
 /// A right-handed frame (t1, t2, normal).
 struct TangentPlane {
   Eigen::Vector3d t1, t2;
@@ -22,7 +37,7 @@ struct TangentPlane {
   Eigen::Vector2d project(const Eigen::Vector3d& d) const { return {t1.dot(d), t2.dot(d)}; }
 
   /// Direction in (-pi, pi].
-  double angle(const Eigen::Vector3d& d) const { return std::atan2(t2.dot(d), t1.dot(d)); }
+  double angle(const Eigen::Vector3d& d) const { return direction(t1.dot(d), t2.dot(d)); }
 };
 
 /// The angle in [0, 2 pi) to turn counter-clockwise from `from` to `to`, both in (-pi, pi].
@@ -36,5 +51,28 @@ inline double between(double a, double b) {
   const double t = turn(a, b);
   return t > M_PI ? 2 * M_PI - t : t;
 }
+
+/// The directions that lie `width` (at most 2 pi) counter-clockwise of `from`, both ends included; asked
+/// without angles.
+class Sector {
+ public:
+  Sector(double from, double width)
+      : first_(std::cos(from), std::sin(from)),
+        last_(std::cos(from + width), std::sin(from + width)),
+        empty_(!(width >= 0)),
+        narrow_(width <= M_PI) {}
+
+  bool holds(const Eigen::Vector2d& d) const {
+    const bool past_first = cross(first_, d) >= 0, before_last = cross(d, last_) >= 0;
+    return !empty_ && (narrow_ ? past_first && before_last : past_first || before_last);
+  }
+
+ private:
+  static double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+    return a[0] * b[1] - a[1] * b[0];
+  }
+  Eigen::Vector2d first_, last_;
+  bool empty_, narrow_;
+};
 
 }  // namespace rfsmooth::rfs_mesh

@@ -38,6 +38,12 @@ struct Candidates {
   }
 };
 
+/// A rib and its direction in the tangent plane.
+struct Rib {
+  double angle;
+  Index point;
+};
+
 class Opener {
  public:
   Opener(const Terrain& terrain, const Adjacency& graph, const UmbrellaOptions& options)
@@ -45,11 +51,16 @@ class Opener {
         at_(terrain.at),
         graph_(graph),
         options_(options),
-        cos_normal_(std::cos(radians(options.normal_angle))) {}
+        cos_normal_(std::cos(radians(options.normal_angle))),
+        cos_rib_(std::cos(radians(options.rib_angle))) {}
 
   Umbrella open(Index v) const {
-    Umbrella umbrella = choose_ribs(v);
-    span_faces(v, umbrella);
+    std::array<Rib, kMostRibs> ribs;
+    const std::size_t count = choose_ribs(v, ribs);
+    Umbrella umbrella;
+    umbrella.count = std::uint8_t(count);
+    for (std::size_t k = 0; k < count; ++k) umbrella.ribs[k] = ribs[k].point;
+    span_faces(v, ribs, umbrella);
     return umbrella;
   }
 
@@ -99,9 +110,9 @@ class Opener {
   }
 
   bool steep(Index v, const Vector3d& d) const {
-    const double rise = std::abs(terrain_.surfaces[v].normal.dot(d));
-    const double run = std::sqrt(std::max(0.0, d.squaredNorm() - rise * rise));
-    return rise > options_.steepness * run + terrain_.noise;
+    const double rise = std::abs(terrain_.surfaces[v].normal.dot(d)), over = rise - terrain_.noise;
+    const double squared_run = std::max(0.0, d.squaredNorm() - rise * rise);
+    return over > 0 && over * over > options_.steepness * options_.steepness * squared_run;
   }
 
   bool along_surface(Index v, Index q) const {
@@ -110,39 +121,35 @@ class Opener {
            !steep(v, d) && !steep(q, d);
   }
 
-  Umbrella choose_ribs(Index v) const {
+  /// The ribs of v, by angle; how many.
+  std::size_t choose_ribs(Index v, std::array<Rib, kMostRibs>& ribs) const {
     const TangentPlane plane(terrain_.surfaces[v].normal);
-    struct Rib {
-      double angle;
-      Index point;
-    };
-    std::array<Rib, kMostRibs> ribs;
     std::size_t count = 0;
-    const double apart = radians(options_.rib_angle);
+    std::array<Eigen::Vector2d, kMostRibs> taken;  // unit directions
     for (const Candidate& c : candidates(v)) {
       if (count == ribs.size()) break;
-      if (!(c.squared_length > 0) || !along_surface(v, c.point)) continue;
-      const double angle = plane.angle(at_[c.point] - at_[v]);
-      const bool taken = std::any_of(ribs.begin(), ribs.begin() + std::ptrdiff_t(count),
-                                     [&](const Rib& r) { return between(r.angle, angle) < apart; });
-      if (!taken) ribs[count++] = {angle, c.point};
+      if (!(c.squared_length > 0)) continue;
+      const Eigen::Vector2d d = plane.project(at_[c.point] - at_[v]);
+      const double length = d.norm(), close = cos_rib_ * length;
+      bool free = true;
+      for (std::size_t k = 0; k < count; ++k) free = free && !(taken[k].dot(d) > close);
+      if (!free || !along_surface(v, c.point)) continue;
+      taken[count] = length > 0 ? Eigen::Vector2d(d / length) : Eigen::Vector2d::UnitX();
+      ribs[count++] = {direction(d[0], d[1]), c.point};
     }
     std::sort(ribs.begin(), ribs.begin() + std::ptrdiff_t(count), [](const Rib& a, const Rib& b) {
       return a.angle != b.angle ? a.angle < b.angle : a.point < b.point;
     });
-    Umbrella umbrella;
-    umbrella.count = std::uint8_t(count);
-    for (std::size_t k = 0; k < count; ++k) umbrella.ribs[k] = ribs[k].point;
-    return umbrella;
+    return count;
   }
 
-  void span_faces(Index v, Umbrella& umbrella) const {
+  void span_faces(Index v, const std::array<Rib, kMostRibs>& ribs, Umbrella& umbrella) const {
     if (umbrella.count < 2) return;
-    const TangentPlane plane(terrain_.surfaces[v].normal);
     const double widest = radians(options_.face_angle);
     for (int k = 0; k < umbrella.count; ++k) {
       const Index a = umbrella.ribs[std::size_t(k)], b = umbrella.next(k);
-      const double gap = turn(plane.angle(at_[a] - at_[v]), plane.angle(at_[b] - at_[v]));
+      const double gap =
+          turn(ribs[std::size_t(k)].angle, ribs[std::size_t(k + 1 == umbrella.count ? 0 : k + 1)].angle);
       if (gap > 0 && gap <= widest && face_quality(at_[v], at_[a], at_[b]) >= options_.quality)
         umbrella.faces = std::uint16_t(umbrella.faces | 1u << k);
     }
@@ -152,7 +159,7 @@ class Opener {
   const Positions& at_;
   const Adjacency& graph_;
   const UmbrellaOptions& options_;
-  double cos_normal_;
+  double cos_normal_, cos_rib_;
 };
 
 }  // namespace
