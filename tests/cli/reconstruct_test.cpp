@@ -161,6 +161,16 @@ TEST_F(Reconstruct, MistakesHaveTheirExitCodesAndLeaveNoFile) {
   EXPECT_EQ(names(), (std::vector<std::string>{"in.ply", "three.xyz"}));
 }
 
+TEST_F(Reconstruct, CtrlCLeavesNoFile) {
+  put("large.ply", io::serialize_cloud(coloured_sphere(60000), {}, {}).value());
+  RunSetup setup;
+  setup.interrupt_after_ms = 400;
+  const Ran ran = run({"reconstruct", "--method", "poisson", "large.ply", "out.ply"}, setup);
+  EXPECT_EQ(ran.code, 130);
+  EXPECT_THAT(ran.err, HasSubstr("cancelled"));
+  EXPECT_EQ(names(), (std::vector<std::string>{"in.ply", "large.ply"}));
+}
+
 TEST_F(Reconstruct, TheProgramStandsAloneToo) {
   RunSetup setup;
   setup.folder = at("");

@@ -1,5 +1,6 @@
 /// rfsmooth-reconstruct: what `rfsmooth reconstruct` becomes. The same options, with the methods that this
 /// build has.
+#include <csignal>
 #include <string_view>
 
 #include <fcntl.h>
@@ -16,42 +17,61 @@
 
 namespace {
 
-#ifdef RFSMOOTH_HAVE_OPEN3D
-/// Standard error goes nowhere as long as this lives: the Poisson solver inside Open3D writes a line there
-/// for many a vertex, past Open3D's own log.
-class Silence {
+/// Where the handler below may write: standard error, even while it is silenced.
+volatile std::sig_atomic_t messages = STDERR_FILENO;
+
+extern "C" void cancel(int) {
+  constexpr std::string_view kLine = "rfsmooth: error: cancelled\n";
+  if (write(messages, kLine.data(), kLine.size()) < 0) _exit(130);  // nobody listens
+  _exit(130);
+}
+
+/// As long as this lives Ctrl-C ends the program: the libraries cannot be interrupted, and no file is open
+/// yet. And standard error goes nowhere: the Poisson solver inside Open3D writes a line there for many a
+/// vertex, past Open3D's own log.
+class InsideLibrary {
  public:
-  Silence() : kept_(dup(STDERR_FILENO)), nowhere_(open("/dev/null", O_WRONLY | O_CLOEXEC)) {
+  InsideLibrary() : kept_(dup(STDERR_FILENO)), nowhere_(open("/dev/null", O_WRONLY | O_CLOEXEC)) {
+    if (kept_ >= 0) messages = kept_;
+    struct sigaction action = {};
+    action.sa_handler = cancel;
+    sigemptyset(&action.sa_mask);
+    sigaction(SIGINT, &action, &interrupt_);
+    sigaction(SIGTERM, &action, &terminate_);
     if (kept_ >= 0 && nowhere_ >= 0) dup2(nowhere_, STDERR_FILENO);
   }
-  ~Silence() {
+  ~InsideLibrary() {
+    sigaction(SIGINT, &interrupt_, nullptr);
+    sigaction(SIGTERM, &terminate_, nullptr);
+    messages = STDERR_FILENO;
     if (kept_ >= 0) dup2(kept_, STDERR_FILENO);
     for (const int descriptor : {kept_, nowhere_})
       if (descriptor >= 0) close(descriptor);
   }
-  Silence(const Silence&) = delete;
-  Silence& operator=(const Silence&) = delete;
+  InsideLibrary(const InsideLibrary&) = delete;
+  InsideLibrary& operator=(const InsideLibrary&) = delete;
 
  private:
   int kept_, nowhere_;
+  struct sigaction interrupt_ = {}, terminate_ = {};
 };
 
-rfsmooth::pipeline::SurfaceMethod silenced(rfsmooth::pipeline::SurfaceMethod method) {
+rfsmooth::pipeline::SurfaceMethod guarded(rfsmooth::pipeline::SurfaceMethod method) {
   method.run = [run = std::move(method.run)](const auto& input, const auto& context) {
-    const Silence silence;
+    context.check_stop();
+    const InsideLibrary inside;
     return run(input, context);
   };
   return method;
 }
-#endif
 
 std::vector<rfsmooth::pipeline::SurfaceMethod> methods() {
   std::vector<rfsmooth::pipeline::SurfaceMethod> all;
 #ifdef RFSMOOTH_HAVE_CGAL
-  all.push_back(rfsmooth::cgal::advancing_front_method());
+  all.push_back(guarded(rfsmooth::cgal::advancing_front_method()));
 #endif
 #ifdef RFSMOOTH_HAVE_OPEN3D
-  for (auto& method : rfsmooth::open3d::surface_methods()) all.push_back(silenced(std::move(method)));
+  for (auto& method : rfsmooth::open3d::surface_methods()) all.push_back(guarded(std::move(method)));
 #endif
   return all;
 }

@@ -2,6 +2,7 @@
 /// by the same methods with the same normals and the same cleaning up (../README.md).
 #include "rfsmooth/pipeline/reconstruct.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <map>
@@ -37,19 +38,35 @@ pipeline::SurfaceMethod bare_front() {
           }};
 }
 
-/// The peer's result nearest to the true surface, chosen for this very cloud with the truth in hand.
-Cloud best_peer(const Store& store, std::uint64_t input) {
-  Cloud best;
+/// The setting of a peer with the least mean squared distance to the true surface over all shapes of the
+/// cell, as the quality benchmark picks it: with the truth in hand.
+std::string best_of_cell(const Cell& cell, std::size_t shapes) {
+  std::string best;
   double least = 0;
-  for (const auto& setting : peer_settings())
-    if (const auto row = store.row(input, setting.name);
-        row && (best.name.empty() || row->measures.p2s < least)) {
-      least = row->measures.p2s;
-      best.name = setting.name;
+  for (const auto& [setting, rows] : cell) {
+    if (rows.size() < shapes) continue;
+    double sum = 0;
+    for (const auto& [shape, row] : rows) sum += row.measures.p2s;
+    if (best.empty() || sum < least) {
+      least = sum;
+      best = setting;
     }
-  if (best.name.empty())
-    throw std::runtime_error("no peer's result in the cache: run `quality --peers-only` first");
-  best.points = store.cloud(input, best.name).value().points;
+  }
+  if (best.empty())
+    throw std::runtime_error("no peer's results in the cache: run `quality --peers-only` first");
+  return best;
+}
+
+/// The same for one shape alone: stricter.
+std::string best_of_shape(const Cell& cell, const std::string& shape) {
+  std::string best;
+  double least = 0;
+  for (const auto& [setting, rows] : cell)
+    if (const auto row = rows.find(shape);
+        row != rows.end() && (best.empty() || row->second.measures.p2s < least)) {
+      least = row->second.measures.p2s;
+      best = setting;
+    }
   return best;
 }
 
@@ -74,7 +91,7 @@ void print(const std::string& cloud, const Made& made) {
 
 /// Per method: what the marks are read from.
 struct Tally {
-  double ratios = 0, ours = 0, peers = 0;
+  double ours = 0, cell_peers = 0, shape_peers = 0, cell_ratios = 0, shape_ratios = 0;
   std::size_t cells = 0, within = 0, closed = 0, raw_loops = 0;
   std::vector<std::string> open;
 };
@@ -87,12 +104,14 @@ int run(int argc, char** argv) {
                  "knot1",        "cube",  "l-part",    "sphere", "torus"};
   plan.sizes = {10000, 50000};
   double percent = 2;
+  std::vector<std::string> only;
   CLI::App app{"surfaces from raw, peers' and rfsmooth's clouds on the closed development shapes"};
   app.add_option("--cache", plan.cache, "folder of samples and peers' results")->capture_default_str();
   app.add_option("--threads", plan.threads, "for every tool")->capture_default_str();
   app.add_option("--shapes", plan.shapes, "only these");
   app.add_option("--sizes", plan.sizes, "numbers of points")->capture_default_str();
   app.add_option("--noise", percent, "Gaussian noise, % of the radius")->capture_default_str();
+  app.add_option("--methods", only, "only these");
   CLI11_PARSE(app, argc, argv);
 
   Context context;
@@ -100,16 +119,28 @@ int run(int argc, char** argv) {
   std::vector<pipeline::SurfaceMethod> methods = open3d::surface_methods();
   methods.push_back(bare_front());
   methods.push_back(cgal::advancing_front_method());
+  if (!only.empty())
+    methods.erase(std::remove_if(methods.begin(), methods.end(),
+                                 [&](const auto& m) {
+                                   return std::find(only.begin(), only.end(), m.name) == only.end();
+                                 }),
+                  methods.end());
   const Store store(plan.cache / "peers");
   Cases cases(plan);
   std::map<std::string, Tally> tallies;
-  for (const std::size_t size : plan.sizes)
+  for (const std::size_t size : plan.sizes) {
+    const Noise noise{NoiseKind::gaussian, percent / 100, 0};
+    const Cell cell = cached_peers(plan, cases, size, noise);
+    const std::string of_cell = best_of_cell(cell, plan.shapes.size());
     for (const std::string& shape : plan.shapes) {
-      const Case one = cases.make(shape, size, {NoiseKind::gaussian, percent / 100, 0});
+      const Case one = cases.make(shape, size, noise);
+      const auto input = hash_points(one.noisy);
+      const std::string of_shape = best_of_shape(cell, shape);
       const rfs_mesh::Mesh& truth = one.truth->mesh;
       const std::vector<Cloud> clouds = {
           {"raw", one.noisy},
-          best_peer(store, hash_points(one.noisy)),
+          {of_cell, store.cloud(input, of_cell).value().points},
+          {of_shape, store.cloud(input, of_shape).value().points},
           {"rfsmooth", run_ours(one.noisy, {"rfsmooth", {}}, plan.threads).points}};
       std::printf("\n%s, genus %ld\n  %-26s %7s %7s %6s %6s %6s %6s %6s\n", one.name.c_str(),
                   pipeline::topology(truth.positions.size(), truth.faces).genus, "", "to", "from", "pieces",
@@ -119,31 +150,40 @@ int run(int argc, char** argv) {
         std::printf("  %s\n", method.name.c_str());
         Tally& tally = tallies[method.name];
         std::vector<Made> made;
-        for (const Cloud& cloud : clouds) {
-          made.push_back(make(cloud, method, bare, truth, context));
-          print(cloud.name, made.back());
+        for (std::size_t k = 0; k < clouds.size(); ++k) {
+          const bool again = k == 2 && of_shape == of_cell;
+          made.push_back(again ? made[1] : make(clouds[k], method, bare, truth, context));
+          if (!again) print(clouds[k].name, made.back());
         }
-        const double ours = made[2].error.both(), peer = made[1].error.both();
-        std::printf("    %-24s %.2f\n", "rfsmooth / peer", ours / peer);
+        const double ours = made[3].error.both(), cell_peer = made[1].error.both(),
+                     shape_peer = made[2].error.both();
+        std::printf("    %-24s %.2f (best peer of the cell), %.2f (of the shape)\n", "rfsmooth / peer",
+                    ours / cell_peer, ours / shape_peer);
         std::fflush(stdout);
-        tally.ratios += ours / peer;
         tally.ours += ours;
-        tally.peers += peer;
-        tally.within += ours <= 0.6 * peer;
+        tally.cell_peers += cell_peer;
+        tally.shape_peers += shape_peer;
+        tally.cell_ratios += ours / cell_peer;
+        tally.shape_ratios += ours / shape_peer;
+        tally.within += ours <= 0.6 * cell_peer;
         ++tally.cells;
         tally.raw_loops += made[0].topology.boundary_loops;
-        if (made[2].topology.closed_manifold() && made[2].topology.components == 1)
+        if (made[3].topology.closed_manifold() && made[3].topology.components == 1)
           ++tally.closed;
         else
           tally.open.push_back(one.name);
       }
     }
-  std::printf("\n%-20s %10s %10s %10s %10s %12s\n", "", "mean ratio", "of means", "<= 0.6", "closed",
-              "raw's holes");
+  }
+  std::printf("\n%-20s %22s %22s\n%-20s %10s %11s %10s %11s %10s %10s %12s\n", "", "of the cell's peer",
+              "of the shape's peer", "", "of means", "mean ratio", "of means", "mean ratio", "<= 0.6",
+              "closed", "raw's holes");
   for (const auto& [name, tally] : tallies) {
-    std::printf("%-20s %10.2f %10.2f %5zu / %2zu %5zu / %2zu %12.0f", name.c_str(),
-                tally.ratios / double(tally.cells), tally.ours / tally.peers, tally.within, tally.cells,
-                tally.closed, tally.cells, double(tally.raw_loops) / double(tally.cells));
+    const auto cells = double(tally.cells);
+    std::printf("%-20s %10.2f %11.2f %10.2f %11.2f %5zu / %2zu %5zu / %2zu %12.0f", name.c_str(),
+                tally.ours / tally.cell_peers, tally.cell_ratios / cells, tally.ours / tally.shape_peers,
+                tally.shape_ratios / cells, tally.within, tally.cells, tally.closed, tally.cells,
+                double(tally.raw_loops) / cells);
     if (tally.closed > 0)
       for (const std::string& shape : tally.open) std::printf("; open: %s", shape.c_str());
     std::printf("\n");
