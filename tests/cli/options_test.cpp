@@ -158,7 +158,7 @@ TEST_F(Installed, TheCommandItsManualPagesAndCompletions) {
     return run_program("gzip", {"-dc", at("usr/share/man/man1/" + name + ".1.gz")}).out;
   };
   EXPECT_EQ(page("rfsmooth"), rfsmooth({"man"}).out);
-  for (const char* command : {"denoise", "mesh", "smooth-mesh", "reconstruct", "info", "compare", "flows"})
+  for (const char* command : {"denoise", "mesh", "smooth-mesh", "info", "compare", "flows"})
     EXPECT_EQ(page(std::string("rfsmooth-") + command), rfsmooth({"man", command}).out);
   EXPECT_EQ(text("share/bash-completion/completions/rfsmooth"), rfsmooth({"completion", "bash"}).out);
   EXPECT_EQ(text("share/zsh/site-functions/_rfsmooth"), rfsmooth({"completion", "zsh"}).out);

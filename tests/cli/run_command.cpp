@@ -5,7 +5,6 @@
 #include <chrono>
 #include <csignal>
 #include <cstring>
-#include <filesystem>
 #include <iterator>
 #include <optional>
 #include <stdexcept>
@@ -48,12 +47,6 @@ Pipe open_terminal() {
   fcntl(ends.read_end, F_SETFD, FD_CLOEXEC);
   fcntl(ends.write_end, F_SETFD, FD_CLOEXEC);
   return ends;
-}
-
-std::size_t threads_of(pid_t child) {
-  std::error_code gone;
-  const std::filesystem::directory_iterator tasks("/proc/" + std::to_string(child) + "/task", gone);
-  return gone ? 0 : std::size_t(std::distance(begin(tasks), end(tasks)));
 }
 
 void close_and_forget(int& descriptor) {
@@ -130,7 +123,6 @@ Ran run_program(const std::string& program, const std::vector<std::string>& argu
         close_and_forget(in.write_end);
     }
     const auto elapsed = Clock::now() - start;
-    ran.most_threads = std::max(ran.most_threads, threads_of(child));
     if (interrupt_now(elapsed)) {
       kill(child, SIGINT);
       interrupted = Clock::now();
@@ -139,8 +131,12 @@ Ran run_program(const std::string& program, const std::vector<std::string>& argu
   }
   close_and_forget(in.write_end);
   int status = 0;
-  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  rusage usage = {};
+  while (wait4(child, &status, 0, &usage) < 0 && errno == EINTR) {
   }
+  const auto seconds = [](const timeval& t) { return double(t.tv_sec) + 1e-6 * double(t.tv_usec); };
+  ran.processor_seconds = seconds(usage.ru_utime) + seconds(usage.ru_stime);
+  ran.seconds = std::chrono::duration<double>(Clock::now() - start).count();
   if (interrupted)
     ran.seconds_after_interrupt = std::chrono::duration<double>(Clock::now() - *interrupted).count();
   ran.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);

@@ -9,8 +9,8 @@ namespace rfsmooth::test {
 struct Ran {
   int code = -1;  ///< exit code; 128 + signal if it was killed
   std::string out, err;
-  std::size_t most_threads = 0;        ///< seen at once
-  double seconds_after_interrupt = 0;  ///< from the signal to the end; 0 without one
+  double seconds = 0, processor_seconds = 0;  ///< their ratio: how many threads were at work
+  double seconds_after_interrupt = 0;         ///< from the signal to the end; 0 without one
 };
 
 struct RunSetup {
