@@ -36,7 +36,8 @@ class DenoiseSurface : public ::pcl::CloudSurfaceProcessing<PointInT, PointOutT>
   using PointCloudOut = ::pcl::PointCloud<PointOutT>;
 
   /// Where the scanner stood, world units: the points that it can see face it, and what they are connected to
-  /// follows. Not set: the cloud's sensor origin unless that is zero, which is what it is where nobody said.
+  /// follows. Not set: the cloud's sensor origin, if somebody seems to have said it (pipeline/viewpoint.h: it
+  /// or the orientation is not the default, or the cloud is organised and looks as it would from there).
   void setViewPoint(float x, float y, float z) { viewpoint_ = Eigen::Vector3d(x, y, z); }
 
   /// Back to how it was before `setViewPoint`.
@@ -47,6 +48,9 @@ class DenoiseSurface : public ::pcl::CloudSurfaceProcessing<PointInT, PointOutT>
 
  protected:
   void performProcessing(PointCloudOut& output) override;
+
+  /// The sensor origin, if it is known.
+  std::optional<Eigen::Vector3d> sensor_place(const ::pcl::PointCloud<PointInT>& cloud) const;
 
   std::optional<Eigen::Vector3d> viewpoint_;
 };

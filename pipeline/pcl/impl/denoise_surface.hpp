@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <vector>
 
 #include <pcl/common/io.h>
@@ -10,6 +11,7 @@
 
 #include "rfsmooth/pcl/denoise_surface.h"
 #include "rfsmooth/pcl/impl/denoise.hpp"
+#include "rfsmooth/pipeline/viewpoint.h"
 
 namespace rfsmooth::pcl {
 
@@ -23,6 +25,24 @@ void set_normal(PointT& point, double x, double y, double z) {
 }
 
 }  // namespace detail
+
+template <typename PointInT, typename PointOutT>
+std::optional<Eigen::Vector3d> DenoiseSurface<PointInT, PointOutT>::sensor_place(
+    const ::pcl::PointCloud<PointInT>& cloud) const {
+  const Eigen::Vector3f origin = cloud.sensor_origin_.template head<3>();
+  if (!origin.allFinite()) return std::nullopt;
+  const bool said = !origin.isZero(0) ||
+                    !cloud.sensor_orientation_.coeffs().isApprox(Eigen::Quaternionf::Identity().coeffs(), 0);
+  if (said) return origin.template cast<double>();
+  if (!cloud.isOrganized()) return std::nullopt;
+  ::pcl::Indices all(cloud.size());
+  std::iota(all.begin(), all.end(), 0);
+  std::vector<double> xyz;
+  detail::gather(cloud, all, xyz);
+  if (!pipeline::seen_from(Eigen::Vector3d::Zero(), xyz.data(), cloud.width, cloud.height, context_))
+    return std::nullopt;
+  return Eigen::Vector3d(0, 0, 0);
+}
 
 template <typename PointInT, typename PointOutT>
 void DenoiseSurface<PointInT, PointOutT>::process(PointCloudOut& output) {
@@ -52,9 +72,7 @@ void DenoiseSurface<PointInT, PointOutT>::performProcessing(PointCloudOut& outpu
   }
   const std::vector<double> before = xyz;
   std::vector<double> normals(xyz.size());
-  std::optional<Eigen::Vector3d> viewpoint = viewpoint_;
-  const Eigen::Vector3f origin = input.sensor_origin_.template head<3>();
-  if (!viewpoint && origin.allFinite() && !origin.isZero(0)) viewpoint = origin.template cast<double>();
+  const std::optional<Eigen::Vector3d> viewpoint = viewpoint_ ? viewpoint_ : sensor_place(input);
   if (!run(xyz.data(), indices.size())) return give_up();
   const ::pcl::Indices gone = removed(indices);
   std::vector<double> surface = xyz;

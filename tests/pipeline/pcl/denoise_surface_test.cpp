@@ -185,6 +185,23 @@ TEST(PclDenoiseSurfaceSides, TowardsTheViewpointOrTheSensor) {
   expect_side(-1);
 }
 
+TEST(PclDenoiseSurfaceSides, TowardsADefaultOriginOnlyWhereTheGridIsSeenFromThere) {
+  const auto cloud = sheet<::pcl::PointXYZ>();
+  cloud->sensor_origin_.setZero();
+  cloud->sensor_orientation_.setIdentity();
+  const auto right = [&](float side) {
+    std::size_t count = 0;
+    for (const auto& p : processed<::pcl::PointXYZ, ::pcl::PointNormal>(cloud))
+      count += side * p.normal_z > 0;
+    return count;
+  };
+  for (auto& p : *cloud) p.z += 100;  // as a camera at the origin sees it
+  EXPECT_EQ(right(-1), 2998u);
+  cloud->width = 3000;  // no grid: outward, as it happens
+  cloud->height = 1;
+  EXPECT_EQ(right(1), 2998u);
+}
+
 TEST(PclDenoiseSurfaceDense, IsToldByTheNormals) {
   const auto holes = sheet<::pcl::PointXYZ>();
   holes->is_dense = true;  // wrongly
