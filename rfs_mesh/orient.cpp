@@ -22,6 +22,7 @@ constexpr double kFlat = 0.01;      // volume / (area x extent) below which a pa
 // Chosen on the closed development shapes (tests/bench/normals).
 constexpr std::size_t kSamples = 50000;  // points that the winding number is asked for
 constexpr int kSteps = 4;                // more follow the noise
+constexpr double kAreaError = 0.15;      // half the share by which areas may be off
 constexpr double kClosed = 0.15;         // root mean square of w - 1/2 that a closed surface keeps below
 constexpr double kRest = 0.01;           // share of the samples in other parts that is let pass
 constexpr double kBetter = 0.8;          // of it: what votes must bring to be believed
@@ -42,9 +43,10 @@ bool turn_to_positive(const Vector3d& v) {
 class Orienter {
  public:
   Orienter(const Mesh& mesh, const std::vector<Edge>& tree, const std::vector<Edge>& bridges,
-           Positions& normals, const Context& context)
+           const Positions& calm, Positions& normals, const Context& context)
       : mesh_(mesh),
         at_(mesh.positions),
+        calm_(calm),
         tree_(tree),
         bridges_(bridges),
         normals_(normals),
@@ -54,37 +56,34 @@ class Orienter {
       if (turn_to_positive(normals_[i])) normals_[i] = -normals_[i];
     });
     std::sort(bridges_.begin(), bridges_.end());
-    measure_areas();
+    areas_ = areas(calm_);
   }
 
-  std::size_t towards(const Vector3d& viewpoint, const Positions& calm) {
-    std::vector<double> votes = seen_squarely(at_, normals_, viewpoint, spacing_, context_);
+  std::size_t towards(const Vector3d& viewpoint) {
+    const double spacing = mean_edge_length(mesh_, context_);
+    std::vector<double> votes = seen_squarely(at_, normals_, viewpoint, spacing, context_);
     for (double& vote : votes) vote = std::clamp(2 * vote, -1.0, 1.0);
-    apply(grow_regions(at_.size(), links(calm), votes, context_), normals_, votes);
+    apply(grow_regions(at_.size(), links(calm_), votes, context_), normals_, votes);
     return parts_;
   }
 
-  std::size_t outward(const Positions& calm) {
+  std::size_t outward() {
     Positions alone = normals_;
-    const Regions parts = grow_regions(at_.size(), links(calm), {}, context_);
+    const Regions parts = grow_regions(at_.size(), links(calm_), {}, context_);
     apply(parts, alone, {});
     const std::size_t count = parts_;
-    const Samples samples(*this);
-    if (!(samples.area > 0)) {  // points in a line, or too few for a face
+    // From here on the points themselves: calmer ones may have merged the very sheets to be told apart.
+    const Samples samples(at_, areas(at_));
+    if (closes(parts, alone) || !(samples.area > 0)) {
       normals_.swap(alone);
       return count;
     }
-    const Winding winding(samples.at, 0.8 * std::sqrt(samples.area / double(samples.at.size())), context_);
-    const std::vector<double> open = openness(winding, samples, parts, alone);
-    if (share_above(kClosed, open, samples, parts) <= kRest) {
-      normals_.swap(alone);
-      return count;
-    }
+    const Winding winding(samples.at, samples.softening(), context_);
     const std::vector<double> votes = gauss_votes(winding, samples);
     Positions voted = normals_;
-    // On the points themselves: calmer ones may have merged the very sheets that are to be told apart.
     apply(grow_regions(at_.size(), links(at_), votes, context_), voted, votes);
-    const std::vector<double> still_open = openness(winding, samples, parts, voted);
+    const std::vector<double> open = openness(winding, samples, parts, alone),
+                              still_open = openness(winding, samples, parts, voted);
     for_each_index(context_, at_.size(), [&](std::size_t i) {
       const Index part = parts.of_point[i];
       normals_[i] = open[part] > kClosed && still_open[part] < kBetter * open[part] ? voted[i] : alone[i];
@@ -95,20 +94,32 @@ class Orienter {
  private:
   /// Points spread evenly over the rows, each standing for several.
   struct Samples {
-    explicit Samples(const Orienter& o) {
-      const std::size_t n = o.at_.size(), m = std::min(n, kSamples);
+    Samples(const Positions& points, const std::vector<double>& areas_of_points) {
+      const std::size_t n = points.size(), m = std::min(n, kSamples);
       for (std::size_t s = 0; s < m; ++s) row.push_back(Index(s * n / m));
       for (const Index i : row) {
-        at.push_back(o.at_[i]);
-        areas.push_back(o.areas_[i] * double(n) / double(m));
+        at.push_back(points[i]);
+        areas.push_back(areas_of_points[i] * double(n) / double(m));
         area += areas.back();
       }
     }
+    double softening() const { return 0.8 * std::sqrt(area / double(at.size())); }
     std::vector<Index> row;
     Positions at;
     std::vector<double> areas;
     double area = 0;
   };
+
+  /// Whether the winding number is near 1/2 nearly everywhere, or there is no surface to ask.
+  bool closes(const Regions& parts, const Positions& normals) const {
+    const Samples samples(calm_, areas_);
+    if (!(samples.area > 0)) return true;  // points in a line, or too few for a face
+    const Winding winding(samples.at, samples.softening(), context_);
+    const std::vector<double> open = openness(winding, samples, parts, normals);
+    std::size_t above = 0;
+    for (const Index i : samples.row) above += open[parts.of_point[i]] > kClosed ? 1 : 0;
+    return double(above) <= kRest * double(samples.row.size());
+  }
 
   std::vector<SideLink> links(const Positions& at) const {
     const auto link = [&](Index a, Index b) {
@@ -129,16 +140,16 @@ class Orienter {
     return all;
   }
 
-  void measure_areas() {
-    const std::vector<double> of_faces = face_areas(mesh_, context_);
+  /// n: a third of the faces around each point, with the points at `at`.
+  std::vector<double> areas(const Positions& at) const {
     const Adjacency around = vertex_faces(mesh_, context_);
-    areas_.resize(at_.size());
-    for_each_index(context_, at_.size(), [&](std::size_t i) {
+    std::vector<double> areas(at.size());
+    for_each_index(context_, at.size(), [&](std::size_t i) {
       double sum = 0;
-      for (const Index f : around[i]) sum += of_faces[f] / 3;
-      areas_[i] = sum;
+      for (const Index f : around[i]) sum += face_cross(at, mesh_.faces[f]).norm() / 6;
+      areas[i] = sum;
     });
-    spacing_ = mean_edge_length(mesh_, context_);
+    return areas;
   }
 
   /// Turns `normals` by regions and gives each region its side.
@@ -155,7 +166,7 @@ class Orienter {
     std::vector<Sum> sums(n);
     for (std::size_t i = 0; i < n; ++i) {
       Sum& sum = sums[regions.of_point[i]];
-      sum.centre += areas_[i] * at_[i];
+      sum.centre += areas_[i] * calm_[i];
       sum.area += areas_[i];
       if (!votes.empty()) sum.vote += regions.turned[i] != 0 ? -votes[i] : votes[i];
     }
@@ -163,8 +174,8 @@ class Orienter {
       if (sum.area > 0) sum.centre /= sum.area;
     for (std::size_t i = 0; i < n; ++i) {
       Sum& sum = sums[regions.of_point[i]];
-      sum.volume += areas_[i] * (at_[i] - sum.centre).dot(normals[i]);
-      sum.extent += areas_[i] * (at_[i] - sum.centre).norm();
+      sum.volume += areas_[i] * (calm_[i] - sum.centre).dot(normals[i]);
+      sum.extent += areas_[i] * (calm_[i] - sum.centre).norm();
       sum.normal += normals[i];
     }
     std::vector<char> turn(n, 0);
@@ -223,30 +234,29 @@ class Orienter {
     }
   }
 
-  /// By part: the root mean square of w - 1/2.
+  /// By part: the root mean square of w - 1/2, or of w less its mean where that is near 1/2: areas are known
+  /// as well as the mesh has no holes and no overlaps.
   std::vector<double> openness(const Winding& winding, const Samples& samples, const Regions& parts,
                                const Positions& normals) const {
     Positions area_vectors;
     for (std::size_t s = 0; s < samples.row.size(); ++s)
       area_vectors.push_back(samples.areas[s] * normals[samples.row[s]]);
     const std::vector<double> w = winding.numbers(area_vectors, context_);
-    std::vector<double> sum(at_.size(), 0), count(at_.size(), 0);
+    std::vector<double> sum(at_.size(), 0), squares(at_.size(), 0), count(at_.size(), 0);
     for (std::size_t s = 0; s < w.size(); ++s) {
       const Index part = parts.of_point[samples.row[s]];
-      const double off = std::clamp(w[s], -0.5, 1.5) - 0.5;
-      sum[part] += off * off;
+      const double bounded = std::clamp(w[s], -0.5, 1.5);
+      sum[part] += bounded;
+      squares[part] += bounded * bounded;
       count[part] += 1;
     }
-    for (std::size_t p = 0; p < sum.size(); ++p) sum[p] = count[p] > 0 ? std::sqrt(sum[p] / count[p]) : 0;
+    for (std::size_t p = 0; p < sum.size(); ++p) {
+      if (!(count[p] > 0)) continue;
+      const double mean = sum[p] / count[p];
+      const double level = std::clamp(mean, 0.5 - kAreaError, 0.5 + kAreaError);
+      sum[p] = std::sqrt(std::max(0.0, squares[p] / count[p] - 2 * level * mean + level * level));
+    }
     return sum;
-  }
-
-  /// The share of the samples in parts of more than `limit`.
-  static double share_above(double limit, const std::vector<double>& open, const Samples& samples,
-                            const Regions& parts) {
-    std::size_t above = 0;
-    for (const Index i : samples.row) above += open[parts.of_point[i]] > limit ? 1 : 0;
-    return double(above) / double(samples.row.size());
   }
 
   /// n: how surely each sample's normal is on the right side, -1 to 1; 0 for the other points.
@@ -265,12 +275,12 @@ class Orienter {
 
   const Mesh& mesh_;
   const Positions& at_;
+  const Positions& calm_;
   const std::vector<Edge>& tree_;
   std::vector<Edge> bridges_;
   Positions& normals_;
   const Context& context_;
   std::vector<double> areas_;
-  double spacing_ = 0;
   std::size_t parts_ = 0;
 };
 
@@ -283,9 +293,8 @@ std::size_t orient(const Mesh& mesh, const std::vector<Edge>& tree, const std::v
   if (normals.size() != n || (calm != nullptr && calm->size() != n))
     throw std::invalid_argument("orient: normals and calm positions must hold one vector per vertex");
   if (n == 0) return 0;
-  Orienter orienter(mesh, tree, bridges, normals, context);
-  const Positions& at = calm != nullptr ? *calm : mesh.positions;
-  return viewpoint ? orienter.towards(*viewpoint, at) : orienter.outward(at);
+  Orienter orienter(mesh, tree, bridges, calm != nullptr ? *calm : mesh.positions, normals, context);
+  return viewpoint ? orienter.towards(*viewpoint) : orienter.outward();
 }
 
 }  // namespace rfsmooth::rfs_mesh

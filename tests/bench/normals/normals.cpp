@@ -49,6 +49,18 @@ class TrueNormals {
     }
   }
 
+  /// The share of the points whose true normals here and there are opposite: on features that are thin beside
+  /// the noise a point's side is lost.
+  double sides_lost(const Positions& here, const Positions& there) const {
+    std::vector<char> lost(here.size());
+    rfsmooth::for_each_index(Context(), here.size(), [&](std::size_t i) {
+      const auto& one = faces_[surface_.nearest(here[i]).primitive];
+      const auto& other = faces_[surface_.nearest(there[i]).primitive];
+      lost[i] = one.dot(other) < 0 ? 1 : 0;
+    });
+    return double(std::count(lost.begin(), lost.end(), 1)) / double(here.size());
+  }
+
   Score score(const Positions& at, const Normals& normals) const {
     struct Sum {
       double angle = 0, outward = 0;
@@ -106,8 +118,8 @@ Compared run_shape(const std::string& shape, std::size_t n, double noise, const 
   Compared row;
   row.ours = own.angle;
   row.outward = own.outward;
-  std::printf("%-14s %7zu %3.0f %%  %6.2f %8.3f", shape.c_str(), n, 100 * noise, own.angle,
-              100 * own.outward);
+  std::printf("%-14s %7zu %3.0f %%  %6.2f %8.3f %6.2f", shape.c_str(), n, 100 * noise, own.angle,
+              100 * own.outward, 100 * truth.sides_lost(sample->clean, smooth));
   if (with_peers) {
     Score pcl{std::numeric_limits<double>::infinity(), 0}, cgal = pcl;
     int pcl_k = 0, cgal_k = 0;
@@ -180,8 +192,10 @@ int main(int argc, char** argv) try {
   CLI11_PARSE(app, argc, argv);
 
   std::printf(
-      "mean angle to the true normal in degrees; outward in %%; peers with their best k, ours / theirs\n");
-  std::printf("%-14s %7s %5s  %6s %8s", "shape", "points", "noise", "ours", "outward");
+      "mean angle to the true normal in degrees; outward in %%; lost: points whose true normal is reversed "
+      "between where they were sampled and where they ended, in %%; peers with their best k, ours / "
+      "theirs\n");
+  std::printf("%-14s %7s %5s  %6s %8s %6s", "shape", "points", "noise", "ours", "outward", "lost");
   if (!no_peers)
     std::printf("   %12s %5s   %12s %5s %8s", "PCL (k)", "ratio", "CGAL (k)", "ratio", "outward");
   std::printf("\n");
