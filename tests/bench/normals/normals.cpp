@@ -50,7 +50,7 @@ class TrueNormals {
   }
 
   /// The share of the points whose true normals here and there are opposite: on features that are thin beside
-  /// the noise a point's side is lost.
+  /// the noise, or round a sharp edge, a point's side is lost.
   double sides_lost(const Positions& here, const Positions& there) const {
     std::vector<char> lost(here.size());
     rfsmooth::for_each_index(Context(), here.size(), [&](std::size_t i) {
