@@ -43,7 +43,7 @@ in_clean_system() {
 
 # deb NAME...: their files, as apt wants to see them.
 deb() {
-  for name in "$@"; do (cd "$debs" && echo "./$name"_*.deb); done
+  for name in "$@"; do (cd "$debs" && printf '%s ' "./$name"_*.deb); done
 }
 
 # consumer WAY: what runs in the clean system to build and run the example.
