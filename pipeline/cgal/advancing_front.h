@@ -16,9 +16,9 @@ namespace rfsmooth::cgal {
 
 /// The vertices are the points, in order (those the surface does not reach have no face); faces are oriented
 /// consistently within each piece. `normals`: n x 3, on one side: pieces are turned to agree with them, and a
-/// front that all but bounds a solid is closed; empty: neither. `longest_edge` in world units (0 = no limit)
-/// keeps the front from crossing gaps. Errors: no_usable_points if there is no surface. O(n log n), one
-/// thread, deterministic; not interruptible.
+/// front that all but bounds a solid is closed; empty: neither. Faces with an edge longer than `longest_edge`
+/// (world units; 0 = no limit), which lie across gaps, are dropped. Errors: no_usable_points if there is no
+/// surface. O(n log n), one thread, deterministic; not interruptible.
 Result<rfs_mesh::Mesh> advancing_front(const Positions& points, const Positions& normals, double longest_edge,
                                        const Context& context);
 
