@@ -3,17 +3,22 @@
 /// be told to fail at the k-th one, or to set the stop flag there (so that the stages are cancelled between
 /// any two of their polls).
 #include <atomic>
+#include <chrono>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <functional>
+#include <mutex>
 #include <new>
+#include <set>
+#include <thread>
 
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include "rfsmooth/pipeline/denoise.h"
 #include "rfsmooth/pipeline/io/io.h"
+#include "rfsmooth/rfs_mesh/parallel.h"
 #include "rfsmooth/smoothing/flow.h"
 
 #include "support/awkward_clouds.h"
@@ -159,8 +164,10 @@ TEST_P(DenoiseFailure, LeavesTheCloudAsItWas) {
 
 TEST_P(DenoiseFailure, OfAFlowLeavesTheMeshAsItWas) {
   const std::vector<double> xyz = noisy(120);
-  const auto cloud = rfs_mesh::make_working_cloud(xyz.data(), xyz.size() / 3, {});
-  const rfs_mesh::Mesh original = rfs_mesh::connect(cloud.value().points, {}, {}).value().mesh;
+  Context one;  // a worker of TBB that only now starts could meet the failure where nobody can catch it
+  one.threads = 1;
+  const auto cloud = rfs_mesh::make_working_cloud(xyz.data(), xyz.size() / 3, one);
+  const rfs_mesh::Mesh original = rfs_mesh::connect(cloud.value().points, {}, one).value().mesh;
   rfs_mesh::Mesh mesh;
   smoothing::FlowOptions options;
   options.flow = GetParam();
@@ -184,7 +191,27 @@ INSTANTIATE_TEST_SUITE_P(Flows, DenoiseFailure, ::testing::ValuesIn(all_flows())
   return name;
 });
 
+/// Returns when four threads (or as many as there are cores) have been at work: the start of a worker is
+/// inside TBB, where nobody could catch a failure.
+void start_the_workers() {
+  const std::size_t wanted = std::min(4u, std::max(1u, std::thread::hardware_concurrency()));
+  std::set<std::thread::id> seen;
+  std::mutex lock;
+  Context context;
+  context.threads = 4;
+  const auto start = std::chrono::steady_clock::now();
+  while (seen.size() < wanted && std::chrono::steady_clock::now() - start < std::chrono::seconds(20))
+    in_arena(context, [&] {
+      for_blocks(context, 8, 1, [&](std::size_t, std::size_t) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        const std::lock_guard<std::mutex> guard(lock);
+        seen.insert(std::this_thread::get_id());
+      });
+    });
+}
+
 TEST(Failure, OfThreadsLeavesTheCloudAsItWas) {
+  start_the_workers();
   // With more threads the k-th allocation is another one each time: any place will do.
   const std::vector<double> original = noisy(1000);
   for (long k = 1; k < 5000; k = k * 2 + 1) {
