@@ -13,13 +13,14 @@
 namespace rfsmooth {
 
 struct ThreadLimit::Control {
+  explicit Control(std::size_t most) : limit(tbb::global_control::max_allowed_parallelism, most) {}
   tbb::global_control limit;
 };
 
 ThreadLimit::ThreadLimit(int threads) {
   if (threads < 1) throw std::invalid_argument("ThreadLimit: at least one thread is needed");
   const auto most = std::size_t(std::min(threads, tbb::info::default_concurrency()));
-  control_.reset(new Control{tbb::global_control(tbb::global_control::max_allowed_parallelism, most)});
+  control_ = std::make_unique<Control>(most);
 }
 
 ThreadLimit::~ThreadLimit() = default;
