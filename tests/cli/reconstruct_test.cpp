@@ -166,8 +166,7 @@ TEST_F(Reconstruct, CtrlCLeavesNoFile) {
   RunSetup setup;
   setup.interrupt_after_ms = 400;
   const Ran ran = run({"reconstruct", "--method", "poisson", "large.ply", "out.ply"}, setup);
-  EXPECT_EQ(ran.code, 130);
-  EXPECT_THAT(ran.err, HasSubstr("cancelled"));
+  EXPECT_EQ(ran.code, 130) << ran.err;  // also if it comes before there is a handler
   EXPECT_EQ(names(), (std::vector<std::string>{"in.ply", "large.ply"}));
 }
 
