@@ -27,6 +27,7 @@ constexpr double kMostSigmas = 0.7;
 constexpr double kSameNormal = 0.85;  // cosine: a neighbour beyond it means an edge
 constexpr double kEdgeNormal = 0.6;   // cosine: the same, so near that the point stays
 constexpr std::size_t kFewest = 10;   // points of the quadric, twice its unknowns
+constexpr double kMostRise = 0.3;     // of the way along the surface: a quadric is not to be trusted beyond
 constexpr double kWidestGap = 2.4;    // radians between neighbours' directions: wider means a rim
 
 /// A point's surface: x(u, v) = p + u t + v b + (c3 u^2 + c4 u v + c5 v^2 + c1 u + c2 v) n.
@@ -58,7 +59,7 @@ bool surrounded(const Frame& f, const Positions& points, std::size_t i, rfs_mesh
   return widest < kWidestGap;
 }
 
-Frame make_frame(const Positions& points, const std::vector<Eigen::Vector3d>& normals, std::size_t i,
+Frame open_frame(const Positions& points, const std::vector<Eigen::Vector3d>& normals, std::size_t i,
                  rfs_mesh::Adjacency::Row near) {
   using Vector5 = Eigen::Matrix<double, 5, 1>;
   using Matrix5 = Eigen::Matrix<double, 5, 5>;
@@ -70,19 +71,6 @@ Frame make_frame(const Positions& points, const std::vector<Eigen::Vector3d>& no
   f.b = f.n.cross(f.t);
   // n points in a disk of radius r, each with the area of a hexagon: d^2 sqrt(3) / 2 = pi r^2 / n.
   f.distance = reach * std::sqrt(2 * M_PI / std::sqrt(3.0) / double(near.size()));
-  f.rim = !surrounded(f, points, i, near);
-  if (f.rim) return f;
-  // Beside an edge the points beyond it push harder than those on this side, being nearer through the air.
-  double least = kSameNormal;
-  for (std::size_t k = 0; k < kPushers; ++k) {
-    const double cosine = std::abs(normals[near[k]].dot(f.n));
-    if (cosine < kEdgeNormal) return f;
-    if (cosine >= least) continue;
-    least = cosine;
-    const Eigen::Vector3d edge = f.n.cross(normals[near[k]]);
-    f.along = Eigen::Vector2d(edge.dot(f.t), edge.dot(f.b)).normalized();
-    f.slides = true;
-  }
   Matrix5 a = Matrix5::Zero();
   Vector5 right = Vector5::Zero();
   std::size_t same = 0;
@@ -102,7 +90,49 @@ Frame make_frame(const Positions& points, const std::vector<Eigen::Vector3d>& no
   return f;
 }
 
+/// The frame of a point to be pushed: whether it may move, and how.
+Frame make_frame(const Positions& points, const std::vector<Eigen::Vector3d>& normals, std::size_t i,
+                 rfs_mesh::Adjacency::Row near) {
+  Frame f = open_frame(points, normals, i, near);
+  if (!(f.distance > 0)) return f;
+  f.rim = !surrounded(f, points, i, near);
+  if (f.rim) f.movable = false;
+  // Beside an edge the points beyond it push harder than those on this side, being nearer through the air.
+  double least = kSameNormal;
+  for (std::size_t k = 0; k < kPushers; ++k) {
+    const double cosine = std::abs(normals[near[k]].dot(f.n));
+    if (cosine < kEdgeNormal) f.movable = false;
+    if (cosine >= least) continue;
+    least = cosine;
+    const Eigen::Vector3d edge = f.n.cross(normals[near[k]]);
+    f.along = Eigen::Vector2d(edge.dot(f.t), edge.dot(f.b)).normalized();
+    f.slides = true;
+  }
+  return f;
+}
+
 }  // namespace
+
+void slide_back(Positions& points, const Positions& before, double share, const Context& context) {
+  const std::size_t n = points.size();
+  if (n <= std::size_t(kNear)) return;
+  const rfs_mesh::SpatialIndex index(points, context);
+  const rfs_mesh::NeighborTable near = index.nearest(kNear, context);
+  std::vector<Eigen::Vector3d> normals(n);
+  for_each_index(context, n, [&](std::size_t i) { normals[i] = plane_normal(points, i, near[i]); });
+  Positions back = points;
+  for_each_index(context, n, [&](std::size_t i) {
+    const Frame f = open_frame(points, normals, i, near[i]);
+    if (!(f.distance > 0)) return;
+    const Eigen::Vector3d offset = before[i] - points[i];
+    const Eigen::Vector2d along = share * Eigen::Vector2d(offset.dot(f.t), offset.dot(f.b));
+    const Eigen::Vector3d flat = points[i] + along.x() * f.t + along.y() * f.b;
+    const double rise = f.movable ? (f.at(points[i], along) - flat).dot(f.n) : 0;
+    const double most = kMostRise * along.norm();
+    back[i] = flat + std::clamp(rise, -most, most) * f.n;
+  });
+  points = std::move(back);
+}
 
 Equalized equalize(Positions& points, double sigma, double spacing, const Context& context) {
   const std::size_t n = points.size();

@@ -28,6 +28,13 @@ struct Equalized {
   double rms = 0, largest = 0;
 };
 
+/// Gives smoothed points back a share of where they were along the surface: a fairing also moves points
+/// sideways, and where they were says more of where they belong than where their neighbours are. Each point
+/// goes to `share` (0 to 1) of the tangential offset of `before` (n x 3, its noisy place), on the quadric
+/// through the smoothed points around it, rising by at most 0.3 of the way. With share 1 what is left of the
+/// smoothing is a move along the normal. O(n log n), parallel, the same bits for any number of threads.
+void slide_back(Positions& points, const Positions& before, double share, const Context& context);
+
 /// Moves `points` (n x 3, near a surface), which noise with standard deviation `sigma` (world units) had
 /// moved. No point moves farther along the surface than half the local distance between points, half of
 /// `spacing` (world units), or 0.7 sigma: noise has hardly carried it farther. O(n log n), parallel, the same

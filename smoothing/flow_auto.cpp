@@ -40,8 +40,10 @@ class AutomaticFlow : public Flow {
       }
     }
     report_.emplace();
-    const Positions before = local.empty() ? Positions() : mesh.positions;
+    const Positions before = mesh.positions;
     mesh.positions = automatic_smoothing(mesh, strength_ * sigma, spacing, *report_, context);
+    // Without evening out, points move along normals only.
+    if (!equalize_ && report_->guide_strength > 0) slide_back(mesh.positions, before, 1, context);
     if (equalize_ && report_->guide_strength > 0) {
       const Equalized moved = equalize(mesh.positions, strength_ * sigma, spacing, context);
       report_->equalized = moved.rms;

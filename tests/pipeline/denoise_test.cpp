@@ -268,6 +268,25 @@ TEST(Denoise, AStrayStaysAndDragsNobody) {
   EXPECT_LE(with.largest_move, 2 * without.largest_move);
 }
 
+TEST(Denoise, WithoutEqualizingPointsMoveAlongNormalsOnly) {
+  const Flat before = sphere(4000);
+  DenoiseOptions options;
+  options.flow.equalize = false;
+  Flat after = before;
+  const DenoiseReport report = run(after, options);
+  EXPECT_EQ(report.equalized_largest, 0);
+  double along = 0, across = 0;
+  for (std::size_t i = 0; i < before.size(); i += 3) {
+    const Eigen::Vector3d from(&before[i]), move = Eigen::Vector3d(&after[i]) - from, n = from.normalized();
+    along += std::pow(move.dot(n), 2);
+    across += (move - n * n.dot(move)).squaredNorm();
+  }
+  EXPECT_LT(std::sqrt(across), 0.1 * std::sqrt(along));
+  after = before;
+  options.flow.equalize = true;
+  EXPECT_GT(run(after, options).equalized_rms, 0);
+}
+
 TEST(Denoise, NoPointLeavesItsRing) {
   // A sheet of spacing 1 whose last two rows are farther apart.
   Flat xyz;
