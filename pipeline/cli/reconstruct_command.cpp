@@ -100,10 +100,10 @@ std::vector<std::string> as_typed(const Invocation& typed, const std::vector<Com
   for (const auto& [name, text] : typed.options) {
     bool flag = false;
     for (const CommandOption& o : options) flag = flag || (o.name == name && o.kind == ValueKind::flag);
-    if (flag)
-      words.push_back((text == "true" ? "--" : "--no-") + name);
-    else
-      words.push_back("--" + name + "=" + text);
+    std::string word = flag && text != "true" ? "--no-" : "--";
+    word += name;
+    if (!flag) word.append("=").append(text);
+    words.push_back(std::move(word));
   }
   words.insert(words.end(), typed.arguments.begin(), typed.arguments.end());
   return words;

@@ -23,6 +23,9 @@
 
 #include "support/awkward_clouds.h"
 
+// With the sanitizers, GCC inlines half of a pair of new and delete and takes the other half for a stranger.
+#pragma GCC diagnostic ignored "-Wmismatched-new-delete"
+
 namespace {
 
 std::atomic<long> countdown{-1};  // -1: not armed; counts allocations down to 0
