@@ -238,8 +238,9 @@ bool is_writable_as_is(const Cloud& cloud, Format format) {
   if (format != cloud.format || format != Format::off) return format == cloud.format;
   const std::vector<std::size_t> in_order = off_fields(cloud);
   const std::vector<Field>& fields = cloud.points().fields;
+  std::size_t named = 0;  // OFF keeps unnamed columns between the named ones, ahead of texture coordinates
   for (std::size_t f = 0; f < fields.size(); ++f)
-    if (!is_unnamed(fields[f]) && (f >= in_order.size() || in_order[f] != f)) return false;
+    if (!is_unnamed(fields[f]) && (named >= in_order.size() || in_order[named++] != f)) return false;
   return true;
 }
 
