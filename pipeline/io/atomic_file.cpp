@@ -17,6 +17,11 @@ namespace {
 // Between polls for a cancel.
 constexpr std::size_t kChunk = std::size_t{16} << 20;
 
+// From here on the room is asked for before it is filled: a full disk says so before anything is written, and
+// ext4 need not hurry the bytes to the disk when the file takes another's name (it does for blocks not yet
+// placed).
+constexpr std::size_t kReserve = std::size_t{1} << 20;
+
 [[noreturn]] void refuse(const std::filesystem::path& target, const std::string& why) {
   throw Failure({ErrorCode::cannot_write, fmt::format("{}: {}", target.string(), why)});
 }
@@ -102,6 +107,7 @@ AtomicFile::~AtomicFile() {
 }
 
 void AtomicFile::write(std::string_view bytes) {
+  if (!temporary_.empty() && bytes.size() >= kReserve) reserve(bytes.size());
   while (!bytes.empty()) {
     context_.check_stop();
     const ssize_t put = ::write(file_, bytes.data(), std::min(bytes.size(), kChunk));
@@ -109,6 +115,12 @@ void AtomicFile::write(std::string_view bytes) {
     if (put < 0) fail("cannot write", errno);
     bytes.remove_prefix(std::size_t(put));
   }
+}
+
+void AtomicFile::reserve(std::size_t size) {
+  const off_t end = ::lseek(file_, 0, SEEK_CUR);
+  if (end < 0 || ::fallocate(file_, FALLOC_FL_KEEP_SIZE, end, off_t(size)) == 0) return;
+  if (errno == ENOSPC || errno == EDQUOT || errno == EFBIG) fail("cannot write", errno);
 }
 
 void AtomicFile::commit(bool sync) {

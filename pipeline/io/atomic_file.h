@@ -29,6 +29,7 @@ class AtomicFile : public Sink {
   void commit(bool sync);
 
  private:
+  void reserve(std::size_t size);
   [[noreturn]] void fail(const std::string& what, int error) const;
 
   std::filesystem::path shown_, target_, temporary_;
