@@ -1,9 +1,11 @@
 #include "rfsmooth/smoothing/height_field.h"
 
 #include <algorithm>
-#include <cmath>
+#include <utility>
 
+#include "rfsmooth/rfs_mesh/collect.h"
 #include "rfsmooth/rfs_mesh/parallel.h"
+#include "rfsmooth/rfs_mesh/sides.h"
 #include "rfsmooth/smoothing/plane_normal.h"
 
 namespace rfsmooth::smoothing {
@@ -12,13 +14,14 @@ namespace {
 
 constexpr int kNear = 32;           // neighbours over which values are averaged
 constexpr std::size_t kPlane = 24;  // neighbours of the plane that gives the normal
+constexpr std::size_t kLinked = 8;  // neighbours with which a normal agrees on a side; 6 leave islands
 constexpr double kSameSheet = 0.5;  // cosine of 60 degrees
 
 }  // namespace
 
 double same_sheet(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   const double cosine = a.dot(b);
-  return std::abs(cosine) < kSameSheet ? 0 : cosine * cosine;
+  return cosine < kSameSheet ? 0 : cosine * cosine;
 }
 
 HeightField::HeightField(Positions guide, const Positions& data, const Context& context)
@@ -29,7 +32,27 @@ HeightField::HeightField(Positions guide, const Positions& data, const Context& 
     const auto near = near_[i];
     normals_[i] = plane_normal(guide_, i, {near.begin(), near.begin() + std::min(near.size(), kPlane)});
     if (!normals_[i].allFinite()) normals_[i] = Eigen::Vector3d::UnitZ();
-    heights_[i] = normals_[i].dot(data[i] - guide_[i]);
+  });
+  orient(context);
+  for_each_index(context, size(), [&](std::size_t i) { heights_[i] = normals_[i].dot(data[i] - guide_[i]); });
+}
+
+void HeightField::orient(const Context& context) {
+  const auto linked = [&](std::size_t i) {
+    const auto near = near_[i];
+    return std::make_pair(near.begin(), near.begin() + std::min(near.size(), kLinked));
+  };
+  const auto links = rfs_mesh::collect<rfs_mesh::SideLink>(context, size(), [&](std::size_t i, auto&& emit) {
+    const auto [first, last] = linked(i);
+    for (auto j = first; j != last; ++j) {
+      const auto [back, end] = linked(*j);
+      if (*j < i && std::find(back, end, Index(i)) != end) continue;  // the other has this link
+      emit({Index(i), *j, float(normals_[i].dot(normals_[*j])), 1});
+    }
+  });
+  const rfs_mesh::Regions regions = rfs_mesh::grow_regions(size(), links, {}, context);
+  for_each_index(context, size(), [&](std::size_t i) {
+    if (regions.turned[i] != 0) normals_[i] = -normals_[i];
   });
 }
 

@@ -3,7 +3,9 @@
 ///     x_i = g_i + z_i n_i + (a tangential rest that is left alone)
 ///
 /// The guide g lies near the surface, its neighbourhoods and normals are calm; what is left to estimate is
-/// one number a point. The normals are those of the plane through the nearest guide points, side arbitrary.
+/// one number a point. The normals are those of the plane through the nearest guide points, and point to one
+/// side along the guide (Hoppe et al. 1992, 3.3, grown together by sides.h): the two sheets of a thin wall
+/// have opposite normals however near they are to each other. Which of the two sides is arbitrary.
 #pragma once
 
 #include <vector>
@@ -33,6 +35,8 @@ class HeightField {
   std::vector<double> local_mean(const std::vector<double>& values, const Context& context) const;
 
  private:
+  void orient(const Context& context);
+
   Positions guide_;
   rfs_mesh::SpatialIndex index_;
   rfs_mesh::NeighborTable near_;
@@ -40,7 +44,7 @@ class HeightField {
   std::vector<double> heights_;
 };
 
-/// cos^2 of the angle between two normals of any side; 0 beyond 60 degrees: another sheet, or round an edge.
+/// cos^2 of the angle between two normals; 0 beyond 60 degrees: another sheet, or round an edge.
 double same_sheet(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
 
 }  // namespace rfsmooth::smoothing

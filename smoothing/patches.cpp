@@ -71,7 +71,7 @@ void Patches::fit_one(std::size_t s, const std::vector<double>& sigma,
   for (std::size_t k = 0; k < std::min(near.size(), kAxis); ++k) {
     const Eigen::Vector3d& n = normals[near[k].index];
     if (same_sheet(n, normals[seed]) == 0) continue;
-    patch.axis += n.dot(normals[seed]) < 0 ? Eigen::Vector3d(-n) : n;
+    patch.axis += n;
   }
   patch.axis.normalize();
   // A little beyond the farthest point, so that it counts.

@@ -69,4 +69,27 @@ TEST_P(DenoiseQuality, TheLaplacianShrinksVisiblyMore) {
 
 INSTANTIATE_TEST_SUITE_P(Shapes, DenoiseQuality, ::testing::Values("sphere", "torus", "cube"));
 
+// Each sheet has its own noise to average, not the other's: the wall keeps its thickness and its flatness.
+TEST(DenoiseQuality, TheSheetsOfAThinWallStayApart) {
+  for (const double share : {0.3, 0.5}) {
+    const double thickness = 0.06;
+    const Positions clean = clouds::sample(*clouds::make_plate(thickness), 12000, 1);
+    const double spacing = clouds::mean_spacing(clean);
+    ASSERT_NEAR(thickness / spacing, 3.5, 0.5);
+    Positions points = clean;
+    clouds::add_noise(points, share * spacing, 2);
+    ASSERT_TRUE(pipeline::denoise(points[0].data(), points.size(), {}, {}).ok());
+    double height[2] = {0, 0}, count[2] = {0, 0}, squares = 0;
+    for (std::size_t i = 0; i < clean.size(); ++i) {
+      if (std::abs(clean[i].x()) > 1 - 4 * spacing || std::abs(clean[i].y()) > 0.8 - 4 * spacing) continue;
+      const std::size_t side = clean[i].z() > 0 ? 1 : 0;
+      height[side] += points[i].z();
+      count[side] += 1;
+      squares += (points[i] - clean[i]).z() * (points[i] - clean[i]).z();
+    }
+    EXPECT_NEAR((height[1] / count[1] - height[0] / count[0]) / thickness, 1, 0.03) << share;
+    EXPECT_LT(std::sqrt(squares / (count[0] + count[1])), 0.6 * share * spacing) << share;
+  }
+}
+
 }  // namespace
