@@ -28,7 +28,9 @@ constexpr double kSameNormal = 0.85;  // cosine: a neighbour beyond it means an 
 constexpr double kEdgeNormal = 0.6;   // cosine: the same, so near that the point stays
 constexpr std::size_t kFewest = 10;   // points of the quadric, twice its unknowns
 constexpr double kMostRise = 0.3;     // of the way along the surface: a quadric is not to be trusted beyond
-constexpr double kWidestGap = 2.4;    // radians between neighbours' directions: wider means a rim
+constexpr double kShare = 0.75;  // of the tangential offset that is given back at little noise; the rims of
+constexpr double kShareUpTo = 1.6;  // open sheets want it up to this many sigma per spacing
+constexpr double kWidestGap = 2.4;  // radians between neighbours' directions: wider means a rim
 
 /// A point's surface: x(u, v) = p + u t + v b + (c3 u^2 + c4 u v + c5 v^2 + c1 u + c2 v) n.
 struct Frame {
@@ -43,6 +45,16 @@ struct Frame {
     return p + u * t + v * b +
            (quadric[0] * u + quadric[1] * v + quadric[2] * u * u + quadric[3] * u * v + quadric[4] * v * v) *
                n;
+  }
+  /// The part along the surface; 0 where there is none.
+  Eigen::Vector2d offset(const Eigen::Vector3d& d) const {
+    return distance > 0 ? Eigen::Vector2d(d.dot(t), d.dot(b)) : Eigen::Vector2d(0, 0);
+  }
+  /// As at(), for a long way: over the quadric where there is one, but rising by no more than a share of it.
+  Eigen::Vector3d slide(const Eigen::Vector3d& p, const Eigen::Vector2d& m) const {
+    if (!(distance > 0)) return p;
+    const double most = kMostRise * m.norm(), rise = movable ? (at(p, m) - p).dot(n) : 0;
+    return p + m.x() * t + m.y() * b + std::clamp(rise, -most, most) * n;
   }
 };
 
@@ -120,21 +132,16 @@ void slide_back(Positions& points, const Positions& before, double share, const 
   const rfs_mesh::NeighborTable near = index.nearest(kNear, context);
   std::vector<Eigen::Vector3d> normals(n);
   for_each_index(context, n, [&](std::size_t i) { normals[i] = plane_normal(points, i, near[i]); });
-  Positions back = points;
+  Positions back(n);
   for_each_index(context, n, [&](std::size_t i) {
     const Frame f = open_frame(points, normals, i, near[i]);
-    if (!(f.distance > 0)) return;
-    const Eigen::Vector3d offset = before[i] - points[i];
-    const Eigen::Vector2d along = share * Eigen::Vector2d(offset.dot(f.t), offset.dot(f.b));
-    const Eigen::Vector3d flat = points[i] + along.x() * f.t + along.y() * f.b;
-    const double rise = f.movable ? (f.at(points[i], along) - flat).dot(f.n) : 0;
-    const double most = kMostRise * along.norm();
-    back[i] = flat + std::clamp(rise, -most, most) * f.n;
+    back[i] = f.slide(points[i], share * f.offset(before[i] - points[i]));
   });
   points = std::move(back);
 }
 
-Equalized equalize(Positions& points, double sigma, double spacing, const Context& context) {
+Equalized equalize(Positions& points, const Positions& before, double sigma, double spacing,
+                   const Context& context) {
   const std::size_t n = points.size();
   if (n <= std::size_t(kNear) || !(sigma > 0)) return {};
   const rfs_mesh::SpatialIndex index(points, context);
@@ -151,8 +158,15 @@ Equalized equalize(Positions& points, double sigma, double spacing, const Contex
     for (std::size_t k = 0; k < kPushers; ++k) inside[i] &= char(!frames[near[i][k]].rim);
   });
 
-  Positions now = points, next = points;
-  std::vector<Eigen::Vector2d> moved(n, Eigen::Vector2d::Zero());
+  const double noise = sigma / (kShareUpTo * spacing),
+               given_back = kShare / (1 + noise * noise * noise * noise);
+  Positions now(n);
+  std::vector<Eigen::Vector2d> start(n), moved(n, Eigen::Vector2d::Zero());
+  for_each_index(context, n, [&](std::size_t i) {
+    start[i] = given_back * frames[i].offset(before[i] - points[i]);
+    now[i] = frames[i].slide(points[i], start[i]);
+  });
+  Positions next = now;
   for (int step = 0; step < kSteps; ++step) {
     for_each_index(context, n, [&](std::size_t i) {
       const Frame& f = frames[i];
@@ -171,7 +185,7 @@ Equalized equalize(Positions& points, double sigma, double spacing, const Contex
       moved[i] += std::min(kStep, kGain * share * share) * reach * force;
       const double limit = std::min(kMost * std::min(f.distance, spacing), kMostSigmas * sigma);
       if (const double length = moved[i].norm(); length > limit) moved[i] *= limit / length;
-      next[i] = f.at(points[i], moved[i]);
+      next[i] = f.slide(points[i], start[i] + moved[i]);
     });
     now.swap(next);
     next = now;

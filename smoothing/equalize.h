@@ -1,6 +1,12 @@
 /// Evens a smoothed cloud out along its surface, where noise made the points clump.
 ///
-/// Every point is pushed along its tangent plane by the neighbours that are too near,
+/// A fairing also moves points sideways, towards the middle of their neighbours: at rims that is inwards.
+/// Where noise sigma is small against the spacing h, where a point was says more of where it belongs, so
+/// first it goes back by a share of its tangential offset,
+///
+///     0.75 / (1 + (sigma / 1.6 h)^4).
+///
+/// Then every point is pushed along its tangent plane by the neighbours that are too near,
 ///
 ///     f_i = sum_j max(0, 1 - d_ij / R)^2 (x_i - x_j)_tangential / d_ij,
 ///
@@ -28,17 +34,17 @@ struct Equalized {
   double rms = 0, largest = 0;
 };
 
-/// Gives smoothed points back a share of where they were along the surface: a fairing also moves points
-/// sideways, and where they were says more of where they belong than where their neighbours are. Each point
-/// goes to `share` (0 to 1) of the tangential offset of `before` (n x 3, its noisy place), on the quadric
-/// through the smoothed points around it, rising by at most 0.3 of the way. With share 1 what is left of the
-/// smoothing is a move along the normal. O(n log n), parallel, the same bits for any number of threads.
+/// Gives smoothed points back a share of where they were along the surface. Each point goes to `share` (0 to
+/// 1) of the tangential offset of `before` (n x 3, its noisy place), on the quadric through the smoothed
+/// points around it, rising by at most 0.3 of the way. With share 1 what is left of the smoothing is a move
+/// along the normal. O(n log n), parallel, the same bits for any number of threads.
 void slide_back(Positions& points, const Positions& before, double share, const Context& context);
 
 /// Moves `points` (n x 3, near a surface), which noise with standard deviation `sigma` (world units) had
-/// moved. No point moves farther along the surface than half the local distance between points, half of
-/// `spacing` (world units), or 0.7 sigma: noise has hardly carried it farther. O(n log n), parallel, the same
-/// bits for any number of threads.
-Equalized equalize(Positions& points, double sigma, double spacing, const Context& context);
+/// moved; `before` (n x 3): where they were then. By pushing no point moves farther along the surface than
+/// half the local distance between points, half of `spacing` (world units), or 0.7 sigma: noise has hardly
+/// carried it farther. O(n log n), parallel, the same bits for any number of threads.
+Equalized equalize(Positions& points, const Positions& before, double sigma, double spacing,
+                   const Context& context);
 
 }  // namespace rfsmooth::smoothing

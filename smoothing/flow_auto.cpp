@@ -45,7 +45,7 @@ class AutomaticFlow : public Flow {
     // Without evening out, points move along normals only.
     if (!equalize_ && report_->guide_strength > 0) slide_back(mesh.positions, before, 1, context);
     if (equalize_ && report_->guide_strength > 0) {
-      const Equalized moved = equalize(mesh.positions, strength_ * sigma, spacing, context);
+      const Equalized moved = equalize(mesh.positions, before, strength_ * sigma, spacing, context);
       report_->equalized = moved.rms;
       report_->equalized_most = moved.largest;
     }

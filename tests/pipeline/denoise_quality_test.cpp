@@ -92,4 +92,24 @@ TEST(DenoiseQuality, TheSheetsOfAThinWallStayApart) {
   }
 }
 
+TEST(DenoiseQuality, TheRimOfAnOpenSheetStaysWithinAThirdOfASpacing) {
+  const Positions clean = clouds::sample(*clouds::make_wavy_sheet(), 10000, 1);
+  const double spacing = clouds::mean_spacing(clean);
+  for (const double share : {0.5, 1.0}) {
+    Positions points = clean;
+    clouds::add_noise(points, share * spacing, 2);
+    ASSERT_TRUE(pipeline::denoise(points[0].data(), points.size(), {}, {}).ok());
+    double inward = 0, count = 0;
+    for (std::size_t i = 0; i < clean.size(); ++i) {
+      for (int axis = 0; axis < 2; ++axis) {
+        if (std::abs(clean[i][axis]) < 1 - spacing / 2) continue;
+        inward += std::copysign(1, clean[i][axis]) * (clean[i] - points[i])[axis];
+        count += 1;
+      }
+    }
+    ASSERT_GT(count, 200);
+    EXPECT_LT(inward / count, 0.3 * spacing) << share;
+  }
+}
+
 }  // namespace

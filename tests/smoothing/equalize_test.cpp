@@ -37,10 +37,16 @@ Positions random_sphere(std::size_t n) {
   return points;
 }
 
+/// Of points that nothing has smoothed: they are where they were before.
+smoothing::Equalized spread(Positions& points, double sigma, double spacing, const Context& context) {
+  const Positions before = points;
+  return equalize(points, before, sigma, spacing, context);
+}
+
 TEST(Equalize, EvensAClumpedSphereAndStaysOnIt) {
   Positions points = random_sphere(4000);
   const Positions before = points;
-  const double spacing = std::sqrt(4 * M_PI / 4000), moved = equalize(points, 1, 1, {}).rms;
+  const double spacing = std::sqrt(4 * M_PI / 4000), moved = spread(points, 1, 1, {}).rms;
   EXPECT_LT(unevenness(points), 0.7 * unevenness(before));
   EXPECT_GT(moved, 0);
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -53,10 +59,10 @@ TEST(Equalize, EvensAClumpedSphereAndStaysOnIt) {
 TEST(Equalize, NoPointMovesFartherThanAsked) {
   Positions points = random_sphere(2000);
   const Positions before = points;
-  equalize(points, 0.001 / 0.7, 1, {});
+  spread(points, 0.001 / 0.7, 1, {});
   for (std::size_t i = 0; i < points.size(); ++i) EXPECT_LT((points[i] - before[i]).norm(), 0.0011);
   points = before;
-  EXPECT_EQ(equalize(points, 0, 1, {}).largest, 0);
+  EXPECT_EQ(spread(points, 0, 1, {}).largest, 0);
   EXPECT_EQ(points, before);
 }
 
@@ -65,7 +71,7 @@ TEST(Equalize, ARegularGridAndItsRimStayWhereTheyAre) {
   for (int i = 0; i < 30; ++i)
     for (int j = 0; j < 30; ++j) points.emplace_back(i, j, 0);
   const Positions before = points;
-  equalize(points, 1, 1, {});
+  spread(points, 1, 1, {});
   for (std::size_t i = 0; i < points.size(); ++i) EXPECT_LT((points[i] - before[i]).norm(), 0.05) << i;
 }
 
@@ -74,7 +80,7 @@ TEST(Equalize, TheRimOfAnOpenSheetStays) {
   std::uniform_real_distribution<double> uniform(0, 30);
   Positions points;
   for (int i = 0; i < 900; ++i) points.emplace_back(uniform(engine), uniform(engine), 0);
-  equalize(points, 1, 1, {});
+  spread(points, 1, 1, {});
   for (const auto& p : points) {
     EXPECT_GT(p.minCoeff(), -0.3);
     EXPECT_LT(p.maxCoeff(), 30.3);
@@ -88,7 +94,7 @@ TEST(Equalize, TheRimDoesNotMoveInward) {
     const double spacing = clouds::mean_spacing(points);
     clouds::add_noise(points, 0.2 * noise * spacing, 2);
     const Positions before = points;
-    equalize(points, noise * spacing, spacing, {});
+    spread(points, noise * spacing, spacing, {});
     double inward = 0;
     std::size_t rim = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -107,7 +113,7 @@ TEST(Equalize, SharpEdgesStayWhereTheyAre) {
   Positions points = clouds::sample(*shape, 4000, 1);
   const double spacing = clouds::mean_spacing(points);
   const Positions before = points;
-  equalize(points, spacing, spacing, {});
+  spread(points, spacing, spacing, {});
   double away = 0, off = 0;  // points slide along an edge, but not away from it nor off the faces
   std::size_t edge = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -121,15 +127,29 @@ TEST(Equalize, SharpEdgesStayWhereTheyAre) {
   EXPECT_LT(std::sqrt(off / double(points.size())), 0.05 * spacing);
 }
 
+// At noise of a quarter of a spacing three quarters of the way back; at four spacings next to nothing.
+TEST(Equalize, WhatWasMovedSidewaysGoesBackWhereNoiseIsSmall) {
+  Positions before;
+  for (int i = 0; i < 30; ++i)
+    for (int j = 0; j < 30; ++j) before.emplace_back(i, j, 0);
+  const Eigen::Vector3d aside(0.2, -0.1, 0);
+  for (const auto& [noise, share] : {std::pair{0.25, 0.75}, {4.0, 0.019}}) {
+    Positions points = before;
+    for (auto& p : points) p += aside;
+    equalize(points, before, noise, 1, {});
+    for (std::size_t i = 0; i < points.size(); ++i)
+      EXPECT_LT((points[i] - before[i] - (1 - share) * aside).norm(), 0.01) << noise;
+  }
+}
+
 TEST(Equalize, AnEvenCloudStaysAsItIs) {
   const auto shape = clouds::make_sphere();
   const Positions before = clouds::sample(*shape, 4000, 1);
   const double spacing = clouds::mean_spacing(before);
   Positions points = before;
-  EXPECT_LT(equalize(points, 0.1 * spacing, spacing, {}).rms, 0.02 * spacing)
-      << "little noise, little to undo";
+  EXPECT_LT(spread(points, 0.1 * spacing, spacing, {}).rms, 0.02 * spacing) << "little noise, little to undo";
   points = before;
-  equalize(points, 2 * spacing, spacing, {});
+  spread(points, 2 * spacing, spacing, {});
   EXPECT_LE(unevenness(points), unevenness(before));
 }
 
@@ -137,7 +157,7 @@ TEST(Equalize, NoPointMovesMoreThanHalfASpacing) {
   Positions points = random_sphere(3000);
   const Positions before = points;
   const double spacing = clouds::mean_spacing(points);
-  const auto moved = equalize(points, 10, spacing, {});
+  const auto moved = spread(points, 10, spacing, {});
   EXPECT_LE(moved.largest, 0.5 * spacing * (1 + 1e-12));
   EXPECT_GT(moved.largest, 0.49 * spacing);
   EXPECT_LE(moved.rms, moved.largest);
@@ -152,10 +172,10 @@ TEST(Equalize, TurnsWithTheCloudAndIsTheSameForAnyNumberOfThreads) {
   Context one, four;
   one.threads = 1;
   four.threads = 4;
-  equalize(points, 1, 1, one);
-  equalize(again, 1, 1, four);
+  spread(points, 1, 1, one);
+  spread(again, 1, 1, four);
   EXPECT_EQ(points, again);
-  equalize(turned, 1, 1, four);
+  spread(turned, 1, 1, four);
   for (std::size_t i = 0; i < points.size(); ++i) EXPECT_LT((turned[i] - turn * points[i]).norm(), 1e-8);
 }
 
@@ -184,11 +204,11 @@ TEST(Equalize, TinyCloudsStay) {
   for (const std::size_t n : {0, 1, 5, 24}) {
     Positions points = random_sphere(n);
     const Positions before = points;
-    equalize(points, 1, 1, {});
+    spread(points, 1, 1, {});
     EXPECT_EQ(points, before);
   }
   Positions same(100, Eigen::Vector3d(1, 2, 3));
-  equalize(same, 1, 1, {});
+  spread(same, 1, 1, {});
   for (const auto& p : same) EXPECT_EQ(p, Eigen::Vector3d(1, 2, 3));
 }
 
