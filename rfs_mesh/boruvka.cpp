@@ -6,6 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "rfsmooth/rfs_mesh/collect.h"
 #include "rfsmooth/rfs_mesh/parallel.h"
 
 namespace rfsmooth::rfs_mesh {
@@ -63,7 +64,6 @@ class Boruvka {
         reach_(n_),
         best_length_(n_),
         best_pair_(n_),
-        joined_(n_),
         node_component_(tree_.node_count()),
         node_reach_(tree_.node_count(), -1),
         subtrees_(tree_.subtrees(kSubtree)),
@@ -73,7 +73,6 @@ class Boruvka {
       candidate_[i] = lists_[i][0];
       reach_[i] = length(Index(i), candidate_[i]);
     });
-    edges_.reserve(n_ - 1);
   }
 
   /// The edges, in no order worth knowing.
@@ -88,7 +87,7 @@ class Boruvka {
       choose();
       join();
     }
-    return std::move(edges_);
+    return edges();
   }
 
  private:
@@ -300,61 +299,59 @@ class Boruvka {
       if (pair == kNothing) throw std::logic_error("EMST: a component without an edge");
       const Index a = Index(pair >> 32), b = Index(pair);
       const Index other = component_[a] == root ? component_[b] : component_[a];
-      joined_[root] = best_pair(other) == pair && root < other ? root : other;
+      next_root_[root].store(best_pair(other) == pair && root < other ? root : other,
+                             std::memory_order_relaxed);
     });
-    std::vector<Index> staying = part_roots();
+    std::vector<Index> staying = staying_roots();
     follow_joins();
-    for_each_index(context_, n_, [&](std::size_t i) { component_[i] = joined_[component_[i]]; });
+    for_each_index(context_, n_, [&](std::size_t i) { component_[i] = joined(component_[i]); });
     roots_.swap(staying);
   }
 
-  /// Appends the edges of the roots that join another; the roots that stay, in order.
-  std::vector<Index> part_roots() {
-    constexpr std::size_t kBlock = 4096;
-    const auto stays = [&](std::size_t r) { return joined_[roots_[r]] == roots_[r]; };
-    std::vector<std::size_t> before((roots_.size() + kBlock - 1) / kBlock + 1,
-                                    0);  // staying, before each block
-    for_blocks(context_, roots_.size(), kBlock, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t r = begin; r < end; ++r) before[begin / kBlock + 1] += std::size_t(stays(r));
+  /// The root that a root joins: itself if it stays.
+  Index joined(Index root) const { return Index(next_root_[root].load(std::memory_order_relaxed)); }
+
+  std::vector<Index> staying_roots() const {
+    return collect<Index>(context_, roots_.size(), [&](std::size_t r, auto&& emit) {
+      if (joined(roots_[r]) == roots_[r]) emit(roots_[r]);
     });
-    for (std::size_t b = 1; b < before.size(); ++b) before[b] += before[b - 1];
-    std::vector<Index> staying(before.back());
-    const std::size_t first_edge = edges_.size();
-    edges_.resize(first_edge + roots_.size() - staying.size());
-    for_blocks(context_, roots_.size(), kBlock, [&](std::size_t begin, std::size_t end) {
-      std::size_t at = before[begin / kBlock];
-      for (std::size_t r = begin; r < end; ++r) {
-        if (stays(r)) {
-          staying[at++] = roots_[r];
-          continue;
-        }
-        const std::uint64_t pair = best_pair_[roots_[r]].load(std::memory_order_relaxed);
-        edges_[first_edge + r - at] = {Index(pair >> 32), Index(pair)};
-      }
-    });
-    return staying;
   }
 
-  /// Makes joined_ name the root that stays. By doubling: chains may be as long as the cloud.
+  /// Makes joined() name the root that stays. By doubling: chains may be as long as the cloud. A step reads
+  /// the lower halves and writes its result into the upper ones, which the next loop moves down.
   void follow_joins() {
-    auto& jumped = best_length_;  // not needed any more in this round
     for (bool changed = true; changed;) {
-      changed = reduce_blocks(
-                    context_, roots_.size(), 0,
-                    [&](std::size_t begin, std::size_t end) {
-                      int any = 0;
-                      for (std::size_t r = begin; r < end; ++r) {
-                        const Index to = joined_[joined_[roots_[r]]];
-                        any |= int(to != joined_[roots_[r]]);
-                        jumped[roots_[r]].store(to, std::memory_order_relaxed);
-                      }
-                      return any;
-                    },
-                    [](int a, int b) { return a | b; }) != 0;
+      changed =
+          reduce_blocks(
+              context_, roots_.size(), 0,
+              [&](std::size_t begin, std::size_t end) {
+                int any = 0;
+                for (std::size_t r = begin; r < end; ++r) {
+                  const Index from = joined(roots_[r]), to = joined(from);
+                  any |= int(to != from);
+                  next_root_[roots_[r]].store(std::uint64_t(to) << 32 | from, std::memory_order_relaxed);
+                }
+                return any;
+              },
+              [](int a, int b) { return a | b; }) != 0;
       for_each_index(context_, roots_.size(), [&](std::size_t r) {
-        joined_[roots_[r]] = Index(jumped[roots_[r]].load(std::memory_order_relaxed));
+        auto& root = next_root_[roots_[r]];
+        root.store(root.load(std::memory_order_relaxed) >> 32, std::memory_order_relaxed);
       });
     }
+  }
+
+  /// The edges that joined the roots: a root that has joined another is none any more, and keeps its pair.
+  std::vector<Edge> edges() {
+    std::vector<double>().swap(reach_);  // room for the result
+    std::vector<Edge> edges(n_ - 1);
+    const Index last = roots_.front();
+    for_each_index(context_, n_, [&](std::size_t i) {
+      if (i == last) return;
+      const std::uint64_t pair = best_pair_[i].load(std::memory_order_relaxed);
+      edges[i < last ? i : i - 1] = {Index(pair >> 32), Index(pair)};
+    });
+    return edges;
   }
 
   const Positions& points_;
@@ -371,7 +368,7 @@ class Boruvka {
 
   // of a root
   std::vector<std::atomic<std::uint64_t>> best_length_, best_pair_;
-  std::vector<Index> joined_;  // the root it joins
+  std::vector<std::atomic<std::uint64_t>>& next_root_ = best_length_;  // once the edge is chosen
 
   // of a node of the tree
   std::vector<Index> node_component_;
@@ -379,7 +376,6 @@ class Boruvka {
   std::vector<Cursor> subtrees_;
 
   std::vector<Index> roots_;
-  std::vector<Edge> edges_;
 };
 
 }  // namespace

@@ -9,8 +9,9 @@
 /// zero.
 ///
 /// About O(n log n). At 1M noisy surface points a quarter of the time of CGAL's sequential Delaunay + Kruskal
-/// on one thread, and 120 bytes a point above the points at the peak (tests/bench/rfs_mesh/emst_bench.cpp).
-/// Thread safe; cancelling stops it within a block of a round.
+/// on one thread, and 141 bytes a point above the caller's array at the peak, working cloud and index
+/// included (tests/bench/rfs_mesh/emst_bench.cpp). Thread safe; cancelling stops it within a block of a
+/// round.
 #pragma once
 
 #include <vector>

@@ -97,6 +97,7 @@ WorkingCloud make(const double* xyz, std::size_t n, const Context& context) {
 
   cloud.of_input.assign(n, kNone);
   cloud.points.reserve(box.finite);
+  cloud.multiplicity.reserve(box.finite);
   for (std::size_t s = 0; s < box.finite; ++s) {
     const Vector3d p = point(keyed[s].input);
     if (s == 0 || lexicographic(point(keyed[s - 1].input), p) != 0) {
