@@ -54,6 +54,7 @@ struct Ground {
   std::vector<LocalSurface> surfaces;
   NeighborTable near;
   std::vector<Edge> tree;
+  std::vector<char> between;  // two sheets: n flags, or none
 };
 
 /// The ground at smoothed positions that the caller gives.
@@ -73,18 +74,22 @@ constexpr double kNoiseLeft = 1.0 / 3;
 
 /// The ground at the shadows of the points. Quadrics no wider than the neighbourhoods looked at are fitted a
 /// second time, on the shadows; wider ones have the better normals already.
-Ground shadow_ground(std::vector<LocalSurface> surfaces, const NoiseScale& scale, int k,
-                     const Context& context) {
+Ground shadow_ground(const Positions& points, std::vector<LocalSurface> surfaces, const NoiseScale& scale,
+                     const ConnectOptions& options, const Context& context) {
+  const int k = options.neighbours;
   Ground ground;
   ground.surfaces = std::move(surfaces);
   ground.at = shadows(ground.surfaces, context);
   const SpatialIndex index(ground.at, context);
   ground.near = index.nearest(k, context);
   ground.tree = emst(index, ground.near, context);
-  if (scale.neighbours > std::size_t(k)) return ground;
-  const NoiseScale left = {kNoiseLeft * scale.sigma, scale.neighbours};
-  ground.surfaces = shared_local_surfaces(index, ground.near, left, scale.neighbours, context);
-  ground.at = shadows(ground.surfaces, context);
+  if (scale.neighbours <= std::size_t(k)) {
+    const NoiseScale left = {kNoiseLeft * scale.sigma, scale.neighbours};
+    ground.surfaces = shared_local_surfaces(index, ground.near, left, scale.neighbours, context);
+  }
+  ground.between =
+      part_sheets(points, index, ground.near, scale.sigma, options.sheets, ground.surfaces, context);
+  for_each_index(context, points.size(), [&](std::size_t i) { ground.at[i] = ground.surfaces[i].shadow; });
   return ground;
 }
 
@@ -121,11 +126,11 @@ Ground survey(const Positions& points, const ConnectOptions& options, const Cont
   });
   c.noise.field.resize(n);
   for_each_index(context, n, [&](std::size_t i) { c.noise.field[i] = surfaces[i].residual; });
-  if (guide == nullptr && !c.on_shadow) return {points, std::move(surfaces), std::move(near), c.emst};
+  if (guide == nullptr && !c.on_shadow) return {points, std::move(surfaces), std::move(near), c.emst, {}};
   near = NeighborTable();  // neighbours among the noisy points: not needed any more
   return stages.run(guide != nullptr ? "guide" : "shadow", 0.5, [&] {
     return guide != nullptr ? ground_at(*guide, options.neighbours, context)
-                            : shadow_ground(std::move(surfaces), scale, options.neighbours, context);
+                            : shadow_ground(points, std::move(surfaces), scale, options, context);
   });
 }
 
@@ -136,7 +141,7 @@ Connection connect_all(const Positions& points, const ConnectOptions& options, c
   const std::size_t n = points.size();
   Ground ground = survey(points, options, context, guide, c, stages);
   const double noise = guide != nullptr ? 0 : c.on_shadow ? kNoiseLeft * c.noise.sigma : c.noise.sigma;
-  const Terrain terrain{ground.at, ground.surfaces, ground.near, noise};
+  const Terrain terrain{ground.at, ground.surfaces, ground.near, noise, ground.between};
 
   Sdg sdg = stages.run("sdg", 0.6, [&] { return make_sdg(terrain, ground.tree, options.sdg, context); });
   c.sdg = std::move(sdg.edges);

@@ -21,6 +21,7 @@
 #include "rfsmooth/rfs_mesh/mesh.h"
 #include "rfsmooth/rfs_mesh/options.h"
 #include "rfsmooth/rfs_mesh/sdg.h"
+#include "rfsmooth/rfs_mesh/two_sheets.h"
 #include "rfsmooth/rfs_mesh/umbrella.h"
 
 namespace rfsmooth::rfs_mesh {
@@ -29,6 +30,7 @@ namespace rfsmooth::rfs_mesh {
 struct ConnectOptions {
   int neighbours = 24;       ///< nearest neighbours looked at; about two and a half rings of a surface mesh
   double shadow_from = 0.3;  ///< noise / spacing from which tests are made on the shadow
+  SheetsOptions sheets;
   SdgOptions sdg;
   UmbrellaOptions umbrella;
 
@@ -39,6 +41,7 @@ struct ConnectOptions {
     visit(OptionInfo{"connect-shadow-from", "noise from which connectivity is tested on the shadow",
                      "x spacing", 0, 1e9},
           self.shadow_from);
+    SheetsOptions::describe(self.sheets, visit);
     SdgOptions::describe(self.sdg, visit);
     UmbrellaOptions::describe(self.umbrella, visit);
   }

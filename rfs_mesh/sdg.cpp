@@ -104,6 +104,7 @@ class Rules {
 
   /// (C)
   bool is_bridge(Index a, Index b) const {
+    if (terrain_.is_between(a) || terrain_.is_between(b)) return true;
     const Vector3d d = at_[b] - at_[a];
     if (d.norm() > options_.bridge * std::max(reach(a), reach(b))) return true;
     return steep(a, d, options_.bridge_steepness) && steep(b, d, options_.bridge_steepness);
@@ -123,7 +124,7 @@ class Rules {
   bool admissible(Index v, Index q, double lune) const {
     const Vector3d d = at_[q] - at_[v];
     const double length = d.norm();
-    return length <= options_.reach * std::max(reach(v), reach(q)) &&
+    return !terrain_.is_between(q) && length <= options_.reach * std::max(reach(v), reach(q)) &&
            std::abs(normal(v).dot(normal(q))) >= cos_normal_ && !steep(v, d, options_.steepness) &&
            !steep(q, d, options_.steepness) && !within_two_hops(v, q) && !needless(v, q, lune * length);
   }

@@ -8,8 +8,9 @@
 ///  (B) a point whose neighbours leave a wide gap in the tangent plane is joined to the nearest admissible
 ///  point
 ///      inside the gap, if the wish is mutual or the edge short; two rounds;
-///  (C) an edge far longer than the tree around both ends, or standing up from the surface at both, is a
-///  bridge.
+///  (C) an edge far longer than the tree around both ends, or standing up from the surface at both, or with
+///  an end
+///      between two sheets (two_sheets.h), is a bridge.
 /// Each rule decides for every vertex from one snapshot of the graph, so no order of visiting matters.
 #pragma once
 
@@ -83,6 +84,10 @@ struct Terrain {
   const std::vector<LocalSurface>& surfaces;  ///< n; only the normals are read
   const NeighborTable& near;                  ///< n rows, nearest first
   double noise = 0;                           ///< standard deviation of `at` along the normal, world units
+  const std::vector<char>& between;           ///< n flags (two_sheets.h), or none
+
+  /// Whether v lies between two sheets and has no neighbours.
+  bool is_between(Index v) const { return !between.empty() && between[v] != 0; }
 };
 
 /// The graph.

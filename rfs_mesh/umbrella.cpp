@@ -55,6 +55,7 @@ class Opener {
         cos_rib_(std::cos(radians(options.rib_angle))) {}
 
   Umbrella open(Index v) const {
+    if (terrain_.is_between(v)) return {};
     std::array<Rib, kMostRibs> ribs;
     const std::size_t count = choose_ribs(v, ribs);
     Umbrella umbrella;
@@ -100,6 +101,7 @@ class Opener {
     const double radius = options_.fill * long_edge(v);
     int nearest = 0;
     for (const Index q : terrain_.near[v]) {
+      if (terrain_.is_between(q)) continue;
       const double d = squared(v, q);
       if (nearest >= options_.most || (nearest >= options_.fewest && d > radius * radius)) break;
       found.add(q, d);

@@ -8,7 +8,7 @@ void polish(Command& command) {
   for (CommandOption& option : command.options) {
     for (const auto& [name, letter] : {std::pair("output", 'o'), {"quiet", 'q'}, {"verbose", 'v'}})
       if (option.name == name) option.short_name = letter;
-    for (const char* family : {"connect-", "sdg-", "umbrella-", "swap-"})
+    for (const char* family : {"connect-", "sheets-", "sdg-", "umbrella-", "swap-"})
       if (option.name.rfind(family, 0) == 0) option.advanced = true;
     if (option.name == "flow")
       for (const auto& flow : smoothing::flows()) option.choices.emplace_back(flow.name);
