@@ -31,11 +31,20 @@ struct Options {
   }
 };
 
+/// First, fifth and ninth tenth of a field over the cloud.
+ordered_json tenths(std::vector<double> field) {
+  std::sort(field.begin(), field.end());
+  auto json = ordered_json::array();
+  for (const std::size_t tenth : {1, 5, 9}) json.push_back(field[tenth * (field.size() - 1) / 10]);
+  return json;
+}
+
 /// Finite and distinct points, bounding box, mean distance to the nearest other point.
 ordered_json measure(const pipeline::io::Cloud& cloud, const Context& context) {
   const std::vector<double> xyz = pipeline::io::positions(cloud, context);
-  ordered_json json = {{"finite", 0},        {"distinct", 0},    {"low", nullptr},        {"high", nullptr},
-                       {"spacing", nullptr}, {"noise", nullptr}, {"noise_field", nullptr}};
+  ordered_json json = {{"finite", 0},      {"distinct", 0},         {"low", nullptr},
+                       {"high", nullptr},  {"spacing", nullptr},    {"spacing_field", nullptr},
+                       {"noise", nullptr}, {"noise_field", nullptr}};
   const auto working = rfs_mesh::make_working_cloud(xyz.data(), cloud.size(), context);
   if (!working.ok()) {
     if (working.error().code == ErrorCode::no_usable_points) return json;
@@ -60,17 +69,17 @@ ordered_json measure(const pipeline::io::Cloud& cloud, const Context& context) {
     const double sum = sum_over(context, points.size(), 0.0,
                                 [&](std::size_t i) { return (points[i] - points[nearest[i][0]]).norm(); });
     json["spacing"] = sum / double(points.size());
+    json["spacing_field"] = tenths(rfs_mesh::measure_spacing(index, context));
     rfs_mesh::NoiseField noise = rfs_mesh::measure_noise(index, context);
     json["noise"] = noise.sigma;
-    std::sort(noise.local.begin(), noise.local.end());
-    for (const std::size_t tenth : {1, 5, 9})
-      json["noise_field"].push_back(noise.local[tenth * (noise.local.size() - 1) / 10]);
+    json["noise_field"] = tenths(std::move(noise.local));
   });
   return json;
 }
 
-std::string vector_text(const ordered_json& v) {
-  return fmt::format("{:.9g} {:.9g} {:.9g}", v[0].get<double>(), v[1].get<double>(), v[2].get<double>());
+std::string vector_text(const ordered_json& v, int digits = 9) {
+  return fmt::format("{:.{}g} {:.{}g} {:.{}g}", v[0].get<double>(), digits, v[1].get<double>(), digits,
+                     v[2].get<double>(), digits);
 }
 
 void print_text(const ordered_json& info) {
@@ -91,12 +100,12 @@ void print_text(const ordered_json& info) {
     fmt::print("  extent    {:.6g}\n", fmt::join(size, " "));
   }
   if (!info["spacing"].is_null())
-    fmt::print("  spacing   {:.6g} (mean distance to the nearest other point)\n",
-               info["spacing"].get<double>());
+    fmt::print("  spacing   {:.6g} (mean distance to the nearest other point; {} from dense to sparse)\n",
+               info["spacing"].get<double>(), vector_text(info["spacing_field"], 6));
   if (!info["noise"].is_null())
     fmt::print(
         "  noise     {:.6g} (standard deviation along the normal; over the cloud {} from calm to loud)\n",
-        info["noise"].get<double>(), vector_text(info["noise_field"]));
+        info["noise"].get<double>(), vector_text(info["noise_field"], 6));
   fmt::print("  fields   ");
   for (const auto& field : info["fields"]) {
     fmt::print(" {}:{}", field["name"].get<std::string>(), field["type"].get<std::string>());
