@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "rfsmooth/rfs_mesh/parallel.h"
 #include "rfsmooth/smoothing/height_field.h"
@@ -43,14 +42,13 @@ Positions fair(const rfs_mesh::Mesh& mesh, double strength, const Context& conte
 }
 
 /// Adds the scale of `members` points to the mixture. `before` holds the risk of the scale before it.
-void add_scale(const HeightField& field, std::size_t members, const std::vector<Index>& seeds,
-               const std::vector<double>& sigma, std::vector<double>& before, Mixture& mixture,
-               const Context& context) {
+void add_scale(const HeightField& field, std::size_t members, const std::vector<Index>& seeds, double sigma,
+               std::vector<double>& before, Mixture& mixture, const Context& context) {
   const Patches patches(field, members, seeds, sigma, context);
   const Prediction prediction = patches.predict(context);
   std::vector<double> difference(field.size());
   for_each_index(context, field.size(), [&](std::size_t i) {
-    const double e = (field.heights()[i] - prediction.height[i]) / sigma[i];
+    const double e = (field.heights()[i] - prediction.height[i]) / sigma;
     const double risk = prediction.covered[i] ? e * e + 2 * prediction.own[i] - 1 : before[i];
     difference[i] = risk - before[i];
     before[i] = risk;
@@ -81,24 +79,22 @@ Positions automatic_smoothing(const rfs_mesh::Mesh& mesh, double sigma, double s
   report.guide_strength = kGuide * share * share * std::max(1.0, share * share);
   Positions guide = fair(mesh, report.guide_strength, context);
   context.report("smooth", 0.1);
-  report.stranded = land_stranded(mesh, kStrayFrom * sigma, guide, context);
-  // Again: the landed ones make the surface denser, and smaller islands stand out.
-  if (report.stranded > 0) land_stranded(mesh, kStrayFrom * sigma, guide, context);
-  const HeightField field(std::move(guide), mesh.positions, context);
+  rfs_mesh::NeighborTable near = rfs_mesh::SpatialIndex(guide, context).nearest(HeightField::kNear, context);
+  report.stranded = land_stranded(mesh, kStrayFrom * sigma, guide, near, context);
+  const HeightField field(std::move(guide), std::move(near), mesh.positions, context);
 
   // The data themselves are the first candidate: no error against themselves, all their own.
-  const std::vector<double> noise(n, sigma);
   std::vector<double> risk(n, 1);
   Mixture mixture(field.heights());
-  std::vector<Index> seeds(n);
-  std::iota(seeds.begin(), seeds.end(), Index{0});
+  std::vector<Index> seeds;  // empty: all
   const double narrowest = std::max(kFewest, kNarrowest * share * share);
   const double widest = std::max(kWidest, kWidestShare * narrowest);
   for (double m = narrowest; m <= widest; m *= 2) {
     context.report("smooth", 0.1 + 0.9 * std::log(m / narrowest) / std::log(2 * widest / narrowest));
     const std::size_t members = std::min(std::size_t(m), n / 2);
+    if (seeds.empty()) seeds = thin_all(field.guide(), field.neighbors(), context);
     while (seeds.size() * members > kMostOverlap * n) seeds = thin(field.guide(), seeds, context);
-    add_scale(field, members, seeds, noise, risk, mixture, context);
+    add_scale(field, members, seeds, sigma, risk, mixture, context);
     if (m >= double(n) / 2) break;
   }
 

@@ -12,7 +12,6 @@ namespace rfsmooth::smoothing {
 
 namespace {
 
-constexpr int kNear = 32;           // neighbours over which values are averaged
 constexpr std::size_t kPlane = 24;  // neighbours of the plane that gives the normal
 constexpr std::size_t kLinked = 8;  // neighbours with which a normal agrees on a side; 6 leave islands
 constexpr double kSameSheet = 0.5;  // cosine of 60 degrees
@@ -25,16 +24,25 @@ double same_sheet(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
 }
 
 HeightField::HeightField(Positions guide, const Positions& data, const Context& context)
-    : guide_(std::move(guide)), index_(guide_, context), near_(index_.nearest(kNear, context)) {
+    : HeightField(std::move(guide), {}, data, context) {}
+
+HeightField::HeightField(Positions guide, rfs_mesh::NeighborTable near, const Positions& data,
+                         const Context& context)
+    : guide_(std::move(guide)), index_(guide_, context), near_(std::move(near)) {
+  if (near_.k == 0) near_ = index_.nearest(kNear, context);
   normals_.resize(size());
   heights_.resize(size());
+  local_.resize(size());
   for_each_index(context, size(), [&](std::size_t i) {
-    const auto near = near_[i];
-    normals_[i] = plane_normal(guide_, i, {near.begin(), near.begin() + std::min(near.size(), kPlane)});
+    const auto row = near_[i];
+    normals_[i] = plane_normal(guide_, i, {row.begin(), row.begin() + std::min(row.size(), kPlane)});
     if (!normals_[i].allFinite()) normals_[i] = Eigen::Vector3d::UnitZ();
   });
   orient(context);
-  for_each_index(context, size(), [&](std::size_t i) { heights_[i] = normals_[i].dot(data[i] - guide_[i]); });
+  for_each_index(context, size(), [&](std::size_t i) {
+    heights_[i] = normals_[i].dot(data[i] - guide_[i]);
+    local_[i] = {normals_[i].cast<float>(), float(heights_[i])};
+  });
 }
 
 void HeightField::orient(const Context& context) {

@@ -18,10 +18,20 @@ namespace rfsmooth::smoothing {
 /// Heights of the data over the guide.
 class HeightField {
  public:
+  static constexpr int kNear = 32;  ///< neighbours over which values are averaged
+
+  /// A point in single precision, together for those who read many at random.
+  struct Local {
+    Eigen::Vector3f normal;
+    float height;
+  };
+
   /// \param guide n x 3, near the surface; n >= 2.
   /// \param data n x 3, the noisy points of the same indices.
   /// O(n log n), parallel, the same bits for any number of threads.
   HeightField(Positions guide, const Positions& data, const Context& context);
+  /// The same; `near`: the nearest kNear of every guide point.
+  HeightField(Positions guide, rfs_mesh::NeighborTable near, const Positions& data, const Context& context);
   HeightField(const HeightField&) = delete;
   HeightField& operator=(const HeightField&) = delete;
 
@@ -30,6 +40,9 @@ class HeightField {
   const std::vector<Eigen::Vector3d>& normals() const { return normals_; }  ///< n, unit
   const std::vector<double>& heights() const { return heights_; }           ///< n: z, world units
   const rfs_mesh::SpatialIndex& index() const { return index_; }            ///< over the guide
+
+  const std::vector<Local>& local() const { return local_; }          ///< n: normals and heights
+  const rfs_mesh::NeighborTable& neighbors() const { return near_; }  ///< n x kNear, on the guide
 
   /// The mean of `values` over the nearest points on the same sheet, nearer ones weighing more. O(n).
   std::vector<double> local_mean(const std::vector<double>& values, const Context& context) const;
@@ -42,9 +55,15 @@ class HeightField {
   rfs_mesh::NeighborTable near_;
   std::vector<Eigen::Vector3d> normals_;
   std::vector<double> heights_;
+  std::vector<Local> local_;
 };
 
 /// cos^2 of the angle between two normals; 0 beyond 60 degrees: another sheet, or round an edge.
 double same_sheet(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
+
+/// The same of the cosine.
+inline float same_sheet(float cosine) {
+  return cosine < 0.5F ? 0 : cosine * cosine;
+}
 
 }  // namespace rfsmooth::smoothing

@@ -3,190 +3,212 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
+#include <stdexcept>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
 #include "rfsmooth/rfs_mesh/parallel.h"
+#include "rfsmooth/smoothing/quadric_sums.h"
 #include "rfsmooth/smoothing/thinning.h"
 
 namespace rfsmooth::smoothing {
 
 namespace {
 
-constexpr std::size_t kMostOver = 16;  // patches over a point: more only cost time
 constexpr std::size_t kAxis = 12;      // nearest points whose normals make the patch's axis
-constexpr double kCovered = 0.2;       // least weight of the best patch over a point
+constexpr float kCovered = 0.2F;       // least weight of the best patch over a point
+constexpr float kWeightUnit = 65535;   // of the weights kept
+constexpr std::size_t kTogether = 64;  // patches fitted in a row: each tells the next how far to look
 
 }  // namespace
 
-Patches::Features Patches::features(const Patch& patch, const Eigen::Vector3d& r) {
-  const double u = r.dot(patch.u), v = r.dot(patch.v);  // the frame is in units of the radius
-  return (Features() << 1, u, v, u * u, u * v, v * v).finished();
-}
+/// The members of one patch, by axis, in its frame.
+struct Patches::Workspace {
+  Workspace(const HeightField& field, std::size_t members) : near(field.index(), members) {
+    for (std::vector<float>* values : {&u, &v, &height, &weight, &cosine}) values->assign(padded(members), 0);
+  }
+  rfs_mesh::WideNeighbors near;
+  std::vector<float> u, v, height, weight, cosine;
+};
 
-Patches::Patches(const HeightField& field, std::size_t members, std::vector<Index> seeds,
-                 const std::vector<double>& sigma, const Context& context)
+/// Filled by all fits at once: counting and marking do not depend on the order.
+struct Patches::Covering {
+  explicit Covering(std::size_t n) : patches(n), covered(n) {}
+  std::vector<std::atomic<Index>>
+      patches;                             ///< n: how many are over the point; later, where its next one goes
+  std::vector<std::atomic<char>> covered;  ///< n
+};
+
+Patches::Patches(const HeightField& field, std::size_t members, std::vector<Index> seeds, double sigma,
+                 const Context& context)
     : field_(field), members_(std::min(members, field.size())), seeds_(std::move(seeds)) {
-  reach_ =
-      std::clamp<std::size_t>((members_ * seeds_.size() + field.size() - 1) / field.size(), 1, kMostOver);
-  over_.assign(field_.size() * reach_, kNone);
-  over_weight_.assign(field_.size() * reach_, 0);
-  fit(0, seeds_.size(), sigma, context);
-  std::vector<Index> all(field_.size());
-  std::iota(all.begin(), all.end(), Index{0});
-  cover(all, context);
+  Covering covering(field_.size());
+  fit(0, seeds_.size(), sigma, covering, context);
   // A place between sheets or at the end of something thin may be in no patch, or only at the rim of one.
-  const std::vector<Index> missing = uncovered();
-  if (missing.empty()) return;
-  const std::size_t first = seeds_.size();
-  const std::vector<Index> more = thin(field.guide(), missing, context);
-  seeds_.insert(seeds_.end(), more.begin(), more.end());
-  fit(first, seeds_.size(), sigma, context);
-  cover(missing, context);
+  std::vector<Index> missing;
+  for (std::size_t i = 0; i < field_.size(); ++i)
+    if (covering.covered[i] == 0) missing.push_back(Index(i));
+  if (!missing.empty()) {
+    const std::size_t first = seeds_.size();
+    const std::vector<Index> more = thin(field.guide(), missing, context);
+    seeds_.insert(seeds_.end(), more.begin(), more.end());
+    fit(first, seeds_.size(), sigma, covering, context);
+  }
+  transpose(covering, context);
 }
 
-void Patches::fit(std::size_t first, std::size_t last, const std::vector<double>& sigma,
+void Patches::fit(std::size_t first, std::size_t last, double sigma, Covering& covering,
                   const Context& context) {
+  if (last * members_ > kNone) throw std::length_error("Patches: too many members");
   patches_.resize(last);
   member_.resize(last * members_);
   member_weight_.resize(last * members_);
-  for_blocks(context, last - first, 64, [&](std::size_t begin, std::size_t end) {
-    std::vector<rfs_mesh::Neighbor> near;
-    for (std::size_t s = first + begin; s < first + end; ++s) fit_one(s, sigma, near);
-  });
-}
-
-void Patches::fit_one(std::size_t s, const std::vector<double>& sigma,
-                      std::vector<rfs_mesh::Neighbor>& near) {
-  using Matrix6 = Eigen::Matrix<double, 6, 6>;
-  const Index seed = seeds_[s];
-  const auto& guide = field_.guide();
-  const auto& normals = field_.normals();
-  Patch& patch = patches_[s];
-  field_.index().nearest(guide[seed], int(members_), near);
-  patch.centre = guide[seed];
-  patch.axis = normals[seed];
-  for (std::size_t k = 0; k < std::min(near.size(), kAxis); ++k) {
-    const Eigen::Vector3d& n = normals[near[k].index];
-    if (same_sheet(n, normals[seed]) == 0) continue;
-    patch.axis += n;
-  }
-  patch.axis.normalize();
-  // A little beyond the farthest point, so that it counts.
-  patch.square = std::max(1.1 * near.back().squared_distance, std::numeric_limits<double>::min());
-  const double radius = std::sqrt(patch.square);
-  patch.u = patch.axis.unitOrthogonal();
-  patch.v = patch.axis.cross(patch.u) / radius;
-  patch.u /= radius;
-
-  float* const weights = member_weight_.data() + s * members_;
-  Index* const indices = member_.data() + s * members_;
-  Matrix6 system = Matrix6::Zero();
-  Features right = Features::Zero();
-  double sum = 0, squares = 0;
-  for (std::size_t k = 0; k < near.size(); ++k) {
-    const auto& q = near[k];
-    const double inside = 1 - q.squared_distance / patch.square, cosine = patch.axis.dot(normals[q.index]);
-    const double w = same_sheet(patch.axis, normals[q.index]) * inside * inside;
-    indices[k] = q.index;
-    weights[k] = float(w);
-    if (w == 0) continue;
-    const Eigen::Vector3d r = guide[q.index] - patch.centre;
-    const Features f = features(patch, r);
-    system.selfadjointView<Eigen::Lower>().rankUpdate(f, w);
-    right += w * (r.dot(patch.axis) + field_.heights()[q.index] / cosine) * f;
-    sum += w;
-    squares += w * w;
-  }
-  // Few points, or points in a line, leave the quadric undetermined: the ridge makes it flat there.
-  system.diagonal().array() += 1e-9 * system(0, 0) + 1e-12;
-  const Matrix6 inverse = system.selfadjointView<Eigen::Lower>().llt().solve(Matrix6::Identity());
-  const Features quadric = inverse * right;
-  std::size_t at = 0;
-  for (int a = 0; a < 6; ++a) {
-    patch.quadric[std::size_t(a)] = float(quadric[a] / radius);
-    for (int b = 0; b <= a; ++b) patch.inverse[at++] = float(inverse(a, b));
-  }
-
-  double residuals = 0, leverage = 0;
-  for (std::size_t k = 0; k < near.size(); ++k) {
-    const double w = weights[k];
-    if (w == 0) continue;
-    const Index i = indices[k];
-    const Eigen::Vector3d r = guide[i] - patch.centre;
-    const Features f = features(patch, r);
-    const double cosine = patch.axis.dot(normals[i]);
-    const double e = ((r.dot(patch.axis) - quadric.dot(f)) * cosine + field_.heights()[i]) / sigma[i];
-    residuals += w * e * e;
-    leverage += w * w * f.dot(inverse * f);
-  }
-  if (!(sum > 0)) {
-    patch.weight = 0;
-    return;
-  }
-  const double points = sum * sum / squares, v = 6 / points;
-  const double excess = (residuals - (sum - leverage)) / sum - std::sqrt(2 / points);
-  patch.weight = v / (v + std::max(0.0, excess));
-}
-
-void Patches::cover(const std::vector<Index>& points, const Context& context) {
-  Positions centres(patches_.size());
-  for (std::size_t s = 0; s < patches_.size(); ++s) centres[s] = patches_[s].centre;
-  const rfs_mesh::SpatialIndex index(centres, context);
-  for_blocks(context, points.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    std::vector<rfs_mesh::Neighbor> near;
-    for (std::size_t p = begin; p < end; ++p) {
-      const Index i = points[p];
-      index.nearest(field_.guide()[i], int(reach_), near);
-      for (std::size_t k = 0; k < near.size(); ++k) {
-        const Patch& patch = patches_[near[k].index];
-        const double inside = std::max(0.0, 1 - near[k].squared_distance / patch.square);
-        over_[std::size_t(i) * reach_ + k] = near[k].index;
-        over_weight_[std::size_t(i) * reach_ + k] =
-            float(inside * inside * same_sheet(patch.axis, field_.normals()[i]));
+  for_blocks(context, last - first, kTogether, [&](std::size_t begin, std::size_t end) {
+    Workspace work(field_, members_);
+    for (std::size_t s = first + begin; s < first + end; ++s) {
+      fit_one(s, sigma, work);
+      for (std::size_t k = 0; k < members_; ++k) {
+        const Index i = member_[s * members_ + k];
+        if (member_weight_[s * members_ + k] == 0) continue;
+        covering.patches[i].fetch_add(1, std::memory_order_relaxed);
+        if (work.weight[k] >= kCovered) covering.covered[i].store(1, std::memory_order_relaxed);
       }
     }
   });
 }
 
-std::vector<Index> Patches::uncovered() const {
-  std::vector<Index> missing;
-  for (std::size_t i = 0; i < field_.size(); ++i) {
-    const auto first = over_weight_.begin() + std::ptrdiff_t(i * reach_);
-    if (*std::max_element(first, first + std::ptrdiff_t(reach_)) < kCovered) missing.push_back(Index(i));
+void Patches::fit_one(std::size_t s, double sigma, Workspace& work) {
+  using Matrix6 = Eigen::Matrix<double, 6, 6>;
+  using Vector6 = Eigen::Matrix<double, 6, 1>;
+  const Index seed = seeds_[s];
+  const auto& normals = field_.normals();
+  Patch& patch = patches_[s];
+  patch.centre = field_.guide()[seed];
+  rfs_mesh::WideNeighbors& near = work.near;
+  near.find(patch.centre);
+
+  Eigen::Vector3d axis = 2 * normals[seed];
+  const auto row = field_.neighbors()[seed];
+  for (std::size_t k = 0; k < std::min(row.size(), kAxis - 1); ++k) {
+    const Eigen::Vector3d& n = normals[row[k]];
+    if (same_sheet(n, normals[seed]) == 0) continue;
+    axis += n;
   }
-  return missing;
+  axis.normalize();
+  // A little beyond the farthest point, so that it counts.
+  const float square = std::max(1.1F * near.farthest(), std::numeric_limits<float>::min());
+  const float shrink = 1 / std::sqrt(square);  // from the lengths of `near` to radii
+  const double radius = near.unit() / double(shrink);
+  const Eigen::Vector3d across = axis.unitOrthogonal();
+  patch.radius = float(radius);
+  patch.axis = axis.cast<float>();
+  const Eigen::Vector3f u = across.cast<float>() * shrink, v = axis.cross(across).cast<float>() * shrink,
+                        up = patch.axis * shrink;
+  patch.u = (across / radius).cast<float>();
+  patch.v = (axis.cross(across) / radius).cast<float>();
+
+  const auto in_radii = float(1 / radius);
+  Weight* const weights = member_weight_.data() + s * members_;
+  Index* const indices = member_.data() + s * members_;
+  double sum = 0, squares = 0;
+  for (std::size_t k = 0; k < members_; ++k) {
+    const Index i = near.index()[k];
+    const HeightField::Local& local = field_.local()[i];
+    const float cosine = patch.axis.dot(local.normal);
+    const float inside = 1 - near.squared()[k] / square;
+    const float w = same_sheet(cosine) * inside * inside;
+    const Eigen::Vector3f r(near.x()[k], near.y()[k], near.z()[k]);
+    work.u[k] = u.dot(r);
+    work.v[k] = v.dot(r);
+    work.height[k] = w > 0 ? up.dot(r) + local.height * in_radii / cosine : 0;
+    work.weight[k] = w;
+    work.cosine[k] = cosine;
+    indices[k] = i;
+    weights[k] = Weight(w * kWeightUnit + 0.5F);
+    sum += double(w);
+    squares += double(w) * double(w);
+  }
+  if (!(sum > 0)) {
+    patch.weight = 0;
+    return;
+  }
+  const std::size_t size = padded(members_);
+  const QuadricSums sums =
+      sum_quadric(size, work.u.data(), work.v.data(), work.height.data(), work.weight.data());
+  // Few points, or points in a line, leave the quadric undetermined: the ridge makes it flat there.
+  Matrix6 system = sums.a;
+  system.diagonal().array() += 1e-9 * system(0, 0) + 1e-12;
+  const Matrix6 inverse = system.llt().solve(Matrix6::Identity());
+  const Vector6 quadric = inverse * sums.right;
+  std::size_t at = 0;
+  for (int a = 0; a < 6; ++a) {
+    patch.quadric[std::size_t(a)] = float(quadric[a]);
+    for (int b = 0; b <= a; ++b) patch.inverse[at++] = float(inverse(a, b));
+  }
+
+  const double in_sigma = radius / sigma;
+  const double residuals = in_sigma * in_sigma *
+                           sum_residuals(size, work.u.data(), work.v.data(), work.height.data(),
+                                         work.weight.data(), work.cosine.data(), quadric);
+  const double leverage = (inverse.array() * sums.b.array()).sum();
+  const double points = sum * sum / squares, variance = 6 / points;
+  const double excess = (residuals - (sum - leverage)) / sum - std::sqrt(2 / points);
+  patch.weight = float(variance / (variance + std::max(0.0, excess)));
+}
+
+/// Which patches are over each point: the lists of members the other way round.
+void Patches::transpose(Covering& covering, const Context& context) {
+  const std::size_t n = field_.size();
+  over_start_.resize(n + 1);
+  over_start_[0] = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    over_start_[i + 1] = over_start_[i] + covering.patches[i];
+    covering.patches[i] = over_start_[i];
+  }
+  over_.resize(over_start_[n]);
+  for_each_index(
+      context, patches_.size(),
+      [&](std::size_t s) {
+        for (std::size_t k = s * members_; k < (s + 1) * members_; ++k)
+          if (member_weight_[k] != 0)
+            over_[covering.patches[member_[k]].fetch_add(1, std::memory_order_relaxed)] = Index(k);
+      },
+      kTogether);
+  // Threads put them in any order.
+  for_each_index(context, n, [&](std::size_t i) {
+    std::sort(over_.begin() + std::ptrdiff_t(over_start_[i]),
+              over_.begin() + std::ptrdiff_t(over_start_[i + 1]));
+  });
 }
 
 Prediction Patches::predict(const Context& context) const {
   const std::size_t n = field_.size();
   Prediction p{std::vector<double>(n, 0), std::vector<double>(n, 0), std::vector<char>(n, 0)};
   for_each_index(context, n, [&](std::size_t i) {
-    double height = 0, own = 0, weights = 0;
-    for (std::size_t k = i * reach_; k < (i + 1) * reach_; ++k) {
-      const double e = over_weight_[k];
-      if (e == 0) continue;
-      const Patch& patch = patches_[over_[k]];
-      const double w = e * patch.weight;
-      const Eigen::Vector3d r = field_.guide()[i] - patch.centre;
-      const Features f = features(patch, r);
-      double value = 0, spread = 0;
+    const Eigen::Vector3f& normal = field_.local()[i].normal;
+    float height = 0, own = 0, weights = 0;
+    for (Index k = over_start_[i]; k < over_start_[i + 1]; ++k) {
+      const Patch& patch = patches_[over_[k] / Index(members_)];
+      const float e = float(member_weight_[over_[k]]) / kWeightUnit, w = e * patch.weight;
+      const Eigen::Vector3f r = (field_.guide()[i] - patch.centre).cast<float>();
+      const float a = r.dot(patch.u), b = r.dot(patch.v);
+      const std::array<float, 6> f = {1, a, b, a * a, a * b, b * b};
+      float value = 0, spread = 0;
       std::size_t at = 0;
-      for (int a = 0; a < 6; ++a) {
-        value += f[a] * patch.quadric[std::size_t(a)];
-        for (int b = 0; b < a; ++b) spread += 2 * f[a] * f[b] * patch.inverse[at++];
-        spread += f[a] * f[a] * patch.inverse[at++];
+      for (std::size_t row = 0; row < 6; ++row) {
+        value += f[row] * patch.quadric[row];
+        float half = 0;
+        for (std::size_t column = 0; column < row; ++column) half += f[column] * patch.inverse[at++];
+        spread += f[row] * (2 * half + f[row] * patch.inverse[at++]);
       }
-      height +=
-          w * (value * std::sqrt(patch.square) - r.dot(patch.axis)) * patch.axis.dot(field_.normals()[i]);
+      height += w * (value * patch.radius - r.dot(patch.axis)) * patch.axis.dot(normal);
       own += w * e * spread;
       weights += w;
     }
     if (!(weights > 0)) return;
-    p.height[i] = height / weights;
-    p.own[i] = own / weights;
+    p.height[i] = double(height / weights);
+    p.own[i] = double(own / weights);
     p.covered[i] = 1;
   });
   return p;
@@ -200,17 +222,17 @@ std::vector<double> Patches::mean(const std::vector<double>& values, const Conte
         double sum = 0, weights = 0;
         for (std::size_t k = s * members_; k < (s + 1) * members_; ++k) {
           sum += double(member_weight_[k]) * values[member_[k]];
-          weights += member_weight_[k];
+          weights += double(member_weight_[k]);
         }
         if (weights > 0) of_patch[s] = sum / weights;
       },
-      64);
+      kTogether);
   for_each_index(context, field_.size(), [&](std::size_t i) {
     double sum = 0, weights = 0;
-    for (std::size_t k = i * reach_; k < (i + 1) * reach_; ++k) {
-      if (over_weight_[k] == 0) continue;
-      sum += double(over_weight_[k]) * of_patch[over_[k]];
-      weights += over_weight_[k];
+    for (Index k = over_start_[i]; k < over_start_[i + 1]; ++k) {
+      const double w = member_weight_[over_[k]];
+      sum += w * of_patch[over_[k] / Index(members_)];
+      weights += w;
     }
     if (weights > 0) mean[i] = sum / weights;
   });

@@ -14,8 +14,10 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <vector>
 
+#include "rfsmooth/rfs_mesh/wide_neighbors.h"
 #include "rfsmooth/smoothing/height_field.h"
 
 namespace rfsmooth::smoothing {
@@ -32,11 +34,11 @@ class Patches {
  public:
   /// Patches of `members` points each (at most the number of points) around the points `seeds`, evenly
   /// spread; eight patches over a point are good (16 gain 2 % of the error at twice the time). Places that
-  /// they leave uncovered get seeds of their own. \param sigma n: the noise at each point, world units, > 0.
-  /// It only weighs patches against each other. O(n log n); memory about 300 bytes a point at 16 members,
-  /// less at more.
-  Patches(const HeightField& field, std::size_t members, std::vector<Index> seeds,
-          const std::vector<double>& sigma, const Context& context);
+  /// they leave uncovered get seeds of their own. \param sigma the noise, world units, > 0. It only weighs
+  /// patches against each other. O(n log n); memory about 10 bytes a point and patch over it, and 200 bytes a
+  /// patch. \throw std::length_error for 2^32 members in all.
+  Patches(const HeightField& field, std::size_t members, std::vector<Index> seeds, double sigma,
+          const Context& context);
 
   Prediction predict(const Context& context) const;
 
@@ -46,28 +48,31 @@ class Patches {
  private:
   /// One fitted quadric. inverse: of the normal equations, lower triangle by rows.
   struct Patch {
-    Eigen::Vector3d centre, axis, u, v;
-    double square = 0;  ///< radius squared
-    double weight = 0;
-    std::array<float, 6> quadric = {};
+    Eigen::Vector3d centre;
+    Eigen::Vector3f axis, u, v;  ///< u, v: divided by the radius
+    float radius = 0, weight = 0;
+    std::array<float, 6> quadric = {};  ///< in radii
     std::array<float, 21> inverse = {};
   };
-  using Features = Eigen::Matrix<double, 6, 1>;
-  static Features features(const Patch& patch, const Eigen::Vector3d& from_centre);
 
-  void fit(std::size_t first, std::size_t last, const std::vector<double>& sigma, const Context& context);
-  void fit_one(std::size_t s, const std::vector<double>& sigma, std::vector<rfs_mesh::Neighbor>& near);
-  void cover(const std::vector<Index>& points, const Context& context);
-  std::vector<Index> uncovered() const;
+  /// Weights of members in 1/65535.
+  using Weight = std::uint16_t;
+
+  struct Workspace;
+  struct Covering;  // what the fits say of the points
+
+  void fit(std::size_t first, std::size_t last, double sigma, Covering& covering, const Context& context);
+  void fit_one(std::size_t s, double sigma, Workspace& work);
+  void transpose(Covering& covering, const Context& context);
 
   const HeightField& field_;
-  std::size_t members_ = 0, reach_ = 0;
+  std::size_t members_ = 0;
   std::vector<Index> seeds_;
   std::vector<Patch> patches_;
-  std::vector<Index> member_;         ///< patches x members
-  std::vector<float> member_weight_;  ///< of each; 0 for points of another sheet
-  std::vector<Index> over_;           ///< n x reach: the nearest patches of each point
-  std::vector<float> over_weight_;    ///< (1 - d^2/r^2)^2 cos^2 of each; 0 where the patch does not reach
+  std::vector<Index> member_;          ///< patches x members
+  std::vector<Weight> member_weight_;  ///< (1 - d^2/r^2)^2 cos^2 of each; 0 for points of another sheet
+  std::vector<Index> over_start_;      ///< n + 1
+  std::vector<Index> over_;  ///< of each point: where it is in member_, ascending, if its weight is not 0
 };
 
 }  // namespace rfsmooth::smoothing

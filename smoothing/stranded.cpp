@@ -1,6 +1,8 @@
 #include "rfsmooth/smoothing/stranded.h"
 
 #include <algorithm>
+#include <iterator>
+#include <optional>
 
 #include <Eigen/Eigenvalues>
 
@@ -11,86 +13,182 @@ namespace rfsmooth::smoothing {
 
 namespace {
 
-constexpr int kNear = 48;             // neighbours that say what is usual
-constexpr std::size_t kTenth = 9;     // the neighbour whose distance measures density
+constexpr std::size_t kTenth = 9;     // the neighbours whose distances
+constexpr std::size_t kLast = 31;     // measure density
 constexpr double kThin = 1.7;         // times the usual: 1.4 takes points at edges, 2 leaves small islands
 constexpr int kPlane = 24;            // points of the plane
 constexpr std::size_t kTooFew = 100;  // points: below, nothing is usual
+constexpr int kRounds = 2;
 
-std::vector<Index> find_stranded(const rfs_mesh::Mesh& mesh, const Positions& guide, const Context& context) {
-  const rfs_mesh::SpatialIndex index(guide, context);
-  const rfs_mesh::NeighborTable near = index.nearest(kNear, context);
-  std::vector<char> stranded(guide.size());
-  for_each_index(context, guide.size(), [&](std::size_t i) { stranded[i] = mesh.one_ring.degree(i) == 0; });
-  std::vector<double> distance(guide.size());
-  for (const std::size_t rank : {kTenth, std::size_t(kNear) - 1}) {
-    for_each_index(context, guide.size(),
+using rfs_mesh::Neighbor;
+using rfs_mesh::NeighborTable;
+
+/// The guide while points of it are moved: an index of where it was, and a small one of the moved points.
+class MovingGuide {
+ public:
+  MovingGuide(const Positions& guide, const Context& context)
+      : before_(guide), index_(before_, context), gone_(guide.size(), 0) {}
+
+  /// Takes a point out, or puts it back where it was.
+  void set_gone(Index i, bool gone) { gone_[i] = char(gone); }
+
+  /// The points that are gone and have a place again.
+  void set_moved(std::vector<Index> moved, const Positions& guide, const Context& context) {
+    moved_ = std::move(moved);
+    places_.clear();
+    for (const Index i : moved_) places_.push_back(guide[i]);
+    moved_index_.emplace(places_, context);
+  }
+
+  /// Whether point i is where it was.
+  bool stays(Index i) const { return gone_[i] == 0; }
+
+  struct Search {
+    std::vector<Neighbor> found, moved;
+  };
+
+  /// The k nearest of `at`, ascending.
+  const std::vector<Neighbor>& nearest(const Eigen::Vector3d& at, std::size_t k, Search& search) const {
+    std::vector<Neighbor>& found = search.found;
+    for (std::size_t asked = k + k / 4;; asked *= 2) {
+      index_.nearest(at, int(asked), found);
+      const bool all = found.size() < asked;
+      found.erase(
+          std::remove_if(found.begin(), found.end(), [&](const Neighbor& q) { return gone_[q.index] != 0; }),
+          found.end());
+      if (all || found.size() >= k) break;
+    }
+    if (moved_index_) {
+      moved_index_->nearest(at, int(k), search.moved);
+      for (const Neighbor& q : search.moved) found.push_back({moved_[q.index], q.squared_distance});
+      std::sort(found.begin(), found.end());
+    }
+    found.resize(std::min(k, found.size()));
+    return found;
+  }
+
+ private:
+  const Positions before_;
+  rfs_mesh::SpatialIndex index_;
+  std::vector<char> gone_;
+  std::vector<Index> moved_;
+  Positions places_;
+  std::optional<rfs_mesh::SpatialIndex> moved_index_;
+};
+
+std::vector<Index> find_stranded(const rfs_mesh::Mesh& mesh, const Positions& guide,
+                                 const NeighborTable& near, const Context& context) {
+  const std::size_t n = guide.size();
+  std::vector<char> stranded(n);
+  for_each_index(context, n, [&](std::size_t i) { stranded[i] = mesh.one_ring.degree(i) == 0; });
+  std::vector<double> distance(n);
+  for (const std::size_t rank : {kTenth, kLast}) {
+    for_each_index(context, n,
                    [&](std::size_t i) { distance[i] = (guide[near[i][rank]] - guide[i]).norm(); });
-    for_blocks(context, guide.size(), 4096, [&](std::size_t begin, std::size_t end) {
-      std::vector<double> around;
-      for (std::size_t i = begin; i < end; ++i) {
-        around.clear();
-        for (const Index j : near[i]) around.push_back(distance[j]);
-        const auto quartile = around.begin() + std::ptrdiff_t(around.size() / 4);
-        std::nth_element(around.begin(), quartile, around.end());
-        if (distance[i] > kThin * *quartile) stranded[i] = 1;
-      }
+    for_each_index(context, n, [&](std::size_t i) {
+      // Above so many times the lower quartile: that many are below this.
+      const double usual = distance[i] / kThin;
+      std::size_t below = 0;
+      for (std::size_t k = 0; k <= kLast; ++k) below += std::size_t(distance[near[i][k]] < usual);
+      if (below > (kLast + 1) / 4) stranded[i] = 1;
     });
   }
   std::vector<Index> found;
-  for (std::size_t i = 0; i < guide.size(); ++i)
+  for (std::size_t i = 0; i < n; ++i)
     if (stranded[i]) found.push_back(Index(i));
   return found;
 }
 
 /// p projected onto the plane through the points nearest to `at`.
-Eigen::Vector3d project(const rfs_mesh::SpatialIndex& surface, const Eigen::Vector3d& at,
-                        const Eigen::Vector3d& p, std::vector<rfs_mesh::Neighbor>& near) {
-  surface.nearest(at, kPlane, near);
+Eigen::Vector3d project(const MovingGuide& surface, const Positions& guide, const Eigen::Vector3d& at,
+                        const Eigen::Vector3d& p, MovingGuide::Search& search) {
+  const std::vector<Neighbor>& near = surface.nearest(at, kPlane, search);
   const double square = 1.05 * near.back().squared_distance;
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
   double weights = 0;
   for (const auto& q : near) {
     const double w = square > 0 ? 1 - q.squared_distance / square : 1;
-    centre += w * surface.points()[q.index];
+    centre += w * guide[q.index];
     weights += w;
   }
   centre /= weights;
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
   for (const auto& q : near) {
-    const Eigen::Vector3d d = surface.points()[q.index] - centre;
+    const Eigen::Vector3d d = guide[q.index] - centre;
     spread += (square > 0 ? 1 - q.squared_distance / square : 1) * d * d.transpose();
   }
   const Eigen::Vector3d normal = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(0);
   return p - normal * normal.dot(p - centre);
 }
 
-}  // namespace
-
-std::size_t land_stranded(const rfs_mesh::Mesh& mesh, double most, Positions& guide, const Context& context) {
-  if (guide.size() < kTooFew) return 0;
-  const std::vector<Index> stranded = find_stranded(mesh, guide, context);
-  if (stranded.empty() || guide.size() - stranded.size() < kTooFew) return stranded.size();
-  Positions rest;
-  rest.reserve(guide.size() - stranded.size());
-  for (std::size_t i = 0, next = 0; i < guide.size(); ++i) {
-    if (next < stranded.size() && stranded[next] == i)
-      ++next;
-    else
-      rest.push_back(guide[i]);
-  }
-  const rfs_mesh::SpatialIndex surface(rest, context);
+/// Lands the points `stranded`; returns which found a place. The others stay.
+std::vector<Index> land(const rfs_mesh::Mesh& mesh, const std::vector<Index>& stranded, double most,
+                        MovingGuide& surface, Positions& guide, const Context& context) {
+  Positions landed(stranded.size());
   for_blocks(context, stranded.size(), 256, [&](std::size_t begin, std::size_t end) {
-    std::vector<rfs_mesh::Neighbor> near;
+    MovingGuide::Search search;
     for (std::size_t k = begin; k < end; ++k) {
       const Eigen::Vector3d& p = mesh.positions[stranded[k]];
-      surface.nearest(p, 1, near);
-      const Eigen::Vector3d from = rest[near[0].index];
-      const Eigen::Vector3d landed = project(surface, project(surface, from, p, near), p, near);
-      if (landed.allFinite() && (landed - p).norm() < most) guide[stranded[k]] = landed;
+      const Eigen::Vector3d from = guide[surface.nearest(p, 1, search).front().index];
+      landed[k] = project(surface, guide, project(surface, guide, from, p, search), p, search);
     }
   });
-  return stranded.size();
+  std::vector<Index> moved;
+  for (std::size_t k = 0; k < stranded.size(); ++k) {
+    const Index i = stranded[k];
+    if (!landed[k].allFinite() || !((landed[k] - mesh.positions[i]).norm() < most)) continue;
+    guide[i] = landed[k];
+    moved.push_back(i);
+  }
+  return moved;
+}
+
+/// New rows for the moved points and those that had one of them near.
+void mend(const MovingGuide& surface, const Positions& guide, NeighborTable& near, const Context& context) {
+  const auto width = std::size_t(near.k);
+  for_blocks(context, guide.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    MovingGuide::Search search;
+    for (std::size_t i = begin; i < end; ++i) {
+      Index* const row = near.items.data() + i * width;
+      if (surface.stays(Index(i)) && std::all_of(row, row + width, [&](Index j) { return surface.stays(j); }))
+        continue;
+      std::size_t to = 0;
+      for (const Neighbor& q : surface.nearest(guide[i], width + 1, search))
+        if (q.index != i && to < width) row[to++] = q.index;
+    }
+  });
+}
+
+}  // namespace
+
+std::size_t land_stranded(const rfs_mesh::Mesh& mesh, double most, Positions& guide, NeighborTable& near,
+                          const Context& context) {
+  if (guide.size() < kTooFew) return 0;
+  std::optional<MovingGuide> surface;
+  std::vector<Index> moved;
+  std::size_t first = 0;
+  for (int round = 0; round < kRounds; ++round) {
+    const std::vector<Index> stranded = find_stranded(mesh, guide, near, context);
+    if (round == 0) first = stranded.size();
+    if (stranded.empty() || guide.size() - stranded.size() < kTooFew) break;
+    if (!surface) surface.emplace(guide, context);
+    // None of them is part of the surface that they are put onto, wherever it was put before.
+    std::vector<Index> others;
+    std::set_difference(moved.begin(), moved.end(), stranded.begin(), stranded.end(),
+                        std::back_inserter(others));
+    for (const Index i : stranded) surface->set_gone(i, true);
+    surface->set_moved(others, guide, context);
+    const std::vector<Index> landed = land(mesh, stranded, most, *surface, guide, context);
+    for (const Index i : stranded)
+      if (!std::binary_search(moved.begin(), moved.end(), i)) surface->set_gone(i, false);
+    std::vector<Index> all;
+    std::set_union(moved.begin(), moved.end(), landed.begin(), landed.end(), std::back_inserter(all));
+    for (const Index i : landed) surface->set_gone(i, true);
+    moved = std::move(all);
+    surface->set_moved(moved, guide, context);
+    mend(*surface, guide, near, context);
+  }
+  return first;
 }
 
 }  // namespace rfsmooth::smoothing

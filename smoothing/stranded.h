@@ -3,19 +3,24 @@
 /// Where noise exceeds the spacing, some points have no face, or only faces among a few others that lie off
 /// the surface like themselves; the fairing, which only knows neighbours, leaves such islands where they are.
 /// They show themselves: the faired points lie densely on the surface and thinly beside it. A point whose
-/// tenth or 48th neighbour (islands of a dozen points are dense inside) is farther than 1.7 times what is
+/// tenth or 32nd neighbour (islands of a dozen points are dense inside) is farther than 1.7 times what is
 /// usual around it (the lower quartile), or that has no neighbours in the mesh, is projected from its noisy
 /// place onto the plane of the others, taken around the one nearest to it: seen from half-way between two
 /// sheets, the nearest of both would make one plane across.
 #pragma once
 
 #include "rfsmooth/rfs_mesh/mesh.h"
+#include "rfsmooth/rfs_mesh/neighbors.h"
 
 namespace rfsmooth::smoothing {
 
 /// Moves the stranded points of `guide` (n x 3, the faired mesh.positions), except those farther from the
-/// surface than `most` (world units): they are strays. Returns how many were found. O(n log n), parallel,
-/// deterministic.
-std::size_t land_stranded(const rfs_mesh::Mesh& mesh, double most, Positions& guide, const Context& context);
+/// surface than `most` (world units): they are strays. Then once more: the landed ones make the surface
+/// denser, and smaller islands stand out. Returns how many were found at first.
+/// \param near in: the nearest of every guide point, at least 32 (fewer if there are fewer points); out: the
+/// same of the moved ones. A point that has a moved one near it anew may not know.
+/// O(n log n), parallel, deterministic.
+std::size_t land_stranded(const rfs_mesh::Mesh& mesh, double most, Positions& guide,
+                          rfs_mesh::NeighborTable& near, const Context& context);
 
 }  // namespace rfsmooth::smoothing

@@ -9,7 +9,7 @@ namespace rfsmooth::smoothing {
 
 namespace {
 
-constexpr int kNear = 3;
+constexpr std::size_t kNear = 3;
 
 enum class State : unsigned char { open, kept, dropped };
 
@@ -17,20 +17,28 @@ enum class State : unsigned char { open, kept, dropped };
 
 std::vector<Index> thin(const Positions& points, const std::vector<Index>& subset, const Context& context) {
   const std::size_t n = subset.size();
-  if (n <= std::size_t(kNear))
-    return {subset.begin(), subset.begin() + std::ptrdiff_t(std::min<std::size_t>(n, 1))};
+  if (n <= kNear) return {subset.begin(), subset.begin() + std::ptrdiff_t(std::min<std::size_t>(n, 1))};
   Positions at(n);
   for_each_index(context, n, [&](std::size_t s) { at[s] = points[subset[s]]; });
-  const rfs_mesh::SpatialIndex index(at, context);
-  const rfs_mesh::NeighborTable near = index.nearest(kNear, context);
+  std::vector<Index> kept =
+      thin_all(at, rfs_mesh::SpatialIndex(at, context).nearest(int(kNear), context), context);
+  for (Index& k : kept) k = subset[k];
+  return kept;
+}
+
+std::vector<Index> thin_all(const Positions& at, const rfs_mesh::NeighborTable& near,
+                            const Context& context) {
+  const std::size_t n = at.size();
   std::vector<double> priority(n);
   std::vector<rfs_mesh::Edge> edges(n * kNear);
   for_each_index(context, n, [&](std::size_t s) {
     // A sum, since two points that are each other's third neighbours would tie.
     priority[s] = 0;
-    for (const Index t : near[s]) priority[s] += (at[t] - at[s]).squaredNorm();
-    for (std::size_t k = 0; k < std::size_t(kNear); ++k)
-      edges[s * kNear + k] = {std::min(Index(s), near[s][k]), std::max(Index(s), near[s][k])};
+    for (std::size_t k = 0; k < kNear; ++k) {
+      const Index t = near[s][k];
+      priority[s] += (at[t] - at[s]).squaredNorm();
+      edges[s * kNear + k] = {std::min(Index(s), t), std::max(Index(s), t)};
+    }
   });
   const rfs_mesh::Adjacency graph = rfs_mesh::make_adjacency(n, edges, context);
   const auto before = [&](std::size_t a, std::size_t b) {
@@ -59,7 +67,7 @@ std::vector<Index> thin(const Positions& points, const std::vector<Index>& subse
   }
   std::vector<Index> kept;
   for (std::size_t s = 0; s < n; ++s)
-    if (state[s] == State::kept) kept.push_back(subset[s]);
+    if (state[s] == State::kept) kept.push_back(Index(s));
   return kept;
 }
 

@@ -9,12 +9,16 @@
 #include <vector>
 
 #include "rfsmooth/rfs_mesh/context.h"
-#include "rfsmooth/rfs_mesh/points.h"
+#include "rfsmooth/rfs_mesh/neighbors.h"
 
 namespace rfsmooth::smoothing {
 
 /// A subset of `subset` (ascending indices into points) with about 0.4 of its size, ascending; at least one
 /// index if `subset` has any. O(n log n) in the size of the subset, deterministic.
 std::vector<Index> thin(const Positions& points, const std::vector<Index>& subset, const Context& context);
+
+/// The same of all points, whose nearest (three or more) are known.
+std::vector<Index> thin_all(const Positions& points, const rfs_mesh::NeighborTable& near,
+                            const Context& context);
 
 }  // namespace rfsmooth::smoothing

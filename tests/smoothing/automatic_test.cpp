@@ -80,10 +80,9 @@ TEST(Patches, PredictAQuadricExactlyWhateverTheSharesOfThePointsAre) {
       data.emplace_back(x, y, 0.01 * x * x - 0.02 * x * y + 0.3 * y - 1);
     }
   const HeightField field(guide, data, {});
-  const std::vector<double> sigma(guide.size(), 1);
   for (const std::size_t m : {16, 100}) {
     std::vector<Index> seeds = thin(guide, all(guide.size()), {});
-    const Patches patches(field, m, seeds, sigma, {});
+    const Patches patches(field, m, seeds, 1, {});
     const Prediction p = patches.predict({});
     for (std::size_t i = 0; i < guide.size(); ++i) {
       ASSERT_TRUE(p.covered[i]);
@@ -102,15 +101,14 @@ TEST(Patches, OwnIsTheDerivativeOfAPredictionByThePointsHeight) {
       data.push_back(guide.back() + Eigen::Vector3d(0, 0, 0.01 * std::sin(1.7 * i * j)));
     }
   // Noise so large that no patch has residuals above it: the weights of the patches stay as they are.
-  const std::vector<double> sigma(guide.size(), 10);
   const std::vector<Index> seeds = thin(guide, all(guide.size()), {});
   const std::size_t i = 207;
   const double step = 0.5;
   const HeightField field(guide, data, {});
-  const Prediction before = Patches(field, 24, seeds, sigma, {}).predict({});
+  const Prediction before = Patches(field, 24, seeds, 10, {}).predict({});
   data[i].z() += step;
   const HeightField lifted(guide, data, {});
-  const Prediction after = Patches(lifted, 24, seeds, sigma, {}).predict({});
+  const Prediction after = Patches(lifted, 24, seeds, 10, {}).predict({});
   const double side = field.normals()[i].z();
   EXPECT_NEAR(side * (after.height[i] - before.height[i]) / (side * step * side), before.own[i], 1e-4);
 }
@@ -118,8 +116,8 @@ TEST(Patches, OwnIsTheDerivativeOfAPredictionByThePointsHeight) {
 TEST(Patches, MeanOfAConstantIsTheConstant) {
   const rfs_mesh::Mesh mesh = support::icosphere(3);
   const HeightField field(mesh.positions, mesh.positions, {});
-  const std::vector<double> sigma(field.size(), 1), seven(field.size(), 7);
-  const Patches patches(field, 40, thin(mesh.positions, all(field.size()), {}), sigma, {});
+  const std::vector<double> seven(field.size(), 7);
+  const Patches patches(field, 40, thin(mesh.positions, all(field.size()), {}), 1, {});
   for (const double v : patches.mean(seven, {})) EXPECT_NEAR(v, 7, 1e-5);
   for (const double v : field.local_mean(seven, {})) EXPECT_NEAR(v, 7, 1e-12);
 }
@@ -144,14 +142,30 @@ TEST(Thinning, KeepsAnIndependentSetThatEveryPointIsNearTo) {
   EXPECT_EQ(thin(mesh.positions, {4}, {}), std::vector<Index>{4});
 }
 
+/// land_stranded, and whether the table still holds every point's nearest, nearer ones first.
+std::size_t land(const rfs_mesh::Mesh& mesh, double most, Positions& guide) {
+  rfs_mesh::NeighborTable near = rfs_mesh::SpatialIndex(guide, {}).nearest(32, {});
+  const rfs_mesh::NeighborTable before = near;
+  const Positions start = guide;
+  const std::size_t found = land_stranded(mesh, most, guide, near, {});
+  const rfs_mesh::SpatialIndex index(guide, {});
+  const rfs_mesh::NeighborTable exact = index.nearest(32, {});
+  for (std::size_t i = 0; i < guide.size(); ++i) {
+    const auto moved = [&](Index j) { return guide[j] != start[j]; };
+    const bool touched = moved(Index(i)) || std::any_of(before[i].begin(), before[i].end(), moved);
+    for (std::size_t k = 0; k < 32; ++k) EXPECT_EQ(near[i][k], touched ? exact[i][k] : before[i][k]) << i;
+  }
+  return found;
+}
+
 TEST(Stranded, IslandsBesideTheSurfaceAreLanded) {
   rfs_mesh::Mesh mesh = support::icosphere(5);
   for (std::size_t i = 0; i < 2000; i += 100) mesh.positions[i] *= 1.1;
   Positions guide = mesh.positions;
-  EXPECT_GE(land_stranded(mesh, 0.5, guide, {}), 20u);
+  EXPECT_GE(land(mesh, 0.5, guide), 20u);
   for (std::size_t i = 0; i < 2000; i += 100) EXPECT_NEAR(guide[i].norm(), 1, 0.01);
   guide = mesh.positions;
-  land_stranded(mesh, 0.05, guide, {});
+  land(mesh, 0.05, guide);
   for (std::size_t i = 0; i < 2000; i += 100) EXPECT_EQ(guide[i], mesh.positions[i]) << "too far: a stray";
 }
 
@@ -170,7 +184,7 @@ TEST(Stranded, DenseIslandsHalfWayBetweenTwoSheetsAreLandedOnOneOfThem) {
   for (Index i = 0; i < Index(n); ++i) ring.push_back({i, Index((i + 1) % n)});
   mesh.one_ring = rfs_mesh::make_adjacency(n, ring, {});
   Positions guide = mesh.positions;
-  land_stranded(mesh, 20, guide, {});
+  land(mesh, 20, guide);
   for (std::size_t i = sheets; i < n; ++i)
     EXPECT_LT(std::min(std::abs(guide[i].z()), std::abs(guide[i].z() - 16)), 0.01) << i;
   for (std::size_t i = 0; i < sheets; ++i) EXPECT_NEAR(guide[i].z(), i < sheets / 2 ? 0 : 16, 0.01) << i;

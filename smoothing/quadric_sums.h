@@ -1,0 +1,35 @@
+/// The sums of a weighted quadric fit over many points, several points an instruction.
+///
+///     a = sum w f f^T,   b = sum w^2 f f^T,   right = sum w y f,   f = (1, u, v, u^2, u v, v^2)
+///
+/// Both matrices hold the moments sum w u^p v^q of degree 0 to 4 only: 15 sums each instead of 36.
+#pragma once
+
+#include <cstddef>
+
+#include <Eigen/Core>
+
+namespace rfsmooth::smoothing {
+
+/// Points are taken so many at a time: arrays are to be filled up to a multiple with zeros.
+inline constexpr std::size_t kLanes = 4;
+
+inline std::size_t padded(std::size_t size) {
+  return (size + kLanes - 1) / kLanes * kLanes;
+}
+
+/// The sums above. b is summed in single precision, the others in double.
+struct QuadricSums {
+  Eigen::Matrix<double, 6, 6> a, b;
+  Eigen::Matrix<double, 6, 1> right;
+};
+
+/// \param size padded(number of points). u, v and y are of the order of one. O(size), the same bits every
+/// time.
+QuadricSums sum_quadric(std::size_t size, const float* u, const float* v, const float* y, const float* w);
+
+/// The sum of w ((y - q.f) c)^2.
+double sum_residuals(std::size_t size, const float* u, const float* v, const float* y, const float* w,
+                     const float* c, const Eigen::Matrix<double, 6, 1>& q);
+
+}  // namespace rfsmooth::smoothing
