@@ -146,8 +146,7 @@ class Scanner {
 }  // namespace
 
 std::vector<Return> scan(const Shape& shape, const ScannerOptions& options, const Context& context) {
-  const auto valid = validate(options);
-  if (!valid) throw Failure(valid.error());
+  value_or_throw(validate(options));
   if (options.distance <= shape.radius())
     throw Failure({ErrorCode::usage, "distance: the scanner stands inside the shape; its radius is " +
                                          std::to_string(shape.radius())});

@@ -38,10 +38,6 @@ struct TruthOptions {
   }
 };
 
-void must(const Result<Done>& result) {
-  if (!result) throw Failure(result.error());
-}
-
 struct Files {
   std::string shape, out, truth;
   std::string encoding;
@@ -55,7 +51,7 @@ struct Files {
       throw Failure({ErrorCode::usage,
                      "--encoding is '" + encoding +
                          "'; it must be one of: ascii, binary, binary_big_endian, binary_compressed"});
-    must(io::write_cloud(cloud, path, options, {}));
+    value_or_throw(io::write_cloud(cloud, path, options, {}));
     std::printf("%s: %zu points\n", path.c_str(), cloud.size());
   }
 };
@@ -79,17 +75,16 @@ void run_scan(const Files& files, const ScannerOptions& options, std::uint64_t s
 /// n points of a shape of ours, or of the mesh in a file.
 Positions sample_of(const std::string& name, std::size_t n, std::uint64_t seed, Sampling sampling) {
   if (!io::format_of_extension(name)) return sample(*find_shape(name), n, seed, sampling);
-  const auto file = io::read_mesh(name, {}, {});
-  if (!file) throw Failure(file.error());
-  const std::vector<double> xyz = io::positions(file.value().cloud);
+  const auto file = value_or_throw(io::read_mesh(name, {}, {}));
+  const std::vector<double> xyz = io::positions(file.cloud);
   rfs_mesh::Mesh mesh;
   for (std::size_t i = 0; i < xyz.size(); i += 3) mesh.positions.emplace_back(xyz[i], xyz[i + 1], xyz[i + 2]);
-  mesh.faces = file.value().faces;
+  mesh.faces = file.faces;
   return sample(mesh, n, seed, sampling);
 }
 
 void run_sample(const Files& files, const SampleOptions& options, std::uint64_t seed) {
-  must(validate(options));
+  value_or_throw(validate(options));
   const Sampling sampling = options.sampling == "uniform" ? Sampling::uniform : Sampling::poisson_disk;
   const Positions clean = sample_of(files.shape, std::size_t(options.points), seed, sampling);
   Positions noisy = clean;
@@ -99,7 +94,7 @@ void run_sample(const Files& files, const SampleOptions& options, std::uint64_t 
 }
 
 void run_truth(const Files& files, const TruthOptions& options) {
-  must(validate(options));
+  value_or_throw(validate(options));
   const rfs_mesh::Mesh mesh = find_shape(files.shape)->mesh(options.edge);
   files.write(io::make_mesh_file(mesh.positions, mesh.faces, {}), files.out);
 }

@@ -15,12 +15,6 @@ namespace rfsmooth::pipeline {
 
 namespace {
 
-template <class T>
-T value_or_fail(Result<T> result) {
-  if (!result.ok()) throw Failure(result.error());
-  return std::move(result).value();
-}
-
 /// Appends the time since the last lap.
 class Laps {
  public:
@@ -52,7 +46,7 @@ std::vector<std::size_t> first_rows(const rfs_mesh::WorkingCloud& cloud) {
 /// Takes the noise out of the rows and outliers out of the cloud.
 void clean(std::vector<double>& xyz, const DenoiseOptions& options, ReconstructReport& report,
            const Context& context) {
-  report.denoised = value_or_fail(denoise(xyz.data(), xyz.size() / 3, options, context));
+  report.denoised = value_or_throw(denoise(xyz.data(), xyz.size() / 3, options, context));
   report.seconds = report.denoised.seconds;
   for (std::size_t i = 0; i < report.denoised.outlier.size(); ++i)
     if (report.denoised.outlier[i]) xyz[3 * i] = std::numeric_limits<double>::quiet_NaN();
@@ -63,7 +57,7 @@ Positions working_normals(const std::vector<double>& xyz, const rfs_mesh::Workin
                           const Context& context) {
   const std::size_t n = xyz.size() / 3;
   std::vector<double> of_row(xyz.size());
-  value_or_fail(estimate_normals(xyz.data(), n, {}, context, of_row.data()));
+  value_or_throw(estimate_normals(xyz.data(), n, {}, context, of_row.data()));
   Positions normals(cloud.points.size());
   for (std::size_t i = 0; i < n; ++i)
     if (const Index p = cloud.of_input[i]; p != kNone) normals[p] = Eigen::Vector3d::Map(&of_row[3 * i]);
@@ -90,7 +84,7 @@ Reconstruction run(std::vector<double> xyz, const ReconstructOptions& options, c
   if (options.denoise) clean(xyz, options.denoising, report, context);
   Laps laps(report.seconds);
   const rfs_mesh::WorkingCloud cloud =
-      value_or_fail(rfs_mesh::make_working_cloud(xyz.data(), xyz.size() / 3, context));
+      value_or_throw(rfs_mesh::make_working_cloud(xyz.data(), xyz.size() / 3, context));
   if (cloud.points.size() < 4)
     throw Failure({ErrorCode::no_usable_points, "a surface needs four distinct points at least"});
   SurfaceInput input;
@@ -100,7 +94,7 @@ Reconstruction run(std::vector<double> xyz, const ReconstructOptions& options, c
   laps.lap("normals");
 
   context.report(method.name, 0);
-  made.mesh = value_or_fail(method.run(input, context));
+  made.mesh = value_or_throw(method.run(input, context));
   context.report(method.name, 1);
   laps.lap(method.name);
 

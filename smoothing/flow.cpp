@@ -166,14 +166,13 @@ namespace {
 FlowReport run(rfs_mesh::Mesh& mesh, const FlowOptions& options, const Context& context,
                const Constraints& constraints) {
   FlowReport report;
-  auto flow = make_flow(mesh, options, context, constraints);
-  if (!flow.ok()) throw Failure(flow.error());
+  const auto flow = value_or_throw(make_flow(mesh, options, context, constraints));
   const int steps = *options.iterations;
   for (; report.steps < steps; ++report.steps) {
     context.report(options.flow, double(report.steps) / steps);
-    flow.value()->step(mesh, context);
+    flow->step(mesh, context);
   }
-  report.solver_iterations = flow.value()->solver_iterations();
+  report.solver_iterations = flow->solver_iterations();
   return report;
 }
 

@@ -56,10 +56,9 @@ io::Cloud load_cloud(const std::string& input, const Context& context,
   // The file's own size is the least that reading it takes.
   if (const auto bytes = std::filesystem::file_size(path, unknown); !unknown)
     if (const auto error = refuse_without_memory(input, bytes)) throw Failure(*error);
-  auto cloud = io::read_cloud(path, {}, context);
-  if (!cloud.ok()) throw Failure(cloud.error());
+  io::Cloud cloud = value_or_throw(io::read_cloud(path, {}, context));
   stages.push_back({"read", seconds_since(start)});
-  return std::move(cloud).value();
+  return cloud;
 }
 
 void store_cloud(const io::Cloud& cloud, const std::string& output, const FileOptions& options,

@@ -86,8 +86,7 @@ void write_normals(const NormalsFields& options, io::Cloud& cloud, const double*
   wanted.viewpoint =
       options.viewpoint ? parse_point(*options.viewpoint) : pipeline::recorded_viewpoint(cloud, xyz, context);
   std::vector<double> normals(3 * cloud.size());
-  const auto done = pipeline::estimate_normals(xyz, cloud.size(), wanted, context, normals.data());
-  if (!done.ok()) throw Failure(done.error());
+  value_or_throw(pipeline::estimate_normals(xyz, cloud.size(), wanted, context, normals.data()));
   bool written = false;
   for (const Names& names : {kPly, kPcd}) {
     if (!complete(cloud, names)) continue;

@@ -87,12 +87,10 @@ int run(const Options& options, const Invocation& typed) {
     truth.mesh = pipeline::MeshView{truth_xyz.data(), truth_file.size(), faces.data(), faces.size()};
   pipeline::CompareOptions compare_options;
   compare_options.signed_normals = options.signed_normals;
-  const auto result =
-      pipeline::compare({xyz.data(), cloud.size(), normals.empty() ? nullptr : normals.data()}, truth,
-                        compare_options, context);
-  if (!result.ok()) throw Failure(result.error());
+  const pipeline::CompareReport report =
+      value_or_throw(pipeline::compare({xyz.data(), cloud.size(), normals.empty() ? nullptr : normals.data()},
+                                       truth, compare_options, context));
 
-  const pipeline::CompareReport& report = result.value();
   ordered_json own, unit;
   pipeline::Measures::describe(report.own_units, ToJson{own});
   const pipeline::Measures scaled = pipeline::on_unit_sphere(report.own_units, report.radius);

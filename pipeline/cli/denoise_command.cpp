@@ -164,7 +164,7 @@ std::string denoise_cloud(const Options& options, pipeline::io::Cloud& cloud, co
 
 int run(const Options& options, const Invocation& typed) {
   // Wrong options are told before any file is touched.
-  if (const auto valid = smoothing::complete(options.denoise.flow); !valid.ok()) throw Failure(valid.error());
+  value_or_throw(smoothing::complete(options.denoise.flow));
   if (options.mark_outliers && options.denoise.outliers == "smooth")
     throw Failure({ErrorCode::usage, "--mark-outliers has nothing to mark with --outliers smooth"});
   check(options.normals);

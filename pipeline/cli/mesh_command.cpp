@@ -67,9 +67,7 @@ std::string connect_cloud(const Options& options, pipeline::io::Cloud& cloud, co
   if (!working.ok()) throw Failure({working.error().code, job.input + ": " + working.error().message});
   rfs_mesh::Connection connection;
   in_arena(context, [&] {
-    auto made = rfs_mesh::connect(working.value().points, options.mesh.connect, context);
-    if (!made.ok()) throw Failure(made.error());
-    connection = std::move(made).value();
+    connection = value_or_throw(rfs_mesh::connect(working.value().points, options.mesh.connect, context));
   });
   for (const auto& stage : connection.seconds) stages.push_back({stage.stage, stage.seconds});
 

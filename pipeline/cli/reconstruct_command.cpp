@@ -135,8 +135,7 @@ Command reconstruct_command() {
   const auto options = std::make_shared<Options>();
   Command command = table(options);
   command.run = [options, known = command.options](const Invocation& typed) {
-    if (const auto valid = smoothing::complete(options->reconstruct.denoising.flow); !valid.ok())
-      throw Failure(valid.error());
+    value_or_throw(smoothing::complete(options->reconstruct.denoising.flow));
     return become_program("rfsmooth-reconstruct", as_typed(typed, known));
   };
   return command;
@@ -146,8 +145,7 @@ Command reconstruct_command(std::vector<pipeline::SurfaceMethod> methods) {
   const auto options = std::make_shared<Options>();
   Command command = table(options);
   command.run = [options, methods = std::move(methods)](const Invocation& typed) {
-    if (const auto valid = smoothing::complete(options->reconstruct.denoising.flow); !valid.ok())
-      throw Failure(valid.error());
+    value_or_throw(smoothing::complete(options->reconstruct.denoising.flow));
     const pipeline::SurfaceMethod& method = find_method(methods, options->reconstruct.method);
     return run_cloud_jobs("reconstruct", options->job, typed,
                           [&](pipeline::io::Cloud& cloud, const Job& job, const Context& context, Console&,

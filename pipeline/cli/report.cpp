@@ -12,7 +12,7 @@ Report::Report(std::string command, const std::optional<std::string>& path, bool
   pipeline::io::WriteOptions options;
   options.force = force_;
   options.format = pipeline::io::Format::ply;  // any: the extension of a report stands for no cloud
-  if (const auto fine = pipeline::io::check_output(path_, options); !fine.ok()) throw Failure(fine.error());
+  value_or_throw(pipeline::io::check_output(path_, options));
 }
 
 void Report::write() const {
@@ -25,8 +25,8 @@ void Report::write() const {
   const std::string text = all.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
   if (path_ == "-")
     fmt::print("{}", text);
-  else if (const auto done = pipeline::io::write_bytes(text, path_, force_, {}); !done.ok())
-    throw Failure(done.error());
+  else
+    value_or_throw(pipeline::io::write_bytes(text, path_, force_, {}));
 }
 
 nlohmann::ordered_json json_of(const std::vector<pipeline::StageTime>& stages) {

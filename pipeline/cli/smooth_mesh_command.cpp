@@ -173,7 +173,7 @@ std::string smooth_file(const Options& options, pipeline::io::Cloud& cloud, cons
 }
 
 int run(const Options& options, const Invocation& typed) {
-  if (const auto valid = smoothing::complete(options.flow); !valid.ok()) throw Failure(valid.error());
+  value_or_throw(smoothing::complete(options.flow));
   return run_cloud_jobs("smooth-mesh", options.job, typed, [&](auto&&... all) {
     return smooth_file(options, std::forward<decltype(all)>(all)...);
   });

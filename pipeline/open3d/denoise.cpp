@@ -23,8 +23,7 @@ Positions surface_normals(const Positions& points, const Positions* before, cons
   const std::size_t n = points.size();
   const double* const xyz = points.front().data();
   Positions normals(n);
-  const auto done = pipeline::estimate_normals(xyz, n, {}, context, normals.front().data());
-  if (!done.ok()) throw Failure(done.error());
+  value_or_throw(pipeline::estimate_normals(xyz, n, {}, context, normals.front().data()));
   if (before == nullptr) return normals;
   pipeline::keep_sides(xyz, n, before->front().data(), normals.front().data(), context);
   for (std::size_t i = 0; i < n; ++i)
@@ -71,9 +70,8 @@ pipeline::DenoiseReport run(PointCloud& cloud, const pipeline::DenoiseOptions& o
                             const Context& context, Covariances kind) {
   PointCloud made = cloud;
   const std::size_t n = made.points_.size();
-  auto result = pipeline::denoise(n == 0 ? nullptr : made.points_.front().data(), n, options, context);
-  if (!result.ok()) throw Failure(result.error());
-  const pipeline::DenoiseReport& done = result.value();
+  const pipeline::DenoiseReport done =
+      value_or_throw(pipeline::denoise(n == 0 ? nullptr : made.points_.front().data(), n, options, context));
   const bool removes = options.outliers == "remove" && done.outliers > 0;
   if (done.moved == 0 && !removes) return done;
   if (removes) {

@@ -32,12 +32,9 @@ std::vector<std::size_t> rows_of(const rfs_mesh::WorkingCloud& working, std::vec
 std::shared_ptr<TriangleMesh> make(const PointCloud& cloud, const rfs_mesh::ConnectOptions& options,
                                    const Context& context) {
   const std::size_t n = cloud.points_.size();
-  const auto working =
-      rfs_mesh::make_working_cloud(n == 0 ? nullptr : cloud.points_.front().data(), n, context);
-  if (!working.ok()) throw Failure(working.error());
-  auto connected = rfs_mesh::connect(working.value().points, options, context);
-  if (!connected.ok()) throw Failure(connected.error());
-  rfs_mesh::Connection& connection = connected.value();
+  const rfs_mesh::WorkingCloud working = value_or_throw(
+      rfs_mesh::make_working_cloud(n == 0 ? nullptr : cloud.points_.front().data(), n, context));
+  rfs_mesh::Connection connection = value_or_throw(rfs_mesh::connect(working.points, options, context));
   Positions sides;
   for (std::size_t p = 0; p < connection.surfaces.size(); ++p) {
     sides.push_back(connection.surfaces[p].normal);
@@ -47,12 +44,12 @@ std::shared_ptr<TriangleMesh> make(const PointCloud& cloud, const rfs_mesh::Conn
   rfs_mesh::orient(connection.mesh, connection.emst, connection.bridges, {}, sides, context);
 
   std::vector<Index> rank;
-  const std::vector<std::size_t> row = rows_of(working.value(), rank);
+  const std::vector<std::size_t> row = rows_of(working, rank);
   rfs_mesh::Mesh mesh;
   Positions normals;
   for (const std::size_t i : row) {
     mesh.positions.push_back(cloud.points_[i]);
-    normals.push_back(sides[working.value().of_input[i]]);
+    normals.push_back(sides[working.of_input[i]]);
   }
   mesh.faces = connection.mesh.faces;
   for (auto& face : mesh.faces)
