@@ -33,6 +33,13 @@ using CloudWork = std::function<std::string(
 int run_cloud_jobs(const std::string& command, const JobOptions& options, const Invocation& typed,
                    const CloudWork& work);
 
+/// The value of a result. \throw Failure with its error, which `name` (the file's) comes before.
+template <class T>
+T value_or_fail(Result<T> result, const std::string& name) {
+  if (!result.ok()) throw Failure({result.error().code, name + ": " + result.error().message});
+  return std::move(result).value();
+}
+
 /// The options that were used, as the report shows them; --config takes them back.
 template <class Options>
 nlohmann::ordered_json effective_options(Options used, const FileOptions& files) {

@@ -131,9 +131,8 @@ std::string denoise_cloud(const Options& options, pipeline::io::Cloud& cloud, co
   const std::vector<double> before = options.write_displacement ? xyz : std::vector<double>{};
   const std::vector<double> strength =
       options.strength_field ? strengths(cloud, *options.strength_field, context) : std::vector<double>{};
-  const auto result = pipeline::denoise(xyz.data(), n, options.denoise, context, strength);
-  if (!result.ok()) throw Failure({result.error().code, job.input + ": " + result.error().message});
-  const pipeline::DenoiseReport& done = result.value();
+  const pipeline::DenoiseReport done =
+      value_or_fail(pipeline::denoise(xyz.data(), n, options.denoise, context, strength), job.input);
   const bool some_removed = options.removes() && done.outliers > 0,
              as_nan = some_removed && keeps_grid(cloud);
   const auto blank_outliers = [&] {

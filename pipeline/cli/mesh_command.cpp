@@ -63,15 +63,15 @@ std::string connect_cloud(const Options& options, pipeline::io::Cloud& cloud, co
   if (const auto error = refuse_without_memory(job.input, pipeline::denoise_memory(cloud.size())))
     throw Failure(*error);
   const std::vector<double> xyz = pipeline::io::positions(cloud, context);
-  const auto working = rfs_mesh::make_working_cloud(xyz.data(), cloud.size(), context);
-  if (!working.ok()) throw Failure({working.error().code, job.input + ": " + working.error().message});
+  const rfs_mesh::WorkingCloud working =
+      value_or_fail(rfs_mesh::make_working_cloud(xyz.data(), cloud.size(), context), job.input);
   rfs_mesh::Connection connection;
   in_arena(context, [&] {
-    connection = value_or_throw(rfs_mesh::connect(working.value().points, options.mesh.connect, context));
+    connection = value_or_throw(rfs_mesh::connect(working.points, options.mesh.connect, context));
   });
   for (const auto& stage : connection.seconds) stages.push_back({stage.stage, stage.seconds});
 
-  const FileOrder order = file_order(working.value(), xyz);
+  const FileOrder order = file_order(working, xyz);
   const std::string& stage = options.mesh.stage;
   const auto edges = renumbered(stage == "emst"  ? connection.emst
                                 : stage == "sdg" ? connection.sdg

@@ -71,10 +71,9 @@ std::string reconstruct_cloud(const Options& options, const pipeline::SurfaceMet
   check_format(job, options.job.files);
   if (const auto error = refuse_without_memory(job.input, pipeline::denoise_memory(cloud.size())))
     throw Failure(*error);
-  auto result =
-      pipeline::reconstruct(pipeline::io::positions(cloud, context), options.reconstruct, method, context);
-  if (!result.ok()) throw Failure({result.error().code, job.input + ": " + result.error().message});
-  const pipeline::Reconstruction& made = result.value();
+  const pipeline::Reconstruction made = value_or_fail(
+      pipeline::reconstruct(pipeline::io::positions(cloud, context), options.reconstruct, method, context),
+      job.input);
   cloud = surface_file(std::move(cloud), made, context);
   stages.insert(stages.end(), made.report.seconds.begin(), made.report.seconds.end());
   enter(made, options, entry);

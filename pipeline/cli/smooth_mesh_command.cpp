@@ -64,12 +64,6 @@ struct Options {
   }
 };
 
-template <class T>
-T value_or_fail(Result<T> result, const std::string& name) {
-  if (!result.ok()) throw Failure({result.error().code, name + ": " + result.error().message});
-  return std::move(result).value();
-}
-
 /// The edges between two faces whose normals turn by more than `degrees`.
 std::vector<rfs_mesh::Edge> sharp_edges(const rfs_mesh::Mesh& mesh, double degrees, const Context& context) {
   const rfs_mesh::Adjacency around = vertex_faces(mesh, context);
