@@ -182,19 +182,13 @@ Command denoise_command() {
   command.usage = {"[options] IN OUT", "[options] IN... -o FOLDER/"};
   command.description =
       "Reads a cloud (PLY, PCD, XYZ; the format is found by content), connects its points to a rough mesh "
-      "(EMST, SDG, RFS-mesh), smooths the mesh, and writes the same cloud with x, y, z replaced: every other "
-      "field, the order and the number of points stay. Points that are not finite stay as they are. Fields "
-      "that "
-      "are asked for (--write-displacement, --mark-outliers, --normals) come behind the points' other "
-      "fields, or take "
-      "the place of the "
-      "one "
-      "of that name.\n\n"
-      "- stands for standard input or output; --format names the format where there is no extension. Without "
-      "-o "
-      "exactly two names are taken, IN and OUT; with -o every name is an input. Existing files are replaced "
-      "only "
-      "with --force. Ctrl-C stops within a second and leaves no file.";
+      "(EMST, SDG, RFS-mesh), smooths the mesh, and writes the same cloud with x, y, z replaced: every "
+      "other field, the order and the number of points stay. Points that are not finite stay as they are. "
+      "Fields that are asked for (--write-displacement, --mark-outliers, --normals) come behind the "
+      "points' other fields, or take the place of the one of that name.\n\n"
+      "- stands for standard input or output; --format names the format where there is no extension. "
+      "Without -o exactly two names are taken, IN and OUT; with -o every name is an input. Existing files "
+      "are replaced only with --force. Ctrl-C stops within a second and leaves no file.";
   collect(*options, command.options);
   collect(options->job, command.options);
   polish(command);
