@@ -9,6 +9,7 @@
 #include "rfsmooth/pipeline/cli/cloud_files.h"
 #include "rfsmooth/pipeline/cli/command.h"
 #include "rfsmooth/pipeline/cli/console.h"
+#include "rfsmooth/rfs_mesh/local_surface.h"
 #include "rfsmooth/rfs_mesh/neighbors.h"
 #include "rfsmooth/rfs_mesh/noise.h"
 #include "rfsmooth/rfs_mesh/parallel.h"
@@ -65,10 +66,7 @@ ordered_json measure(const pipeline::io::Cloud& cloud, const Context& context) {
   if (points.size() < 2) return json;
   in_arena(context, [&] {
     const rfs_mesh::SpatialIndex index(points, context);
-    const rfs_mesh::NeighborTable nearest = index.nearest(1, context);
-    const double sum = sum_over(context, points.size(), 0.0,
-                                [&](std::size_t i) { return (points[i] - points[nearest[i][0]]).norm(); });
-    json["spacing"] = sum / double(points.size());
+    json["spacing"] = rfs_mesh::mean_spacing(points, index.nearest(1, context), context);
     json["spacing_field"] = tenths(rfs_mesh::measure_spacing(index, context));
     rfs_mesh::NoiseField noise = rfs_mesh::measure_noise(index, context);
     json["noise"] = noise.sigma;
