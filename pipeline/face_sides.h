@@ -43,6 +43,13 @@ void for_each_edge(const std::vector<FaceSide>& sides, Visit&& visit) {
   }
 }
 
+/// Which corner of `face` is `vertex`, one of its three, counted over all faces.
+inline Index corner_of(const std::vector<rfs_mesh::Face>& faces, Index face, Index vertex) {
+  Index k = 0;
+  while (faces[face][k] != vertex) ++k;
+  return 3 * face + k;
+}
+
 /// Disjoint sets; the least member stands for its set.
 class Groups {
  public:

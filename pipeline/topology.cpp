@@ -6,17 +6,6 @@ namespace rfsmooth::pipeline {
 
 using rfs_mesh::Face;
 
-namespace {
-
-/// Which corner of `face` is `vertex`, counted over all faces.
-Index corner_of(const std::vector<Face>& faces, Index face, Index vertex) {
-  Index k = 0;
-  while (faces[face][k] != vertex) ++k;
-  return 3 * face + k;
-}
-
-}  // namespace
-
 Topology topology(std::size_t n, const std::vector<Face>& faces) {
   Topology found;
   found.faces = faces.size();

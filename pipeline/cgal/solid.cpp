@@ -149,18 +149,12 @@ class Builder {
   std::vector<char> pinched_vertices(const std::vector<Face>& faces) const {
     std::vector<char> pinched(points_.size(), 0);
     pipeline::Groups fans(3 * faces.size());
-    const auto corner_of = [&](Index face, Index vertex) {
-      Index k = 0;
-      while (faces[face][k] != vertex) ++k;
-      return 3 * face + k;
-    };
-    pipeline::for_each_edge(pipeline::face_sides(faces),
-                            [&](const pipeline::FaceSide* first, const pipeline::FaceSide* last) {
-                              if (last - first > 2)
-                                pinched[first->a] = 1;  // with one end open the edge is no edge any more
-                              for (const Index v : {first->a, first->b})
-                                fans.join(corner_of(first->face, v), corner_of(first[1].face, v));
-                            });
+    pipeline::for_each_edge(pipeline::face_sides(faces), [&](const pipeline::FaceSide* first,
+                                                             const pipeline::FaceSide* last) {
+      if (last - first > 2) pinched[first->a] = 1;  // with one end open the edge is no edge any more
+      for (const Index v : {first->a, first->b})
+        fans.join(pipeline::corner_of(faces, first->face, v), pipeline::corner_of(faces, first[1].face, v));
+    });
     std::vector<Index> count(points_.size(), 0);
     for (Index c = 0; c < 3 * faces.size(); ++c)
       if (fans.of(c) == c && ++count[faces[c / 3][c % 3]] > 1) pinched[faces[c / 3][c % 3]] = 1;
