@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "rfsmooth/pipeline/outliers.h"
+#include "rfsmooth/rfs_mesh/median.h"
 #include "rfsmooth/rfs_mesh/parallel.h"
 #include "rfsmooth/rfs_mesh/points.h"
 
@@ -78,10 +79,7 @@ std::vector<double> reaches(const rfs_mesh::Mesh& mesh, const Context& context) 
       lengths.clear();
       for (const Index j : mesh.one_ring[i])
         lengths.push_back((mesh.positions[i] - mesh.positions[j]).norm());
-      if (lengths.empty()) continue;
-      const auto middle = lengths.begin() + std::ptrdiff_t(lengths.size() / 2);
-      std::nth_element(lengths.begin(), middle, lengths.end());
-      reach[i] = *middle;
+      reach[i] = rfs_mesh::median(lengths);
     }
   });
   return reach;

@@ -7,6 +7,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "rfsmooth/rfs_mesh/local_surface.h"
+#include "rfsmooth/rfs_mesh/median.h"
 #include "rfsmooth/rfs_mesh/neighbors.h"
 #include "rfsmooth/rfs_mesh/parallel.h"
 
@@ -74,9 +75,7 @@ class Search {
     near_ = rfs_mesh::SpatialIndex(points, context).nearest(int(kNear), context);
     for_each_index(context, points.size(), [&](std::size_t i) { measure_reach(i); });
     std::vector<double> all = reach_;
-    const auto middle = all.begin() + std::ptrdiff_t(all.size() / 2);
-    std::nth_element(all.begin(), middle, all.end());
-    median_reach_ = *middle;
+    median_reach_ = rfs_mesh::median(all);
   }
 
   std::vector<char> run() {

@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 
+#include "rfsmooth/rfs_mesh/median.h"
 #include "rfsmooth/rfs_mesh/parallel.h"
 #include "rfsmooth/rfs_mesh/quadric.h"
 
@@ -75,12 +76,6 @@ double mean_spacing(const Positions& points, const NeighborTable& near, const Co
 }
 
 namespace {
-
-double median(std::vector<double>& values) {
-  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// The lower quartile of the root of a chi-square variable over its degrees of freedom (Wilson & Hilferty).
 double quartile_of_deviation(double freedom) {

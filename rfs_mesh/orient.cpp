@@ -6,6 +6,7 @@
 
 #include "rfsmooth/rfs_mesh/collect.h"
 #include "rfsmooth/rfs_mesh/measure.h"
+#include "rfsmooth/rfs_mesh/median.h"
 #include "rfsmooth/rfs_mesh/parallel.h"
 #include "rfsmooth/rfs_mesh/sides.h"
 #include "rfsmooth/rfs_mesh/visible.h"
@@ -265,11 +266,10 @@ class Orienter {
     std::vector<double> vote(samples.row.size()), sizes;
     for (std::size_t s = 0; s < vote.size(); ++s) vote[s] = normals_[samples.row[s]].dot(area_vectors[s]);
     for (const double v : vote) sizes.push_back(std::abs(v));
-    const auto middle = sizes.begin() + std::ptrdiff_t(sizes.size() / 2);
-    std::nth_element(sizes.begin(), middle, sizes.end());
+    const double usual = median(sizes);
     std::vector<double> votes(at_.size(), 0);
     for (std::size_t s = 0; s < vote.size(); ++s)
-      if (*middle > 0) votes[samples.row[s]] = std::clamp(vote[s] / *middle, -1.0, 1.0);
+      if (usual > 0) votes[samples.row[s]] = std::clamp(vote[s] / usual, -1.0, 1.0);
     return votes;
   }
 

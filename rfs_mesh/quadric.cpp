@@ -7,6 +7,8 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
+#include "rfsmooth/rfs_mesh/median.h"
+
 namespace rfsmooth::rfs_mesh {
 
 namespace {
@@ -101,12 +103,6 @@ Vector6d fit(const QuadricWorkspace& w, int terms) {
   }
   a.diagonal().array() += kRidge * m00;
   return a.llt().solve(b);
-}
-
-double median(std::vector<double>& values) {
-  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// Tukey's biweight on top of the distance weights; returns false if the residuals leave nothing to do.

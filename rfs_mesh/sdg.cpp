@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "rfsmooth/rfs_mesh/collect.h"
+#include "rfsmooth/rfs_mesh/median.h"
 #include "rfsmooth/rfs_mesh/parallel.h"
 #include "rfsmooth/rfs_mesh/tangent_plane.h"
 
@@ -43,10 +44,7 @@ std::size_t lengths_around(const Positions& at, const Adjacency& tree, Index v,
 double local_length(const Positions& at, const Adjacency& tree, Index v) {
   std::array<double, 64> lengths;
   const std::size_t count = lengths_around(at, tree, v, lengths);
-  if (count == 0) return 0;
-  const auto middle = lengths.begin() + std::ptrdiff_t(count / 2);
-  std::nth_element(lengths.begin(), middle, lengths.begin() + std::ptrdiff_t(count));
-  return *middle;
+  return median(lengths.begin(), lengths.begin() + std::ptrdiff_t(count));
 }
 
 /// The rules of sdg.h over one terrain; `graph` is the snapshot they read.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "rfsmooth/rfs_mesh/median.h"
 #include "rfsmooth/rfs_mesh/parallel.h"
 
 namespace rfsmooth::rfs_mesh {
@@ -36,8 +37,7 @@ std::vector<double> seen_squarely(const Positions& points, const Positions& norm
   if (n == 0) return seen;
   for_each_index(context, n, [&](std::size_t i) { distance[i] = (points[i] - viewpoint).norm(); });
   std::vector<double> sorted = distance;
-  std::nth_element(sorted.begin(), sorted.begin() + std::ptrdiff_t(n / 2), sorted.end());
-  const double wanted = 2 * sorted[n / 2] / (kCell * spacing);
+  const double wanted = 2 * median(sorted) / (kCell * spacing);
   const auto cells = std::size_t(std::clamp(wanted, 1.0, double(kMostCells)));
   std::vector<double> nearest(6 * cells * cells, std::numeric_limits<double>::infinity());
   for (std::size_t i = 0; i < n; ++i) {

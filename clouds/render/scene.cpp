@@ -9,6 +9,7 @@
 
 #include "rfsmooth/clouds/render/rasterizer.h"
 #include "rfsmooth/pipeline/io/mesh_file.h"
+#include "rfsmooth/rfs_mesh/median.h"
 #include "rfsmooth/rfs_mesh/neighbors.h"
 #include "rfsmooth/rfs_mesh/parallel.h"
 
@@ -68,8 +69,7 @@ void estimate_surfels(Scene& scene, int neighbors, const Context& context) {
     scene.reach[i] = 0.8 * (scene.points[row[sixth]] - scene.points[i]).norm();
   });
   std::vector<double> sorted = scene.reach;
-  std::nth_element(sorted.begin(), sorted.begin() + std::ptrdiff_t(n / 2), sorted.end());
-  const double median = sorted[n / 2];
+  const double median = rfs_mesh::median(sorted);
   for (double& r : scene.reach) r = r > 3 * median ? median : r;
 }
 
