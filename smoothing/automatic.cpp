@@ -73,7 +73,7 @@ Positions automatic_smoothing(const rfs_mesh::Mesh& mesh, double sigma, double s
                               AutomaticReport& report, const Context& context) {
   const std::size_t n = mesh.positions.size();
   report = {};
-  report.noise = report.left = sigma;
+  report.left = sigma;
   if (n < kTooFew || !(sigma > kNoNoise * spacing)) return mesh.positions;
   const double share = sigma / spacing;
   report.guide_strength = kGuide * share * share * std::max(1.0, share * share);

@@ -39,7 +39,7 @@ struct AutomaticReport {
 /// The smoothed places of mesh.positions (n x 3). `sigma`: standard deviation of the noise along the normal,
 /// world units; below 0.05 spacings the points come back as they are. `spacing`: h, world units.
 /// O(n log n); at most about 650 bytes a point beside the mesh. Parallel, the same bits for any number of
-/// threads.
+/// threads. Of the report, `noise` and what was equalized are the flow's to enter (flow_auto.cpp).
 Positions automatic_smoothing(const rfs_mesh::Mesh& mesh, double sigma, double spacing,
                               AutomaticReport& report, const Context& context);
 

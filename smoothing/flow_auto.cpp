@@ -49,21 +49,27 @@ class AutomaticFlow : public Flow {
     report_.emplace();
     const Positions before = mesh.positions;
     mesh.positions = automatic_smoothing(mesh, strength_ * sigma, spacing, *report_, context);
-    // Without evening out, points move along normals only.
-    if (!equalize_ && report_->guide_strength > 0) slide_back(mesh.positions, before, 1, context);
-    if (equalize_ && report_->guide_strength > 0) {
-      const Equalized moved = equalize(mesh.positions, before, strength_ * sigma, spacing, context);
-      report_->equalized = moved.rms;
-      report_->equalized_most = moved.largest;
-    }
-    if (!local.empty()) limit(before, local, mesh.positions, context);
     report_->noise = sigma;
+    if (report_->guide_strength > 0) move_along_surface(before, sigma, spacing, mesh.positions, context);
+    if (!local.empty()) limit(before, local, mesh.positions, context);
   }
 
   bool limits_moves() const override { return true; }
   std::optional<AutomaticReport> automatic() const override { return report_; }
 
  private:
+  /// Evens the points out; or takes back what the guide moved them, so that they move along normals only.
+  void move_along_surface(const Positions& before, double sigma, double spacing, Positions& points,
+                          const Context& context) {
+    if (equalize_) {
+      const Equalized moved = equalize(points, before, strength_ * sigma, spacing, context);
+      report_->equalized = moved.rms;
+      report_->equalized_most = moved.largest;
+    } else {
+      slide_back(points, before, 1, context);
+    }
+  }
+
   void limit(const Positions& before, const std::vector<double>& local, Positions& points,
              const Context& context) const {
     for_each_index(context, points.size(), [&](std::size_t i) {
