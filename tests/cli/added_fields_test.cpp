@@ -4,8 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "rfsmooth/pipeline/io/io.h"
-
+#include "cli/cloud_file.h"
 #include "cli/folder.h"
 #include "cli/small_clouds.h"
 
@@ -15,12 +14,6 @@ namespace rfsmooth::test {
 namespace {
 
 namespace io = pipeline::io;
-
-io::Cloud read(const std::string& path) {
-  auto cloud = io::read_cloud(path, {}, {});
-  if (!cloud.ok()) throw std::runtime_error(cloud.error().message);
-  return std::move(cloud).value();
-}
 
 std::string name_of_case(const ::testing::TestParamInfo<std::pair<const char*, const char*>>& test) {
   return std::string(test.param.first) + "_" + test.param.second;
@@ -33,8 +26,7 @@ class AddedFields : public InFolder {
     const auto cloud = io::parse_cloud(noisy_plane(20).bytes(), "plane", {}, {});
     io::WriteOptions options;
     options.encoding = io::encoding_by_name(encoding);
-    const auto written = io::write_cloud(cloud.value(), at(name), options, {});
-    if (!written.ok()) throw std::runtime_error(written.error().message);
+    value_or_throw(io::write_cloud(cloud.value(), at(name), options, {}));
   }
 };
 

@@ -7,8 +7,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "rfsmooth/pipeline/io/io.h"
-
+#include "cli/cloud_file.h"
 #include "cli/folder.h"
 #include "support/awkward_clouds.h"
 
@@ -20,12 +19,6 @@ namespace rfsmooth::test {
 namespace {
 
 namespace io = pipeline::io;
-
-io::Cloud read(const std::string& path) {
-  auto cloud = io::read_cloud(path, {}, {});
-  if (!cloud.ok()) throw std::runtime_error(cloud.error().message);
-  return std::move(cloud).value();
-}
 
 std::vector<std::string> field_names(const io::Cloud& cloud) {
   std::vector<std::string> names;
@@ -48,7 +41,7 @@ class NormalsCommand : public InFolder {
     io::Cloud cloud = io::make_cloud(xyz.data(), xyz.size() / 3, io::Scalar::float32);
     for (const auto& [field, type] : fields)
       io::set_field(cloud, field, type, std::vector<double>(cloud.size(), 0.5));
-    if (!io::write_cloud(cloud, at(name), {}, {}).ok()) throw std::runtime_error("cannot write");
+    value_or_throw(io::write_cloud(cloud, at(name), {}, {}));
   }
 
   /// How many of the first 800 rows have a unit normal within 30 degrees of outward.

@@ -6,8 +6,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "rfsmooth/pipeline/io/io.h"
-
+#include "cli/cloud_file.h"
 #include "cli/folder.h"
 
 using ::testing::HasSubstr;
@@ -19,12 +18,6 @@ namespace io = pipeline::io;
 
 constexpr int kSide = 30;
 constexpr std::size_t kStrays[] = {100, 450, 700};  // rows
-
-io::Cloud read(const std::string& path) {
-  auto cloud = io::read_cloud(path, {}, {});
-  if (!cloud.ok()) throw std::runtime_error(cloud.error().message);
-  return std::move(cloud).value();
-}
 
 /// A noisy plane of kSide x kSide points on a grid of width kSide; three of them float high above it.
 io::Cloud plane_with_strays() {
@@ -45,8 +38,7 @@ io::Cloud plane_with_strays() {
 class OutliersOption : public InFolder {
  protected:
   void write(const io::Cloud& cloud, const std::string& name) const {
-    const auto written = io::write_cloud(cloud, at(name), {}, {});
-    if (!written.ok()) throw std::runtime_error(written.error().message);
+    value_or_throw(io::write_cloud(cloud, at(name), {}, {}));
   }
   /// The output of a run over the plane, as `out` with the report "report.json".
   io::Cloud clean(const std::vector<std::string>& options, const std::string& extension = ".ply",

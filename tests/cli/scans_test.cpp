@@ -7,10 +7,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "rfsmooth/pipeline/io/io.h"
 #include "rfsmooth/rfs_mesh/noise.h"
 #include "rfsmooth/rfs_mesh/points.h"
 
+#include "cli/cloud_file.h"
 #include "cli/folder.h"
 
 namespace rfsmooth::test {
@@ -23,12 +23,6 @@ constexpr const char* kSteps = "1";  // ten times slower
 #else
 constexpr const char* kSteps = "3";
 #endif
-
-io::Cloud read(const std::string& path) {
-  auto cloud = io::read_cloud(path, {}, {});
-  if (!cloud.ok()) throw std::runtime_error(cloud.error().message);
-  return std::move(cloud).value();
-}
 
 bool is_coordinate(const io::Cloud& cloud, std::size_t field) {
   return std::find(cloud.xyz.begin(), cloud.xyz.end(), field) != cloud.xyz.end();

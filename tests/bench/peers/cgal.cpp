@@ -45,6 +45,21 @@ Eigen::Vector3d from_cgal(const Point& p) {
   return {p.x(), p.y(), p.z()};
 }
 
+using Oriented = std::tuple<Point, Kernel::Vector_3, Index>;
+
+/// With room for normals.
+std::vector<Oriented> oriented_cloud(const Positions& points) {
+  std::vector<Oriented> cloud;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    cloud.emplace_back(to_cgal(points[i]), Kernel::Vector_3(0, 0, 0), Index(i));
+  return cloud;
+}
+
+auto oriented_maps() {
+  return CGAL::parameters::point_map(CGAL::Nth_of_tuple_property_map<0, Oriented>())
+      .normal_map(CGAL::Nth_of_tuple_property_map<1, Oriented>());
+}
+
 }  // namespace
 
 Smoothed cgal_jet(const Positions& points, int k, int times, int threads) {
@@ -58,14 +73,10 @@ Smoothed cgal_jet(const Positions& points, int k, int times, int threads) {
 }
 
 Smoothed cgal_bilateral(const Positions& points, int k, int times, int threads) {
-  using Oriented = std::tuple<Point, Kernel::Vector_3, Index>;
   constexpr unsigned kNormals = 24;
   const Threads limit(threads);
-  std::vector<Oriented> cloud;
-  for (std::size_t i = 0; i < points.size(); ++i)
-    cloud.emplace_back(to_cgal(points[i]), Kernel::Vector_3(0, 0, 0), Index(i));
-  const auto maps = CGAL::parameters::point_map(CGAL::Nth_of_tuple_property_map<0, Oriented>())
-                        .normal_map(CGAL::Nth_of_tuple_property_map<1, Oriented>());
+  std::vector<Oriented> cloud = oriented_cloud(points);
+  const auto maps = oriented_maps();
   CGAL::jet_estimate_normals<CGAL::Parallel_tag>(cloud, kNormals, maps);
   CGAL::mst_orient_normals(cloud, kNormals, maps);  // moves points without a consistent normal to the end
   for (int pass = 0; pass < times; ++pass)
@@ -99,13 +110,9 @@ Smoothed cgal_wlop(const Positions& points, double radius, int threads) {
 }
 
 Normals cgal_normals(const Positions& points, int k, int threads) {
-  using Oriented = std::tuple<Point, Kernel::Vector_3, Index>;
   const Threads limit(threads);
-  std::vector<Oriented> cloud;
-  for (std::size_t i = 0; i < points.size(); ++i)
-    cloud.emplace_back(to_cgal(points[i]), Kernel::Vector_3(0, 0, 0), Index(i));
-  const auto maps = CGAL::parameters::point_map(CGAL::Nth_of_tuple_property_map<0, Oriented>())
-                        .normal_map(CGAL::Nth_of_tuple_property_map<1, Oriented>());
+  std::vector<Oriented> cloud = oriented_cloud(points);
+  const auto maps = oriented_maps();
   CGAL::pca_estimate_normals<CGAL::Parallel_tag>(cloud, unsigned(k), maps);
   CGAL::mst_orient_normals(cloud, unsigned(k), maps);
   Normals normals(points.size());
