@@ -3,7 +3,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <exception>
 #include <limits>
 #include <map>
 
@@ -15,6 +14,8 @@
 
 #include "closest.h"
 #include "dataset.h"
+#include "support/main.h"
+#include "support/median.h"
 
 namespace {
 
@@ -71,13 +72,6 @@ Places look_at(const Sample& sample, const Context& context) {
       },
       8);
   return places;
-}
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// One cell: a cloud with its noise.
@@ -207,10 +201,5 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    return run(argc, argv);
-  } catch (const std::exception& e) {
-    std::fprintf(stderr, "noise_bench: %s\n", e.what());
-    return 1;
-  }
+  return tell_failures("noise_bench", run, argc, argv);
 }

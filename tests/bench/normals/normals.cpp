@@ -25,6 +25,8 @@
 #include "quality/closest.h"
 #include "quality/dataset.h"
 #include "quality/ours.h"
+#include "support/main.h"
+#include "support/median.h"
 
 namespace {
 
@@ -164,13 +166,10 @@ void speed(const std::string& shape, std::size_t n, int rounds, int threads) {
     std::printf("%10.2f %10.2f %10.2f %10.3f\n", own, pcl, cgal, own / cgal);
     std::fflush(stdout);
   }
-  std::sort(ratios.begin(), ratios.end());
-  std::printf("median of the ratios %.3f [below 1]\n", ratios[ratios.size() / 2]);
+  std::printf("median of the ratios %.3f [below 1]\n", median(ratios));
 }
 
-}  // namespace
-
-int main(int argc, char** argv) try {
+int run(int argc, char** argv) {
   CLI::App app("Accuracy, side and speed of normals beside PCL's and CGAL's");
   std::vector<std::string> shapes = {"anchor_dense", "rotor", "armadillo", "hand", "femur", "knot1"};
   std::vector<std::size_t> sizes = {50000};
@@ -213,7 +212,11 @@ int main(int argc, char** argv) try {
   std::printf("\n");
   if (!no_speed)
     for (const int threads : {1, 4}) speed("knot1", large, rounds, threads);
-} catch (const std::exception& e) {
-  std::fprintf(stderr, "normals: %s\n", e.what());
-  return 1;
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return tell_failures("normals", run, argc, argv);
 }

@@ -18,6 +18,7 @@
 #include "quality/dataset.h"
 #include "quality/measure.h"
 #include "support/apart.h"
+#include "support/main.h"
 
 namespace {
 
@@ -151,10 +152,5 @@ int run_all(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    return run_all(argc, argv);
-  } catch (const std::exception& e) {
-    std::fprintf(stderr, "pcl_stage: %s\n", e.what());
-    return 1;
-  }
+  return tell_failures("pcl_stage", run_all, argc, argv);
 }

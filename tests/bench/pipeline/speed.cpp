@@ -20,6 +20,8 @@
 #include "peers.h"
 #include "quality/ours.h"
 #include "support/apart.h"
+#include "support/main.h"
+#include "support/median.h"
 
 namespace {
 
@@ -92,12 +94,6 @@ Run ours(const Positions& points, const Variant& variant, int threads) {
 
 Run mls(const Positions& points, int threads) {
   return run_on(points, [&](Run&) { return peers::pcl_mls(points, 48, threads).points; });
-}
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t n = values.size();
-  return n % 2 == 1 ? values[n / 2] : (values[n / 2 - 1] + values[n / 2]) / 2;
 }
 
 double median_of(const std::vector<Run>& runs, double Run::*field) {
@@ -204,10 +200,5 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    return run(argc, argv);
-  } catch (const std::exception& e) {
-    std::fprintf(stderr, "speed: %s\n", e.what());
-    return 1;
-  }
+  return tell_failures("speed", run, argc, argv);
 }

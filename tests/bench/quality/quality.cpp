@@ -1,10 +1,10 @@
 /// The quality benchmark: rfsmooth beside every peer on the development shapes (../README.md).
 #include <cstdio>
-#include <exception>
 
 #include <CLI/CLI.hpp>
 
 #include "goals.h"
+#include "support/main.h"
 
 namespace {
 
@@ -114,10 +114,5 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    return run(argc, argv);
-  } catch (const std::exception& e) {
-    std::fprintf(stderr, "quality: %s\n", e.what());
-    return 1;
-  }
+  return tell_failures("quality", run, argc, argv);
 }

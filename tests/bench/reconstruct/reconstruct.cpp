@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <exception>
 #include <map>
 
 #include <CLI/CLI.hpp>
@@ -14,6 +13,7 @@
 
 #include "ours.h"
 #include "runs.h"
+#include "support/main.h"
 #include "surface_error.h"
 
 namespace {
@@ -194,10 +194,5 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    return run(argc, argv);
-  } catch (const std::exception& e) {
-    std::fprintf(stderr, "reconstruct: %s\n", e.what());
-    return 1;
-  }
+  return tell_failures("reconstruct", run, argc, argv);
 }

@@ -34,6 +34,7 @@
 
 #include "../../support/shapes.h"
 #include "connect_quality.h"
+#include "support/median.h"
 #ifdef RFSMOOTH_BENCH_CGAL
 #include "peers/emst_cgal.h"
 #endif
@@ -141,17 +142,12 @@ Figures apart(Body&& body) {
   return figures;
 }
 
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
-}
-
 Figures medians(const std::vector<Figures>& rounds) {
   Figures result;
   for (const auto& [name, first] : rounds.front()) {
     std::vector<double> values;
     for (const Figures& f : rounds) values.push_back(f.at(name));
-    result[name] = median(values);
+    result[name] = bench::median(values);
   }
   return result;
 }
@@ -203,7 +199,7 @@ void speed_at(std::size_t n, double noise, int threads, int rounds) {
     fmt::print(
         "  CGAL sequential Delaunay + Kruskal: {:.2f} s, CPU {:.2f} s, peak {:.0f} bytes a point\n"
         "  ours / CGAL: wall {:.3f} (mark at four threads: 0.5, goal 0.25), CPU {:.3f}\n",
-        p["seconds"], p["cpu"], p["bytes"] / double(n), median(wall), median(cpu));
+        p["seconds"], p["cpu"], p["bytes"] / double(n), bench::median(wall), bench::median(cpu));
   std::fflush(stdout);
 }
 

@@ -24,6 +24,7 @@
 #include "rfsmooth/rfs_mesh/parallel.h"
 
 #include "peers/index_peers.h"
+#include "support/median.h"
 #ifdef RFSMOOTH_BENCH_CGAL
 #include "peers/emst_cgal.h"
 #endif
@@ -158,11 +159,8 @@ Figures measure(const std::vector<std::string>& methods, std::size_t n, int thre
     for (const std::string& method : methods)
       for (const auto& [name, value] : spawn(method, n, threads)) all[method][name].push_back(value);
   Figures medians;
-  for (auto& [method, figures] : all)
-    for (auto& [name, values] : figures) {
-      std::sort(values.begin(), values.end());
-      medians[method][name] = values[values.size() / 2];
-    }
+  for (const auto& [method, figures] : all)
+    for (const auto& [name, values] : figures) medians[method][name] = rfsmooth::bench::median(values);
   return medians;
 }
 
