@@ -177,7 +177,7 @@ DenoiseReport run(double* xyz, std::size_t n, const DenoiseOptions& options, con
   }
 
   auto connection = value_or_throw(rfs_mesh::connect(cloud.points, options.connect, context));
-  for (auto& stage : connection.seconds) report.seconds.push_back({std::move(stage.stage), stage.seconds});
+  report.seconds.insert(report.seconds.end(), connection.seconds.begin(), connection.seconds.end());
   report.spacing = connection.noise.spacing;
   report.noise = connection.noise.sigma;
   report.sdg_edges = connection.sdg.size();

@@ -19,6 +19,7 @@
 #include "rfsmooth/rfs_mesh/edge_swap.h"
 #include "rfsmooth/rfs_mesh/options.h"
 #include "rfsmooth/rfs_mesh/rfs_mesh.h"
+#include "rfsmooth/rfs_mesh/stage_times.h"
 #include "rfsmooth/smoothing/flow.h"
 
 namespace rfsmooth::pipeline {
@@ -49,11 +50,7 @@ struct DenoiseOptions {
   }
 };
 
-/// How long a stage took.
-struct StageTime {
-  std::string name;
-  double seconds = 0;
-};
+using rfsmooth::StageTime;
 
 /// What was measured and done.
 struct DenoiseReport {

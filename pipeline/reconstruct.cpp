@@ -1,6 +1,5 @@
 #include "rfsmooth/pipeline/reconstruct.h"
 
-#include <chrono>
 #include <limits>
 
 #include "rfsmooth/pipeline/hole_filling.h"
@@ -10,25 +9,11 @@
 #include "rfsmooth/rfs_mesh/neighbors.h"
 #include "rfsmooth/rfs_mesh/parallel.h"
 #include "rfsmooth/rfs_mesh/points.h"
+#include "rfsmooth/rfs_mesh/stage_times.h"
 
 namespace rfsmooth::pipeline {
 
 namespace {
-
-/// Appends the time since the last lap.
-class Laps {
- public:
-  explicit Laps(std::vector<StageTime>& stages) : stages_(stages) {}
-  void lap(const std::string& name) {
-    const auto now = std::chrono::steady_clock::now();
-    stages_.push_back({name, std::chrono::duration<double>(now - start_).count()});
-    start_ = now;
-  }
-
- private:
-  std::vector<StageTime>& stages_;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 double spacing_of(const Positions& points, const Context& context) {
   const rfs_mesh::SpatialIndex index(points, context);

@@ -18,7 +18,7 @@ namespace {
 /// Times the stages and reports them.
 class Stages {
  public:
-  Stages(std::vector<Seconds>& seconds, const Context& context) : seconds_(seconds), context_(context) {}
+  Stages(std::vector<StageTime>& seconds, const Context& context) : seconds_(seconds), context_(context) {}
 
   template <class Body>
   auto run(const char* stage, double fraction, Body&& body) {
@@ -30,7 +30,7 @@ class Stages {
 
  private:
   struct Stopwatch {
-    std::vector<Seconds>& seconds;
+    std::vector<StageTime>& seconds;
     std::size_t entry;  // made before: a destructor must not allocate
     std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
     ~Stopwatch() {
@@ -38,7 +38,7 @@ class Stages {
       seconds[entry].seconds = d.count();
     }
   };
-  std::vector<Seconds>& seconds_;
+  std::vector<StageTime>& seconds_;
   const Context& context_;
 };
 

@@ -21,6 +21,7 @@
 #include "rfsmooth/rfs_mesh/mesh.h"
 #include "rfsmooth/rfs_mesh/options.h"
 #include "rfsmooth/rfs_mesh/sdg.h"
+#include "rfsmooth/rfs_mesh/stage_times.h"
 #include "rfsmooth/rfs_mesh/two_sheets.h"
 #include "rfsmooth/rfs_mesh/umbrella.h"
 
@@ -47,12 +48,6 @@ struct ConnectOptions {
   }
 };
 
-/// How long a step took.
-struct Seconds {
-  std::string stage;
-  double seconds = 0;
-};
-
 /// Everything the stages made. All of it refers to the points by index.
 struct Connection {
   Mesh mesh;                           ///< the RFS-mesh over the points as given
@@ -61,9 +56,9 @@ struct Connection {
   std::vector<Edge> bridges;           ///< tree edges that are not neighbourhood: not in mesh.one_ring
   std::vector<LocalSurface> surfaces;  ///< n; the shadow of point i is surfaces[i].shadow
   NoiseLevel noise;
-  std::size_t faceless = 0;      ///< vertices without a face
-  bool on_shadow = false;        ///< whether the tests were made on the shadow
-  std::vector<Seconds> seconds;  ///< in the order done
+  std::size_t faceless = 0;        ///< vertices without a face
+  bool on_shadow = false;          ///< whether the tests were made on the shadow
+  std::vector<StageTime> seconds;  ///< in the order done
 };
 
 /// Connects n points (finite, in any frame; distinct where `make_working_cloud` made them, but coincident

@@ -1,12 +1,12 @@
 #include "rfsmooth/pipeline/cli/cloud_files.h"
 
-#include <chrono>
 #include <cstdio>
 #include <filesystem>
 
 #include <fmt/format.h>
 
 #include "rfsmooth/pipeline/cli/memory.h"
+#include "rfsmooth/rfs_mesh/stage_times.h"
 
 namespace rfsmooth::cli {
 
@@ -22,10 +22,6 @@ io::WriteOptions write_options(const FileOptions& options) {
   out.force = options.force;
   out.drop_unsupported = options.drop_unsupported;
   return out;
-}
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 }  // namespace
@@ -49,7 +45,7 @@ void need_free_stdout(const std::vector<Job>& jobs, const RunOptions& options) {
 
 io::Cloud load_cloud(const std::string& input, const Context& context,
                      std::vector<pipeline::StageTime>& stages) {
-  const auto start = std::chrono::steady_clock::now();
+  Laps laps(stages);
   context.report("read", 0);
   const std::string path = input == "-" ? "/dev/stdin" : input;
   std::error_code unknown;
@@ -57,13 +53,13 @@ io::Cloud load_cloud(const std::string& input, const Context& context,
   if (const auto bytes = std::filesystem::file_size(path, unknown); !unknown)
     if (const auto error = refuse_without_memory(input, bytes)) throw Failure(*error);
   io::Cloud cloud = value_or_throw(io::read_cloud(path, {}, context));
-  stages.push_back({"read", seconds_since(start)});
+  laps.lap("read");
   return cloud;
 }
 
 void store_cloud(const io::Cloud& cloud, const std::string& output, const FileOptions& options,
                  const Context& context, std::vector<pipeline::StageTime>& stages) {
-  const auto start = std::chrono::steady_clock::now();
+  Laps laps(stages);
   context.report("write", 0);
   if (output == "-") {
     const std::string bytes = value_or_throw(io::serialize_cloud(cloud, write_options(options), context));
@@ -72,7 +68,7 @@ void store_cloud(const io::Cloud& cloud, const std::string& output, const FileOp
   } else {
     value_or_throw(io::write_cloud(cloud, output, write_options(options), context));
   }
-  stages.push_back({"write", seconds_since(start)});
+  laps.lap("write");
 }
 
 bool has_normals(const io::Cloud& cloud) {

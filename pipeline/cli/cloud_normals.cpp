@@ -1,7 +1,6 @@
 #include "rfsmooth/pipeline/cli/cloud_normals.h"
 
 #include <array>
-#include <chrono>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -10,6 +9,7 @@
 #include "rfsmooth/pipeline/io/text.h"
 #include "rfsmooth/pipeline/normals.h"
 #include "rfsmooth/pipeline/viewpoint.h"
+#include "rfsmooth/rfs_mesh/stage_times.h"
 
 namespace rfsmooth::cli {
 
@@ -81,7 +81,7 @@ void write_normals(const NormalsFields& options, io::Cloud& cloud, const double*
                    const std::string& output, const FileOptions& files, const Context& context,
                    std::vector<pipeline::StageTime>& stages, nlohmann::ordered_json& entry) {
   if (!options.normals) return;
-  const auto start = std::chrono::steady_clock::now();
+  Laps laps(stages);
   pipeline::NormalsOptions wanted;
   wanted.viewpoint =
       options.viewpoint ? parse_point(*options.viewpoint) : pipeline::recorded_viewpoint(cloud, xyz, context);
@@ -98,8 +98,7 @@ void write_normals(const NormalsFields& options, io::Cloud& cloud, const double*
   auto& viewpoint = entry["normals"]["viewpoint"];
   viewpoint = nullptr;
   if (const auto& v = wanted.viewpoint) viewpoint = {(*v)[0], (*v)[1], (*v)[2]};
-  stages.push_back(
-      {"normals", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()});
+  laps.lap("normals");
 }
 
 }  // namespace rfsmooth::cli

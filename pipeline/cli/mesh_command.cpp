@@ -69,7 +69,7 @@ std::string connect_cloud(const Options& options, pipeline::io::Cloud& cloud, co
   in_arena(context, [&] {
     connection = value_or_throw(rfs_mesh::connect(working.points, options.mesh.connect, context));
   });
-  for (const auto& stage : connection.seconds) stages.push_back({stage.stage, stage.seconds});
+  stages.insert(stages.end(), connection.seconds.begin(), connection.seconds.end());
 
   const FileOrder order = file_order(working, xyz);
   const std::string& stage = options.mesh.stage;

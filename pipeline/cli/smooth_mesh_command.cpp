@@ -1,6 +1,5 @@
 /// rfsmooth smooth-mesh: any flow on a mesh from a file; then, if asked for, a finer mesh through its
 /// vertices, and its ridges and ravines as a field.
-#include <chrono>
 #include <cmath>
 #include <memory>
 
@@ -12,6 +11,7 @@
 #include "rfsmooth/pipeline/cli/constraint_fields.h"
 #include "rfsmooth/pipeline/cli/file_mesh.h"
 #include "rfsmooth/rfs_mesh/measure.h"
+#include "rfsmooth/rfs_mesh/stage_times.h"
 #include "rfsmooth/smoothing/refine.h"
 #include "rfsmooth/smoothing/ridges.h"
 #include "rfsmooth/smoothing/surface.h"
@@ -98,22 +98,17 @@ void make_agree(rfs_mesh::Mesh& mesh) {
 std::string smooth_file(const Options& options, pipeline::io::Cloud& cloud, const Job& job,
                         const Context& context, Console& console, std::vector<pipeline::StageTime>& stages,
                         ordered_json& entry) {
-  auto start = std::chrono::steady_clock::now();
-  const auto lap = [&](const char* stage) {
-    const auto now = std::chrono::steady_clock::now();
-    stages.push_back({stage, std::chrono::duration<double>(now - start).count()});
-    start = now;
-  };
+  Laps laps(stages);
   FileMesh file = file_mesh(cloud, job.input, context);
   const auto constraints = value_or_fail(guarded([&] {
                                            return constraints_of(options.constraints, cloud, file.of_row,
                                                                  file.before.size(), context);
                                          }),
                                          job.input);
-  lap("connect");
+  laps.lap("connect");
   const auto done =
       value_or_fail(smoothing::smooth(file.mesh, options.flow, context, constraints), job.input);
-  lap("smooth");
+  laps.lap("smooth");
   bool moved = false;
   const std::vector<double> rows = file.moved_rows(moved);
   const bool stale_normals = moved && has_normals(cloud) && options.after.refine.levels == 0;
@@ -128,7 +123,7 @@ std::string smooth_file(const Options& options, pipeline::io::Cloud& cloud, cons
     file.mesh = std::move(fine);
     if (more)
       console.warn(job.input + ": a refined mesh has new points; only x, y, z and triangles are written");
-    lap("refine");
+    laps.lap("refine");
   } else {
     pipeline::io::set_positions(cloud, rows.data(), context);
   }
@@ -147,7 +142,7 @@ std::string smooth_file(const Options& options, pipeline::io::Cloud& cloud, cons
       if (v != kNone) field[i] = kind[v];
     }
     pipeline::io::set_field(cloud, "ridge", pipeline::io::Scalar::int8, field, context);
-    lap("ridges");
+    laps.lap("ridges");
   }
 
   Options used = options;
