@@ -1,12 +1,16 @@
-/// Binds an options table (rfs_mesh/options.h) to CLI11, for the small programs of this folder.
+/// What the small programs of this folder share: an options table (rfs_mesh/options.h) bound to CLI11, and
+/// the end of main.
 #pragma once
 
+#include <cstdio>
+#include <exception>
 #include <optional>
 #include <string>
 
 #include <CLI/CLI.hpp>
 
 #include "rfsmooth/rfs_mesh/options.h"
+#include "rfsmooth/rfs_mesh/result.h"
 
 namespace rfsmooth::clouds {
 
@@ -36,6 +40,31 @@ class Binder {
 template <class Options>
 void bind(CLI::App& app, Options& options) {
   Options::describe(options, Binder(app));
+}
+
+/// Reads the arguments. \return the exit code if the program ends here: help was asked for, or a wrong
+/// argument told.
+inline std::optional<int> parse(CLI::App& app, int argc, char** argv) {
+  try {
+    app.parse(argc, argv);
+    return {};
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : int(ErrorCode::usage);
+  }
+}
+
+/// The exit code of run(argc, argv), or of what it throws, which is told on standard error after the
+/// program's name.
+inline int tell_failures(const char* name, int (*run)(int, char**), int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const Failure& failure) {
+    std::fprintf(stderr, "%s: %s\n", name, failure.what());
+    return int(failure.error.code);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s: %s\n", name, error.what());
+    return 1;
+  }
 }
 
 }  // namespace rfsmooth::clouds

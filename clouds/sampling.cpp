@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 
+#include "rfsmooth/rfs_mesh/local_surface.h"
 #include "rfsmooth/rfs_mesh/neighbors.h"
 #include "rfsmooth/rfs_mesh/parallel.h"
 
@@ -125,10 +126,7 @@ std::vector<Index> eliminate(const Positions& candidates, const std::vector<doub
 
 double mean_spacing(const Positions& points) {
   const rfs_mesh::SpatialIndex index(points, {});
-  const rfs_mesh::NeighborTable nearest = index.nearest(1, {});
-  return sum_over({}, points.size(), 0.0,
-                  [&](std::size_t i) { return (points[nearest[i][0]] - points[i]).norm(); }) /
-         double(points.size());
+  return rfs_mesh::mean_spacing(points, index.nearest(1, {}), {});
 }
 
 void add_noise(Positions& points, double sigma, std::uint64_t seed) {

@@ -134,11 +134,7 @@ int run(int argc, char** argv) {
   bind(*sample_command, sampler);
   CLI::App* truth_command = command("truth", "Write the shape itself as a mesh.", false);
   bind(*truth_command, truth);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : int(ErrorCode::usage);
-  }
+  if (const auto ended = clouds::parse(app, argc, argv)) return *ended;
   if (*scan_command) run_scan(files, scanner, seed, organised);
   if (*sample_command) run_sample(files, sampler, seed);
   if (*truth_command) run_truth(files, truth);
@@ -148,13 +144,5 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    return run(argc, argv);
-  } catch (const rfsmooth::Failure& failure) {
-    std::fprintf(stderr, "virtual_scanner: %s\n", failure.what());
-    return int(failure.error.code);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "virtual_scanner: %s\n", error.what());
-    return 1;
-  }
+  return rfsmooth::clouds::tell_failures("virtual_scanner", run, argc, argv);
 }

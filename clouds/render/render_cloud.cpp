@@ -188,11 +188,7 @@ int parse_and_run(int argc, char** argv) {
       ->expected(3);
   app.add_flag("--force", request.force, "replace an existing file");
   clouds::bind(app, request.options);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : int(ErrorCode::usage);
-  }
+  if (const auto ended = clouds::parse(app, argc, argv)) return *ended;
   run(request);
   return 0;
 }
@@ -200,13 +196,5 @@ int parse_and_run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    return parse_and_run(argc, argv);
-  } catch (const rfsmooth::Failure& failure) {
-    std::fprintf(stderr, "render_cloud: %s\n", failure.what());
-    return int(failure.error.code);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "render_cloud: %s\n", error.what());
-    return 1;
-  }
+  return rfsmooth::clouds::tell_failures("render_cloud", parse_and_run, argc, argv);
 }
