@@ -170,9 +170,12 @@ class DefaultFlow : public RawScans {};
 TEST_P(DefaultFlow, SameBytesForOneToFourThreadsAndAgain) {
 #ifdef __SANITIZE_ADDRESS__
   if (std::filesystem::file_size(path()) > 700000) GTEST_SKIP() << "too long under sanitizers";
+  const std::vector<const char*> runs = {"1", "4"};
+#else
+  const std::vector<const char*> runs = {"1", "2", "3", "4", "4"};
 #endif
   std::string first;
-  for (const char* threads : {"1", "2", "3", "4", "4"}) {
+  for (const char* threads : runs) {
     const Ran ran = run({"denoise", "--force", "--threads", threads, path(), "out.pcd"});
     ASSERT_EQ(ran.code, 0) << ran.err;
     const std::string bytes = take("out.pcd");
