@@ -181,4 +181,19 @@ void SpatialIndex::within(const Vector3d& query, double radius, std::vector<Neig
   std::sort(out.begin(), out.end());
 }
 
+bool SpatialIndex::any_within(const Vector3d& query, double radius) const {
+  if (!(radius >= 0)) return false;
+  constexpr double kNothingMore = -1;
+  Neighbor limit = {kNone, radius * radius};
+  search(
+      tree_, query, [&]() -> const Neighbor& { return limit; },
+      [&](const KdTree::Leaf& leaf) {
+        double d2[KdTree::kLeaf];
+        squared_distances(leaf, query, d2);
+        for (std::uint32_t i = 0; i < KdTree::kLeaf; ++i)
+          if (leaf.id[i] != kNone && d2[i] <= limit.squared_distance) limit.squared_distance = kNothingMore;
+      });
+  return limit.squared_distance == kNothingMore;
+}
+
 }  // namespace rfsmooth::rfs_mesh

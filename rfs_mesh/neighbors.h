@@ -69,6 +69,9 @@ class SpatialIndex {
   /// All points with |point - query| <= radius, ascending by (distance, index). Replaces `out`.
   void within(const Eigen::Vector3d& query, double radius, std::vector<Neighbor>& out) const;
 
+  /// Whether there is one. O(log n), cheapest where there is none.
+  bool any_within(const Eigen::Vector3d& query, double radius) const;
+
  private:
   const Positions& points_;
   KdTree tree_;

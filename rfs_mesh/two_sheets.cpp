@@ -77,8 +77,7 @@ class Parter {
     if (2 * off_ones > row.size()) return true;
     if (3 * far_ones <= row.size()) return false;
     if (across_ones > 0) return true;
-    shadows_.nearest(p + kMirror * away, 1, found_);
-    return found_[0].squared_distance < kMirrorReach * kMirrorReach * away.squaredNorm();
+    return shadows_.any_within(p + kMirror * away, kMirrorReach * away.norm());
   }
 
   /// The shadows around point i by height along the axis of their normals, split in two. False if the normals

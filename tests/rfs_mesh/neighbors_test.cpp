@@ -70,6 +70,12 @@ TEST_P(Neighbors, QueriesAnywhereMatchBruteForce) {
     const auto outside = [&](const Neighbor& e) { return e.squared_distance > radius * radius; };
     EXPECT_EQ(found, std::vector<Neighbor>(expected.begin(),
                                            std::find_if(expected.begin(), expected.end(), outside)));
+    EXPECT_EQ(index.any_within(q, radius), !found.empty());
+    if (!expected.empty()) {
+      const double nearest = std::sqrt(expected[0].squared_distance);
+      EXPECT_TRUE(index.any_within(q, 1.001 * nearest));
+      EXPECT_EQ(index.any_within(q, 0.999 * nearest), nearest == 0);
+    }
     for (const std::size_t k : {200, 12}) {  // long lists are kept another way than short ones
       index.nearest(q, int(k), found);
       expected.resize(std::min(expected.size(), k));
