@@ -1,7 +1,6 @@
 #include "rfsmooth/rfs_mesh/flattest_pair.h"
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <cmath>
 #include <limits>
@@ -12,6 +11,7 @@
 #include "rfsmooth/rfs_mesh/collect.h"
 #include "rfsmooth/rfs_mesh/measure.h"
 #include "rfsmooth/rfs_mesh/parallel.h"
+#include "rfsmooth/rfs_mesh/tangent_plane.h"
 
 namespace rfsmooth::rfs_mesh {
 
@@ -21,24 +21,23 @@ namespace {
 /// leave back to faces that lost only to deleted ones.
 constexpr int kRounds = 3;
 
-/// Dihedral angles count as equal within this step (10 degrees): on a smooth surface the flattest of several
-/// pairs is an accident of sampling, and votes and quality choose better.
-constexpr int kAngleSteps = 18;
+/// The cosines of one, two, ... steps up to the first that is not below 180 degrees.
+std::vector<double> cosines_of_steps(double degrees) {
+  std::vector<double> cosines;
+  for (double angle = degrees; cosines.empty() || cosines.back() > -1; angle += degrees)
+    cosines.push_back(angle < 180 ? std::cos(radians(angle)) : -1);
+  return cosines;
+}
 
 /// How far two faces (p, q, r) and (q, p, s) are folded at their edge, in steps: 0 = flat.
 int fold(const Eigen::Vector3d& p, const Eigen::Vector3d& q, const Eigen::Vector3d& r,
-         const Eigen::Vector3d& s) {
-  static const auto cosines = [] {
-    std::array<double, kAngleSteps> c{};
-    for (int k = 0; k < kAngleSteps; ++k) c[std::size_t(k)] = std::cos(M_PI * (k + 1) / kAngleSteps);
-    return c;
-  }();
+         const Eigen::Vector3d& s, const std::vector<double>& cosines) {
   const Eigen::Vector3d e = q - p, m = e.cross(r - p), n = (s - p).cross(e);
   const double both = std::sqrt(m.squaredNorm() * n.squaredNorm()), dot = m.dot(n);
-  if (!(both > 0)) return kAngleSteps;
-  int steps = 0;
-  while (steps + 1 < kAngleSteps && dot <= cosines[std::size_t(steps)] * both) ++steps;
-  return steps;
+  if (!(both > 0)) return int(cosines.size());
+  std::size_t steps = 0;
+  while (steps + 1 < cosines.size() && dot <= cosines[steps] * both) ++steps;
+  return int(steps);
 }
 
 enum class State : std::uint8_t { contender, kept, out };
@@ -62,8 +61,9 @@ struct Merit {
 
 class Chooser {
  public:
-  Chooser(const Positions& at, const ProposedFaces& proposed, const Context& context)
+  Chooser(const Positions& at, const ProposedFaces& proposed, double same_fold, const Context& context)
       : at_(at),
+        cosines_(cosines_of_steps(same_fold)),
         proposed_(proposed),
         context_(context),
         around_(vertex_faces(at.size(), proposed.faces, context)),
@@ -145,7 +145,7 @@ class Chooser {
   }
 
   Merit merit(Index a, const Wing& x, const Wing& y) const {
-    return {-fold(at_[a], at_[x.other_end], at_[x.opposite], at_[y.opposite]),
+    return {-fold(at_[a], at_[x.other_end], at_[x.opposite], at_[y.opposite], cosines_),
             proposed_.votes[x.face] + proposed_.votes[y.face],
             double(quality_[x.face]) + double(quality_[y.face]), std::min(x.face, y.face),
             std::max(x.face, y.face)};
@@ -169,6 +169,7 @@ class Chooser {
   }
 
   const Positions& at_;
+  const std::vector<double> cosines_;
   const ProposedFaces& proposed_;
   const Context& context_;
   Adjacency around_;
@@ -205,9 +206,9 @@ ProposedFaces proposed_faces(const std::vector<Umbrella>& umbrellas, const Conte
   return proposed;
 }
 
-std::vector<Face> keep_flattest_pairs(const Positions& at, const ProposedFaces& proposed,
+std::vector<Face> keep_flattest_pairs(const Positions& at, const ProposedFaces& proposed, double same_fold,
                                       const Context& context) {
-  Chooser chooser(at, proposed, context);
+  Chooser chooser(at, proposed, same_fold, context);
   for (int round = 0; round < kRounds; ++round) chooser.round();
   return collect<Face>(context, proposed.faces.size(), [&](std::size_t f, auto&& emit) {
     if (chooser.kept(f)) emit(proposed.faces[f]);

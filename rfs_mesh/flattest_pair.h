@@ -24,8 +24,9 @@ struct ProposedFaces {
 /// O(n), parallel, deterministic.
 ProposedFaces proposed_faces(const std::vector<Umbrella>& umbrellas, const Context& context);
 
-/// The proposed faces that stay, in their order. O(faces), parallel, deterministic.
-std::vector<Face> keep_flattest_pairs(const Positions& at, const ProposedFaces& proposed,
+/// The proposed faces that stay, in their order. `same_fold`: dihedral angles count as equal within steps of
+/// that many degrees, > 0. O(faces), parallel, deterministic.
+std::vector<Face> keep_flattest_pairs(const Positions& at, const ProposedFaces& proposed, double same_fold,
                                       const Context& context);
 
 }  // namespace rfsmooth::rfs_mesh

@@ -112,8 +112,9 @@ Deviation deviation_at(const SpatialIndex& index, std::size_t m, const Context& 
 }  // namespace
 
 NoiseScale noise_scale(const SpatialIndex& index, const Context& context) {
+  // From the neighbourhoods looked at anyway to a radius of eleven spacings.
   constexpr std::size_t kNarrowest = 24, kWidest = 384;
-  constexpr double kShareOfRadius = 0.18;
+  constexpr double kShareOfRadius = 0.18;  // a radius of 5.5 sigma: the ball holds the slab and is not in it
   constexpr double kGrowthOfNoise = 1.26;  // cube root of 2: a ball inside a slab; faster growth is shape
   const std::size_t n = index.points().size();
   NoiseScale best;

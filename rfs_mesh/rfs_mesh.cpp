@@ -154,7 +154,7 @@ Connection connect_all(const Positions& points, const ConnectOptions& options, c
     return proposed_faces(umbrellas, context);
   });
   stages.run("rfs-mesh", 0.9, [&] {
-    c.mesh.faces = keep_flattest_pairs(ground.at, proposed, context);
+    c.mesh.faces = keep_flattest_pairs(ground.at, proposed, options.umbrella.same_fold, context);
     c.mesh.loose_edges = loose_edges(n, c.mesh.faces, c.sdg, c.faceless, context);
     c.mesh.positions = points;
     Positions().swap(ground.at);

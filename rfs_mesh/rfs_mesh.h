@@ -9,7 +9,8 @@
 /// edges of vertices that no face reaches (`Mesh::loose_edges`).
 ///
 /// Differs from the paper: connectivity is tested on the shadow of the cloud (local_surface.h) where noise
-/// exceeds a share of the spacing, or on positions the caller gives; thresholds are ours (SdgOptions,
+/// exceeds a share of the spacing, or on positions the caller gives; points that noise carried between two
+/// near sheets have no neighbours (two_sheets.h); thresholds are ours (SheetsOptions, SdgOptions,
 /// UmbrellaOptions).
 #pragma once
 

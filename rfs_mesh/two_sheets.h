@@ -10,7 +10,7 @@
 ///  - a point well nearer to one of them has its shadow and normal from that one;
 ///  - a point about as far from both is *between*: nothing tells which sheet it came from, and any
 ///    neighbours would be the wrong ones half of the time. It has none: its tree edges are bridges (sdg.h).
-/// Two sheets six standard deviations apart lose 0.5 % of their points so and keep 0.05 % of edges that
+/// Two sheets six standard deviations apart lose 0.8 % of their points so and keep 0.05 % of edges that
 /// cross; a single sheet has no second layer, and nothing changes on it.
 ///
 /// Paper: none; Vollmer et al. (section 7) have no noise that reaches the next sheet.

@@ -28,7 +28,10 @@ struct UmbrellaOptions {
   double rib_angle = 30;  ///< directions nearer than this to a taken one are left out
   double face_angle =
       120;  ///< consecutive ribs further apart span no face: a rim, or a hole for others to close
-  double quality = 0.35;     ///< Bank & Smith quality below which a face is deleted (1 = equilateral)
+  double quality = 0.35;  ///< Bank & Smith quality below which a face is deleted (1 = equilateral)
+  /// On a smooth surface the flattest of several pairs of faces is an accident of sampling: within this angle
+  /// votes and quality choose (flattest_pair.h).
+  double same_fold = 10;
   double normal_angle = 60;  ///< as in the SDG: ribs stay on one sheet
   double steepness = 0.75;   ///< as in the SDG, but a rib may bend further than an edge chosen to lead on
 
@@ -45,6 +48,9 @@ struct UmbrellaOptions {
         OptionInfo{"umbrella-face-angle", "largest angle of a face at the umbrella's tip", "degrees", 0, 180},
         self.face_angle);
     visit(OptionInfo{"umbrella-quality", "smallest Bank & Smith quality of a face", "", 0, 1}, self.quality);
+    visit(OptionInfo{"umbrella-same-fold", "dihedral angles count as equal within steps of this", "degrees",
+                     0.1, 180},
+          self.same_fold);
     visit(OptionInfo{"umbrella-normal-angle", "largest angle between normals along a rib", "degrees", 0, 90},
           self.normal_angle);
     visit(OptionInfo{"umbrella-steepness", "largest rise over run of a rib", "", 0, 100}, self.steepness);
