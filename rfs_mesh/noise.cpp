@@ -15,6 +15,8 @@ namespace {
 constexpr std::size_t kFewestPoints = 25;
 // The quantile of sites that is the figure: at m = 16 noise may be below the detail.
 constexpr double kFigureNarrow = 0.4, kFigureWide = 0.45;
+// Where hardly a site speaks, most of the cloud is rough, and what does speak there is half roughness.
+constexpr double kFewSpeak = 0.1, kFigureOfFew = 0.2;
 constexpr std::size_t kSmooth = 24;  // sites whose median is the field
 constexpr double kNoSay = 0.07;      // logarithm: less is the measurement's own scatter
 constexpr std::size_t kBlend = 4;    // sites that a point takes the mean of
@@ -70,12 +72,16 @@ NoiseField measure_noise(const SpatialIndex& index, const Context& context) {
   if (!(start.least > 0)) return noise;
   NoiseSites sites = listen(index, start, context);
   std::vector<Weighed> heard, shape;
+  double all = 0, saying = 0;
   for (std::size_t s = 0; s < sites.at.size(); ++s) {
+    all += sites.area[s];
     if (!sites.speaks[s]) continue;
+    saying += sites.area[s];
     heard.push_back({sites.sigma[s], sites.area[s]});
     if (sites.sigma[s] > start.least) shape.push_back({sites.shape[s], sites.area[s]});
   }
-  const double share = start.m == kNarrowestScatter ? kFigureNarrow : kFigureWide;
+  double share = start.m == kNarrowestScatter ? kFigureNarrow : kFigureWide;
+  if (saying < kFewSpeak * all) share = kFigureOfFew;
   noise.sigma = heard.empty() ? start.sigma : quantile(heard, share);
   noise.shape = shape.empty() ? 0 : quantile(shape, 0.5);
   if (noise.sigma <= start.least) noise.sigma = 0;

@@ -1,22 +1,18 @@
 /// How noisy a cloud is, and how dense, measured from the cloud alone: one figure and a field over it.
 ///
-/// At up to 2,000 sites the points scatter about a quadric through the m nearest (scatter.h). Three things
-/// stand between that and the noise, and each is answered:
+/// Points scatter about a quadric through the m nearest (scatter.h). What stands between that and the noise:
 ///
-/// - Edges, second sheets, strays: only points within 3 sigma of the quadric count. Sigma itself is what is
-///   sought, so it is found from below: the window opens until what is in it is as narrow as a normal
-///   distribution would be, first for the whole cloud (the calmer quarter of the sites), then around each
-///   site. Coming from below stops at the noise of one sheet; coming from above would stop at the thickness.
-/// - A ball narrower than a few sigma lies inside a thick slab and tells too little: m starts at 16 and grows
-///   until the ball holds a patch of 2 sigma in radius with all of the window above and below it.
-/// - Shape that a quadric does not follow. It grows with the neighbourhood and noise does not, so 2 m points
-///   are asked too and the difference is taken off: s^2(m) = sigma^2 + b m to first order, so
-///   sigma^2 = 2 s^2(m) - s^2(2 m), at most 0.6 of s^2(m) taken off.
+/// - Edges, second sheets, strays: only points within 3 sigma of the quadric count, and sigma is found from
+///   below (noise_search.h): coming from above would stop at the thickness of a wall.
+/// - A ball narrower than a few sigma lies inside a thick slab and tells too little: m grows from 16 until it
+///   holds a patch of 2 sigma in radius.
+/// - Shape that a quadric does not follow: it grows with the neighbourhood, and is taken off.
+/// - Depths in steps and noise that neighbours share: they grow, too, but stop growing (noise_sites.h).
+/// - Scans have most points where their surface is nearest: places count by their area.
 ///
-/// Around a site speaks the mean of its nearest sites' fits, without those far above the typical one; where
-/// most of them have nothing to say, the site takes over what its neighbours say. The field is the median of
-/// nearby sites relative to the figure, and says nothing of less than 7 % (what the measurement itself
-/// scatters by): on a cloud of even noise it is constant.
+/// The figure is the typical place's. The field is the median of nearby places relative to the figure, and
+/// says nothing of less than 7 % (what the measurement itself scatters by): on a cloud of even noise it is
+/// constant. Real scans agree with what a plane through their flat places leaves, within a factor of 1.7.
 #pragma once
 
 #include <vector>
