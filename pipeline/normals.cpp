@@ -1,6 +1,7 @@
 #include "rfsmooth/pipeline/normals.h"
 
 #include <limits>
+#include <vector>
 
 #include "rfsmooth/rfs_mesh/bilateral_normals.h"
 #include "rfsmooth/rfs_mesh/orient.h"
@@ -11,7 +12,7 @@ namespace rfsmooth::pipeline {
 
 namespace {
 
-constexpr int kFiltered = 64;  // neighbours over which normals are made calm
+constexpr int kFiltered = 96;  // neighbours over which normals are made calm
 
 NormalsReport run(const double* xyz, std::size_t n, const NormalsOptions& options, const Context& context,
                   double* normals) {
@@ -22,13 +23,15 @@ NormalsReport run(const double* xyz, std::size_t n, const NormalsOptions& option
   const rfs_mesh::Connection connection = value_or_throw(rfs_mesh::connect(cloud.points, {}, context));
   context.report("normals", 0);
   Positions calm = cloud.points, side(calm.size());
+  std::vector<double> scatter(calm.size());
   for_each_index(context, side.size(), [&](std::size_t i) {
     side[i] = connection.surfaces[i].normal;
+    scatter[i] = connection.surfaces[i].residual;
     if (connection.on_shadow) calm[i] = connection.surfaces[i].shadow;
   });
   {
     const rfs_mesh::SpatialIndex index(calm, context);
-    bilateral_normals(calm, index.nearest(kFiltered, context), side, context);
+    bilateral_normals(calm, index.nearest(kFiltered, context), scatter, side, context);
   }
   std::optional<Eigen::Vector3d> viewpoint = options.viewpoint;
   if (viewpoint) *viewpoint -= cloud.origin;

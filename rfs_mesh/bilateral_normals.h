@@ -8,10 +8,17 @@
 /// of the noise after smoothing turns normals by several degrees while it moves points by a few percent of
 /// the spacing.
 ///
-/// Differs from the papers: s_i is measured at each point, 1.25 times the lower-middle angle to its sixteen
-/// nearest neighbours' normals, within 0.05 and 0.4 radians, so that flat places with calm normals keep even
-/// blunt edges and noisy ones are still averaged.
+/// Differs from the papers: s_i is measured at each point, twice the lower-middle angle to its sixteen
+/// nearest neighbours' normals, so that flat places with calm normals keep even blunt edges; and at most
+///
+///     230 (r / R)^2 radians,
+///
+/// r the mean scatter of the points about the surface over the 24 nearest, R the distance to the last of
+/// them. Normals that turn among points that lie well on their surfaces turn because the shape does, and
+/// stay.
 #pragma once
+
+#include <vector>
 
 #include "rfsmooth/rfs_mesh/context.h"
 #include "rfsmooth/rfs_mesh/neighbors.h"
@@ -19,10 +26,11 @@
 
 namespace rfsmooth::rfs_mesh {
 
-/// Filters `normals` (n x 3, unit, of any side) in place over the rows of `near`; at least 16 neighbours are
-/// sensible, 64 make the most of large flat faces. The sides stay as they are. O(n k), parallel, the same
-/// bytes for any number of threads. \throw std::invalid_argument if the sizes differ.
-void bilateral_normals(const Positions& points, const NeighborTable& near, Positions& normals,
-                       const Context& context);
+/// Filters `normals` (n x 3, unit, of any side) in place over the rows of `near`; at least 24 neighbours are
+/// sensible, 96 make the most of large flat faces. \param scatter n: how far points lie off the local
+/// surface there, root mean square, world units (LocalSurface::residual). The sides stay as they are. O(n k),
+/// parallel, the same bytes for any number of threads. \throw std::invalid_argument if the sizes differ.
+void bilateral_normals(const Positions& points, const NeighborTable& near, const std::vector<double>& scatter,
+                       Positions& normals, const Context& context);
 
 }  // namespace rfsmooth::rfs_mesh

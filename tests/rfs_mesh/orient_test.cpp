@@ -78,11 +78,33 @@ TEST(BilateralNormals, LeaveAPlaneAloneAndKeepAnEdge) {
       normals.push_back((truth.back() + Vector3d(x, y, z)).normalized());
     }
   const SpatialIndex index(points, {});
-  bilateral_normals(points, index.nearest(32, {}), normals, {});
+  const std::vector<double> scatter(points.size(), 0.1);
+  bilateral_normals(points, index.nearest(32, {}), scatter, normals, {});
   for (std::size_t i = 0; i < points.size(); ++i) {
     EXPECT_NEAR(normals[i].norm(), 1, 1e-12);
     EXPECT_GT(normals[i].dot(truth[i]), std::cos(0.06)) << "half of the noise is gone, at the edge, too";
   }
+}
+
+TEST(BilateralNormals, FollowAShapeThatPointsLieOnAndCalmOneThatTheyScatterAbout) {
+  // Normals that turn by a twentieth of a radian and more from point to point, all ways mixed.
+  Positions points, normals;
+  for (int i = 0; i < 40; ++i)
+    for (int j = 0; j < 40; ++j) {
+      points.emplace_back(i, j, 0);
+      normals.push_back(Vector3d(0.05 * ((i + 2 * j) % 5 - 2), 0, 1).normalized());
+    }
+  const SpatialIndex index(points, {});
+  const NeighborTable near = index.nearest(48, {});
+  const auto turned = [&](double scatter) {
+    Positions filtered = normals;
+    bilateral_normals(points, near, std::vector<double>(points.size(), scatter), filtered, {});
+    double most = 0;
+    for (const auto& n : filtered) most = std::max(most, std::abs(n[0]));
+    return most;
+  };
+  EXPECT_GT(turned(0), 0.075) << "the shape";
+  EXPECT_LT(turned(0.3), 0.05) << "noise";
 }
 
 }  // namespace
