@@ -158,9 +158,6 @@ TEST_F(DenoiseCommand, ReportOfTheAutomaticFlowSaysEverythingItChose) {
 }
 
 TEST_F(DenoiseCommand, ThreadsBindsEveryThreadOfTheProgram) {
-#ifdef __SANITIZE_ADDRESS__
-  GTEST_SKIP() << "the sanitizer has threads of its own";
-#endif
   put("in.ply", noisy_plane(150).bytes());
   for (const std::size_t threads : {1u, 2u, 3u}) {
     const Ran ran = run({"denoise", "--force", "--threads", std::to_string(threads), "in.ply", "out.ply"});
