@@ -14,7 +14,7 @@ std::vector<std::string> words_of(const Command& command) {
   std::vector<std::string> words = {"-h", "--help"};
   for (const CommandOption& o : command.options) {
     if (o.short_name) words.push_back(fmt::format("-{}", o.short_name));
-    words.push_back(typed_name(o));
+    for (const std::string& name : typed_names(o)) words.push_back(name);
   }
   return words;
 }
@@ -75,7 +75,10 @@ std::string zsh_option(const CommandOption& o) {
     value = fmt::format(":{}:({}{})", value_name(o), fmt::join(o.choices, " "), o.optional ? " auto" : "");
   else if (o.kind != ValueKind::flag)
     value = fmt::format(":{}:({})", value_name(o), o.optional ? "auto" : "");
-  return fmt::format("        '{}[{}]{}' \\\n", typed_name(o), zsh_escaped(o.help), value);
+  std::string lines;
+  for (const std::string& name : typed_names(o))
+    lines += fmt::format("        '{}[{}]{}' \\\n", name, zsh_escaped(o.help), value);
+  return lines;
 }
 
 std::string zsh_script(const std::vector<Command>& commands) {

@@ -65,7 +65,7 @@ const std::vector<ExitCode>& exit_codes() {
 
 std::string option_heading(const CommandOption& option) {
   std::string heading = option.short_name ? fmt::format("-{}, ", option.short_name) : "    ";
-  heading += typed_name(option);
+  heading += fmt::format("{}", fmt::join(typed_names(option), ", "));
   const std::string value = value_name(option);
   return value.empty() ? heading : heading + ' ' + value;
 }

@@ -171,8 +171,15 @@ std::string value_name(const CommandOption& option) {
   return "";
 }
 
-std::string typed_name(const CommandOption& option) {
-  return (option.on_by_default ? "--no-" : "--") + option.name;
+bool has_no_form(const CommandOption& option) {
+  return option.kind == ValueKind::flag && (option.on_by_default || option.optional);
+}
+
+std::vector<std::string> typed_names(const CommandOption& option) {
+  std::vector<std::string> names;
+  if (!option.on_by_default) names.push_back("--" + option.name);
+  if (has_no_form(option)) names.push_back("--no-" + option.name);
+  return names;
 }
 
 void assign(const CommandOption& option, const std::string& text) {

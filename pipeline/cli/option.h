@@ -37,8 +37,12 @@ void assign(const CommandOption& option, const std::string& text);
 /// The word that stands for the value in help: NUMBER, LENGTH, FILE, ...
 std::string value_name(const CommandOption& option);
 
-/// The option's name as it is typed: "--alpha", "--no-swap".
-std::string typed_name(const CommandOption& option);
+/// Whether --no-NAME is understood: of flags that are on by default or auto.
+bool has_no_form(const CommandOption& option);
+
+/// The option's name as it is typed: "--alpha"; "--no-swap" of a flag that is on by default; both ways of a
+/// flag that is auto.
+std::vector<std::string> typed_names(const CommandOption& option);
 
 /// Visitor of a `describe` table that appends its options, bound to the fields it visits. The words in the
 /// table must be literals.

@@ -25,7 +25,7 @@ void add_option(CLI::App& app, const CommandOption& option, Invocation& into) {
   const std::string prefix = option.short_name ? fmt::format("-{},", option.short_name) : "";
   if (option.kind == ValueKind::flag) {
     app.add_flag_callback(prefix + "--" + option.name, [note] { note("true"); })->disable_flag_override();
-    if (option.on_by_default)
+    if (has_no_form(option))
       app.add_flag_callback("--no-" + option.name, [note] { note("false"); })->disable_flag_override();
   } else {
     app.add_option_function<std::string>(prefix + "--" + option.name, note);
@@ -40,7 +40,7 @@ std::vector<std::string> option_names(const Command* command) {
   }
   for (const CommandOption& o : command->options) {
     names.push_back("--" + o.name);
-    if (o.on_by_default) names.push_back("--no-" + o.name);
+    if (has_no_form(o)) names.push_back("--no-" + o.name);
   }
   return names;
 }

@@ -84,6 +84,28 @@ TEST_F(Lengths, AreWorldUnitsTimesTheSpacingOrAuto) {
   EXPECT_NEAR(report("auto")["noise"].get<double>(), 0.2, 0.06);
 }
 
+class Flags : public InFolder {};
+
+TEST_F(Flags, ThatAreAutoCanBeTurnedOnAndOff) {
+  put("in.ply", noisy_plane(20).bytes());
+  const auto equalized = [&](const std::vector<std::string>& typed) {
+    std::vector<std::string> words = {"denoise", "in.ply", "out.ply", "--force", "--report", "r.json"};
+    words.insert(words.end(), typed.begin(), typed.end());
+    const Ran ran = run(words);
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    const auto report = nlohmann::json::parse(take("r.json"));
+    EXPECT_EQ(report["equalized"]["rms"].get<double>() > 0, report["options"]["equalize"].get<bool>());
+    return report["options"]["equalize"].get<bool>();
+  };
+  EXPECT_TRUE(equalized({}));
+  EXPECT_TRUE(equalized({"--equalize"}));
+  EXPECT_FALSE(equalized({"--no-equalize"}));
+  const std::string help = rfsmooth({"denoise", "--help"}).out;
+  EXPECT_THAT(help, HasSubstr("--equalize, --no-equalize"));
+  for (const char* shell : {"bash", "zsh"})
+    EXPECT_THAT(rfsmooth({"completion", shell}).out, HasSubstr("--no-equalize"));
+}
+
 TEST(Help, EveryOptionIsThereWithItsDefaultAndRange) {
   const Ran shorter = rfsmooth({"denoise", "-h"}), complete = rfsmooth({"denoise", "--help"});
   EXPECT_EQ(shorter.code, 0);
