@@ -1,9 +1,11 @@
 #include "rfsmooth/pipeline/normals.h"
 
+#include <algorithm>
 #include <limits>
 #include <vector>
 
 #include "rfsmooth/rfs_mesh/bilateral_normals.h"
+#include "rfsmooth/rfs_mesh/neighbors.h"
 #include "rfsmooth/rfs_mesh/orient.h"
 #include "rfsmooth/rfs_mesh/parallel.h"
 #include "rfsmooth/rfs_mesh/rfs_mesh.h"
@@ -12,7 +14,38 @@ namespace rfsmooth::pipeline {
 
 namespace {
 
-constexpr int kFiltered = 96;  // neighbours over which normals are made calm
+constexpr int kFiltered = 128;  // neighbours over which normals are made calm
+
+/// A normal more than 60 degrees off the mean of the 32 nearest takes that mean, unless those disagree among
+/// themselves, as across a thin wall or at the tip of a wedge. Needed by few, most of them in creases, where
+/// the filter has taken the side of one flank too many.
+void settle(const Positions& points, const rfs_mesh::SpatialIndex& index, const rfs_mesh::Mesh& mesh,
+            Positions& normals, const Context& context) {
+  constexpr int kAsked = 32;
+  constexpr double kOff = 0.5, kAgreed = 0.4;  // cosine; length of a mean of unit vectors
+  Positions settled = normals;
+  for_blocks(context, normals.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    std::vector<rfs_mesh::Neighbor> near;
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto ring = mesh.one_ring[i];
+      if (std::none_of(ring.begin(), ring.end(), [&](Index j) { return normals[i].dot(normals[j]) < kOff; }))
+        continue;
+      index.nearest(points[i], kAsked + 1, near);
+      const double square = 1.1 * near.back().squared_distance;
+      if (!(square > 0)) continue;
+      Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+      double weights = 0;
+      for (const auto& q : near) {
+        const double inside = 1 - q.squared_distance / square, weight = inside * inside;
+        sum += weight * normals[q.index];
+        weights += weight;
+      }
+      const double length = sum.norm();
+      if (length > kAgreed * weights && normals[i].dot(sum) < kOff * length) settled[i] = sum / length;
+    }
+  });
+  normals.swap(settled);
+}
 
 NormalsReport run(const double* xyz, std::size_t n, const NormalsOptions& options, const Context& context,
                   double* normals) {
@@ -29,14 +62,13 @@ NormalsReport run(const double* xyz, std::size_t n, const NormalsOptions& option
     scatter[i] = connection.surfaces[i].residual;
     if (connection.on_shadow) calm[i] = connection.surfaces[i].shadow;
   });
-  {
-    const rfs_mesh::SpatialIndex index(calm, context);
-    bilateral_normals(calm, index.nearest(kFiltered, context), scatter, side, context);
-  }
+  const rfs_mesh::SpatialIndex index(calm, context);
+  bilateral_normals(calm, index.nearest(kFiltered, context), scatter, side, context);
   std::optional<Eigen::Vector3d> viewpoint = options.viewpoint;
   if (viewpoint) *viewpoint -= cloud.origin;
   report.parts =
       orient(connection.mesh, connection.emst, connection.bridges, viewpoint, side, context, &calm);
+  settle(calm, index, connection.mesh, side, context);
   context.check_stop();
   for (std::size_t i = 0; i < n; ++i) {
     const Index p = cloud.of_input[i];

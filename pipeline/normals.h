@@ -2,7 +2,7 @@
 /// known.
 ///
 ///     cloud -> working cloud -> connect (EMST, RFS-mesh) -> local quadrics -> bilateral normals ->
-///     orient (rfs_mesh/orient.h)
+///     orient (rfs_mesh/orient.h) -> settle those that stand against all around them
 ///
 /// Meant for what `denoise` gives back, and for any cloud: neighbourhoods are as wide as its noise asks.
 #pragma once

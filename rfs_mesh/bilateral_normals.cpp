@@ -15,7 +15,7 @@ using Eigen::Vector3d;
 
 // Chosen on the closed development shapes at 50,000 points and 1 % noise (tests/bench/normals): more passes
 // gain at sharp edges and lose on organic shapes.
-constexpr int kPasses = 4;
+constexpr int kPasses = 3;
 constexpr std::size_t kJudged = 16;  // neighbours that say how calm the normals are
 constexpr std::size_t kMiddle = 6;   // which of them, from the calmest
 constexpr double kTolerance = 2;

@@ -27,7 +27,7 @@
 namespace rfsmooth::rfs_mesh {
 
 /// Filters `normals` (n x 3, unit, of any side) in place over the rows of `near`; at least 24 neighbours are
-/// sensible, 96 make the most of large flat faces. \param scatter n: how far points lie off the local
+/// sensible, 128 make the most of large flat faces. \param scatter n: how far points lie off the local
 /// surface there, root mean square, world units (LocalSurface::residual). The sides stay as they are. O(n k),
 /// parallel, the same bytes for any number of threads. \throw std::invalid_argument if the sizes differ.
 void bilateral_normals(const Positions& points, const NeighborTable& near, const std::vector<double>& scatter,

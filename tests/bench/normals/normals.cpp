@@ -263,7 +263,7 @@ void compare(const std::vector<ShapeScores>& rows, const std::vector<int>& neigh
     std::printf("   %8.3f\n", 100 * row.cgal[best(row.cgal, reading)].outward[reading]);
   }
   std::printf("worst [0.6]: ");
-  for (const double w : worst) std::printf(" %.2f", w);
+  for (const double w : worst) std::printf(" %.3f", w);
   std::printf("   (ratios: k of each shape, both with the truth in hand; k = %d and %d for all; k = %d)\n",
               neighbours[all[0]], neighbours[all[1]], neighbours[0]);
 }
