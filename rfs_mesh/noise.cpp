@@ -17,10 +17,24 @@ constexpr std::size_t kFewestPoints = 25;
 constexpr double kFigureNarrow = 0.4, kFigureWide = 0.45;
 // Where hardly a site speaks, most of the cloud is rough, and what does speak there is half roughness.
 constexpr double kFewSpeak = 0.1, kFigureOfFew = 0.2;
-constexpr std::size_t kSmooth = 24;  // sites whose median is the field
-constexpr double kNoSay = 0.07;      // logarithm: less is the measurement's own scatter
-constexpr std::size_t kBlend = 4;    // sites that a point takes the mean of
+constexpr double kLittleShape = 0.25;  // more of it makes places differ that are as noisy
+constexpr std::size_t kSmooth = 24;    // sites whose median is the field
+constexpr double kNoSay = 0.07;        // logarithm: less is the measurement's own scatter
+constexpr std::size_t kBlend = 4;      // sites that a point takes the mean of
 constexpr std::size_t kSpacingSites = 4000, kSpacingPoints = 16;
+
+/// Root mean square of the values within a factor of `typical`; of noise that varies a little over the cloud,
+/// as along a ray, the mean says more than a quantile.
+double mean_of_alike(const std::vector<Weighed>& values, double typical) {
+  constexpr double kAlike = 1.4;
+  double sum = 0, weights = 0;
+  for (const Weighed& v : values) {
+    if (v.value >= kAlike * typical || typical >= kAlike * v.value) continue;
+    sum += v.weight * v.value * v.value;
+    weights += v.weight;
+  }
+  return weights > 0 ? std::sqrt(sum / weights) : typical;
+}
 
 /// The field at the sites: the median around each, relative to the figure, where it means something.
 std::vector<double> smooth(const NoiseSites& sites, const SpatialIndex& index, double figure,
@@ -84,6 +98,8 @@ NoiseField measure_noise(const SpatialIndex& index, const Context& context) {
   if (saying < kFewSpeak * all) share = kFigureOfFew;
   noise.sigma = heard.empty() ? start.sigma : quantile(heard, share);
   noise.shape = shape.empty() ? 0 : quantile(shape, 0.5);
+  if (start.m > kNarrowestScatter && noise.shape < kLittleShape)
+    noise.sigma = mean_of_alike(heard, noise.sigma);
   if (noise.sigma <= start.least) noise.sigma = 0;
   if (!(noise.sigma > 0)) return noise;
   if (noise.sigma > start.most) {  // the windows let a second sheet in nearly everywhere
