@@ -56,12 +56,6 @@ Plane fit_plane(const Positions& points, const std::vector<Neighbor>& near) {
   return plane;
 }
 
-/// What is not an outlier so far and not isolated: the surfaces.
-struct Surfaces {
-  Positions points;
-  std::vector<Index> row;  ///< of each in the cloud
-};
-
 class Search {
  public:
   Search(const Positions& points, const Context& context)
@@ -71,8 +65,10 @@ class Search {
         look_(points.size(), 1),
         reach_(points.size()),
         usual_(points.size()),
-        isolated_(points.size()) {
-    near_ = rfs_mesh::SpatialIndex(points, context).nearest(int(kNear), context);
+        isolated_(points.size()),
+        index_(points, context),
+        near_(index_.nearest(int(kNear), context)),
+        noise_(rfs_mesh::noise_scale(index_, context)) {
     for_each_index(context, points.size(), [&](std::size_t i) { measure_reach(i); });
     std::vector<double> all = reach_;
     median_reach_ = rfs_mesh::median(all);
@@ -104,26 +100,33 @@ class Search {
     });
   }
 
-  Surfaces surfaces() const {
-    Surfaces s;
-    for (std::size_t i = 0; i < points_.size(); ++i) {
-      if (outlier_[i] != 0 || isolated_[i] != 0) continue;
-      s.points.push_back(points_[i]);
-      s.row.push_back(Index(i));
+  /// What is not an outlier so far and not isolated is a surface.
+  bool on_surface(Index i) const { return outlier_[i] == 0 && isolated_[i] == 0; }
+
+  /// The k nearest points of the surfaces, ascending.
+  void nearest_on_surface(const Eigen::Vector3d& at, std::size_t k, std::vector<Neighbor>& around) const {
+    for (std::size_t asked = k + k / 8 + 1;; asked *= 2) {
+      index_.nearest(at, int(asked), around);
+      const bool all = around.size() < asked;
+      around.erase(std::remove_if(around.begin(), around.end(),
+                                  [&](const Neighbor& q) { return !on_surface(q.index); }),
+                   around.end());
+      if (!all && around.size() < k) continue;
+      around.resize(std::min(k, around.size()));
+      return;
     }
-    return s;
   }
 
   /// New neighbours, on the surfaces, of the points that have an outlier among theirs.
-  void measure_again(const Surfaces& s, const rfs_mesh::SpatialIndex& index) {
+  void measure_again() {
     for_blocks(context_, points_.size(), 1024, [&](std::size_t begin, std::size_t end) {
       std::vector<Neighbor> around;
       for (std::size_t i = begin; i < end; ++i) {
         if (look_[i] == 0) continue;
-        index.nearest(points_[i], int(kNear) + 1, around);
+        nearest_on_surface(points_[i], kNear + 1, around);
         Index* row = near_.items.data() + i * kNear;
         for (std::size_t k = 0, to = 0; to < kNear; ++k)
-          if (s.row[around[k].index] != i) row[to++] = s.row[around[k].index];
+          if (around[k].index != i) row[to++] = around[k].index;
         measure_reach(i);
       }
     });
@@ -133,7 +136,7 @@ class Search {
   std::vector<int> known_by() const {
     std::vector<int> known(points_.size(), 0);
     for (std::size_t i = 0; i < points_.size(); ++i)
-      if (outlier_[i] == 0 && isolated_[i] == 0)
+      if (on_surface(Index(i)))
         for (const Index j : near_[i]) ++known[j];
     return known;
   }
@@ -141,13 +144,10 @@ class Search {
   /// One round; returns whether it found any.
   bool find(bool again) {
     measure_isolation();
-    const Surfaces s = surfaces();
-    if (s.points.size() < kTooFew) return false;
-    const rfs_mesh::SpatialIndex index(s.points, context_);
-    if (again)
-      measure_again(s, index);
-    else
-      noise_ = rfs_mesh::noise_scale(index, context_);
+    std::size_t surface = 0;
+    for (std::size_t i = 0; i < points_.size(); ++i) surface += std::size_t(on_surface(Index(i)));
+    if (surface < kTooFew) return false;
+    if (again) measure_again();
     const std::vector<int> known = known_by();
     std::vector<char> found(points_.size(), 0);
     for_blocks(context_, points_.size(), 1024, [&](std::size_t begin, std::size_t end) {
@@ -155,9 +155,9 @@ class Search {
       for (std::size_t i = begin; i < end; ++i) {
         if (look_[i] == 0) continue;
         if (isolated_[i] != 0 && known[i] <= kKnownBy)
-          found[i] = has_no_surface(index, i, around);
+          found[i] = has_no_surface(i, around);
         else
-          found[i] = floats(s, index, i, around);
+          found[i] = floats(i, around);
       }
     });
     bool any = false;
@@ -168,39 +168,39 @@ class Search {
     return any;
   }
 
-  bool has_no_surface(const rfs_mesh::SpatialIndex& index, std::size_t i,
-                      std::vector<Neighbor>& around) const {
+  bool has_no_surface(std::size_t i, std::vector<Neighbor>& around) const {
     if (reach_[i] > kFarOff * usual_[i]) return true;
-    const Positions& points = index.points();
-    index.nearest(points_[i], 1, around);
-    index.nearest(points[around.front().index], int(std::max(kPlane, noise_.neighbours)), around);
-    const Plane plane = fit_plane(points, around);
+    nearest_on_surface(points_[i], 1, around);
+    if (around.empty()) return false;
+    nearest_on_surface(points_[around.front().index], std::max(kPlane, noise_.neighbours), around);
+    const Plane plane = fit_plane(points_, around);
     const double off = std::abs(plane.normal.dot(points_[i] - plane.centre));
     return off > kOff * usual_[i] && off > kSigmas * std::max(std::sqrt(plane.variances[0]), noise_.sigma);
   }
 
-  bool floats(const Surfaces& s, const rfs_mesh::SpatialIndex& index, std::size_t i,
-              std::vector<Neighbor>& around) const {
+  bool floats(std::size_t i, std::vector<Neighbor>& around) const {
     if (!(reach_[i] > kThin * median_reach_)) return false;
-    index.nearest(points_[i], int(kRegion), around);
+    nearest_on_surface(points_[i], kRegion, around);
+    if (around.size() < kRegion) return false;
     std::array<double, kRegion> reaches = {};
-    for (std::size_t k = 0; k < kRegion; ++k) reaches[k] = reach_[s.row[around[k].index]];
+    for (std::size_t k = 0; k < kRegion; ++k) reaches[k] = reach_[around[k].index];
     std::nth_element(reaches.begin(), reaches.begin() + kSurface, reaches.end());
     if (!(reach_[i] > kThin * reaches[kSurface])) return false;
     around.resize(kCloud);
-    const Eigen::Vector3d variances = fit_plane(s.points, around).variances;
+    const Eigen::Vector3d variances = fit_plane(points_, around).variances;
     return variances[0] > kFlat * variances.sum() && std::sqrt(variances[0]) > kFlatSigmas * noise_.sigma;
   }
 
   const Positions& points_;
   const Context& context_;
   std::vector<char> outlier_, look_;
-  rfs_mesh::NeighborTable near_;
   std::vector<double> reach_;  ///< to the 8th neighbour
   std::vector<double> usual_;  ///< the lower quartile of the neighbours' reaches
   std::vector<char> isolated_;
-  double median_reach_ = 0;
+  rfs_mesh::SpatialIndex index_;
+  rfs_mesh::NeighborTable near_;
   rfs_mesh::NoiseScale noise_;
+  double median_reach_ = 0;
 };
 
 }  // namespace

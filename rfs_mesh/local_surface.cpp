@@ -75,6 +75,21 @@ double mean_spacing(const Positions& points, const NeighborTable& near, const Co
          double(points.size());
 }
 
+double mean_spacing(const SpatialIndex& index, const Context& context) {
+  constexpr std::size_t kSamples = 50000;
+  const std::size_t n = index.points().size(), count = std::min(n, kSamples);
+  if (n < 2) return 0;
+  std::vector<double> nearest(count);
+  for_blocks(context, count, 256, [&](std::size_t begin, std::size_t end) {
+    NearestOthers others;
+    for (std::size_t s = begin; s < end; ++s) {
+      const std::size_t i = s * n / count;
+      nearest[s] = (index.points()[others.find(index, i, 1).front()] - index.points()[i]).norm();
+    }
+  });
+  return sum_over(context, count, 0.0, [&](std::size_t s) { return nearest[s]; }) / double(count);
+}
+
 namespace {
 
 /// The lower quartile of the root of a chi-square variable over its degrees of freedom (Wilson & Hilferty).

@@ -67,6 +67,9 @@ std::vector<LocalSurface> shared_local_surfaces(const SpatialIndex& index, const
 /// Mean distance to the nearest neighbour; 0 for fewer than two points.
 double mean_spacing(const Positions& points, const NeighborTable& near, const Context& context);
 
+/// The same of up to 50,000 points spread over the indices. O(log n).
+double mean_spacing(const SpatialIndex& index, const Context& context);
+
 /// Fits quadrics to m = 24, 48, ... 384 neighbours at up to 1,000 points spread over the cloud and takes the
 /// lower quartile of their residuals (the flat places), corrected for being one. A neighbourhood narrower
 /// than a few sigma is a ball inside a thick slab: it tells too little noise and no normal. One too wide

@@ -35,7 +35,7 @@ class AutomaticFlow : public Flow {
     std::vector<double> local;  // empty: as everywhere
     {
       const rfs_mesh::SpatialIndex index(mesh.positions, context);
-      spacing = mean_spacing(mesh.positions, index.nearest(1, context), context);
+      spacing = rfs_mesh::mean_spacing(index, context);
       rfs_mesh::NoiseField noise = rfs_mesh::measure_noise(index, context);
       sigma = noise_ ? noise_->resolve(spacing) : measured(noise, spacing);
       local = std::move(noise.local);

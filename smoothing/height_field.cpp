@@ -15,6 +15,7 @@ namespace {
 constexpr std::size_t kPlane = 24;  // neighbours of the plane that gives the normal
 constexpr std::size_t kLinked = 8;  // neighbours with which a normal agrees on a side; 6 leave islands
 constexpr double kSameSheet = 0.5;  // cosine of 60 degrees
+constexpr double kWeightUnit = 255;
 
 }  // namespace
 
@@ -43,6 +44,18 @@ HeightField::HeightField(Positions guide, rfs_mesh::NeighborTable near, const Po
     heights_[i] = normals_[i].dot(data[i] - guide_[i]);
     local_[i] = {normals_[i].cast<float>(), float(heights_[i])};
   });
+  near_weight_.resize(near_.items.size());
+  for_each_index(context, size(), [&](std::size_t i) {
+    const auto row = near_[i];
+    if (row.size() == 0) return;
+    const double square = 1.05 * (guide_[row[row.size() - 1]] - guide_[i]).squaredNorm();
+    for (std::size_t k = 0; k < row.size(); ++k) {
+      const double away = square > 0 ? (guide_[row[k]] - guide_[i]).squaredNorm() / square : 0;
+      const bool same = same_sheet(local_[i].normal.dot(local_[row[k]].normal)) > 0;
+      near_weight_[i * row.size() + k] =
+          std::uint8_t(same ? kWeightUnit * std::clamp(1 - away, 0.0, 1.0) + 0.5 : 0);
+    }
+  });
 }
 
 void HeightField::orient(const Context& context) {
@@ -68,14 +81,11 @@ std::vector<double> HeightField::local_mean(const std::vector<double>& values, c
   std::vector<double> mean(values.size());
   for_each_index(context, size(), [&](std::size_t i) {
     const auto row = near_[i];
-    const double square =
-        row.size() == 0 ? 0 : 1.05 * (guide_[row[row.size() - 1]] - guide_[i]).squaredNorm();
-    double sum = values[i], weights = 1;
-    for (const Index j : row) {
-      if (same_sheet(normals_[i], normals_[j]) == 0) continue;
-      const double w = square > 0 ? 1 - (guide_[j] - guide_[i]).squaredNorm() / square : 1;
-      sum += w * values[j];
-      weights += w;
+    const std::uint8_t* const weight = near_weight_.data() + i * row.size();
+    double sum = kWeightUnit * values[i], weights = kWeightUnit;
+    for (std::size_t k = 0; k < row.size(); ++k) {
+      sum += double(weight[k]) * values[row[k]];
+      weights += double(weight[k]);
     }
     mean[i] = sum / weights;
   });

@@ -8,6 +8,7 @@
 /// have opposite normals however near they are to each other. Which of the two sides is arbitrary.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "rfsmooth/rfs_mesh/context.h"
@@ -56,6 +57,7 @@ class HeightField {
   std::vector<Eigen::Vector3d> normals_;
   std::vector<double> heights_;
   std::vector<Local> local_;
+  std::vector<std::uint8_t> near_weight_;  ///< of near_, in 1/255: 1 - d^2/r^2; 0 on another sheet
 };
 
 /// cos^2 of the angle between two normals; 0 beyond 60 degrees: another sheet, or round an edge.

@@ -16,9 +16,10 @@ namespace rfsmooth::smoothing {
 
 namespace {
 
-constexpr std::size_t kAxis = 12;      // nearest points whose normals make the patch's axis
-constexpr float kCovered = 0.2F;       // least weight of the best patch over a point
-constexpr float kWeightUnit = 65535;   // of the weights kept
+constexpr std::size_t kAxis = 12;     // nearest points whose normals make the patch's axis
+constexpr float kCovered = 0.2F;      // least weight of the best patch over a point
+constexpr float kWeightUnit = 65535;  // of the weights kept
+constexpr int kPowers[6][2] = {{0, 0}, {1, 0}, {0, 1}, {2, 0}, {1, 1}, {0, 2}};  // of u and v
 constexpr std::size_t kTogether = 64;  // patches fitted in a row: each tells the next how far to look
 
 }  // namespace
@@ -141,10 +142,13 @@ void Patches::fit_one(std::size_t s, double sigma, Workspace& work) {
   system.diagonal().array() += 1e-9 * system(0, 0) + 1e-12;
   const Matrix6 inverse = system.llt().solve(Matrix6::Identity());
   const Vector6 quadric = inverse * sums.right;
-  std::size_t at = 0;
   for (int a = 0; a < 6; ++a) {
     patch.quadric[std::size_t(a)] = float(quadric[a]);
-    for (int b = 0; b <= a; ++b) patch.inverse[at++] = float(inverse(a, b));
+    for (int b = 0; b < 6; ++b) {
+      const int u_power = kPowers[a][0] + kPowers[b][0], v_power = kPowers[a][1] + kPowers[b][1];
+      const int degree = u_power + v_power;
+      patch.spread[std::size_t(degree * (degree + 1) / 2 + v_power)] += float(inverse(a, b));
+    }
   }
 
   const double in_sigma = radius / sigma;
@@ -193,15 +197,13 @@ Prediction Patches::predict(const Context& context) const {
       const float e = float(member_weight_[over_[k]]) / kWeightUnit, w = e * patch.weight;
       const Eigen::Vector3f r = (field_.guide()[i] - patch.centre).cast<float>();
       const float a = r.dot(patch.u), b = r.dot(patch.v);
-      const std::array<float, 6> f = {1, a, b, a * a, a * b, b * b};
-      float value = 0, spread = 0;
-      std::size_t at = 0;
-      for (std::size_t row = 0; row < 6; ++row) {
-        value += f[row] * patch.quadric[row];
-        float half = 0;
-        for (std::size_t column = 0; column < row; ++column) half += f[column] * patch.inverse[at++];
-        spread += f[row] * (2 * half + f[row] * patch.inverse[at++]);
-      }
+      const std::array<float, 6>& q = patch.quadric;
+      const std::array<float, 15>& s = patch.spread;
+      const float value = q[0] + a * (q[1] + a * q[3] + b * q[4]) + b * (q[2] + b * q[5]);
+      const float aa = a * a, bb = b * b, ab = a * b;
+      const float spread = s[0] + (a * s[1] + b * s[2]) + (aa * s[3] + ab * s[4] + bb * s[5]) +
+                           (aa * (a * s[6] + b * s[7]) + bb * (a * s[8] + b * s[9])) +
+                           (aa * (aa * s[10] + ab * s[11] + bb * s[12]) + bb * (ab * s[13] + bb * s[14]));
       height += w * (value * patch.radius - r.dot(patch.axis)) * patch.axis.dot(normal);
       own += w * e * spread;
       weights += w;

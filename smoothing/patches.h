@@ -46,13 +46,14 @@ class Patches {
   std::vector<double> mean(const std::vector<double>& values, const Context& context) const;
 
  private:
-  /// One fitted quadric. inverse: of the normal equations, lower triangle by rows.
+  /// One fitted quadric, over u and v in radii. A monomial of either polynomial stands behind those of lower
+  /// degree, and within its degree behind those of a higher power of u.
   struct Patch {
     Eigen::Vector3d centre;
     Eigen::Vector3f axis, u, v;  ///< u, v: divided by the radius
     float radius = 0, weight = 0;
-    std::array<float, 6> quadric = {};  ///< in radii
-    std::array<float, 21> inverse = {};
+    std::array<float, 6> quadric = {};  ///< the height, in radii
+    std::array<float, 15> spread = {};  ///< f^T A^-1 f, A the normal equations
   };
 
   /// Weights of members in 1/65535.

@@ -143,18 +143,26 @@ std::vector<Index> land(const rfs_mesh::Mesh& mesh, const std::vector<Index>& st
   return moved;
 }
 
-/// New rows for the moved points and those that had one of them near.
-void mend(const MovingGuide& surface, const Positions& guide, NeighborTable& near, const Context& context) {
+/// A new row for point i.
+void renew(const MovingGuide& surface, const Positions& guide, std::size_t i, NeighborTable& near,
+           MovingGuide::Search& search) {
   const auto width = std::size_t(near.k);
+  Index* const row = near.items.data() + i * width;
+  std::size_t to = 0;
+  for (const Neighbor& q : surface.nearest(guide[i], width + 1, search))
+    if (q.index != i && to < width) row[to++] = q.index;
+}
+
+/// New rows for those that had a moved point near.
+void renew_around(const MovingGuide& surface, const Positions& guide, NeighborTable& near,
+                  const Context& context) {
   for_blocks(context, guide.size(), 1024, [&](std::size_t begin, std::size_t end) {
     MovingGuide::Search search;
     for (std::size_t i = begin; i < end; ++i) {
-      Index* const row = near.items.data() + i * width;
-      if (surface.stays(Index(i)) && std::all_of(row, row + width, [&](Index j) { return surface.stays(j); }))
-        continue;
-      std::size_t to = 0;
-      for (const Neighbor& q : surface.nearest(guide[i], width + 1, search))
-        if (q.index != i && to < width) row[to++] = q.index;
+      const auto row = near[i];
+      if (surface.stays(Index(i)) &&
+          !std::all_of(row.begin(), row.end(), [&](Index j) { return surface.stays(j); }))
+        renew(surface, guide, i, near, search);
     }
   });
 }
@@ -186,8 +194,12 @@ std::size_t land_stranded(const rfs_mesh::Mesh& mesh, double most, Positions& gu
     for (const Index i : landed) surface->set_gone(i, true);
     moved = std::move(all);
     surface->set_moved(moved, guide, context);
-    mend(*surface, guide, near, context);
+    for_blocks(context, moved.size(), 256, [&](std::size_t begin, std::size_t end) {
+      MovingGuide::Search search;
+      for (std::size_t k = begin; k < end; ++k) renew(*surface, guide, moved[k], near, search);
+    });
   }
+  if (!moved.empty()) renew_around(*surface, guide, near, context);
   return first;
 }
 
