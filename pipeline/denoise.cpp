@@ -176,7 +176,9 @@ DenoiseReport run(double* xyz, std::size_t n, const DenoiseOptions& options, con
     set_aside(find_outliers(cloud.points, context), cloud, report);
   }
 
-  auto connection = value_or_throw(rfs_mesh::connect(cloud.points, options.connect, context));
+  rfs_mesh::ConnectOptions connect = options.connect;
+  connect.tree_of_points = false;
+  auto connection = value_or_throw(rfs_mesh::connect(cloud.points, connect, context));
   report.seconds.insert(report.seconds.end(), connection.seconds.begin(), connection.seconds.end());
   report.spacing = connection.noise.spacing;
   report.noise = connection.noise.sigma;

@@ -116,9 +116,10 @@ Ground survey(const Positions& points, const ConnectOptions& options, const Cont
   const NoiseScale scale = stages.run("noise", 0.15, [&] { return noise_scale(index, context); });
   c.noise.spacing = mean_spacing(points, near, context);
   c.noise.sigma = scale.sigma;
-  c.emst = stages.run("emst", 0.2, [&] { return emst(index, near, context); });
-
   c.on_shadow = guide == nullptr && n > 0 && scale.sigma > options.shadow_from * c.noise.spacing;
+  c.emst = stages.run("emst", 0.2, [&] {
+    return options.tree_of_points || !c.on_shadow ? emst(index, near, context) : std::vector<Edge>();
+  });
   auto surfaces = stages.run("local surfaces", 0.4, [&] {
     const auto least = std::min(std::size_t(options.neighbours), scale.neighbours);
     return c.on_shadow ? shared_local_surfaces(index, near, scale, least, context)

@@ -35,6 +35,8 @@ struct ConnectOptions {
   SheetsOptions sheets;
   SdgOptions sdg;
   UmbrellaOptions umbrella;
+  /// Whether Connection::emst is wanted where the tests are made on the shadow, on a tree of its own.
+  bool tree_of_points = true;
 
   template <class Self, class Visit>
   static void describe(Self& self, Visit&& visit) {
@@ -52,7 +54,7 @@ struct ConnectOptions {
 /// Everything the stages made. All of it refers to the points by index.
 struct Connection {
   Mesh mesh;                           ///< the RFS-mesh over the points as given
-  std::vector<Edge> emst;              ///< n - 1, ascending by length
+  std::vector<Edge> emst;              ///< n - 1, ascending by length; empty if not wanted and not needed
   std::vector<Edge> sdg;               ///< ascending; without the bridges
   std::vector<Edge> bridges;           ///< tree edges that are not neighbourhood: not in mesh.one_ring
   std::vector<LocalSurface> surfaces;  ///< n; the shadow of point i is surfaces[i].shadow

@@ -7,6 +7,7 @@
 #include "rfsmooth/rfs_mesh/local_surface.h"
 #include "rfsmooth/rfs_mesh/parallel.h"
 #include "rfsmooth/rfs_mesh/quadric.h"
+#include "rfsmooth/rfs_mesh/wide_neighbors.h"
 
 namespace rfsmooth::rfs_mesh {
 
@@ -36,27 +37,36 @@ double square(double x) {
 class Fitter {
  public:
   Fitter(const SpatialIndex& index, const NoiseScale& scale, std::size_t least)
-      : index_(index), scale_(scale), least_(least) {}
+      : index_(index), scale_(scale), least_(least), near_(index, scale.neighbours + 1) {}
 
   /// Around point i, with neighbourhoods halved until they are flat enough.
   Quadric fit(Index i) {
     const Positions& points = index_.points();
-    index_.nearest(points[i], int(scale_.neighbours) + 1, found_);
+    near_.find(points[i]);
     row_.clear();
-    for (const Neighbor& q : found_)
-      if (q.index != i) row_.push_back(q.index);
+    for (std::size_t k = 0; k < near_.size(); ++k)
+      if (near_.index()[k] != i) row_.push_back(near_.index()[k]);
     std::size_t count = row_.size();
     Quadric quadric = fit_quadric(points, points[i], row_.data(), count, workspace_);
+    if (quadric.residual > kMisfit * scale_.sigma && count / 2 >= least_) sort(points, points[i]);
     while (quadric.residual > kMisfit * scale_.sigma && count / 2 >= least_)
       quadric = fit_quadric(points, points[i], row_.data(), count /= 2, workspace_);
     return quadric;
   }
 
  private:
+  void sort(const Positions& points, const Vector3d& p) {
+    found_.clear();
+    for (const Index j : row_) found_.push_back({j, squared_distance(points[j], p)});
+    std::sort(found_.begin(), found_.end());
+    for (std::size_t k = 0; k < row_.size(); ++k) row_[k] = found_[k].index;
+  }
+
   const SpatialIndex& index_;
   NoiseScale scale_;
   std::size_t least_;
   QuadricWorkspace workspace_;
+  WideNeighbors near_;
   std::vector<Neighbor> found_;
   std::vector<Index> row_;
 };
@@ -96,7 +106,7 @@ class SharedQuadrics {
       const double u = q.t1.dot(d), v = q.t2.dot(d), above = q.n.dot(d) - q.height(u, v);
       const double scatter = std::max(q.residual, sigma_), off = square(above * q.radius / scatter);
       if (off > square(kFarthestOff)) continue;
-      const double trust = inside * std::pow(sigma_ / scatter, 4) * std::exp(-0.5 * off);
+      const double trust = inside * square(square(sigma_ / scatter)) * std::exp(-0.5 * off);
       const double weight = inside * inside * trust;
       const Vector3d n = q.normal(u, v), turned = q.normal(kTurn * u, kTurn * v);
       const double lift = q.n.dot(n) * above * q.radius;  // along n

@@ -29,6 +29,8 @@ class MovingGuide {
   MovingGuide(const Positions& guide, const Context& context)
       : before_(guide), index_(before_, context), gone_(guide.size(), 0) {}
 
+  const rfs_mesh::SpatialIndex& before() const { return index_; }
+
   /// Takes a point out, or puts it back where it was.
   void set_gone(Index i, bool gone) { gone_[i] = char(gone); }
 
@@ -171,35 +173,35 @@ void renew_around(const MovingGuide& surface, const Positions& guide, NeighborTa
 
 std::size_t land_stranded(const rfs_mesh::Mesh& mesh, double most, Positions& guide, NeighborTable& near,
                           const Context& context) {
+  MovingGuide surface(guide, context);
+  near = surface.before().nearest(int(kLast) + 1, context);
   if (guide.size() < kTooFew) return 0;
-  std::optional<MovingGuide> surface;
   std::vector<Index> moved;
   std::size_t first = 0;
   for (int round = 0; round < kRounds; ++round) {
     const std::vector<Index> stranded = find_stranded(mesh, guide, near, context);
     if (round == 0) first = stranded.size();
     if (stranded.empty() || guide.size() - stranded.size() < kTooFew) break;
-    if (!surface) surface.emplace(guide, context);
     // None of them is part of the surface that they are put onto, wherever it was put before.
     std::vector<Index> others;
     std::set_difference(moved.begin(), moved.end(), stranded.begin(), stranded.end(),
                         std::back_inserter(others));
-    for (const Index i : stranded) surface->set_gone(i, true);
-    surface->set_moved(others, guide, context);
-    const std::vector<Index> landed = land(mesh, stranded, most, *surface, guide, context);
+    for (const Index i : stranded) surface.set_gone(i, true);
+    surface.set_moved(others, guide, context);
+    const std::vector<Index> landed = land(mesh, stranded, most, surface, guide, context);
     for (const Index i : stranded)
-      if (!std::binary_search(moved.begin(), moved.end(), i)) surface->set_gone(i, false);
+      if (!std::binary_search(moved.begin(), moved.end(), i)) surface.set_gone(i, false);
     std::vector<Index> all;
     std::set_union(moved.begin(), moved.end(), landed.begin(), landed.end(), std::back_inserter(all));
-    for (const Index i : landed) surface->set_gone(i, true);
+    for (const Index i : landed) surface.set_gone(i, true);
     moved = std::move(all);
-    surface->set_moved(moved, guide, context);
+    surface.set_moved(moved, guide, context);
     for_blocks(context, moved.size(), 256, [&](std::size_t begin, std::size_t end) {
       MovingGuide::Search search;
-      for (std::size_t k = begin; k < end; ++k) renew(*surface, guide, moved[k], near, search);
+      for (std::size_t k = begin; k < end; ++k) renew(surface, guide, moved[k], near, search);
     });
   }
-  if (!moved.empty()) renew_around(*surface, guide, near, context);
+  if (!moved.empty()) renew_around(surface, guide, near, context);
   return first;
 }
 

@@ -17,8 +17,8 @@ namespace rfsmooth::smoothing {
 /// Moves the stranded points of `guide` (n x 3, the faired mesh.positions), except those farther from the
 /// surface than `most` (world units): they are strays. Then once more: the landed ones make the surface
 /// denser, and smaller islands stand out. Returns how many were found at first.
-/// \param near in: the nearest of every guide point, at least 32 (fewer if there are fewer points); out: the
-/// same of the moved ones. A point that has a moved one near it anew may not know.
+/// \param near out: the 32 nearest of every guide point. A point that has a moved one near it anew may not
+/// know.
 /// O(n log n), parallel, deterministic.
 std::size_t land_stranded(const rfs_mesh::Mesh& mesh, double most, Positions& guide,
                           rfs_mesh::NeighborTable& near, const Context& context);

@@ -144,8 +144,8 @@ TEST(Thinning, KeepsAnIndependentSetThatEveryPointIsNearTo) {
 
 /// land_stranded, and whether the table still holds every point's nearest, nearer ones first.
 std::size_t land(const rfs_mesh::Mesh& mesh, double most, Positions& guide) {
-  rfs_mesh::NeighborTable near = rfs_mesh::SpatialIndex(guide, {}).nearest(32, {});
-  const rfs_mesh::NeighborTable before = near;
+  const rfs_mesh::NeighborTable before = rfs_mesh::SpatialIndex(guide, {}).nearest(32, {});
+  rfs_mesh::NeighborTable near;
   const Positions start = guide;
   const std::size_t found = land_stranded(mesh, most, guide, near, {});
   const rfs_mesh::SpatialIndex index(guide, {});
