@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <stdexcept>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
@@ -58,13 +59,33 @@ struct Frame {
   }
 };
 
+/// The nearest kNear of a table that may hold more.
+struct FirstColumns {
+  const rfs_mesh::NeighborTable& table;
+  rfs_mesh::Adjacency::Row operator[](std::size_t i) const {
+    const Index* const first = table[i].begin();
+    return {first, first + kNear};
+  }
+};
+
 /// Whether the directions to the nearest neighbours leave no wide gap.
 bool surrounded(const Frame& f, const Positions& points, std::size_t i, rfs_mesh::Adjacency::Row near) {
-  std::array<double, kNear> angles = {};
-  for (std::size_t k = 0; k < angles.size(); ++k) {
+  std::array<double, kNear> u = {}, v = {};
+  unsigned sectors = 0;
+  for (std::size_t k = 0; k < u.size(); ++k) {
     const Eigen::Vector3d d = points[near[k]] - points[i];
-    angles[k] = std::atan2(d.dot(f.b), d.dot(f.t));
+    u[k] = d.dot(f.t);
+    v[k] = d.dot(f.b);
+    // Sectors of 60 degrees, numbered anticlockwise: a neighbour in each of the six leaves no gap of 120, and
+    // that is nearly always so.
+    const double slope = std::sqrt(3.0) * u[k], height = std::abs(v[k]);
+    const unsigned from_axis = slope > height ? 0 : -slope > height ? 2 : 1;
+    sectors |= 1U << (v[k] < 0 ? 5 - from_axis : from_axis);
   }
+  static_assert(kWidestGap > 2 * M_PI / 3);
+  if (sectors == 0x3f) return true;
+  std::array<double, kNear> angles = {};
+  for (std::size_t k = 0; k < angles.size(); ++k) angles[k] = std::atan2(v[k], u[k]);
   std::sort(angles.begin(), angles.end());
   double widest = angles.front() + 2 * M_PI - angles.back();
   for (std::size_t k = 1; k < angles.size(); ++k) widest = std::max(widest, angles[k] - angles[k - 1]);
@@ -142,10 +163,17 @@ void slide_back(Positions& points, const Positions& before, double share, const 
 
 Equalized equalize(Positions& points, const Positions& before, double sigma, double spacing,
                    const Context& context) {
+  if (points.size() <= std::size_t(kNear) || !(sigma > 0)) return {};
+  const rfs_mesh::NeighborTable near = rfs_mesh::SpatialIndex(points, context).nearest(kNear, context);
+  return equalize(points, before, near, sigma, spacing, context);
+}
+
+Equalized equalize(Positions& points, const Positions& before, const rfs_mesh::NeighborTable& table,
+                   double sigma, double spacing, const Context& context) {
   const std::size_t n = points.size();
   if (n <= std::size_t(kNear) || !(sigma > 0)) return {};
-  const rfs_mesh::SpatialIndex index(points, context);
-  const rfs_mesh::NeighborTable near = index.nearest(kNear, context);
+  if (table.k < kNear || table.size() != n) throw std::invalid_argument("equalize: too few neighbours");
+  const FirstColumns near{table};
   std::vector<Eigen::Vector3d> normals(n);
   for_each_index(context, n, [&](std::size_t i) { normals[i] = plane_normal(points, i, near[i]); });
   std::vector<Frame> frames(n);
