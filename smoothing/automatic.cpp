@@ -70,8 +70,7 @@ void add_scale(const HeightField& field, std::size_t members, const std::vector<
 }  // namespace
 
 Positions automatic_smoothing(const rfs_mesh::Mesh& mesh, double sigma, double spacing,
-                              AutomaticReport& report, const Context& context,
-                              rfs_mesh::NeighborTable* near) {
+                              AutomaticReport& report, const Context& context) {
   const std::size_t n = mesh.positions.size();
   report = {};
   report.left = sigma;
@@ -82,7 +81,7 @@ Positions automatic_smoothing(const rfs_mesh::Mesh& mesh, double sigma, double s
   context.report("smooth", 0.1);
   rfs_mesh::NeighborTable near_guide;
   report.stranded = land_stranded(mesh, kStrayFrom * sigma, guide, near_guide, context);
-  HeightField field(std::move(guide), std::move(near_guide), mesh.positions, context);
+  const HeightField field(std::move(guide), std::move(near_guide), mesh.positions, context);
 
   // The data themselves are the first candidate: no error against themselves, all their own.
   std::vector<double> risk(n, 1);
@@ -113,7 +112,6 @@ Positions automatic_smoothing(const rfs_mesh::Mesh& mesh, double sigma, double s
                                       return e * e + 2 * own[i] - 1;
                                     }) /
                            double(n);
-  if (near != nullptr) *near = field.take_neighbors();
   report.left = sigma * std::sqrt(std::clamp(mean_risk, 0.0, 1.0));
   return smooth;
 }

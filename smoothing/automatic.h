@@ -23,7 +23,6 @@
 #pragma once
 
 #include "rfsmooth/rfs_mesh/mesh.h"
-#include "rfsmooth/rfs_mesh/neighbors.h"
 
 namespace rfsmooth::smoothing {
 
@@ -39,11 +38,9 @@ struct AutomaticReport {
 
 /// The smoothed places of mesh.positions (n x 3). `sigma`: standard deviation of the noise along the normal,
 /// world units; below 0.05 spacings the points come back as they are. `spacing`: h, world units.
-/// `near`, if given, gets the 32 nearest of every point on the guide if points moved.
 /// O(n log n); at most about 650 bytes a point beside the mesh. Parallel, the same bits for any number of
 /// threads. Of the report, `noise` and what was equalized are the flow's to enter (flow_auto.cpp).
 Positions automatic_smoothing(const rfs_mesh::Mesh& mesh, double sigma, double spacing,
-                              AutomaticReport& report, const Context& context,
-                              rfs_mesh::NeighborTable* near = nullptr);
+                              AutomaticReport& report, const Context& context);
 
 }  // namespace rfsmooth::smoothing

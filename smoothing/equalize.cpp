@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <stdexcept>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
@@ -56,15 +55,6 @@ struct Frame {
     if (!(distance > 0)) return p;
     const double most = kMostRise * m.norm(), rise = movable ? (at(p, m) - p).dot(n) : 0;
     return p + m.x() * t + m.y() * b + std::clamp(rise, -most, most) * n;
-  }
-};
-
-/// The nearest kNear of a table that may hold more.
-struct FirstColumns {
-  const rfs_mesh::NeighborTable& table;
-  rfs_mesh::Adjacency::Row operator[](std::size_t i) const {
-    const Index* const first = table[i].begin();
-    return {first, first + kNear};
   }
 };
 
@@ -163,17 +153,9 @@ void slide_back(Positions& points, const Positions& before, double share, const 
 
 Equalized equalize(Positions& points, const Positions& before, double sigma, double spacing,
                    const Context& context) {
-  if (points.size() <= std::size_t(kNear) || !(sigma > 0)) return {};
-  const rfs_mesh::NeighborTable near = rfs_mesh::SpatialIndex(points, context).nearest(kNear, context);
-  return equalize(points, before, near, sigma, spacing, context);
-}
-
-Equalized equalize(Positions& points, const Positions& before, const rfs_mesh::NeighborTable& table,
-                   double sigma, double spacing, const Context& context) {
   const std::size_t n = points.size();
   if (n <= std::size_t(kNear) || !(sigma > 0)) return {};
-  if (table.k < kNear || table.size() != n) throw std::invalid_argument("equalize: too few neighbours");
-  const FirstColumns near{table};
+  const rfs_mesh::NeighborTable near = rfs_mesh::SpatialIndex(points, context).nearest(kNear, context);
   std::vector<Eigen::Vector3d> normals(n);
   for_each_index(context, n, [&](std::size_t i) { normals[i] = plane_normal(points, i, near[i]); });
   std::vector<Frame> frames(n);

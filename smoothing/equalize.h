@@ -25,7 +25,6 @@
 #include <vector>
 
 #include "rfsmooth/rfs_mesh/context.h"
-#include "rfsmooth/rfs_mesh/neighbors.h"
 #include "rfsmooth/rfs_mesh/points.h"
 
 namespace rfsmooth::smoothing {
@@ -47,9 +46,5 @@ void slide_back(Positions& points, const Positions& before, double share, const 
 /// carried it farther. O(n log n), parallel, the same bits for any number of threads.
 Equalized equalize(Positions& points, const Positions& before, double sigma, double spacing,
                    const Context& context);
-
-/// The same with the nearest of every point known, or nearly so (at least 24, nearer ones first).
-Equalized equalize(Positions& points, const Positions& before, const rfs_mesh::NeighborTable& near,
-                   double sigma, double spacing, const Context& context);
 
 }  // namespace rfsmooth::smoothing

@@ -48,11 +48,9 @@ class AutomaticFlow : public Flow {
     }
     report_.emplace();
     const Positions before = mesh.positions;
-    rfs_mesh::NeighborTable near;  // on the guide
-    mesh.positions = automatic_smoothing(mesh, strength_ * sigma, spacing, *report_, context, &near);
+    mesh.positions = automatic_smoothing(mesh, strength_ * sigma, spacing, *report_, context);
     report_->noise = sigma;
-    if (report_->guide_strength > 0)
-      move_along_surface(before, near, sigma, spacing, mesh.positions, context);
+    if (report_->guide_strength > 0) move_along_surface(before, sigma, spacing, mesh.positions, context);
     if (!local.empty()) limit(before, local, mesh.positions, context);
   }
 
@@ -61,10 +59,10 @@ class AutomaticFlow : public Flow {
 
  private:
   /// Evens the points out; or takes back what the guide moved them, so that they move along normals only.
-  void move_along_surface(const Positions& before, const rfs_mesh::NeighborTable& near, double sigma,
-                          double spacing, Positions& points, const Context& context) {
+  void move_along_surface(const Positions& before, double sigma, double spacing, Positions& points,
+                          const Context& context) {
     if (equalize_) {
-      const Equalized moved = equalize(points, before, near, strength_ * sigma, spacing, context);
+      const Equalized moved = equalize(points, before, strength_ * sigma, spacing, context);
       report_->equalized = moved.rms;
       report_->equalized_most = moved.largest;
     } else {

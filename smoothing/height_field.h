@@ -9,7 +9,6 @@
 #pragma once
 
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 #include "rfsmooth/rfs_mesh/context.h"
@@ -45,9 +44,6 @@ class HeightField {
 
   const std::vector<Local>& local() const { return local_; }          ///< n: normals and heights
   const rfs_mesh::NeighborTable& neighbors() const { return near_; }  ///< n x kNear, on the guide
-
-  /// Gives the neighbours away: local_mean cannot be asked any more.
-  rfs_mesh::NeighborTable take_neighbors() { return std::move(near_); }
 
   /// The mean of `values` over the nearest points on the same sheet, nearer ones weighing more. O(n).
   std::vector<double> local_mean(const std::vector<double>& values, const Context& context) const;
