@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # before_after.sh [BIN [SCANS]]: three development shapes and three real scans before and after `rfsmooth denoise IN OUT`, one picture each in
 # clouds/pictures/before_after. The shapes come from CGAL's data archive (Debian: libcgal-demo), sampled at 50,000 points with isotropic noise;
-# of the scans one comes from that archive and two from the folder SCANS (default ../shared/scans beside the project). What is absent is left out.
+# the scans from the folder SCANS (default ../shared/scans beside the project). What is absent is left out.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 bin=$(realpath "${1:-$here/../build/release/bin}")
@@ -35,7 +35,6 @@ scan() { # NAME FILE [options of render_cloud]
 shape anchor_dense 0.7 --direction -1 -0.6 -0.8
 shape armadillo 0.7 --direction -0.3 -0.2 1 --up 0 1 0
 shape ChineseDragon-10kv 0.7 --direction -0.3 -0.2 -1 --up 0 1 0
-tar -xzf "$archive" -C "$work" --strip-components=2 data/points_3/building.ply
-scan building "$work/building.ply" --zoom 0.45 0.5 1.6
+scan boxes "$scans/mOSD_learn0.pcd" --direction 0.1 0.3 1 --up 0 -1 0 --zoom 0.5 0.62 2.4
 scan milk_carton "$scans/milk_cartoon_all_small_clorox.pcd" --direction 0.15 0.25 1 --up 0 -1 0 --zoom 0.54 0.72 2.6
 scan table_scene "$scans/table_scene_mug_stereo_textured.pcd" --direction 0.15 0.25 1 --up 0 -1 0 --zoom 0.57 0.78 2.8
