@@ -153,8 +153,11 @@ std::string denoise_cloud(const Options& options, pipeline::io::Cloud& cloud, co
   if (some_removed) blank_outliers();  // normals are of the points that stay
   write_normals(options.normals, cloud, xyz.data(), job.output, options.job.files, context, stages, entry);
   if (some_removed && !as_nan) remove_outliers(cloud, done.outlier, context);
-  const std::string left =
-      done.noise_left < done.noise ? fmt::format(", about {:.3g} left", done.noise_left) : "";
+  const bool clean = done.effective.flow.flow == "auto" && done.guide_strength == 0;
+  const std::string left = clean ? ", too little to smooth"
+                           : done.noise_left < done.noise
+                               ? fmt::format(", about {:.3g} left", done.noise_left)
+                               : "";
   return fmt::format(
       "{} points, {} finite{}; spacing {:.4g}, noise {:.3g}{}; largest move {:.4g}, rms {:.4g}", done.points,
       done.finite, said_of_outliers(done, options), done.spacing, done.noise, left, done.largest_move,
