@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kPlane = 24;  // neighbours of the plane that gives the normal
 constexpr std::size_t kLinked = 8;  // neighbours with which a normal agrees on a side; 6 leave islands
 constexpr double kSameSheet = 0.5;  // cosine of 60 degrees
-constexpr double kWeightUnit = 255;
+constexpr double kWeightUnit = 255, kRounded = 0.5;
 
 }  // namespace
 
@@ -53,7 +53,7 @@ HeightField::HeightField(Positions guide, rfs_mesh::NeighborTable near, const Po
       const double away = square > 0 ? (guide_[row[k]] - guide_[i]).squaredNorm() / square : 0;
       const bool same = same_sheet(local_[i].normal.dot(local_[row[k]].normal)) > 0;
       near_weight_[i * row.size() + k] =
-          std::uint8_t(same ? kWeightUnit * std::clamp(1 - away, 0.0, 1.0) + 0.5 : 0);
+          std::uint8_t(same ? kWeightUnit * std::clamp(1 - away, 0.0, 1.0) + kRounded : 0);
     }
   });
 }

@@ -16,10 +16,10 @@ namespace rfsmooth::smoothing {
 
 namespace {
 
-constexpr std::size_t kAxis = 12;     // nearest points whose normals make the patch's axis
-constexpr float kCovered = 0.2F;      // least weight of the best patch over a point
-constexpr float kWeightUnit = 65535;  // of the weights kept
-constexpr int kPowers[6][2] = {{0, 0}, {1, 0}, {0, 1}, {2, 0}, {1, 1}, {0, 2}};  // of u and v
+constexpr std::size_t kAxis = 12;                      // nearest points whose normals make the patch's axis
+constexpr float kCovered = 0.2F;                       // least weight of the best patch over a point
+constexpr float kWeightUnit = 65535, kRounded = 0.5F;  // of the weights kept
+constexpr std::size_t kPowers[6][2] = {{0, 0}, {1, 0}, {0, 1}, {2, 0}, {1, 1}, {0, 2}};  // of u and v
 constexpr std::size_t kTogether = 64;  // patches fitted in a row: each tells the next how far to look
 
 }  // namespace
@@ -126,7 +126,7 @@ void Patches::fit_one(std::size_t s, double sigma, Workspace& work) {
     work.weight[k] = w;
     work.cosine[k] = cosine;
     indices[k] = i;
-    weights[k] = Weight(w * kWeightUnit + 0.5F);
+    weights[k] = Weight(w * kWeightUnit + kRounded);
     sum += double(w);
     squares += double(w) * double(w);
   }
@@ -145,9 +145,9 @@ void Patches::fit_one(std::size_t s, double sigma, Workspace& work) {
   for (int a = 0; a < 6; ++a) {
     patch.quadric[std::size_t(a)] = float(quadric[a]);
     for (int b = 0; b < 6; ++b) {
-      const int u_power = kPowers[a][0] + kPowers[b][0], v_power = kPowers[a][1] + kPowers[b][1];
-      const int degree = u_power + v_power;
-      patch.spread[std::size_t(degree * (degree + 1) / 2 + v_power)] += float(inverse(a, b));
+      const std::size_t v_power = kPowers[a][1] + kPowers[b][1],
+                        degree = kPowers[a][0] + kPowers[b][0] + v_power;
+      patch.spread[degree * (degree + 1) / 2 + v_power] += float(inverse(a, b));
     }
   }
 
