@@ -14,6 +14,7 @@ namespace rfsmooth::smoothing {
 /// Points are taken so many at a time: arrays are to be filled up to a multiple with zeros.
 inline constexpr std::size_t kLanes = 4;
 
+/// The next multiple of kLanes.
 inline std::size_t padded(std::size_t size) {
   return (size + kLanes - 1) / kLanes * kLanes;
 }
