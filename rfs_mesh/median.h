@@ -7,6 +7,7 @@
 
 namespace rfsmooth::rfs_mesh {
 
+/// The median of [first, last).
 template <class Iterator>
 double median(Iterator first, Iterator last) {
   if (first == last) return 0;
@@ -15,6 +16,7 @@ double median(Iterator first, Iterator last) {
   return *middle;
 }
 
+/// The median of `values`.
 inline double median(std::vector<double>& values) {
   return median(values.begin(), values.end());
 }

@@ -13,6 +13,7 @@ namespace rfsmooth::rfs_mesh {
 
 constexpr std::size_t kNarrowestScatter = 16;  ///< least m
 
+/// Where the search for the noise begins.
 struct NoiseStart {
   double sigma = 0;  ///< world units
   double least = 0;  ///< what counts as zero; 0: the points coincide

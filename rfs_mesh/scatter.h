@@ -22,6 +22,7 @@ constexpr double kScatterWindow = 3;  ///< sigma
 /// Variance of a normal variable cut at +-c standard deviations, over its variance uncut.
 double variance_inside(double c);
 
+/// How far the points around one scatter about the quadric through them.
 struct Scatter {
   double variance = 0;                             ///< s^2, world units squared
   double freedom = 0;                              ///< its degrees of freedom; 0: nothing can be said here

@@ -8,6 +8,7 @@
 
 namespace rfsmooth {
 
+/// What a stage took.
 struct StageTime {
   std::string name;
   double seconds = 0;
