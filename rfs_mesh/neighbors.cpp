@@ -166,18 +166,27 @@ void SpatialIndex::nearest(const Vector3d& query, int k, std::vector<Neighbor>& 
   find_nearest(tree_, query, kNone, std::min(std::size_t(k), points_.size()), out);
 }
 
-void SpatialIndex::within(const Vector3d& query, double radius, std::vector<Neighbor>& out) const {
-  out.clear();
-  if (!(radius >= 0)) return;
-  const Neighbor limit = {kNone, radius * radius};
+namespace {
+
+/// Calls `found(neighbour)` for every point within the limit, which the call may lower.
+template <class Found>
+void for_each_within(const KdTree& tree, const Vector3d& query, const Neighbor& limit, Found&& found) {
   search(
-      tree_, query, [&]() -> const Neighbor& { return limit; },
+      tree, query, [&]() -> const Neighbor& { return limit; },
       [&](const KdTree::Leaf& leaf) {
         double d2[KdTree::kLeaf];
         squared_distances(leaf, query, d2);
         for (std::uint32_t i = 0; i < KdTree::kLeaf; ++i)
-          if (leaf.id[i] != kNone && d2[i] <= limit.squared_distance) out.push_back({leaf.id[i], d2[i]});
+          if (leaf.id[i] != kNone && d2[i] <= limit.squared_distance) found({leaf.id[i], d2[i]});
       });
+}
+
+}  // namespace
+
+void SpatialIndex::within(const Vector3d& query, double radius, std::vector<Neighbor>& out) const {
+  out.clear();
+  if (!(radius >= 0)) return;
+  for_each_within(tree_, query, {kNone, radius * radius}, [&](const Neighbor& q) { out.push_back(q); });
   std::sort(out.begin(), out.end());
 }
 
@@ -185,14 +194,7 @@ bool SpatialIndex::any_within(const Vector3d& query, double radius) const {
   if (!(radius >= 0)) return false;
   constexpr double kNothingMore = -1;
   Neighbor limit = {kNone, radius * radius};
-  search(
-      tree_, query, [&]() -> const Neighbor& { return limit; },
-      [&](const KdTree::Leaf& leaf) {
-        double d2[KdTree::kLeaf];
-        squared_distances(leaf, query, d2);
-        for (std::uint32_t i = 0; i < KdTree::kLeaf; ++i)
-          if (leaf.id[i] != kNone && d2[i] <= limit.squared_distance) limit.squared_distance = kNothingMore;
-      });
+  for_each_within(tree_, query, limit, [&](const Neighbor&) { limit.squared_distance = kNothingMore; });
   return limit.squared_distance == kNothingMore;
 }
 

@@ -42,14 +42,9 @@ double bound(const SpatialIndex& index, const Positions& places, const Context& 
   double sigma = 0, least = 1;
   for (std::size_t m = kFirst; m <= kLast && m < index.points().size(); m *= 2) {
     const std::vector<Scatter> all = fits(index, places, m, none, context);
-    const std::vector<double> area = areas(all);
-    std::vector<Weighed> seen;
+    std::vector<Weighed> seen = comparable(all, areas(all), kDeviate);
     std::vector<double> radii;
-    for (std::size_t i = 0; i < all.size(); ++i) {
-      radii.push_back(all[i].radius);
-      if (all[i].freedom > 0.5)
-        seen.push_back({all[i].variance / chi_square(all[i].freedom, kDeviate), area[i]});
-    }
+    for (const Scatter& s : all) radii.push_back(s.radius);
     if (seen.empty()) break;
     const double next = std::sqrt(quantile(seen, kShare)), radius = quantile(radii, 0.5);
     if (m > kFirst && next > kGrowthOfNoise * sigma) break;
@@ -75,7 +70,7 @@ double lowest(const SpatialIndex& index, const Positions& places, std::size_t m,
     double saying = 0, whole = 0;
     for (std::size_t i = 0; i < all.size(); ++i) {
       whole += area[i];
-      if (all[i].freedom > 0.5) saying += area[i];
+      if (says(all[i])) saying += area[i];
     }
     const double seen = std::sqrt(mean_variance(all, kCalm, kCalmDeviate));
     if (saying >= kLeastPlaces * whole && seen <= kFilled * window) return seen;

@@ -89,7 +89,7 @@ Ground shadow_ground(const Positions& points, std::vector<LocalSurface> surfaces
   }
   ground.between =
       part_sheets(points, index, ground.near, scale.sigma, options.sheets, ground.surfaces, context);
-  for_each_index(context, points.size(), [&](std::size_t i) { ground.at[i] = ground.surfaces[i].shadow; });
+  ground.at = shadows(ground.surfaces, context);
   return ground;
 }
 

@@ -7,6 +7,15 @@
 
 namespace rfsmooth::rfs_mesh {
 
+namespace {
+
+double chi_square(double freedom, double deviate) {
+  const double v = 2 / (9 * freedom);
+  return std::pow(std::max(0.1, 1 - v + deviate * std::sqrt(v)), 3);
+}
+
+}  // namespace
+
 double quantile(std::vector<double>& values, double share) {
   const auto at = values.begin() + std::ptrdiff_t(share * double(values.size() - 1));
   std::nth_element(values.begin(), at, values.end());
@@ -33,24 +42,24 @@ std::vector<double> areas(const std::vector<Scatter>& all) {
   return area;
 }
 
-double chi_square(double freedom, double deviate) {
-  const double v = 2 / (9 * freedom);
-  return std::pow(std::max(0.1, 1 - v + deviate * std::sqrt(v)), 3);
+std::vector<Weighed> comparable(const std::vector<Scatter>& all, const std::vector<double>& area,
+                                double deviate) {
+  std::vector<Weighed> variances;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (says(all[i])) variances.push_back({all[i].variance / chi_square(all[i].freedom, deviate), area[i]});
+  return variances;
 }
 
 double mean_variance(const std::vector<Scatter>& all, double share, double deviate) {
   const std::vector<double> area = areas(all);
-  std::vector<Weighed> comparable;
-  for (std::size_t i = 0; i < all.size(); ++i)
-    if (all[i].freedom > 0.5)
-      comparable.push_back({all[i].variance / chi_square(all[i].freedom, deviate), area[i]});
-  if (comparable.empty()) return 0;
+  std::vector<Weighed> variances = comparable(all, area, deviate);
+  if (variances.empty()) return 0;
   constexpr double kFarAbove = 4;
-  const double typical = quantile(comparable, share);
+  const double typical = quantile(variances, share);
   double sum = 0, weights = 0;
   for (std::size_t i = 0; i < all.size(); ++i) {
     const Scatter& s = all[i];
-    if (s.freedom <= 0.5 || s.variance > kFarAbove * typical) continue;
+    if (!says(s) || s.variance > kFarAbove * typical) continue;
     sum += area[i] * s.freedom * s.variance;
     weights += area[i] * s.freedom;
   }

@@ -23,12 +23,19 @@ double quantile(std::vector<double>& values, double share);
 /// The least value that with those below it has `share` of the weight. Sorts. \param values at least one.
 double quantile(std::vector<Weighed>& values, double share);
 
-/// The quantile at a standard normal `deviate` of chi-square over its degrees of freedom (Wilson and Hilferty
-/// 1931).
-double chi_square(double freedom, double deviate);
-
 /// How much each fit counts: 0 to 1.
 std::vector<double> areas(const std::vector<Scatter>& all);
+
+/// Whether a fit has degrees of freedom enough to say anything.
+inline bool says(const Scatter& fit) {
+  return fit.freedom > 0.5;
+}
+
+/// The variances of the fits that say something, each over the quantile of its own distribution (chi-square
+/// over its degrees of freedom, by Wilson and Hilferty 1931) at a standard normal `deviate`: so that fits of
+/// different freedom compare. \param area of each fit.
+std::vector<Weighed> comparable(const std::vector<Scatter>& all, const std::vector<double>& area,
+                                double deviate);
 
 /// The mean variance of the fits, without those above four times the typical one, which is the quantile
 /// `share` made up for being one by `deviate` (the same of a normal distribution). Zero if none has anything

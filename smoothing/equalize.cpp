@@ -40,21 +40,18 @@ struct Frame {
   bool movable = false, rim = false, slides = false;
   Eigen::Vector2d along = Eigen::Vector2d::Zero();  ///< the edge that a sliding point stays beside, unit
 
-  Eigen::Vector3d at(const Eigen::Vector3d& p, const Eigen::Vector2d& m) const {
-    const double u = m.x(), v = m.y();
-    return p + u * t + v * b +
-           (quadric[0] * u + quadric[1] * v + quadric[2] * u * u + quadric[3] * u * v + quadric[4] * v * v) *
-               n;
-  }
   /// The part along the surface; 0 where there is none.
   Eigen::Vector2d offset(const Eigen::Vector3d& d) const {
     return distance > 0 ? Eigen::Vector2d(d.dot(t), d.dot(b)) : Eigen::Vector2d(0, 0);
   }
-  /// As at(), for a long way: over the quadric where there is one, but rising by no more than a share of it.
+  /// p moved by m: over the quadric where there is one, but rising by no more than a share of the way.
   Eigen::Vector3d slide(const Eigen::Vector3d& p, const Eigen::Vector2d& m) const {
     if (!(distance > 0)) return p;
-    const double most = kMostRise * m.norm(), rise = movable ? (at(p, m) - p).dot(n) : 0;
-    return p + m.x() * t + m.y() * b + std::clamp(rise, -most, most) * n;
+    const double u = m.x(), v = m.y(), most = kMostRise * m.norm();
+    const double rise = movable ? quadric[0] * u + quadric[1] * v + quadric[2] * u * u + quadric[3] * u * v +
+                                      quadric[4] * v * v
+                                : 0;
+    return p + u * t + v * b + std::clamp(rise, -most, most) * n;
   }
 };
 
@@ -80,6 +77,14 @@ bool surrounded(const Frame& f, const Positions& points, std::size_t i, rfs_mesh
   double widest = angles.front() + 2 * M_PI - angles.back();
   for (std::size_t k = 1; k < angles.size(); ++k) widest = std::max(widest, angles[k] - angles[k - 1]);
   return widest < kWidestGap;
+}
+
+std::vector<Eigen::Vector3d> plane_normals(const Positions& points, const rfs_mesh::NeighborTable& near,
+                                           const Context& context) {
+  std::vector<Eigen::Vector3d> normals(points.size());
+  for_each_index(context, points.size(),
+                 [&](std::size_t i) { normals[i] = plane_normal(points, i, near[i]); });
+  return normals;
 }
 
 Frame open_frame(const Positions& points, const std::vector<Eigen::Vector3d>& normals, std::size_t i,
@@ -139,10 +144,8 @@ Frame make_frame(const Positions& points, const std::vector<Eigen::Vector3d>& no
 void slide_back(Positions& points, const Positions& before, double share, const Context& context) {
   const std::size_t n = points.size();
   if (n <= std::size_t(kNear)) return;
-  const rfs_mesh::SpatialIndex index(points, context);
-  const rfs_mesh::NeighborTable near = index.nearest(kNear, context);
-  std::vector<Eigen::Vector3d> normals(n);
-  for_each_index(context, n, [&](std::size_t i) { normals[i] = plane_normal(points, i, near[i]); });
+  const rfs_mesh::NeighborTable near = rfs_mesh::SpatialIndex(points, context).nearest(kNear, context);
+  const std::vector<Eigen::Vector3d> normals = plane_normals(points, near, context);
   Positions back(n);
   for_each_index(context, n, [&](std::size_t i) {
     const Frame f = open_frame(points, normals, i, near[i]);
@@ -156,8 +159,7 @@ Equalized equalize(Positions& points, const Positions& before, double sigma, dou
   const std::size_t n = points.size();
   if (n <= std::size_t(kNear) || !(sigma > 0)) return {};
   const rfs_mesh::NeighborTable near = rfs_mesh::SpatialIndex(points, context).nearest(kNear, context);
-  std::vector<Eigen::Vector3d> normals(n);
-  for_each_index(context, n, [&](std::size_t i) { normals[i] = plane_normal(points, i, near[i]); });
+  const std::vector<Eigen::Vector3d> normals = plane_normals(points, near, context);
   std::vector<Frame> frames(n);
   for_each_index(context, n, [&](std::size_t i) { frames[i] = make_frame(points, normals, i, near[i]); });
 
