@@ -5,6 +5,7 @@
 
 #include "rfsmooth/rfs_mesh/parallel.h"
 #include "rfsmooth/smoothing/height_field.h"
+#include "rfsmooth/smoothing/hidden_sheets.h"
 #include "rfsmooth/smoothing/mixture.h"
 #include "rfsmooth/smoothing/patches.h"
 #include "rfsmooth/smoothing/solver.h"
@@ -42,13 +43,14 @@ Positions fair(const rfs_mesh::Mesh& mesh, double strength, const Context& conte
 }
 
 /// Adds the scale of `members` points to the mixture. `before` holds the risk of the scale before it.
-void add_scale(const HeightField& field, std::size_t members, const std::vector<Index>& seeds, double sigma,
-               std::vector<double>& before, Mixture& mixture, const Context& context) {
+void add_scale(const HeightField& field, std::size_t members, const std::vector<Index>& seeds,
+               const std::vector<double>& sigma, std::vector<double>& before, Mixture& mixture,
+               const Context& context) {
   const Patches patches(field, members, seeds, sigma, context);
   const Prediction prediction = patches.predict(context);
   std::vector<double> difference(field.size());
   for_each_index(context, field.size(), [&](std::size_t i) {
-    const double e = (field.heights()[i] - prediction.height[i]) / sigma;
+    const double e = (field.heights()[i] - prediction.height[i]) / sigma[i];
     const double risk = prediction.covered[i] ? e * e + 2 * prediction.own[i] - 1 : before[i];
     difference[i] = risk - before[i];
     before[i] = risk;
@@ -69,9 +71,10 @@ void add_scale(const HeightField& field, std::size_t members, const std::vector<
 
 }  // namespace
 
-Positions automatic_smoothing(const rfs_mesh::Mesh& mesh, double sigma, double spacing,
+Positions automatic_smoothing(const rfs_mesh::Mesh& mesh, const rfs_mesh::NoiseField& noise, double spacing,
                               AutomaticReport& report, const Context& context) {
   const std::size_t n = mesh.positions.size();
+  const double sigma = noise.sigma;
   report = {};
   report.left = sigma;
   if (n < kTooFew || !(sigma > kNoNoise * spacing)) return mesh.positions;
@@ -94,25 +97,24 @@ Positions automatic_smoothing(const rfs_mesh::Mesh& mesh, double sigma, double s
     const std::size_t members = std::min(std::size_t(m), n / 2);
     if (seeds.empty()) seeds = thin_all(field.guide(), field.neighbors(), context);
     while (seeds.size() * members > kMostOverlap * n) seeds = thin(field.guide(), seeds, context);
-    add_scale(field, members, seeds, sigma, risk, mixture, context);
+    add_scale(field, members, seeds, noise.local, risk, mixture, context);
     if (m >= double(n) / 2) break;
   }
 
   std::vector<double> height, own;
   mixture.average(height, own, context);
+  split_hidden_sheets(field, sigma, height, own, context);
 
   Positions smooth = mesh.positions;
   for_each_index(context, n, [&](std::size_t i) {
     const Eigen::Vector3d move = field.guide()[i] + height[i] * field.normals()[i] - mesh.positions[i];
-    if (move.allFinite() && move.norm() <= kStrayFrom * sigma) smooth[i] += move;
+    if (move.allFinite() && move.norm() <= kStrayFrom * std::max(sigma, noise.local[i])) smooth[i] += move;
   });
-  const double mean_risk = sum_over(context, n, 0.0,
-                                    [&](std::size_t i) {
-                                      const double e = (field.heights()[i] - height[i]) / sigma;
-                                      return e * e + 2 * own[i] - 1;
-                                    }) /
-                           double(n);
-  report.left = sigma * std::sqrt(std::clamp(mean_risk, 0.0, 1.0));
+  const double square = sum_over(context, n, 0.0, [&](std::size_t i) {
+    const double e = field.heights()[i] - height[i];
+    return e * e + (2 * own[i] - 1) * noise.local[i] * noise.local[i];
+  });
+  report.left = std::sqrt(std::max(square, 0.0) / double(n));
   return smooth;
 }
 

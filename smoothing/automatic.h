@@ -10,12 +10,14 @@
 ///    guide, which was made from the same data, is within its noise.
 /// 3. Choice: Stein's unbiased risk (Stein 1981) of each scale at each point,
 ///        rho_m = (z - f_m)^2 / sigma^2 + 2 df_m/dz - 1,
-///    whose mean over a neighbourhood estimates the mean squared error of f_m there, in units of sigma^2,
-///    without knowing the truth. Each scale is compared with the next narrower one over a neighbourhood of
-///    its own size (what a patch of m points can see, only a mean over m points can judge), and the scales
-///    are mixed with weights exp(-size of the evidence) (Leung and Barron 2006) times how well each serves
-///    the cloud as a whole (mixture.h): smooth places take wide patches, edges and thin parts narrow ones,
-///    and where every patch is worse than the data the data stay.
+///    sigma the noise around the point, whose mean over a neighbourhood estimates the mean squared error of
+///    f_m there, in units of sigma^2, without knowing the truth. Each scale is compared with the next
+///    narrower one over a neighbourhood of its own size (what a patch of m points can see, only a mean over m
+///    points can judge), and the scales are mixed with weights exp(-size of the evidence) (Leung and Barron
+///    2006) times how well each serves the cloud as a whole (mixture.h): smooth places take wide patches,
+///    edges and thin parts narrow ones, and where every patch is worse than the data the data stay.
+/// 4. Walls thinner than the noise, which look like one sheet with more of it, are taken apart where the
+///    cloud as a whole says that they are walls (hidden_sheets.h).
 ///
 /// One strength for the whole cloud cannot do this: on the development shapes the best single c differs by
 /// 100 times between the flat and the thin parts of one cloud. Points move along the guide's normals from the
@@ -23,6 +25,7 @@
 #pragma once
 
 #include "rfsmooth/rfs_mesh/mesh.h"
+#include "rfsmooth/rfs_mesh/noise.h"
 
 namespace rfsmooth::smoothing {
 
@@ -36,11 +39,11 @@ struct AutomaticReport {
   std::size_t stranded = 0;   ///< points that the fairing had left beside the surface
 };
 
-/// The smoothed places of mesh.positions (n x 3). `sigma`: standard deviation of the noise along the normal,
-/// world units; below 0.05 spacings the points come back as they are. `spacing`: h, world units.
+/// The smoothed places of mesh.positions (n x 3). `noise`: along the normal; `sigma` below 0.05 spacings: the
+/// points come back as they are; `local`: n, positive. `spacing`: h, world units.
 /// O(n log n); at most about 650 bytes a point beside the mesh. Parallel, the same bits for any number of
 /// threads. Of the report, `noise` and what was equalized are the flow's to enter (flow_auto.cpp).
-Positions automatic_smoothing(const rfs_mesh::Mesh& mesh, double sigma, double spacing,
+Positions automatic_smoothing(const rfs_mesh::Mesh& mesh, const rfs_mesh::NoiseField& noise, double spacing,
                               AutomaticReport& report, const Context& context);
 
 }  // namespace rfsmooth::smoothing

@@ -24,6 +24,13 @@ double measured(const rfs_mesh::NoiseField& noise, double spacing) {
   return noise.sigma < kLittle * spacing && noise.shape > kMostlyShape ? 0 : noise.sigma;
 }
 
+/// Noise of the size `sigma` that varies over the cloud as `noise` does.
+rfs_mesh::NoiseField scaled(rfs_mesh::NoiseField noise, double sigma) {
+  for (double& local : noise.local) local = noise.sigma > 0 ? local * sigma / noise.sigma : sigma;
+  noise.sigma = sigma;
+  return noise;
+}
+
 class AutomaticFlow : public Flow {
  public:
   explicit AutomaticFlow(const FlowOptions& options)
@@ -31,27 +38,22 @@ class AutomaticFlow : public Flow {
 
   void step(rfs_mesh::Mesh& mesh, const Context& context) override {
     if (mesh.positions.size() < 2) return;
-    double sigma = 0, spacing = 0;
-    std::vector<double> local;  // empty: as everywhere
+    double spacing = 0;
+    rfs_mesh::NoiseField noise;
     {
       const rfs_mesh::SpatialIndex index(mesh.positions, context);
       spacing = rfs_mesh::mean_spacing(index, context);
-      rfs_mesh::NoiseField noise = rfs_mesh::measure_noise(index, context);
-      sigma = noise_ ? noise_->resolve(spacing) : measured(noise, spacing);
-      local = std::move(noise.local);
-      // The field has the shape of the measured noise and the size of the stated one.
-      if (noise.sigma > 0) {
-        for (double& v : local) v *= sigma / noise.sigma;
-      } else {
-        local.clear();
-      }
+      noise = rfs_mesh::measure_noise(index, context);
     }
+    noise = scaled(std::move(noise), noise_ ? noise_->resolve(spacing) : measured(noise, spacing));
     report_.emplace();
     const Positions before = mesh.positions;
-    mesh.positions = automatic_smoothing(mesh, strength_ * sigma, spacing, *report_, context);
-    report_->noise = sigma;
-    if (report_->guide_strength > 0) move_along_surface(before, sigma, spacing, mesh.positions, context);
-    if (!local.empty()) limit(before, local, mesh.positions, context);
+    mesh.positions =
+        automatic_smoothing(mesh, scaled(noise, strength_ * noise.sigma), spacing, *report_, context);
+    report_->noise = noise.sigma;
+    if (report_->guide_strength > 0)
+      move_along_surface(before, noise.sigma, spacing, mesh.positions, context);
+    limit(before, noise.local, mesh.positions, context);
   }
 
   bool limits_moves() const override { return true; }

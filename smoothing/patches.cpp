@@ -41,8 +41,8 @@ struct Patches::Covering {
   std::vector<std::atomic<char>> covered;  ///< n
 };
 
-Patches::Patches(const HeightField& field, std::size_t members, std::vector<Index> seeds, double sigma,
-                 const Context& context)
+Patches::Patches(const HeightField& field, std::size_t members, std::vector<Index> seeds,
+                 const std::vector<double>& sigma, const Context& context)
     : field_(field), members_(std::min(members, field.size())), seeds_(std::move(seeds)) {
   Covering covering(field_.size());
   fit(0, seeds_.size(), sigma, covering, context);
@@ -59,7 +59,7 @@ Patches::Patches(const HeightField& field, std::size_t members, std::vector<Inde
   transpose(covering, context);
 }
 
-void Patches::fit(std::size_t first, std::size_t last, double sigma, Covering& covering,
+void Patches::fit(std::size_t first, std::size_t last, const std::vector<double>& sigma, Covering& covering,
                   const Context& context) {
   if (last * members_ > kNone) throw std::length_error("Patches: too many members");
   patches_.resize(last);
@@ -68,7 +68,7 @@ void Patches::fit(std::size_t first, std::size_t last, double sigma, Covering& c
   for_blocks(context, last - first, kTogether, [&](std::size_t begin, std::size_t end) {
     Workspace work(field_, members_);
     for (std::size_t s = first + begin; s < first + end; ++s) {
-      fit_one(s, sigma, work);
+      fit_one(s, sigma[seeds_[s]], work);
       for (std::size_t k = 0; k < members_; ++k) {
         const Index i = member_[s * members_ + k];
         if (member_weight_[s * members_ + k] == 0) continue;

@@ -34,11 +34,11 @@ class Patches {
  public:
   /// Patches of `members` points each (at most the number of points) around the points `seeds`, evenly
   /// spread; eight patches over a point are good (16 gain 2 % of the error at twice the time). Places that
-  /// they leave uncovered get seeds of their own. \param sigma the noise, world units, > 0. It only weighs
-  /// patches against each other. O(n log n); memory about 10 bytes a point and patch over it, and 200 bytes a
-  /// patch. \throw std::length_error for 2^32 members in all.
-  Patches(const HeightField& field, std::size_t members, std::vector<Index> seeds, double sigma,
-          const Context& context);
+  /// they leave uncovered get seeds of their own. \param sigma n: the noise, world units, > 0. It only
+  /// weighs patches against each other. O(n log n); memory about 10 bytes a point and patch over it, and 200
+  /// bytes a patch. \throw std::length_error for 2^32 members in all.
+  Patches(const HeightField& field, std::size_t members, std::vector<Index> seeds,
+          const std::vector<double>& sigma, const Context& context);
 
   Prediction predict(const Context& context) const;
 
@@ -62,7 +62,8 @@ class Patches {
   struct Workspace;
   struct Covering;  // what the fits say of the points
 
-  void fit(std::size_t first, std::size_t last, double sigma, Covering& covering, const Context& context);
+  void fit(std::size_t first, std::size_t last, const std::vector<double>& sigma, Covering& covering,
+           const Context& context);
   void fit_one(std::size_t s, double sigma, Workspace& work);
   void transpose(Covering& covering, const Context& context);
 

@@ -1,0 +1,45 @@
+/// Two sheets of a wall so thin that the noise hides that there are two.
+///
+/// Below about two sigma between them, the points of both scatter about the surface half-way like those of
+/// one, only wider: with variance v > c where the rest of the cloud has c. What pulls every point to the
+/// middle would then make a film of the wall. With the sheets at +-d of the middle, d^2 = v - c, and noise
+/// of variance c the best guess of where a point with the residual e belongs is
+///
+///     E[sheet | e] = d tanh(d e / c).
+///
+/// Noise that is louder in some places has a larger v as well, and no neighbourhood has the points to tell
+/// (one nat takes some 500 of them); the cloud as a whole does. Both explanations are laid beside each other
+/// for all points with v > 1.3 c:
+///
+///     one sheet, louder noise:  e ~ N(0, s^2 + d^2)             s^2 = c (1 - 2 own): what smoothing left of
+///     c two sheets:               e ~ 1/2 N(-d, s^2) + 1/2 N(d, s^2)
+///
+/// and the sum of the logarithms of their ratio, less (ln c)^2 / 2 (0.15)^2 for a noise that was measured
+/// wrongly, is the evidence for two sheets at the c where it is largest. Walls make the measured noise too
+/// high themselves, so c must be found.
+///
+/// Source: the posterior mean of a symmetric two-point prior; a likelihood ratio of two simple hypotheses.
+/// Residuals in steps (depths of a sensor) look a little like two sheets: fewer than a twentieth of the cloud
+/// says nothing.
+#pragma once
+
+#include <vector>
+
+#include "rfsmooth/smoothing/height_field.h"
+
+namespace rfsmooth::smoothing {
+
+/// What was found.
+struct HiddenSheets {
+  double evidence = 0;    ///< nats for two sheets against louder noise, at the best c
+  double variance = 1;    ///< c, units of sigma^2
+  std::size_t split = 0;  ///< points put onto one of two sheets
+};
+
+/// Moves `height` (n: the smoothed heights over the field, world units) of points on hidden double sheets to
+/// the nearer one, and their `own` share along (n, automatic.h). \param sigma the noise, world units, > 0.
+/// O(n); parallel, the same bits for any number of threads.
+HiddenSheets split_hidden_sheets(const HeightField& field, double sigma, std::vector<double>& height,
+                                 std::vector<double>& own, const Context& context);
+
+}  // namespace rfsmooth::smoothing
