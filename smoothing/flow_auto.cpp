@@ -45,14 +45,13 @@ class AutomaticFlow : public Flow {
       spacing = rfs_mesh::mean_spacing(index, context);
       noise = rfs_mesh::measure_noise(index, context);
     }
-    noise = scaled(std::move(noise), noise_ ? noise_->resolve(spacing) : measured(noise, spacing));
+    const double sigma = noise_ ? noise_->resolve(spacing) : measured(noise, spacing);
+    noise = scaled(std::move(noise), sigma);
     report_.emplace();
     const Positions before = mesh.positions;
-    mesh.positions =
-        automatic_smoothing(mesh, scaled(noise, strength_ * noise.sigma), spacing, *report_, context);
-    report_->noise = noise.sigma;
-    if (report_->guide_strength > 0)
-      move_along_surface(before, noise.sigma, spacing, mesh.positions, context);
+    mesh.positions = automatic_smoothing(mesh, scaled(noise, strength_ * sigma), spacing, *report_, context);
+    report_->noise = sigma;
+    if (report_->guide_strength > 0) move_along_surface(before, sigma, spacing, mesh.positions, context);
     limit(before, noise.local, mesh.positions, context);
   }
 
