@@ -23,7 +23,10 @@ namespace rfsmooth::pipeline {
 struct ReconstructOptions {
   std::string method = "poisson";
   bool denoise = true;
-  Length trim = {4, true};  ///< Poisson: faces with a corner farther than this from every point go
+  /// Poisson: faces with a corner farther than this from every point go. On the development shapes with 2 %
+  /// noise twice the spacing opens holes that 2.5 and 4 do not, and 2.5 leaves a fifth less of what was
+  /// invented than 4.
+  Length trim = {2.5, true};
   Length fill_holes = {
       8, true};  ///< the others: the longest edge of a face put into a hole; 0 = none are filled
   DenoiseOptions denoising;
