@@ -29,11 +29,16 @@ std::vector<double> cosines_of_steps(double degrees) {
   return cosines;
 }
 
-/// How far two faces (p, q, r) and (q, p, s) are folded at their edge, in steps: 0 = flat.
-int fold(const Eigen::Vector3d& p, const Eigen::Vector3d& q, const Eigen::Vector3d& r,
-         const Eigen::Vector3d& s, const std::vector<double>& cosines) {
-  const Eigen::Vector3d e = q - p, m = e.cross(r - p), n = (s - p).cross(e);
-  const double both = std::sqrt(m.squaredNorm() * n.squaredNorm()), dot = m.dot(n);
+/// The normal of a face beside an edge, on the side of a turn from the edge into the face.
+struct FaceNormal {
+  Eigen::Vector3d normal;
+  double squared;
+};
+
+/// How far two faces are folded at the edge that they share, in steps: 0 = flat.
+int fold(const FaceNormal& x, const FaceNormal& y, const std::vector<double>& cosines) {
+  // Flat faces lie on the two sides of the edge, with opposite turns.
+  const double both = std::sqrt(x.squared * y.squared), dot = -x.normal.dot(y.normal);
   if (!(both > 0)) return int(cosines.size());
   std::size_t steps = 0;
   while (steps + 1 < cosines.size() && dot <= cosines[steps] * both) ++steps;
@@ -78,7 +83,7 @@ class Chooser {
 
   void round() {
     for_blocks(context_, at_.size(), 512, [&](std::size_t begin, std::size_t end) {
-      std::vector<Wing> wings;
+      Wings wings;
       for (std::size_t a = begin; a < end; ++a) decide_edges_of(Index(a), wings);
     });
     for_each_index(context_, state_.size(), [&](std::size_t f) {
@@ -93,8 +98,15 @@ class Chooser {
  private:
   static constexpr std::uint8_t kBeaten = 1, kNoRoom = 2;
 
+  /// Those of one vertex, and the normals of those at one edge: memory that is kept.
+  struct Wings {
+    std::vector<Wing> of_vertex;
+    std::vector<FaceNormal> normals;
+  };
+
   /// Every edge from a to a higher index.
-  void decide_edges_of(Index a, std::vector<Wing>& wings) {
+  void decide_edges_of(Index a, Wings& memory) {
+    std::vector<Wing>& wings = memory.of_vertex;
     wings.clear();
     const auto faces = around_[a];
     if (std::none_of(faces.begin(), faces.end(), [&](Index f) { return state_[f] == State::contender; }))
@@ -115,20 +127,27 @@ class Chooser {
     });
     for (std::size_t first = 0, last = 0; first < wings.size(); first = last) {
       while (last < wings.size() && wings[last].other_end == wings[first].other_end) ++last;
-      if (last - first > 2) decide_edge(a, wings.data() + first, last - first);
+      if (last - first > 2) decide_edge(a, wings.data() + first, last - first, memory.normals);
     }
   }
 
-  void decide_edge(Index a, const Wing* wings, std::size_t count) {
-    std::size_t kept_count = 0;
-    const Wing* kept_wing = nullptr;
+  void decide_edge(Index a, const Wing* wings, std::size_t count, std::vector<FaceNormal>& normals) {
+    std::size_t kept_count = 0, kept_wing = 0;
     for (std::size_t i = 0; i < count; ++i)
       if (kept(wings[i].face)) {
         ++kept_count;
-        kept_wing = &wings[i];
+        kept_wing = i;
       }
-    const auto [first, second] = kept_count == 0   ? best_pair(a, wings, count)
-                                 : kept_count == 1 ? best_with(a, *kept_wing, wings, count)
+    if (kept_count < 2) {
+      normals.resize(count);
+      const Eigen::Vector3d along = at_[wings->other_end] - at_[a];
+      for (std::size_t i = 0; i < count; ++i) {
+        normals[i].normal = along.cross(at_[wings[i].opposite] - at_[a]);
+        normals[i].squared = normals[i].normal.squaredNorm();
+      }
+    }
+    const auto [first, second] = kept_count == 0   ? best_pair(wings, normals)
+                                 : kept_count == 1 ? best_with(kept_wing, wings, normals)
                                                    : std::pair<Index, Index>{kNone, kNone};
     const std::uint8_t mark = kept_count >= 2 ? kNoRoom : kBeaten;
     for (std::size_t i = 0; i < count; ++i) {
@@ -144,27 +163,27 @@ class Chooser {
     }
   }
 
-  Merit merit(Index a, const Wing& x, const Wing& y) const {
-    return {-fold(at_[a], at_[x.other_end], at_[x.opposite], at_[y.opposite], cosines_),
-            proposed_.votes[x.face] + proposed_.votes[y.face],
+  Merit merit(const Wing& x, const FaceNormal& at_x, const Wing& y, const FaceNormal& at_y) const {
+    return {-fold(at_x, at_y, cosines_), proposed_.votes[x.face] + proposed_.votes[y.face],
             double(quality_[x.face]) + double(quality_[y.face]), std::min(x.face, y.face),
             std::max(x.face, y.face)};
   }
 
-  std::pair<Index, Index> best_pair(Index a, const Wing* wings, std::size_t count) const {
+  std::pair<Index, Index> best_pair(const Wing* wings, const std::vector<FaceNormal>& normals) const {
     Merit best;
-    for (std::size_t i = 0; i < count; ++i)
-      for (std::size_t j = i + 1; j < count; ++j)
-        if (const Merit m = merit(a, wings[i], wings[j]); best < m) best = m;
+    for (std::size_t i = 0; i < normals.size(); ++i)
+      for (std::size_t j = i + 1; j < normals.size(); ++j)
+        if (const Merit m = merit(wings[i], normals[i], wings[j], normals[j]); best < m) best = m;
     return {best.first, best.second};
   }
 
-  std::pair<Index, Index> best_with(Index a, const Wing& kept_wing, const Wing* wings,
-                                    std::size_t count) const {
+  std::pair<Index, Index> best_with(std::size_t kept_wing, const Wing* wings,
+                                    const std::vector<FaceNormal>& normals) const {
     Merit best;
-    for (std::size_t i = 0; i < count; ++i)
-      if (wings[i].face != kept_wing.face)
-        if (const Merit m = merit(a, kept_wing, wings[i]); best < m) best = m;
+    for (std::size_t i = 0; i < normals.size(); ++i)
+      if (i != kept_wing)
+        if (const Merit m = merit(wings[kept_wing], normals[kept_wing], wings[i], normals[i]); best < m)
+          best = m;
     return {best.first, best.second};
   }
 

@@ -12,6 +12,7 @@
 /// once built: any number of threads may search it.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -70,15 +71,19 @@ inline double squared_distance(const Eigen::Vector3d& p, const Eigen::Vector3d& 
   return (x * x + y * y) + z * z;
 }
 
+/// Twice the positive part. No branch: along a walk through the tree it could not be foreseen.
+inline double twice_positive(double x) {
+  return x + std::abs(x);
+}
+
 /// Squared distance between two boxes, 0 if they meet.
 inline double squared_distance(const KdTree::Node& a, const KdTree::Node& b) {
   double d[3];
   for (int axis = 0; axis < 3; ++axis) {
     const double below = a.low[axis] - b.high[axis], above = b.low[axis] - a.high[axis];
-    const double apart = below > above ? below : above;
-    d[axis] = apart > 0 ? apart : 0;
+    d[axis] = twice_positive(below > above ? below : above);
   }
-  return (d[0] * d[0] + d[1] * d[1]) + d[2] * d[2];
+  return 0.25 * ((d[0] * d[0] + d[1] * d[1]) + d[2] * d[2]);  // powers of two: the same bits
 }
 
 /// Squared distance from a point to a box, 0 inside.
@@ -86,10 +91,9 @@ inline double squared_distance(const Eigen::Vector3d& q, const KdTree::Node& box
   double d[3];
   for (int axis = 0; axis < 3; ++axis) {
     const double below = box.low[axis] - q[axis], above = q[axis] - box.high[axis];
-    const double outside = below > above ? below : above;
-    d[axis] = outside > 0 ? outside : 0;
+    d[axis] = twice_positive(below > above ? below : above);
   }
-  return (d[0] * d[0] + d[1] * d[1]) + d[2] * d[2];
+  return 0.25 * ((d[0] * d[0] + d[1] * d[1]) + d[2] * d[2]);
 }
 
 }  // namespace rfsmooth::rfs_mesh

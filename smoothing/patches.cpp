@@ -155,7 +155,9 @@ void Patches::fit_one(std::size_t s, double sigma, Workspace& work) {
   const double residuals = in_sigma * in_sigma *
                            sum_residuals(size, work.u.data(), work.v.data(), work.height.data(),
                                          work.weight.data(), work.cosine.data(), quadric);
-  const double leverage = (inverse.array() * sums.b.array()).sum();
+  const double leverage =
+      (inverse.array() * sum_squared_weights(size, work.u.data(), work.v.data(), work.weight.data()).array())
+          .sum();
   const double points = sum * sum / squares, variance = 6 / points;
   const double excess = (residuals - (sum - leverage)) / sum - std::sqrt(2 / points);
   patch.weight = float(variance / (variance + std::max(0.0, excess)));

@@ -70,21 +70,9 @@ struct Moments {
 }  // namespace
 
 QuadricSums sum_quadric(std::size_t size, const float* u, const float* v, const float* y, const float* w) {
-  QuadricSums sums;
-  {
-    Moments<Doubles> moments;
-    for (std::size_t k = 0; k < size; k += 2) moments.add(doubles(u + k), doubles(v + k), doubles(w + k));
-    sums.a = moments.matrix();
-  }
-  {
-    Moments<Floats> moments;
-    for (std::size_t k = 0; k < size; k += kLanes) {
-      const Floats weight = floats(w + k);
-      moments.add(floats(u + k), floats(v + k), weight * weight);
-    }
-    sums.b = moments.matrix();
-  }
+  Moments<Doubles> moments;
   Doubles y0 = {}, yu = {}, yv = {}, yuu = {}, yuv = {}, yvv = {};
+  for (std::size_t k = 0; k < size; k += 2) moments.add(doubles(u + k), doubles(v + k), doubles(w + k));
   for (std::size_t k = 0; k < size; k += 2) {
     const Doubles a = doubles(u + k), b = doubles(v + k), z = doubles(w + k) * doubles(y + k);
     y0 += z;
@@ -94,8 +82,20 @@ QuadricSums sum_quadric(std::size_t size, const float* u, const float* v, const 
     yuv += z * a * b;
     yvv += z * b * b;
   }
+  QuadricSums sums;
+  sums.a = moments.matrix();
   sums.right << total(y0), total(yu), total(yv), total(yuu), total(yuv), total(yvv);
   return sums;
+}
+
+Eigen::Matrix<double, 6, 6> sum_squared_weights(std::size_t size, const float* u, const float* v,
+                                                const float* w) {
+  Moments<Floats> moments;
+  for (std::size_t k = 0; k < size; k += kLanes) {
+    const Floats weight = floats(w + k);
+    moments.add(floats(u + k), floats(v + k), weight * weight);
+  }
+  return moments.matrix();
 }
 
 double sum_residuals(std::size_t size, const float* u, const float* v, const float* y, const float* w,

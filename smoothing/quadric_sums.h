@@ -19,15 +19,19 @@ inline std::size_t padded(std::size_t size) {
   return (size + kLanes - 1) / kLanes * kLanes;
 }
 
-/// The sums above. b is summed in single precision, the others in double.
+/// a and right, summed in double precision.
 struct QuadricSums {
-  Eigen::Matrix<double, 6, 6> a, b;
+  Eigen::Matrix<double, 6, 6> a;
   Eigen::Matrix<double, 6, 1> right;
 };
 
 /// \param size padded(number of points). u, v and y are of the order of one. O(size), the same bits every
 /// time.
 QuadricSums sum_quadric(std::size_t size, const float* u, const float* v, const float* y, const float* w);
+
+/// b, summed in single precision.
+Eigen::Matrix<double, 6, 6> sum_squared_weights(std::size_t size, const float* u, const float* v,
+                                                const float* w);
 
 /// The sum of w ((y - q.f) c)^2.
 double sum_residuals(std::size_t size, const float* u, const float* v, const float* y, const float* w,

@@ -1,6 +1,7 @@
 #include "rfsmooth/smoothing/stranded.h"
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <optional>
 
@@ -15,7 +16,7 @@ namespace {
 
 constexpr std::size_t kTenth = 9;     // the neighbours whose distances
 constexpr std::size_t kLast = 31;     // measure density
-constexpr double kThin = 1.7;         // times the usual: 1.4 takes points at edges, 2 leaves small islands
+constexpr float kThin = 1.7F;         // times the usual: 1.4 takes points at edges, 2 leaves small islands
 constexpr int kPlane = 24;            // points of the plane
 constexpr std::size_t kTooFew = 100;  // points: below, nothing is usual
 constexpr int kRounds = 2;
@@ -83,18 +84,20 @@ std::vector<Index> find_stranded(const rfs_mesh::Mesh& mesh, const Positions& gu
   const std::size_t n = guide.size();
   std::vector<char> stranded(n);
   for_each_index(context, n, [&](std::size_t i) { stranded[i] = mesh.one_ring.degree(i) == 0; });
-  std::vector<double> distance(n);
-  for (const std::size_t rank : {kTenth, kLast}) {
-    for_each_index(context, n,
-                   [&](std::size_t i) { distance[i] = (guide[near[i][rank]] - guide[i]).norm(); });
-    for_each_index(context, n, [&](std::size_t i) {
-      // Above so many times the lower quartile: that many are below this.
-      const double usual = distance[i] / kThin;
-      std::size_t below = 0;
-      for (std::size_t k = 0; k <= kLast; ++k) below += std::size_t(distance[near[i][k]] < usual);
-      if (below > (kLast + 1) / 4) stranded[i] = 1;
-    });
-  }
+  using Distances = std::array<float, 2>;  // to the tenth and to the last
+  std::vector<Distances> distance(n);
+  for_each_index(context, n, [&](std::size_t i) {
+    for (std::size_t r = 0; r < 2; ++r)
+      distance[i][r] = float((guide[near[i][r == 0 ? kTenth : kLast]] - guide[i]).norm());
+  });
+  for_each_index(context, n, [&](std::size_t i) {
+    // Above so many times the lower quartile: that many are below this.
+    const Distances usual = {distance[i][0] / kThin, distance[i][1] / kThin};
+    std::array<std::size_t, 2> below = {};
+    for (const Index j : near[i])
+      for (std::size_t r = 0; r < 2; ++r) below[r] += std::size_t(distance[j][r] < usual[r]);
+    if (std::max(below[0], below[1]) > (kLast + 1) / 4) stranded[i] = 1;
+  });
   std::vector<Index> found;
   for (std::size_t i = 0; i < n; ++i)
     if (stranded[i]) found.push_back(Index(i));
