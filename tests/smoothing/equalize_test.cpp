@@ -176,7 +176,8 @@ TEST(Equalize, TurnsWithTheCloudAndIsTheSameForAnyNumberOfThreads) {
   spread(again, 1, 1, four);
   EXPECT_EQ(points, again);
   spread(turned, 1, 1, four);
-  for (std::size_t i = 0; i < points.size(); ++i) EXPECT_LT((turned[i] - turn * points[i]).norm(), 1e-8);
+  for (std::size_t i = 0; i < points.size(); ++i)  // moves are in single precision
+    EXPECT_LT((turned[i] - turn * points[i]).norm(), 1e-7);
 }
 
 TEST(SlideBack, LeavesAMoveAlongTheNormalAndStaysOnTheSurface) {
