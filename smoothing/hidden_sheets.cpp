@@ -44,7 +44,7 @@ HiddenSheets best_evidence(const std::vector<double>& residual, const std::vecto
                            const std::vector<double>& v, const Context& context) {
   const std::size_t n = v.size();
   HiddenSheets best;
-  for (double c = 1.1; c > 0.55; c *= 0.95) {
+  for (double c = 1.1; c > 0.55; c *= 0.9) {
     const Sum sum = sum_over(context, n, Sum(), [&](std::size_t i) {
       if (own[i] > kMostOwn || v[i] < kLouder * c || v[i] > kLoudest) return Sum();
       return Sum{for_sheets(residual[i], v[i] - c, c * (1 - 2 * own[i])), 1};
