@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# layering.sh ROOT: fails, naming file and line, where an include points upward or a heavy header leaves its place.
+# layering.sh ROOT: fails, naming file and line, where an include points upward, a heavy header leaves its place, a header
+# has no #pragma once or the library prints.
 set -uo pipefail
 cd "$1"
 wrong=0
@@ -34,6 +35,11 @@ forbid "each adapter sees its own library" '(pcl|open3d)/' pipeline/cgal
 forbid "TBB is seen by parallel.cpp only" '(tbb|oneapi)/' $(find_except rfs_mesh | grep -v '^rfs_mesh/parallel.cpp$') smoothing pipeline
 forbid "public headers include std and Eigen/Core only" '(Eigen/(Dense|Sparse|Eigen)|fmt|nlohmann|CLI|flann|tbb)' \
   $(find rfs_mesh smoothing pipeline/*.h pipeline/io -name '*.h')
+once=$(find rfs_mesh smoothing pipeline clouds tests \( -name '*.h' -o -name '*.hpp' \) -exec grep -L '^#pragma once' {} +)
+if [ -n "$once" ]; then
+  wrong=1
+  printf 'every header may be included twice:\n%s\n' "$once"
+fi
 hits=$(grep -rnE '(std::cout|std::cerr|[^fs]printf\(|fmt::print\()' rfs_mesh smoothing $(find_except pipeline cli pcl open3d cgal) 2>/dev/null)
 if [ -n "$hits" ]; then
   wrong=1
