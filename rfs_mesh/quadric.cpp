@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 
 #include "rfsmooth/rfs_mesh/median.h"
+#include "rfsmooth/rfs_mesh/quadric_moments.h"
 
 namespace rfsmooth::rfs_mesh {
 
@@ -55,53 +56,25 @@ Matrix3d principal_axes(const Matrix3d& covariance) {
 }
 
 /// Weighted least squares of z on the first `terms` monomials (3 = plane, 6 = quadric).
-/// The normal matrix holds moments u^p v^q of degree 0 to 4 only: 15 sums instead of 36.
 Vector6d fit(const QuadricWorkspace& w, int terms) {
-  double m00 = 0, m10 = 0, m01 = 0, m20 = 0, m11 = 0, m02 = 0, m30 = 0, m21 = 0, m12 = 0, m03 = 0, m40 = 0,
-         m31 = 0, m22 = 0, m13 = 0, m04 = 0;
-  double z0 = 0, zu = 0, zv = 0, zuu = 0, zuv = 0, zvv = 0;
+  QuadricMoments<double> moments;
+  QuadricHeights<double> heights;
   for (std::size_t j = 0; j < w.samples.size(); ++j) {
     const double weight = w.samples[j].weight, u = w.local[j][0], v = w.local[j][1], z = w.local[j][2];
-    const double uu = u * u, uv = u * v, vv = v * v;
-    const double wu = weight * u, wv = weight * v, wuu = weight * uu, wuv = weight * uv, wvv = weight * vv;
-    m00 += weight;
-    m10 += wu;
-    m01 += wv;
-    m20 += wuu;
-    m11 += wuv;
-    m02 += wvv;
-    m30 += wuu * u;
-    m21 += wuu * v;
-    m12 += wvv * u;
-    m03 += wvv * v;
-    m40 += wuu * uu;
-    m31 += wuu * uv;
-    m22 += wuu * vv;
-    m13 += wvv * uv;
-    m04 += wvv * vv;
-    z0 += weight * z;
-    zu += wu * z;
-    zv += wv * z;
-    zuu += wuu * z;
-    zuv += wuv * z;
-    zvv += wvv * z;
+    moments.add(u, v, weight);
+    heights.add(u, v, weight * z);
   }
-  Matrix6d a;
-  a << m00, m10, m01, m20, m11, m02,  //
-      m10, m20, m11, m30, m21, m12,   //
-      m01, m11, m02, m21, m12, m03,   //
-      m20, m30, m21, m40, m31, m22,   //
-      m11, m21, m12, m31, m22, m13,   //
-      m02, m12, m03, m22, m13, m04;
-  Vector6d b;
-  b << z0, zu, zv, zuu, zuv, zvv;
+  const auto itself = [](double sum) { return sum; };
+  Matrix6d a = moments.matrix(itself);
+  Vector6d b = heights.vector(itself);
+  const double total = a(0, 0);
   for (int t = terms; t < 6; ++t) {
     a.row(t).setZero();
     a.col(t).setZero();
     a(t, t) = 1;
     b[t] = 0;
   }
-  a.diagonal().array() += kRidge * m00;
+  a.diagonal().array() += kRidge * total;
   return a.llt().solve(b);
 }
 

@@ -1,8 +1,6 @@
 /// The sums of a weighted quadric fit over many points, several points an instruction.
 ///
 ///     a = sum w f f^T,   b = sum w^2 f f^T,   right = sum w y f,   f = (1, u, v, u^2, u v, v^2)
-///
-/// Both matrices hold the moments sum w u^p v^q of degree 0 to 4 only: 15 sums each instead of 36.
 #pragma once
 
 #include <cstddef>
