@@ -1,6 +1,7 @@
 #include "rfsmooth/smoothing/height_field.h"
 
 #include <algorithm>
+#include <stdexcept>
 #include <utility>
 
 #include "rfsmooth/rfs_mesh/collect.h"
@@ -24,13 +25,11 @@ double same_sheet(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return cosine < kSameSheet ? 0 : cosine * cosine;
 }
 
-HeightField::HeightField(Positions guide, const Positions& data, const Context& context)
-    : HeightField(std::move(guide), {}, data, context) {}
-
 HeightField::HeightField(Positions guide, rfs_mesh::NeighborTable near, const Positions& data,
                          const Context& context)
     : guide_(std::move(guide)), index_(guide_, context), near_(std::move(near)) {
-  if (near_.k == 0) near_ = index_.nearest(kNear, context);
+  if (near_.size() != size() || data.size() != size())
+    throw std::invalid_argument("HeightField: guide, neighbours and data are not of the same points");
   normals_.resize(size());
   heights_.resize(size());
   local_.resize(size());

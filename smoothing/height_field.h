@@ -28,10 +28,10 @@ class HeightField {
   };
 
   /// \param guide n x 3, near the surface; n >= 2.
+  /// \param near n x kNear (n - 1 where that is less): the nearest of every guide point.
   /// \param data n x 3, the noisy points of the same indices.
+  /// \throw std::invalid_argument if the three differ in n.
   /// O(n log n), parallel, the same bits for any number of threads.
-  HeightField(Positions guide, const Positions& data, const Context& context);
-  /// The same; `near`: the nearest kNear of every guide point.
   HeightField(Positions guide, rfs_mesh::NeighborTable near, const Positions& data, const Context& context);
   HeightField(const HeightField&) = delete;
   HeightField& operator=(const HeightField&) = delete;

@@ -56,6 +56,10 @@ std::vector<Index> all(std::size_t n) {
   return indices;
 }
 
+HeightField field_over(const Positions& guide, const Positions& data) {
+  return {guide, rfs_mesh::SpatialIndex(guide, {}).nearest(HeightField::kNear, {}), data, {}};
+}
+
 TEST(Automatic, LeavesATenthOfTheErrorOfANoisySphereAndKnowsWhatIsLeft) {
   for (const double share : {0.2, 0.5, 1.0}) {
     double sigma = 0;
@@ -117,7 +121,7 @@ TEST(Patches, PredictAQuadricExactlyWhateverTheSharesOfThePointsAre) {
       guide.emplace_back(x, y, 0);
       data.emplace_back(x, y, 0.01 * x * x - 0.02 * x * y + 0.3 * y - 1);
     }
-  const HeightField field(guide, data, {});
+  const HeightField field = field_over(guide, data);
   for (const std::size_t m : {16, 100}) {
     std::vector<Index> seeds = thin(guide, all(guide.size()), {});
     const Patches patches(field, m, seeds, std::vector<double>(guide.size(), 1), {});
@@ -143,10 +147,10 @@ TEST(Patches, OwnIsTheDerivativeOfAPredictionByThePointsHeight) {
   const std::size_t i = 207;
   const double step = 0.5;
   const std::vector<double> sigma(guide.size(), 10);
-  const HeightField field(guide, data, {});
+  const HeightField field = field_over(guide, data);
   const Prediction before = Patches(field, 24, seeds, sigma, {}).predict({});
   data[i].z() += step;
-  const HeightField lifted(guide, data, {});
+  const HeightField lifted = field_over(guide, data);
   const Prediction after = Patches(lifted, 24, seeds, sigma, {}).predict({});
   const double side = field.normals()[i].z();
   EXPECT_NEAR(side * (after.height[i] - before.height[i]) / (side * step * side), before.own[i], 1e-4);
@@ -154,7 +158,7 @@ TEST(Patches, OwnIsTheDerivativeOfAPredictionByThePointsHeight) {
 
 TEST(Patches, MeanOfAConstantIsTheConstant) {
   const rfs_mesh::Mesh mesh = support::icosphere(3);
-  const HeightField field(mesh.positions, mesh.positions, {});
+  const HeightField field = field_over(mesh.positions, mesh.positions);
   const std::vector<double> seven(field.size(), 7);
   const Patches patches(field, 40, thin(mesh.positions, all(field.size()), {}),
                         std::vector<double>(field.size(), 1), {});
