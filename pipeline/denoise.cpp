@@ -1,7 +1,6 @@
 #include "rfsmooth/pipeline/denoise.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -12,29 +11,11 @@
 #include "rfsmooth/rfs_mesh/median.h"
 #include "rfsmooth/rfs_mesh/parallel.h"
 #include "rfsmooth/rfs_mesh/points.h"
+#include "rfsmooth/rfs_mesh/stage_times.h"
 
 namespace rfsmooth::pipeline {
 
 namespace {
-
-/// Adds the time since it was made to the stage's entry.
-class Stopwatch {
- public:
-  Stopwatch(std::vector<StageTime>& stages, std::string_view name) {
-    for (StageTime& stage : stages)
-      if (stage.name == name) stage_ = &stage;
-    if (stage_ == nullptr) stage_ = &stages.emplace_back(StageTime{std::string(name), 0});
-  }
-  ~Stopwatch() {
-    stage_->seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  }
-  Stopwatch(const Stopwatch&) = delete;
-  Stopwatch& operator=(const Stopwatch&) = delete;
-
- private:
-  StageTime* stage_ = nullptr;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 /// Smooths the mesh, alternating steps and swaps. Returns whether the flow left points alone that it could
 /// not place.

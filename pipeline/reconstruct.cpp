@@ -67,33 +67,34 @@ Reconstruction run(std::vector<double> xyz, const ReconstructOptions& options, c
   Reconstruction made;
   ReconstructReport& report = made.report;
   if (options.denoise) clean(xyz, options.denoising, report, context);
-  Laps laps(report.seconds);
-  const rfs_mesh::WorkingCloud cloud =
-      value_or_throw(rfs_mesh::make_working_cloud(xyz.data(), xyz.size() / 3, context));
-  if (cloud.points.size() < 4)
-    throw Failure({ErrorCode::no_usable_points, "a surface needs four distinct points at least"});
-  SurfaceInput input;
-  input.points = cloud.points;
-  input.normals = working_normals(xyz, cloud, context);
-  in_arena(context, [&] { report.spacing = input.spacing = spacing_of(cloud.points, context); });
-  laps.lap("normals");
+  {
+    Stopwatch watch(report.seconds, "normals");
+    const rfs_mesh::WorkingCloud cloud =
+        value_or_throw(rfs_mesh::make_working_cloud(xyz.data(), xyz.size() / 3, context));
+    if (cloud.points.size() < 4)
+      throw Failure({ErrorCode::no_usable_points, "a surface needs four distinct points at least"});
+    SurfaceInput input;
+    input.points = cloud.points;
+    input.normals = working_normals(xyz, cloud, context);
+    in_arena(context, [&] { report.spacing = input.spacing = spacing_of(cloud.points, context); });
 
-  context.report(method.name, 0);
-  made.mesh = value_or_throw(method.run(input, context));
-  context.report(method.name, 1);
-  laps.lap(method.name);
+    watch.next(method.name);
+    context.report(method.name, 0);
+    made.mesh = value_or_throw(method.run(input, context));
+    context.report(method.name, 1);
 
-  in_arena(context, [&] {
-    clean_up(made.mesh, input, options, method.closes_all, report, context);
-    const std::vector<std::size_t> rows = first_rows(cloud);
-    made.row.reserve(made.mesh.positions.size());
-    for (const Index p : nearest_points(made.mesh, cloud.points, context)) made.row.push_back(rows[p]);
-    for (Eigen::Vector3d& p : made.mesh.positions) p += cloud.origin;
-    report.topology = topology(made.mesh.positions.size(), made.mesh.faces);
-  });
+    watch.next("clean up");
+    in_arena(context, [&] {
+      clean_up(made.mesh, input, options, method.closes_all, report, context);
+      const std::vector<std::size_t> rows = first_rows(cloud);
+      made.row.reserve(made.mesh.positions.size());
+      for (const Index p : nearest_points(made.mesh, cloud.points, context)) made.row.push_back(rows[p]);
+      for (Eigen::Vector3d& p : made.mesh.positions) p += cloud.origin;
+      report.topology = topology(made.mesh.positions.size(), made.mesh.faces);
+    });
+  }
   if (made.mesh.faces.empty())
     throw Failure({ErrorCode::no_usable_points, method.name + " finds no surface in these points"});
-  laps.lap("clean up");
   return made;
 }
 

@@ -1,7 +1,6 @@
 #include "rfsmooth/rfs_mesh/rfs_mesh.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <stdexcept>
 
@@ -10,6 +9,7 @@
 #include "rfsmooth/rfs_mesh/flattest_pair.h"
 #include "rfsmooth/rfs_mesh/neighbors.h"
 #include "rfsmooth/rfs_mesh/parallel.h"
+#include "rfsmooth/rfs_mesh/stage_times.h"
 
 namespace rfsmooth::rfs_mesh {
 
@@ -23,21 +23,11 @@ class Stages {
   template <class Body>
   auto run(const char* stage, double fraction, Body&& body) {
     context_.report(stage, fraction);
-    seconds_.push_back({stage, 0});
-    const Stopwatch watch{seconds_, seconds_.size() - 1};
+    const Stopwatch watch(seconds_, stage);
     return body();
   }
 
  private:
-  struct Stopwatch {
-    std::vector<StageTime>& seconds;
-    std::size_t entry;  // made before: a destructor must not allocate
-    std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
-    ~Stopwatch() {
-      const std::chrono::duration<double> d = std::chrono::steady_clock::now() - start;
-      seconds[entry].seconds = d.count();
-    }
-  };
   std::vector<StageTime>& seconds_;
   const Context& context_;
 };

@@ -2,8 +2,9 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <string>
-#include <utility>
+#include <string_view>
 #include <vector>
 
 namespace rfsmooth {
@@ -14,21 +15,36 @@ struct StageTime {
   double seconds = 0;
 };
 
-/// Times stages that follow one another. Not thread safe.
-class Laps {
+/// Adds the time it lives to a stage's entry, which it makes if there is none. Not thread safe.
+class Stopwatch {
  public:
-  explicit Laps(std::vector<StageTime>& stages) : stages_(stages) {}
+  /// \param stages outlives it where it is: it must not be moved meanwhile, as by a `return`.
+  Stopwatch(std::vector<StageTime>& stages, std::string_view name) : stages_(stages) { start(name); }
+  ~Stopwatch() { stop(); }
+  Stopwatch(const Stopwatch&) = delete;
+  Stopwatch& operator=(const Stopwatch&) = delete;
 
-  /// Appends the stage that ends here: the time since the last one ended, or since this was made.
-  void lap(std::string name) {
-    const auto now = std::chrono::steady_clock::now();
-    stages_.push_back({std::move(name), std::chrono::duration<double>(now - start_).count()});
-    start_ = now;
+  /// This stage ends here and the next one begins.
+  void next(std::string_view name) {
+    stop();
+    start(name);
   }
 
  private:
+  using Clock = std::chrono::steady_clock;
+
+  // The entry is made here: a destructor must not allocate.
+  void start(std::string_view name) {
+    entry_ = 0;
+    while (entry_ < stages_.size() && stages_[entry_].name != name) ++entry_;
+    if (entry_ == stages_.size()) stages_.push_back({std::string(name), 0});
+    start_ = Clock::now();
+  }
+  void stop() { stages_[entry_].seconds += std::chrono::duration<double>(Clock::now() - start_).count(); }
+
   std::vector<StageTime>& stages_;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  std::size_t entry_ = 0;
+  Clock::time_point start_;
 };
 
 }  // namespace rfsmooth

@@ -45,21 +45,19 @@ void need_free_stdout(const std::vector<Job>& jobs, const RunOptions& options) {
 
 io::Cloud load_cloud(const std::string& input, const Context& context,
                      std::vector<pipeline::StageTime>& stages) {
-  Laps laps(stages);
+  const Stopwatch watch(stages, "read");
   context.report("read", 0);
   const std::string path = input == "-" ? "/dev/stdin" : input;
   std::error_code unknown;
   // The file's own size is the least that reading it takes.
   if (const auto bytes = std::filesystem::file_size(path, unknown); !unknown)
     if (const auto error = refuse_without_memory(input, bytes)) throw Failure(*error);
-  io::Cloud cloud = value_or_throw(io::read_cloud(path, {}, context));
-  laps.lap("read");
-  return cloud;
+  return value_or_throw(io::read_cloud(path, {}, context));
 }
 
 void store_cloud(const io::Cloud& cloud, const std::string& output, const FileOptions& options,
                  const Context& context, std::vector<pipeline::StageTime>& stages) {
-  Laps laps(stages);
+  const Stopwatch watch(stages, "write");
   context.report("write", 0);
   if (output == "-") {
     const std::string bytes = value_or_throw(io::serialize_cloud(cloud, write_options(options), context));
@@ -68,7 +66,6 @@ void store_cloud(const io::Cloud& cloud, const std::string& output, const FileOp
   } else {
     value_or_throw(io::write_cloud(cloud, output, write_options(options), context));
   }
-  laps.lap("write");
 }
 
 bool has_normals(const io::Cloud& cloud) {

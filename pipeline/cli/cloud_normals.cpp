@@ -81,7 +81,7 @@ void write_normals(const NormalsFields& options, io::Cloud& cloud, const double*
                    const std::string& output, const FileOptions& files, const Context& context,
                    std::vector<pipeline::StageTime>& stages, nlohmann::ordered_json& entry) {
   if (!options.normals) return;
-  Laps laps(stages);
+  const Stopwatch watch(stages, "normals");
   pipeline::NormalsOptions wanted;
   wanted.viewpoint =
       options.viewpoint ? parse_point(*options.viewpoint) : pipeline::recorded_viewpoint(cloud, xyz, context);
@@ -98,7 +98,6 @@ void write_normals(const NormalsFields& options, io::Cloud& cloud, const double*
   auto& viewpoint = entry["normals"]["viewpoint"];
   viewpoint = nullptr;
   if (const auto& v = wanted.viewpoint) viewpoint = {(*v)[0], (*v)[1], (*v)[2]};
-  laps.lap("normals");
 }
 
 }  // namespace rfsmooth::cli

@@ -98,22 +98,22 @@ void make_agree(rfs_mesh::Mesh& mesh) {
 std::string smooth_file(const Options& options, pipeline::io::Cloud& cloud, const Job& job,
                         const Context& context, Console& console, std::vector<pipeline::StageTime>& stages,
                         ordered_json& entry) {
-  Laps laps(stages);
+  Stopwatch watch(stages, "connect");
   FileMesh file = file_mesh(cloud, job.input, context);
   const auto constraints = value_or_fail(guarded([&] {
                                            return constraints_of(options.constraints, cloud, file.of_row,
                                                                  file.before.size(), context);
                                          }),
                                          job.input);
-  laps.lap("connect");
+  watch.next("smooth");
   const auto done =
       value_or_fail(smoothing::smooth(file.mesh, options.flow, context, constraints), job.input);
-  laps.lap("smooth");
   bool moved = false;
   const std::vector<double> rows = file.moved_rows(moved);
   const bool stale_normals = moved && has_normals(cloud) && options.after.refine.levels == 0;
   const std::size_t points = cloud.size(), faces = file.mesh.faces.size();
   if (options.after.refine.levels > 0) {
+    watch.next("refine");
     const auto sharp = options.after.sharp_angle ? sharp_edges(file.mesh, *options.after.sharp_angle, context)
                                                  : std::vector<rfs_mesh::Edge>{};
     rfs_mesh::Mesh fine =
@@ -123,13 +123,13 @@ std::string smooth_file(const Options& options, pipeline::io::Cloud& cloud, cons
     file.mesh = std::move(fine);
     if (more)
       console.warn(job.input + ": a refined mesh has new points; only x, y, z and triangles are written");
-    laps.lap("refine");
   } else {
     pipeline::io::set_positions(cloud, rows.data(), context);
   }
   if (stale_normals)
     console.warn(fmt::format("{}: the normals are kept; they now describe the old positions", job.input));
   if (options.after.ridges) {
+    watch.next("ridges");
     if (cloud.format == pipeline::io::Format::off)
       throw Failure({ErrorCode::usage, job.input + ": OFF cannot hold the field of --ridges; use PLY"});
     make_agree(file.mesh);
@@ -142,7 +142,6 @@ std::string smooth_file(const Options& options, pipeline::io::Cloud& cloud, cons
       if (v != kNone) field[i] = kind[v];
     }
     pipeline::io::set_field(cloud, "ridge", pipeline::io::Scalar::int8, field, context);
-    laps.lap("ridges");
   }
 
   Options used = options;
