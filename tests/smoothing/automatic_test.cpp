@@ -13,6 +13,7 @@
 #include "rfsmooth/smoothing/thinning.h"
 
 #include "support/meshes.h"
+#include "support/near.h"
 
 using namespace rfsmooth;
 using namespace rfsmooth::smoothing;
@@ -54,10 +55,6 @@ std::vector<Index> all(std::size_t n) {
   std::vector<Index> indices(n);
   std::iota(indices.begin(), indices.end(), Index{0});
   return indices;
-}
-
-HeightField field_over(const Positions& guide, const Positions& data) {
-  return {guide, rfs_mesh::SpatialIndex(guide, {}).nearest(HeightField::kNear, {}), data, {}};
 }
 
 TEST(Automatic, LeavesATenthOfTheErrorOfANoisySphereAndKnowsWhatIsLeft) {
@@ -121,7 +118,7 @@ TEST(Patches, PredictAQuadricExactlyWhateverTheSharesOfThePointsAre) {
       guide.emplace_back(x, y, 0);
       data.emplace_back(x, y, 0.01 * x * x - 0.02 * x * y + 0.3 * y - 1);
     }
-  const HeightField field = field_over(guide, data);
+  const HeightField field(guide, support::near_on(guide), data, {});
   for (const std::size_t m : {16, 100}) {
     std::vector<Index> seeds = thin(guide, all(guide.size()), {});
     const Patches patches(field, m, seeds, std::vector<double>(guide.size(), 1), {});
@@ -147,10 +144,10 @@ TEST(Patches, OwnIsTheDerivativeOfAPredictionByThePointsHeight) {
   const std::size_t i = 207;
   const double step = 0.5;
   const std::vector<double> sigma(guide.size(), 10);
-  const HeightField field = field_over(guide, data);
+  const HeightField field(guide, support::near_on(guide), data, {});
   const Prediction before = Patches(field, 24, seeds, sigma, {}).predict({});
   data[i].z() += step;
-  const HeightField lifted = field_over(guide, data);
+  const HeightField lifted(guide, support::near_on(guide), data, {});
   const Prediction after = Patches(lifted, 24, seeds, sigma, {}).predict({});
   const double side = field.normals()[i].z();
   EXPECT_NEAR(side * (after.height[i] - before.height[i]) / (side * step * side), before.own[i], 1e-4);
@@ -158,7 +155,7 @@ TEST(Patches, OwnIsTheDerivativeOfAPredictionByThePointsHeight) {
 
 TEST(Patches, MeanOfAConstantIsTheConstant) {
   const rfs_mesh::Mesh mesh = support::icosphere(3);
-  const HeightField field = field_over(mesh.positions, mesh.positions);
+  const HeightField field(mesh.positions, support::near_on(mesh.positions), mesh.positions, {});
   const std::vector<double> seven(field.size(), 7);
   const Patches patches(field, 40, thin(mesh.positions, all(field.size()), {}),
                         std::vector<double>(field.size(), 1), {});

@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "support/near.h"
+
 using namespace rfsmooth;
 using namespace rfsmooth::smoothing;
 
@@ -28,7 +30,7 @@ struct Sheet {
         data.push_back(guide.back());
         data.back().z() = truth.back() + (right ? louder : 1) * noise(random);
       }
-    field = std::make_unique<HeightField>(guide, data, Context{});
+    field = std::make_unique<HeightField>(guide, support::near_on(guide), data, Context{});
     up = field->normals()[0].z();
     height.assign(guide.size(), 0);
     own.assign(guide.size(), 0.01);

@@ -1,0 +1,13 @@
+/// The neighbours that a height field asks for (smoothing/height_field.h).
+#pragma once
+
+#include "rfsmooth/rfs_mesh/neighbors.h"
+#include "rfsmooth/smoothing/height_field.h"
+
+namespace rfsmooth::support {
+
+inline rfs_mesh::NeighborTable near_on(const Positions& guide) {
+  return rfs_mesh::SpatialIndex(guide, {}).nearest(smoothing::HeightField::kNear, {});
+}
+
+}  // namespace rfsmooth::support
