@@ -7,19 +7,16 @@
 #include <stdexcept>
 
 #include "rfsmooth/rfs_mesh/collect.h"
+#include "rfsmooth/rfs_mesh/foreign_search.h"
 #include "rfsmooth/rfs_mesh/parallel.h"
 
 namespace rfsmooth::rfs_mesh {
 
 namespace {
 
-using Eigen::Vector3d;
 using Cursor = KdTree::Cursor;
 
 constexpr int kLongestList = 255;  // places beyond are not looked at: they fit a byte
-
-constexpr std::uint32_t kSubtree =
-    128;  // leaves of the subtrees that are labelled and searched by one thread
 
 constexpr std::uint32_t kWorthAsking = 8;  // leaves of the nodes that are first asked about as a whole
 
@@ -64,9 +61,8 @@ class Boruvka {
         reach_(n_),
         best_length_(n_),
         best_pair_(n_),
-        node_component_(tree_.node_count()),
+        foreign_(index, component_),
         node_reach_(tree_.node_count(), -1),
-        subtrees_(tree_.subtrees(kSubtree)),
         roots_(n_) {
     for_each_index(context_, n_, [&](std::size_t i) {
       component_[i] = roots_[i] = Index(i);
@@ -118,30 +114,9 @@ class Boruvka {
   /// Points whose list is used up search the tree, where something shorter than their component's best may
   /// be.
   void search_tree() {
+    foreign_.label(context_);
     for_each_index(
-        context_, subtrees_.size(), [&](std::size_t s) { label(subtrees_[s]); }, 1);
-    label_upper(tree_.root());
-    for_each_index(
-        context_, subtrees_.size(), [&](std::size_t s) { search(subtrees_[s]); }, 1);
-  }
-
-  /// Names for each node the component that all its points share, kNone if they do not.
-  Index label(const Cursor& c) {
-    Index& shared = node_component_[c.node];
-    if (!c.is_leaf()) {
-      const Index left = label(c.left()), right = label(c.right());
-      return shared = left == right ? left : kNone;
-    }
-    const KdTree::Leaf& leaf = tree_.leaf(c.first);
-    shared = component_[leaf.id[0]];
-    for (std::uint32_t i = 1; i < KdTree::kLeaf && leaf.id[i] != kNone; ++i)
-      if (component_[leaf.id[i]] != shared) shared = kNone;
-    return shared;
-  }
-  Index label_upper(const Cursor& c) {
-    if (c.last - c.first <= kSubtree) return node_component_[c.node];
-    const Index left = label_upper(c.left()), right = label_upper(c.right());
-    return node_component_[c.node] = left == right ? left : kNone;
+        context_, foreign_.subtrees().size(), [&](std::size_t s) { search(foreign_.subtrees()[s]); }, 1);
   }
 
   /// The points of one node. A node inside a component is passed over as a whole if nothing foreign is as
@@ -149,11 +124,11 @@ class Boruvka {
   /// shrinks.
   void search(const Cursor& c) {
     if (c.is_leaf()) return search_leaf(c);
-    const Index own = node_component_[c.node];
+    const Index own = foreign_.shared(c);
     if (own != kNone && c.last - c.first >= kWorthAsking) {
       const double bound = best_of(own);
       if (node_reach_[c.node] > bound) return;
-      if (!foreign_within(c, own, bound)) {
+      if (!foreign_.any_within(c, own, bound)) {
         node_reach_[c.node] = bound;
         return;
       }
@@ -169,114 +144,19 @@ class Boruvka {
   /// The points of a leaf inside a component share the walk to the foreign leaves near it.
   void search_leaf(const Cursor& c) {
     const KdTree::Leaf& leaf = tree_.leaf(c.first);
-    const Index own = node_component_[c.node];
+    const Index own = foreign_.shared(c);
     bool listed = false;
-    LeafList near;
+    ForeignSearch::Leaves near;
     for (const Index i : leaf.id) {
       if (!must_search(i)) continue;
       const double bound = best_of(component_[i]);
-      if (!listed && own != kNone) listed = list_foreign(c, own, bound, near);
+      if (!listed && own != kNone) listed = foreign_.list(c, own, bound, near);
       const Neighbor found =
-          listed ? nearest_in(near, i, own, bound) : nearest_foreign(i, component_[i], bound);
+          listed ? foreign_.nearest_in(near, i, own, bound) : foreign_.nearest(i, component_[i], bound);
       candidate_[i] = found.index;
       reach_[i] = found.squared_distance;
       if (found.index != kNone) lower(best_length_[component_[i]], to_bits(found.squared_distance));
     }
-  }
-
-  /// Calls `visit(cursor)` for the leaves with points of other components whose boxes are within sqrt(bound)
-  /// of that of `of`, until it says false.
-  template <class Visit>
-  void visit_foreign(const Cursor& of, Index own, double bound, Visit&& visit) const {
-    const KdTree::Node& box = tree_.node(of.node);
-    Cursor stack[64];
-    std::size_t top = 0;
-    stack[top++] = tree_.root();
-    while (top > 0) {
-      Cursor at = stack[--top];
-      while (node_component_[at.node] != own && squared_distance(box, tree_.node(at.node)) <= bound) {
-        if (at.is_leaf()) {
-          if (!visit(at)) return;
-          break;
-        }
-        stack[top++] = at.right();
-        at = at.left();
-      }
-    }
-  }
-
-  bool foreign_within(const Cursor& of, Index own, double bound) const {
-    bool any = false;
-    visit_foreign(of, own, bound, [&](const Cursor&) {
-      any = true;
-      return false;
-    });
-    return any;
-  }
-
-  struct LeafList {
-    static constexpr std::size_t kLongest = 64;
-    Cursor leaves[kLongest];
-    std::size_t count = 0;
-  };
-
-  /// False if there are too many.
-  bool list_foreign(const Cursor& of, Index own, double bound, LeafList& list) const {
-    if (bound == std::numeric_limits<double>::infinity()) return false;
-    list.count = 0;
-    bool fits = true;
-    visit_foreign(of, own, bound, [&](const Cursor& leaf) {
-      fits = list.count < LeafList::kLongest;
-      if (fits) list.leaves[list.count++] = leaf;
-      return fits;
-    });
-    return fits;
-  }
-
-  void scan(const Cursor& c, const Vector3d& q, Index own, Neighbor& best) const {
-    const KdTree::Leaf& leaf = tree_.leaf(c.first);
-    for (std::uint32_t i = 0; i < KdTree::kLeaf; ++i) {
-      const Neighbor candidate = {leaf.id[i], squared_distance(q, Vector3d(leaf.x[i], leaf.y[i], leaf.z[i]))};
-      if (candidate < best && component_[leaf.id[i]] != own) best = candidate;
-    }
-  }
-
-  Neighbor nearest_in(const LeafList& list, Index self, Index own, double bound) const {
-    const Vector3d q = points_[self];
-    Neighbor best = {kNone, bound};
-    for (std::size_t l = 0; l < list.count; ++l)
-      if (squared_distance(q, tree_.node(list.leaves[l].node)) <= best.squared_distance)
-        scan(list.leaves[l], q, own, best);
-    return best;
-  }
-
-  /// The nearest point of another component at most sqrt(bound) away, or {kNone, bound}.
-  Neighbor nearest_foreign(Index self, Index own, double bound) const {
-    const Vector3d q = points_[self];
-    Neighbor best = {kNone, bound};
-    struct Pending {
-      Cursor cursor;
-      double squared_distance;
-    } stack[64];
-    std::size_t top = 0;
-    stack[top++] = {tree_.root(), 0};
-    while (top > 0) {
-      Pending at = stack[--top];
-      while (node_component_[at.cursor.node] != own &&
-             !(best < Neighbor{tree_.node(at.cursor.node).least_id, at.squared_distance})) {
-        if (at.cursor.is_leaf()) {
-          scan(at.cursor, q, own, best);
-          break;
-        }
-        Pending near = {at.cursor.left(), 0}, far = {at.cursor.right(), 0};
-        near.squared_distance = squared_distance(q, tree_.node(near.cursor.node));
-        far.squared_distance = squared_distance(q, tree_.node(far.cursor.node));
-        if (far.squared_distance < near.squared_distance) std::swap(near, far);
-        stack[top++] = far;
-        at = near;
-      }
-    }
-    return best;
   }
 
   /// Among a component's edges of the least length, the one of least ids.
@@ -370,10 +250,8 @@ class Boruvka {
   std::vector<std::atomic<std::uint64_t>> best_length_, best_pair_;
   std::vector<std::atomic<std::uint64_t>>& next_root_ = best_length_;  // once the edge is chosen
 
-  // of a node of the tree
-  std::vector<Index> node_component_;
-  std::vector<double> node_reach_;  // squared: nothing foreign is nearer to its box
-  std::vector<Cursor> subtrees_;
+  ForeignSearch foreign_;
+  std::vector<double> node_reach_;  // of a node of the tree, squared: nothing foreign is nearer to its box
 
   std::vector<Index> roots_;
 };

@@ -3,11 +3,13 @@
 /// In every round each component picks its shortest edge to another one, and the picked edges join the
 /// components: at most log2 n rounds, 11 at 1M noisy surface points. Where the shortest edge comes from,
 /// cheapest first:
-/// 1. a point's list of nearest neighbours, from which its own component's are skipped;
-/// 2. where the list is used up and its last is nearer than the component's best edge so far, the kd-tree,
-/// with that edge
-///    as the bound and passing over subtrees of the own component. The points of a leaf share one walk, and
-///    nodes inside a component are passed over as a whole once nothing foreign was found near their box.
+///
+/// 1. A point's list of nearest neighbours, from which its own component's are skipped.
+/// 2. Where the list is used up and its last is nearer than the component's best edge so far, the kd-tree,
+///    with that edge as the bound and passing over subtrees of the own component (foreign_search.h). The
+///    points of a leaf share one walk, and nodes inside a component are passed over as a whole once nothing
+///    foreign was found near their box.
+///
 /// Bounds only ever save work: what is picked is the least by (length^2, min id, max id), whichever thread
 /// looked first.
 #pragma once
