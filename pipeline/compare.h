@@ -3,11 +3,11 @@
 /// With d(p, S) the exact distance to the true surface S, P the cloud, C the clean cloud:
 ///   point-to-surface  p2s = mean over P of d(p, S)^2, its root and the largest d (one way)
 ///   Chamfer           CD  = mean over P of d(p, C)^2 + mean over C of d(c, P)^2
-///   P2M                   = p2s + mean over the *faces* of S of d(face, P)^2, not weighted by area
-///   shrinkage             = mean signed distance x area / volume, for a closed S; positive: the cloud lies
-///   outside evenness              = standard deviation / mean of the distances to the nearest other point
-///   normal error          = mean angle to the true normal (of the nearest face, or of the nearest clean
-///   point)
+///   P2M               = p2s + mean over the *faces* of S of d(face, P)^2, not weighted by area
+///   shrinkage         = mean signed distance x area / volume, for a closed S; positive: outside
+///   evenness          = standard deviation / mean of the distances to the nearest other point
+///   normal error      = mean angle to the true normal, of the nearest face or clean point
+///
 /// P2M exists to stand beside published tables only; compare methods by p2s and CD.
 ///
 /// Units: the cloud's own. `on_unit_sphere` rescales to the unit sphere of the truth (the clean cloud if

@@ -4,13 +4,13 @@
 /// marks the tree edges that do not lie in it as bridges.
 ///
 /// Differs from the paper: it gives the idea, not the rules. Ours, with every threshold in SdgOptions:
-///  (A) a leaf (degree 1) is joined to the nearest admissible point ahead of it;
-///  (B) a point whose neighbours leave a wide gap in the tangent plane is joined to the nearest admissible
-///  point
-///      inside the gap, if the wish is mutual or the edge short; two rounds;
-///  (C) an edge far longer than the tree around both ends, or standing up from the surface at both, or with
-///  an end
-///      between two sheets (two_sheets.h), is a bridge.
+///
+/// - (A) A leaf (degree 1) is joined to the nearest admissible point ahead of it.
+/// - (B) A point whose neighbours leave a wide gap in the tangent plane is joined to the nearest admissible
+///   point inside the gap, if the wish is mutual or the edge short; two rounds.
+/// - (C) An edge far longer than the tree around both ends, or standing up from the surface at both, or with
+///   an end between two sheets (two_sheets.h), is a bridge.
+///
 /// Each rule decides for every vertex from one snapshot of the graph, so no order of visiting matters.
 #pragma once
 

@@ -2,9 +2,8 @@
 ///
 ///     free     nothing special
 ///     fixed    boundary vertices stay
-///     curve    boundary vertices smooth their curve: x += h^2/4 * 2/(d + D) [(x_- - x)/d + (x_+ - x)/D], d
-///     and D
-///              the lengths to the two boundary neighbours; the flow sees them as fixed
+///     curve    boundary vertices smooth their curve; the flow sees them as fixed:
+///              x += h^2/4 * 2/(d + D) [(x_- - x)/d + (x_+ - x)/D], d and D the lengths to both neighbours
 ///     virtual  each boundary loop is closed by a virtual vertex at its barycentre, seen by the flow only
 ///
 /// Desbrun et al. 1999, 5.3 (curve: their (11) restricted to the two boundary neighbours; h = mean edge

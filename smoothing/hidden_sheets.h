@@ -11,12 +11,12 @@
 /// (one nat takes some 500 of them); the cloud as a whole does. Both explanations are laid beside each other
 /// for all points with v > 1.3 c:
 ///
-///     one sheet, louder noise:  e ~ N(0, s^2 + d^2)             s^2 = c (1 - 2 own): what smoothing left of
-///     c two sheets:               e ~ 1/2 N(-d, s^2) + 1/2 N(d, s^2)
+///     one sheet, louder noise:  e ~ N(0, s^2 + d^2)
+///     two sheets:               e ~ 1/2 N(-d, s^2) + 1/2 N(d, s^2)
 ///
-/// and the sum of the logarithms of their ratio, less (ln c)^2 / 2 (0.15)^2 for a noise that was measured
-/// wrongly, is the evidence for two sheets at the c where it is largest. Walls make the measured noise too
-/// high themselves, so c must be found.
+/// where s^2 = c (1 - 2 own) is what smoothing left of c, and the sum of the logarithms of their ratio, less
+/// (ln c)^2 / 2 (0.15)^2 for a noise that was measured wrongly, is the evidence for two sheets at the c where
+/// it is largest. Walls make the measured noise too high themselves, so c must be found.
 ///
 /// Source: the posterior mean of a symmetric two-point prior; a likelihood ratio of two simple hypotheses.
 /// Residuals in steps (depths of a sensor) look a little like two sheets: fewer than a twentieth of the cloud

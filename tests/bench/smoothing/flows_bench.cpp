@@ -1,14 +1,12 @@
 // The flow library's speed, in one run:
 //
-//   steps       one step of each explicit flow and implicit solves on a mesh of 1,000,000 vertices, in units
-//   of a
-//               plain copy-and-gather (y_i = x_i + sum of the neighbours) over the same adjacency
+//   steps       one step of each explicit flow and implicit solves on a mesh of 1,000,000 vertices, in
+//               units of a plain copy-and-gather (y_i = x_i + sum of the neighbours) over the same adjacency
 //   desbrun     conjugate gradient iterations at dt = 10 and 100, first order, umbrella, by tolerance; beside
 //               Desbrun et al. 1999, section 2.8 (5-9 and 28-39)
-//   peers       time until the rms distance of a noisy sphere to the true one has fallen to 30 %: Open3D's
-//   filters,
-//               CGAL's smooth_shape, ours; a Mesh comes with its adjacency, so both are given: without and
-//               with building it (Open3D's call builds its own)
+//   peers       time until the rms distance of a noisy sphere to the true one has fallen to 30 %:
+//               Open3D's filters, CGAL's smooth_shape, ours; a Mesh comes with its adjacency, so both are
+//               given: without and with building it (Open3D's call builds its own)
 //
 //   flows_bench [steps|desbrun|peers]      all three without an argument
 //
