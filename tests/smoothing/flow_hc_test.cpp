@@ -51,6 +51,7 @@ TEST(Hc, KeepsTheVolumeThatTheLaplacianLoses) {
   Mesh laplacian = hc;
   const double volume = support::enclosed_volume(hc);
   FlowOptions options;
+  options.flow = "hc";
   options.iterations = 10;
   ASSERT_TRUE(smooth(hc, options, {}).ok());
   options.flow = "laplacian";
