@@ -14,6 +14,7 @@
 #include <thread>
 
 #include <gtest/gtest.h>
+#include <sched.h>
 #include <unistd.h>
 
 #include "rfsmooth/pipeline/denoise.h"
@@ -100,11 +101,13 @@ std::optional<Error> error_of(const Result<T>& result) {
   return result.error();
 }
 
-/// Makes the call fail at its 1st, 2nd, ... allocation (about `tries` of them, evenly, if there are more) and
-/// calls `untouched` each time. Then the same with a stop at that place. `restore` brings the data back
-/// before each.
+/// Makes the call fail at its 1st, 2nd, ... allocation (about a hundred of them, evenly, if there are more)
+/// and calls `untouched` each time. Then the same with a stop at that place. `restore` brings the data back
+/// before each. `polls`: whether the call looks again after some allocation; over one block of a small file
+/// it may not.
 void expect_all_or_nothing(const Call& call, const std::function<void()>& restore,
-                           const std::function<bool()>& untouched, long tries = 100) {
+                           const std::function<bool()>& untouched, bool polls = true) {
+  constexpr long kTries = 100;
   Context context;
   context.threads = 1;  // the k-th allocation is the same one every time
   context.stop = &stop;
@@ -114,7 +117,7 @@ void expect_all_or_nothing(const Call& call, const std::function<void()>& restor
   ASSERT_FALSE(call(context)) << "the call itself must succeed";
   const long all = counted;
   ASSERT_GT(all, 0);
-  const long every = std::max(1L, all / tries);
+  const long every = std::max(1L, all / kTries);
   for (const bool cancel : {false, true}) {
     long failed = 0;
     for (long k = 0; k < all; k += every) {
@@ -139,7 +142,7 @@ void expect_all_or_nothing(const Call& call, const std::function<void()>& restor
       EXPECT_FALSE(error->message.empty());
       ASSERT_TRUE(untouched());
     }
-    EXPECT_GT(failed, cancel ? -1 : 0);
+    EXPECT_TRUE(failed > 0 || (cancel && !polls)) << (cancel ? "never stopped" : "never failed");
   }
   stop = false;
 }
@@ -194,10 +197,17 @@ INSTANTIATE_TEST_SUITE_P(Flows, DenoiseFailure, ::testing::ValuesIn(all_flows())
   return name;
 });
 
+/// How many cores this process may use, which may be fewer than there are.
+std::size_t cores() {
+  cpu_set_t mask;
+  CPU_ZERO(&mask);
+  return sched_getaffinity(0, sizeof mask, &mask) == 0 ? std::size_t(CPU_COUNT(&mask)) : 1;
+}
+
 /// Returns when four threads (or as many as there are cores) have been at work: the start of a worker is
 /// inside TBB, where nobody could catch a failure.
 void start_the_workers() {
-  const std::size_t wanted = std::min(4u, std::max(1u, std::thread::hardware_concurrency()));
+  const std::size_t wanted = std::min<std::size_t>(4, cores());
   std::set<std::thread::id> seen;
   std::mutex lock;
   Context context;
@@ -265,7 +275,7 @@ TEST_P(FileFailure, OfReadingIsAnError) {
   const std::string in = bytes();
   expect_all_or_nothing(
       [&](const Context& context) { return error_of(io::parse_cloud(in, "in", {}, context)); }, [] {},
-      [] { return true; });
+      [] { return true; }, false);
 }
 
 TEST_P(FileFailure, OfWritingKeepsTheOldFileAndLeavesNoOther) {
@@ -317,7 +327,7 @@ TEST_P(FileFailure, OfChangingACloudLeavesItAsItWas) {
             return Done{};
           }));
         },
-        [&] { changed = original; }, [&] { return text_of(changed) == before; });
+        [&] { changed = original; }, [&] { return text_of(changed) == before; }, false);
 }
 
 INSTANTIATE_TEST_SUITE_P(
