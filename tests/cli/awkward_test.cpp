@@ -10,6 +10,7 @@
 
 #include "cli/folder.h"
 #include "cli/small_clouds.h"
+#include "support/sanitized.h"
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -91,9 +92,7 @@ TEST_F(Awkward, HeaderThatPromisesFourBillionPoints) {
   cloud.replace(cloud.find(from), from.size(), to);
   put("in.ply", cloud);
   RunSetup setup;
-#ifndef __SANITIZE_ADDRESS__
-  setup.address_space = std::size_t{2} << 30;  // no room to allocate first and look later
-#endif
+  if (!kSanitized) setup.address_space = std::size_t{2} << 30;  // no room to allocate first and look later
   const Ran ran = run({"info", "in.ply"}, setup);
   EXPECT_EQ(ran.code, 3) << ran.err;
   EXPECT_THAT(ran.err, HasSubstr("4000000000"));
@@ -253,9 +252,7 @@ TEST_F(Awkward, LinkAsOutputIsWrittenThrough) {
 }
 
 TEST_F(Awkward, MemoryIsRefusedBeforeStarting) {
-#ifdef __SANITIZE_ADDRESS__
-  GTEST_SKIP() << "address space cannot be limited under the address sanitizer";
-#endif
+  if (kSanitized) GTEST_SKIP() << "address space cannot be limited under the address sanitizer";
   BinaryPly cloud;
   cloud.xyz.assign(std::size_t{3} * 1000000, 0.5f);
   put("in.ply", cloud.bytes());

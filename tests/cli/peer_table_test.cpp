@@ -8,6 +8,7 @@
 
 #include "cli/folder.h"
 #include "cli/rich_cloud.h"
+#include "support/sanitized.h"
 
 using ::testing::AllOf;
 using ::testing::ElementsAre;
@@ -161,9 +162,7 @@ TEST_P(PeerTable, HeaderThatPromisesFourBillionPointsIsCheckedBeforeAllocating) 
   }
   put(cloud.name(), bytes);
   RunSetup setup;
-#ifndef __SANITIZE_ADDRESS__
-  setup.address_space = std::size_t{1} << 30;
-#endif
+  if (!kSanitized) setup.address_space = std::size_t{1} << 30;
   const Ran ran = run({"denoise", "--threads", "1", cloud.name(), cloud.output()}, setup);
   EXPECT_EQ(ran.code, 3) << ran.err;
   EXPECT_THAT(ran.err, AllOf(HasSubstr("4000000000"), HasSubstr("expected"), HasSubstr("found")));

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/run_command.h"
+#include "support/sanitized.h"
 
 using ::testing::HasSubstr;
 
@@ -54,9 +55,7 @@ std::vector<std::string> tests_named_in(const std::string& text) {
 }
 
 TEST(Readme, EveryPromiseNamesTestsThatExist) {
-#ifdef __SANITIZE_ADDRESS__
-  GTEST_SKIP() << "with the sanitizers only the core's tests are built";
-#endif
+  if (kSanitized) GTEST_SKIP() << "with the sanitizers only the core's tests are built";
   const Ran list = run_program("ctest", {"-N", "--test-dir", RFSMOOTH_BINARY});
   ASSERT_EQ(list.code, 0) << list.err;
   const std::string page = text_of("README.md");

@@ -6,6 +6,7 @@
 
 #include "cli/folder.h"
 #include "cli/small_clouds.h"
+#include "support/sanitized.h"
 
 using ::testing::AnyOf;
 using ::testing::ElementsAre;
@@ -76,11 +77,7 @@ TEST_F(Terminal, VerboseSaysMore) {
 class Interrupted : public InFolder, public ::testing::WithParamInterface<const char*> {};
 
 TEST_P(Interrupted, StopsAndLeavesNoFile) {
-#ifdef __SANITIZE_ADDRESS__
-  constexpr int kSide = 200;
-#else
-  constexpr int kSide = 500;
-#endif
+  constexpr int kSide = kSanitized ? 200 : 500;
   const bool last = std::string(GetParam()) == "write";  // all the work is done before
   put("in.ply", noisy_plane(last ? 100 : kSide).bytes());
   RunSetup setup;

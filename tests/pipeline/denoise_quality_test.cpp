@@ -6,6 +6,8 @@
 #include "rfsmooth/clouds/shapes.h"
 #include "rfsmooth/pipeline/denoise.h"
 
+#include "support/sanitized.h"
+
 using namespace rfsmooth;
 
 namespace {
@@ -28,9 +30,9 @@ Errors errors(const clouds::Shape& shape, const std::vector<double>& xyz) {
 
 class DenoiseQuality : public ::testing::TestWithParam<const char*> {
  protected:
-  /// 20,000 points with isotropic noise of half a spacing, denoised by `flow`.
+  /// Points with isotropic noise of half a spacing.
   std::vector<double> noisy() const {
-    Positions points = clouds::sample(*shape_, 20000, 21);
+    Positions points = clouds::sample(*shape_, test::kSanitized ? 5000 : 20000, 21);
     clouds::add_noise(points, 0.5 * clouds::mean_spacing(points), 22);
     std::vector<double> xyz;
     for (const auto& p : points) xyz.insert(xyz.end(), {p.x(), p.y(), p.z()});

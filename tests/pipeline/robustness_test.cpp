@@ -17,6 +17,7 @@
 #include "support/awkward_clouds.h"
 #include "support/connection.h"
 #include "support/kruskal.h"
+#include "support/sanitized.h"
 
 namespace rfsmooth::pipeline {
 namespace {
@@ -24,11 +25,7 @@ namespace {
 using Eigen::Vector3d;
 using Distance = std::function<double(const Vector3d&)>;
 
-#ifdef __SANITIZE_ADDRESS__
-constexpr std::size_t kMany = 4000;  // ten times as slow
-#else
-constexpr std::size_t kMany = 50000;
-#endif
+constexpr std::size_t kMany = test::kSanitized ? 4000 : 50000;
 
 /// A cloud and what must come out of it.
 struct Hard {
