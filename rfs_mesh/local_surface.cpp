@@ -49,12 +49,6 @@ LocalSurface surface_at_centre(const Quadric& q) {
   return surface;
 }
 
-LocalSurface fit_local_surface(const Positions& points, const Vector3d& p, const Index* neighbours,
-                               std::size_t count) {
-  QuadricWorkspace workspace;
-  return fit_surface(points, p, neighbours, count, workspace);
-}
-
 std::vector<LocalSurface> local_surfaces(const Positions& points, const NeighborTable& near,
                                          const Context& context) {
   std::vector<LocalSurface> surfaces(points.size());

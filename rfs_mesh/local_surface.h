@@ -40,13 +40,9 @@ struct NoiseScale {
   std::size_t neighbours = 0;  ///< m: what a quadric needs
 };
 
-/// Fits at `p` to `count` neighbours (p itself counts as one more and is added here). With fewer than 8
-/// neighbours the quadric becomes a plane; with fewer than 3, or collinear ones, the normal is some unit
-/// vector perpendicular to what there is and the shadow is p. O(count).
-LocalSurface fit_local_surface(const Positions& points, const Eigen::Vector3d& p, const Index* neighbours,
-                               std::size_t count);
-
-/// n local surfaces from the rows of `near`. O(n k), parallel, deterministic.
+/// n local surfaces, each fitted to a point and its row of `near`. With fewer than 8 neighbours the quadric
+/// becomes a plane; with fewer than 3, or collinear ones, the normal is some unit vector perpendicular to
+/// what there is and the shadow is the point. O(n k), parallel, deterministic.
 std::vector<LocalSurface> local_surfaces(const Positions& points, const NeighborTable& near,
                                          const Context& context);
 

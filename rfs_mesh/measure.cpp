@@ -29,13 +29,6 @@ double dihedral_angle(const Vector3d& p, const Vector3d& q, const Vector3d& r, c
   return M_PI - std::atan2(sine, cosine);
 }
 
-std::vector<double> face_areas(const Mesh& mesh, const Context& context) {
-  std::vector<double> areas(mesh.faces.size());
-  for_each_index(context, areas.size(),
-                 [&](std::size_t f) { areas[f] = 0.5 * face_cross(mesh.positions, mesh.faces[f]).norm(); });
-  return areas;
-}
-
 Positions face_normals(const Mesh& mesh, const Context& context) {
   Positions normals(mesh.faces.size());
   for_each_index(context, normals.size(), [&](std::size_t f) {

@@ -27,9 +27,6 @@ double face_quality(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Ei
 double dihedral_angle(const Eigen::Vector3d& p, const Eigen::Vector3d& q, const Eigen::Vector3d& r,
                       const Eigen::Vector3d& s);
 
-/// m areas.
-std::vector<double> face_areas(const Mesh& mesh, const Context& context);
-
 /// m unit normals by the right-hand rule; zero for degenerate faces.
 Positions face_normals(const Mesh& mesh, const Context& context);
 

@@ -101,12 +101,6 @@ std::size_t Table::row_size() const {
   return size;
 }
 
-std::size_t Table::values_per_row() const {
-  std::size_t n = 0;
-  for (const Field& f : fields) n += f.count;
-  return n;
-}
-
 std::string_view Table::row(std::size_t i) const {
   if (!start.empty()) return {data.data() + start[i], std::size_t(start[i + 1] - start[i])};
   const std::size_t size = count == 0 ? 0 : data.size() / count;

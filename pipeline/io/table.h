@@ -40,8 +40,6 @@ struct Table {
   /// Bytes of a row of fixed size. \throw std::logic_error if a field is a list.
   std::size_t row_size() const;
   std::string_view row(std::size_t i) const;
-  /// Values in a row without lists.
-  std::size_t values_per_row() const;
 };
 
 /// The values of plain fields `which` (their indices), count x which.size(), row-major, as doubles (parsed
