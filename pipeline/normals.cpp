@@ -9,6 +9,7 @@
 #include "rfsmooth/rfs_mesh/orient.h"
 #include "rfsmooth/rfs_mesh/parallel.h"
 #include "rfsmooth/rfs_mesh/rfs_mesh.h"
+#include "rfsmooth/rfs_mesh/thin_parts.h"
 
 namespace rfsmooth::pipeline {
 
@@ -69,6 +70,7 @@ NormalsReport run(const double* xyz, std::size_t n, const NormalsOptions& option
   report.parts =
       orient(connection.mesh, connection.emst, connection.bridges, viewpoint, side, context, &calm);
   settle(calm, index, connection.mesh, side, context);
+  if (!viewpoint) rfs_mesh::turn_out_of_thin_parts(index, side, context);
   context.check_stop();
   for (std::size_t i = 0; i < n; ++i) {
     const Index p = cloud.of_input[i];
