@@ -2,7 +2,8 @@
 /// known.
 ///
 ///     cloud -> working cloud -> connect (EMST, RFS-mesh) -> local quadrics -> bilateral normals ->
-///     orient (rfs_mesh/orient.h) -> settle those that stand against all around them
+///     orient (rfs_mesh/orient.h) -> settle those that stand against all around them ->
+///     without a viewpoint: turn those of merged walls and limbs outward (rfs_mesh/thin_parts.h)
 ///
 /// Meant for what `denoise` gives back, and for any cloud: neighbourhoods are as wide as its noise asks.
 #pragma once

@@ -107,6 +107,20 @@ TEST(Normals, SheetsOfAThinPlateThatNoiseHasMixedAreToldApart) {
             0.97);
 }
 
+TEST(Normals, BothSidesOfABladeThatHasRunTogetherFaceOutward) {
+  // A cube with a blade on one face, a fifth of a spacing thick where its points are, as smoothing leaves it.
+  Positions points = test::poisson_points(test::cube(), 6000, 1), blade;
+  for (const double z : {-1.0, 1.0})
+    for (const auto& p : test::poisson_points(test::plane(), 600, z > 0 ? 2 : 3))
+      blade.emplace_back(1 + 1.5 * p[0], 1.5 * p[1] - 0.75, 0.005 * z);
+  points = joined(points, blade);
+  const Positions normals = normals_of(points);
+  const auto middle = normals.end() - std::ptrdiff_t(blade.size());
+  EXPECT_GE(share_on_side(blade, Positions(middle, normals.end()),
+                          [](const Vector3d& p) { return Vector3d(0, 0, p[2]); }),
+            0.9);
+}
+
 TEST(Normals, EveryClosedPieceFacesOutwardAndTheWallOfACavityFacesTheCavity) {
   const Positions ball = test::poisson_points(test::unit_sphere(), 2000, 1);
   Positions large;
