@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <optional>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -17,27 +17,27 @@ namespace rfsmooth::pipeline {
 
 namespace {
 
-/// Smooths the mesh, alternating steps and swaps. Returns whether the flow left points alone that it could
-/// not place.
-bool alternate(rfs_mesh::Mesh& mesh, const DenoiseOptions& options, const std::vector<double>& strength,
+/// Smooths the mesh, alternating steps and swaps.
+void alternate(smoothing::Flow& flow, rfs_mesh::Mesh& mesh, const DenoiseOptions& options,
                DenoiseReport& report, const Context& context) {
   const int steps = *options.flow.iterations;
-  const auto flow = value_or_throw(smoothing::make_flow(mesh, options.flow, context, {{}, strength}));
+  // The positions after the last step are the result: connectivity no longer matters.
+  const bool swap = options.swap && steps > 1;
+  if (!flow.needs_faces() && !swap) std::vector<rfs_mesh::Face>().swap(mesh.faces);
   for (int step = 0; step < steps; ++step) {
     context.report("smooth", double(step) / steps);
     {
       const Stopwatch watch(report.seconds, "smooth");
-      flow->step(mesh, context);
+      flow.step(mesh, context);
     }
-    // The positions after the last step are the result: connectivity no longer matters.
-    if (!options.swap || step + 1 == steps) continue;
+    if (!swap || step + 1 == steps) continue;
     const Stopwatch watch(report.seconds, "swap");
     const std::size_t swaps = rfs_mesh::swap_edges(mesh, options.swaps, context);
     report.swaps += swaps;
-    if (swaps > 0) flow->connectivity_changed(mesh, context);
+    if (swaps > 0) flow.connectivity_changed(mesh, context);
   }
   context.report("smooth", 1);
-  if (const auto chosen = flow->automatic()) {
+  if (const auto chosen = flow.automatic()) {
     report.noise = chosen->noise;
     report.noise_left = chosen->left;
     report.effective.flow.noise = Length{chosen->noise, false};
@@ -46,7 +46,6 @@ bool alternate(rfs_mesh::Mesh& mesh, const DenoiseOptions& options, const std::v
     report.equalized_rms = chosen->equalized;
     report.equalized_largest = chosen->equalized_most;
   }
-  return flow->limits_moves();
 }
 
 /// The median edge length around each vertex: as far as it may move. A noisy point is at least as far from
@@ -66,7 +65,8 @@ std::vector<double> reaches(const rfs_mesh::Mesh& mesh, const Context& context) 
   return reach;
 }
 
-/// How far every working point moved, at most its reach. \throw Failure if a flow left the realm of numbers.
+/// How far every working point moved, at most its reach (empty: any). \throw Failure if a flow left the realm
+/// of numbers.
 Positions displacements(const Positions& from, const Positions& to, const std::vector<double>& reach,
                         const DenoiseOptions& options, const Context& context) {
   Positions moved(from.size());
@@ -77,6 +77,7 @@ Positions displacements(const Positions& from, const Positions& to, const std::v
           {ErrorCode::usage, fmt::format("the flow '{}' diverges with these options; smaller steps or "
                                          "fewer iterations are needed",
                                          options.flow.flow)});
+    if (reach.empty()) return;
     if (const double length = moved[i].norm(); length > reach[i]) moved[i] *= reach[i] / length;
   });
   return moved;
@@ -117,18 +118,15 @@ std::vector<double> working_strengths(const std::vector<double>& strength,
 /// Takes the outliers out of the working cloud: like rows that are not finite they stay and influence
 /// nothing.
 void set_aside(const std::vector<char>& outlier, rfs_mesh::WorkingCloud& cloud, DenoiseReport& report) {
-  if (std::find(outlier.begin(), outlier.end(), 1) == outlier.end()) return;
   std::vector<Index> renumbered(outlier.size(), kNone);
   Index next = 0;
   for (std::size_t p = 0; p < outlier.size(); ++p) {
     if (outlier[p] != 0) continue;
     renumbered[p] = next;
     cloud.points[next] = cloud.points[p];
-    cloud.multiplicity[next] = cloud.multiplicity[p];
     ++next;
   }
   cloud.points.resize(next);
-  cloud.multiplicity.resize(next);
   report.outlier.assign(cloud.of_input.size(), 0);
   for (std::size_t i = 0; i < cloud.of_input.size(); ++i) {
     Index& p = cloud.of_input[i];
@@ -151,15 +149,33 @@ DenoiseReport run(double* xyz, std::size_t n, const DenoiseOptions& options, con
     cloud = value_or_throw(rfs_mesh::make_working_cloud(xyz, n, context));
     report.finite = cloud.finite();
     report.distinct = cloud.points.size();
+    std::vector<Index>().swap(cloud.multiplicity);  // nobody asks
+  }
+  rfs_mesh::ConnectOptions connect = options.connect;
+  connect.tree_of_points = false;
+  std::optional<rfs_mesh::SpatialIndex> index;
+  {
+    const Stopwatch watch(report.seconds, "index");
+    context.report("index", 0);
+    index.emplace(cloud.points, context);
+  }
+  rfs_mesh::NeighborTable near;
+  {
+    const Stopwatch watch(report.seconds, "neighbours");
+    context.report("neighbours", 0);
+    near = index->nearest(connect.neighbours, context);
   }
   if (options.outliers != "smooth") {
     const Stopwatch watch(report.seconds, "outliers");
-    set_aside(find_outliers(cloud.points, context), cloud, report);
+    const std::vector<char> outlier = find_outliers(*index, near, context);
+    if (std::find(outlier.begin(), outlier.end(), 1) != outlier.end()) {
+      set_aside(outlier, cloud, report);
+      index.emplace(cloud.points, context);
+      near = rfs_mesh::nearest_left(near, outlier, *index, context);
+    }
   }
-
-  rfs_mesh::ConnectOptions connect = options.connect;
-  connect.tree_of_points = false;
-  auto connection = value_or_throw(rfs_mesh::connect(cloud.points, connect, context));
+  auto connection = value_or_throw(rfs_mesh::connect(std::move(*index), std::move(near), connect, context));
+  index.reset();
   report.seconds.insert(report.seconds.end(), connection.seconds.begin(), connection.seconds.end());
   report.spacing = connection.noise.spacing;
   report.noise = connection.noise.sigma;
@@ -179,9 +195,10 @@ DenoiseReport run(double* xyz, std::size_t n, const DenoiseOptions& options, con
   report.edges = mesh.edge_count();
 
   report.noise_left = report.noise;
-  std::vector<double> reach = reaches(mesh, context);
-  if (alternate(mesh, options, working_strengths(strength, cloud), report, context))
-    reach.assign(reach.size(), std::numeric_limits<double>::infinity());
+  const auto flow = value_or_throw(
+      smoothing::make_flow(mesh, options.flow, context, {{}, working_strengths(strength, cloud)}));
+  const std::vector<double> reach = flow->limits_moves() ? std::vector<double>() : reaches(mesh, context);
+  alternate(*flow, mesh, options, report, context);
   const Positions moved = displacements(cloud.points, mesh.positions, reach, options, context);
   context.check_stop();
   commit(xyz, n, cloud, moved, report);

@@ -58,18 +58,19 @@ Plane fit_plane(const Positions& points, const std::vector<Neighbor>& near) {
 
 class Search {
  public:
-  Search(const Positions& points, const Context& context)
-      : points_(points),
+  /// \param near rows of kNear
+  Search(const rfs_mesh::SpatialIndex& index, rfs_mesh::NeighborTable near, const Context& context)
+      : index_(index),
+        points_(index.points()),
         context_(context),
-        outlier_(points.size(), 0),
-        look_(points.size(), 1),
-        reach_(points.size()),
-        usual_(points.size()),
-        isolated_(points.size()),
-        index_(points, context),
-        near_(index_.nearest(int(kNear), context)),
+        outlier_(points_.size(), 0),
+        look_(points_.size(), 1),
+        reach_(points_.size()),
+        usual_(points_.size()),
+        isolated_(points_.size()),
+        near_(std::move(near)),
         noise_(rfs_mesh::noise_scale(index_, context)) {
-    for_each_index(context, points.size(), [&](std::size_t i) { measure_reach(i); });
+    for_each_index(context, points_.size(), [&](std::size_t i) { measure_reach(i); });
     std::vector<double> all = reach_;
     median_reach_ = rfs_mesh::median(all);
   }
@@ -191,23 +192,43 @@ class Search {
     return variances[0] > kFlat * variances.sum() && std::sqrt(variances[0]) > kFlatSigmas * noise_.sigma;
   }
 
+  const rfs_mesh::SpatialIndex& index_;
   const Positions& points_;
   const Context& context_;
   std::vector<char> outlier_, look_;
   std::vector<double> reach_;  ///< to the 8th neighbour
   std::vector<double> usual_;  ///< the lower quartile of the neighbours' reaches
   std::vector<char> isolated_;
-  rfs_mesh::SpatialIndex index_;
   rfs_mesh::NeighborTable near_;
   rfs_mesh::NoiseScale noise_;
   double median_reach_ = 0;
 };
 
+/// The first kNear of every row.
+rfs_mesh::NeighborTable nearest_few(const rfs_mesh::NeighborTable& near, const Context& context) {
+  rfs_mesh::NeighborTable few;
+  few.k = int(kNear);
+  few.items.resize(near.size() * kNear);
+  for_each_index(context, near.size(), [&](std::size_t i) {
+    std::copy_n(near[i].begin(), kNear, few.items.begin() + std::ptrdiff_t(i * kNear));
+  });
+  return few;
+}
+
 }  // namespace
+
+std::vector<char> find_outliers(const rfs_mesh::SpatialIndex& index, const rfs_mesh::NeighborTable& near,
+                                const Context& context) {
+  if (index.points().size() < kTooFew) return std::vector<char>(index.points().size(), 0);
+  return Search(index, near.k < int(kNear) ? index.nearest(int(kNear), context) : nearest_few(near, context),
+                context)
+      .run();
+}
 
 std::vector<char> find_outliers(const Positions& points, const Context& context) {
   if (points.size() < kTooFew) return std::vector<char>(points.size(), 0);
-  return Search(points, context).run();
+  const rfs_mesh::SpatialIndex index(points, context);
+  return find_outliers(index, index.nearest(int(kNear), context), context);
 }
 
 }  // namespace rfsmooth::pipeline

@@ -25,12 +25,17 @@
 #include <vector>
 
 #include "rfsmooth/rfs_mesh/context.h"
-#include "rfsmooth/rfs_mesh/points.h"
+#include "rfsmooth/rfs_mesh/neighbors.h"
 
 namespace rfsmooth::pipeline {
 
 /// n flags: 1 = outlier. None in clouds of fewer than 100 points. `points`: n x 3, finite, distinct; fastest
 /// along a Morton curve. O(n log n), about 120 bytes a point; parallel, the same for any number of threads.
 std::vector<char> find_outliers(const Positions& points, const Context& context);
+
+/// The same for a caller who has an index over the points already and rows of nearest neighbours (of any
+/// width).
+std::vector<char> find_outliers(const rfs_mesh::SpatialIndex& index, const rfs_mesh::NeighborTable& near,
+                                const Context& context);
 
 }  // namespace rfsmooth::pipeline

@@ -166,6 +166,20 @@ void raise(std::atomic<std::uint64_t>& best, std::uint64_t to) {
   }
 }
 
+/// All that are worth while, by their lowest vertex. They are dear to find and few: once, in lists by block.
+std::vector<Swap> proposals(const Swapper& swapper, std::size_t n, const Context& context) {
+  constexpr std::size_t kGrain = 256;
+  std::vector<std::vector<Swap>> blocks((n + kGrain - 1) / kGrain);
+  for_blocks(context, n, kGrain, [&](std::size_t begin, std::size_t end) {
+    std::vector<Swap>& block = blocks[begin / kGrain];
+    for (std::size_t a = begin; a < end; ++a)
+      swapper.propose(Index(a), [&](const Swap& swap) { block.push_back(swap); });
+  });
+  std::vector<Swap> all;
+  for (const std::vector<Swap>& block : blocks) all.insert(all.end(), block.begin(), block.end());
+  return all;
+}
+
 /// The swaps that are the best one on all of their faces: no two share a face.
 std::vector<Swap> independent(const std::vector<Swap>& swaps, std::size_t faces, const Context& context) {
   std::vector<std::atomic<std::uint64_t>> best(faces);
@@ -223,9 +237,7 @@ std::size_t swap_edges(Mesh& mesh, const SwapOptions& options, const Context& co
   std::size_t made = 0;
   for (int round = 0; round < options.rounds; ++round) {
     const Swapper swapper(mesh, faces, options, context);
-    const auto candidates = collect<Swap>(
-        context, mesh.positions.size(), [&](std::size_t a, auto&& emit) { swapper.propose(Index(a), emit); },
-        256);
+    const std::vector<Swap> candidates = proposals(swapper, mesh.positions.size(), context);
     auto swaps = independent(candidates, faces.size(), context);
     drop_repeated_diagonals(swaps, context);
     if (swaps.empty()) break;

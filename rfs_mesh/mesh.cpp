@@ -34,14 +34,14 @@ struct Placed {
 };
 
 /// Rows of n from (row, item) pairs: `visit(s, emit)` passes the pairs of source s to `emit`, the same way
-/// each time; `append(row, first, last, items)` puts a row's items, in the order of their sources, into the
-/// adjacency.
+/// each time; `finish(row, first, last, out)` writes what becomes of a row's items, given in the order of
+/// their sources, to `out` and returns the end; at most kMost for each of them.
 ///
 /// The pairs are dealt into buckets of rows that fit the cache, in order and without locks; then every bucket
 /// is finished by itself. O(pairs); memory for the pairs once more.
-template <class Item, class Visit, class Append>
+template <class Item, std::size_t kMost, class Visit, class Finish>
 Adjacency rows_from(std::size_t n, std::size_t sources, const Context& context, Visit&& visit,
-                    Append&& append) {
+                    Finish&& finish) {
   const std::size_t bucket = std::max<std::size_t>(1024, n / 1024 + 1), buckets = n / bucket + 1;
   const std::size_t chunk = std::max<std::size_t>(4096, sources / 256 + 1);
   const std::size_t chunks = (sources + chunk - 1) / chunk;
@@ -65,7 +65,7 @@ Adjacency rows_from(std::size_t n, std::size_t sources, const Context& context, 
 
   Adjacency rows;
   rows.start.assign(n + 1, 0);
-  std::vector<std::vector<Index>> finished(buckets);
+  const std::unique_ptr<Index[]> finished(new Index[kMost * place.back()]);  // buckets where their pairs are
   for_blocks(context, n, bucket, [&](std::size_t begin, std::size_t end) {
     const std::size_t b = begin / bucket, from = place[b * chunks], to = place[(b + 1) * chunks];
     std::vector<Index> start(end - begin + 1, 0);
@@ -74,19 +74,18 @@ Adjacency rows_from(std::size_t n, std::size_t sources, const Context& context, 
     std::vector<Item> items(to - from);
     std::vector<Index> next(start.begin(), start.end() - 1);
     for (std::size_t k = from; k < to; ++k) items[next[dealt[k].row - begin]++] = dealt[k].item;
-    finished[b].reserve(to - from);
+    Index* out = finished.get() + kMost * from;
     for (std::size_t i = begin; i < end; ++i) {
-      const std::size_t before = finished[b].size();
-      append(Index(i), items.data() + start[i - begin], items.data() + start[i - begin + 1], finished[b]);
-      rows.start[i + 1] = Index(finished[b].size() - before);
+      Index* const row = out;
+      out = finish(Index(i), items.data() + start[i - begin], items.data() + start[i - begin + 1], row);
+      rows.start[i + 1] = Index(out - row);
     }
   });
   prefix_sum(rows.start, context);
   rows.items.resize(rows.start[n]);
-  for_blocks(context, n, bucket, [&](std::size_t begin, std::size_t) {
-    std::vector<Index>& items = finished[begin / bucket];
-    std::copy(items.begin(), items.end(), rows.items.begin() + rows.start[begin]);
-    items = {};
+  for_blocks(context, n, bucket, [&](std::size_t begin, std::size_t end) {
+    const Index* const first = finished.get() + kMost * place[begin / bucket * chunks];
+    std::copy(first, first + (rows.start[end] - rows.start[begin]), rows.items.begin() + rows.start[begin]);
   });
   return rows;
 }
@@ -104,7 +103,7 @@ std::size_t insert_sorted(Index* items, std::size_t size, Index v) {
 }  // namespace
 
 Adjacency make_adjacency(std::size_t n, const std::vector<Edge>& edges, const Context& context) {
-  return rows_from<Index>(
+  return rows_from<Index, 1>(
       n, edges.size(), context,
       [&](std::size_t s, auto&& emit) {
         const Edge& e = edges[s];
@@ -112,16 +111,16 @@ Adjacency make_adjacency(std::size_t n, const std::vector<Edge>& edges, const Co
         emit(e[0], e[1]);
         emit(e[1], e[0]);
       },
-      [](Index, Index* first, Index* last, std::vector<Index>& items) {
+      [](Index, Index* first, Index* last, Index* out) {
         std::sort(first, last);
-        items.insert(items.end(), first, std::unique(first, last));
+        return std::unique_copy(first, last, out);
       });
 }
 
 void rebuild_adjacency(Mesh& mesh, const Context& context) {
   using Others = std::array<Index, 2>;  // of a face; of a loose edge its other end twice
   const std::size_t faces = mesh.faces.size();
-  mesh.one_ring = rows_from<Others>(
+  mesh.one_ring = rows_from<Others, 2>(
       mesh.positions.size(), faces + mesh.loose_edges.size(), context,
       [&](std::size_t s, auto&& emit) {
         if (s >= faces) {
@@ -135,34 +134,29 @@ void rebuild_adjacency(Mesh& mesh, const Context& context) {
         emit(f[1], Others{f[2], f[0]});
         emit(f[2], Others{f[0], f[1]});
       },
-      [](Index row, const Others* first, const Others* last, std::vector<Index>& items) {
-        constexpr std::size_t kShort = 64;
-        std::array<Index, kShort> ring;
-        std::size_t size = 0;
-        if (std::size_t(last - first) <= kShort / 2) {
+      [](Index row, const Others* first, const Others* last, Index* out) {
+        constexpr std::ptrdiff_t kShort = 32;
+        Index* end = out;
+        if (last - first <= kShort) {
           for (const Others* o = first; o != last; ++o)
             for (const Index v : *o)
-              if (v != row) size = insert_sorted(ring.data(), size, v);
-          items.insert(items.end(), ring.data(), ring.data() + size);
-          return;
+              if (v != row) end = out + insert_sorted(out, std::size_t(end - out), v);
+          return end;
         }
-        std::vector<Index> all;
-        for (const Others* o = first; o != last; ++o) all.insert(all.end(), o->begin(), o->end());
-        all.erase(std::remove(all.begin(), all.end(), row), all.end());
-        std::sort(all.begin(), all.end());
-        items.insert(items.end(), all.begin(), std::unique(all.begin(), all.end()));
+        for (const Others* o = first; o != last; ++o) end = std::copy(o->begin(), o->end(), end);
+        end = std::remove(out, end, row);
+        std::sort(out, end);
+        return std::unique(out, end);
       });
 }
 
 Adjacency vertex_faces(std::size_t n, const std::vector<Face>& faces, const Context& context) {
-  return rows_from<Index>(
+  return rows_from<Index, 1>(
       n, faces.size(), context,
       [&](std::size_t f, auto&& emit) {
         for (const Index v : faces[f]) emit(v, Index(f));
       },
-      [](Index, const Index* first, const Index* last, std::vector<Index>& items) {
-        items.insert(items.end(), first, last);
-      });
+      [](Index, const Index* first, const Index* last, Index* out) { return std::copy(first, last, out); });
 }
 
 Adjacency vertex_faces(const Mesh& mesh, const Context& context) {

@@ -160,6 +160,30 @@ NeighborTable SpatialIndex::nearest(int k, const Context& context) const {
   return table;
 }
 
+NeighborTable nearest_left(const NeighborTable& near, const std::vector<char>& gone, const SpatialIndex& left,
+                           const Context& context) {
+  const auto width = std::size_t(near.k);
+  if (left.points().size() <= width) return left.nearest(near.k, context);
+  std::vector<Index> number(gone.size());
+  Index next = 0;
+  for (std::size_t i = 0; i < gone.size(); ++i) number[i] = gone[i] != 0 ? kNone : next++;
+  NeighborTable table;
+  table.k = near.k;
+  table.items.resize(left.points().size() * width);
+  for_blocks(context, gone.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    std::vector<Neighbor> found;
+    for (std::size_t i = begin; i < end; ++i) {
+      if (gone[i] != 0) continue;
+      Index* const row = table.items.data() + number[i] * width;
+      std::transform(near[i].begin(), near[i].end(), row, [&](Index j) { return number[j]; });
+      if (std::find(row, row + width, kNone) == row + width) continue;
+      find_nearest(left.tree(), left.points()[number[i]], number[i], width, found);
+      for (std::size_t k = 0; k < width; ++k) row[k] = found[k].index;
+    }
+  });
+  return table;
+}
+
 void SpatialIndex::nearest(const Vector3d& query, int k, std::vector<Neighbor>& out) const {
   out.clear();
   if (k < 1 || points_.empty()) return;

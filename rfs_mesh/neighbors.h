@@ -77,4 +77,10 @@ class SpatialIndex {
   KdTree tree_;
 };
 
+/// The table of what is left of a cloud when the points `gone` (n flags) are taken out, as
+/// left.nearest(near.k) would give it: only rows that had one of them are searched anew. `near`: of the whole
+/// cloud; `left`: of the others, in their order. Parallel.
+NeighborTable nearest_left(const NeighborTable& near, const std::vector<char>& gone, const SpatialIndex& left,
+                           const Context& context);
+
 }  // namespace rfsmooth::rfs_mesh

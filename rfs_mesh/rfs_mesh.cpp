@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 
 #include "rfsmooth/rfs_mesh/collect.h"
@@ -95,14 +96,26 @@ std::vector<Edge> loose_edges(std::size_t n, const std::vector<Face>& faces, con
   });
 }
 
-/// The first stages, up to the surfaces: what is measured on the points themselves. Fills emst, noise and
-/// on_shadow of `c`; returns what the tests are made on.
-Ground survey(const Positions& points, const ConnectOptions& options, const Context& context,
-              const Positions* guide, Connection& c, Stages& stages) {
-  const std::size_t n = points.size();
-  const SpatialIndex index = stages.run("index", 0, [&] { return SpatialIndex(points, context); });
+/// The cloud and who is near whom in it.
+struct Cloud {
+  SpatialIndex index;
+  NeighborTable near;
+};
+
+Cloud search(const Positions& points, const ConnectOptions& options, const Context& context, Stages& stages) {
+  SpatialIndex index = stages.run("index", 0, [&] { return SpatialIndex(points, context); });
   NeighborTable near =
       stages.run("neighbours", 0.05, [&] { return index.nearest(options.neighbours, context); });
+  return {std::move(index), std::move(near)};
+}
+
+/// The first stages, up to the surfaces: what is measured on the points themselves. Fills emst, noise and
+/// on_shadow of `c`; returns what the tests are made on.
+Ground survey(Cloud cloud, const ConnectOptions& options, const Context& context, const Positions* guide,
+              Connection& c, Stages& stages) {
+  const auto& [index, near] = cloud;
+  const Positions& points = index.points();
+  const std::size_t n = points.size();
   const NoiseScale scale = stages.run("noise", 0.15, [&] { return noise_scale(index, context); });
   c.noise.spacing = mean_spacing(points, near, context);
   c.noise.sigma = scale.sigma;
@@ -117,20 +130,24 @@ Ground survey(const Positions& points, const ConnectOptions& options, const Cont
   });
   c.noise.field.resize(n);
   for_each_index(context, n, [&](std::size_t i) { c.noise.field[i] = surfaces[i].residual; });
-  if (guide == nullptr && !c.on_shadow) return {points, std::move(surfaces), std::move(near), c.emst, {}};
-  near = NeighborTable();  // neighbours among the noisy points: not needed any more
+  if (guide == nullptr && !c.on_shadow)
+    return {points, std::move(surfaces), std::move(cloud.near), c.emst, {}};
+  cloud.near = NeighborTable();  // neighbours among the noisy points: not needed any more
   return stages.run(guide != nullptr ? "guide" : "shadow", 0.5, [&] {
     return guide != nullptr ? ground_at(*guide, options.neighbours, context)
                             : shadow_ground(points, std::move(surfaces), scale, options, context);
   });
 }
 
-Connection connect_all(const Positions& points, const ConnectOptions& options, const Context& context,
-                       const Positions* guide) {
+/// `known`: the caller's search, or none.
+Connection connect_all(const Positions& points, std::optional<Cloud> known, const ConnectOptions& options,
+                       const Context& context, const Positions* guide) {
   Connection c;
   Stages stages(c.seconds, context);
   const std::size_t n = points.size();
-  Ground ground = survey(points, options, context, guide, c, stages);
+  if (!known) known.emplace(search(points, options, context, stages));
+  Ground ground = survey(std::move(*known), options, context, guide, c, stages);
+  known.reset();
   const double noise = guide != nullptr ? 0 : c.on_shadow ? kNoiseLeft * c.noise.sigma : c.noise.sigma;
   const Terrain terrain{ground.at, ground.surfaces, ground.near, noise, ground.between};
 
@@ -164,7 +181,24 @@ Result<Connection> connect(const Positions& points, const ConnectOptions& option
   return guarded([&] {
     value_or_throw(validate(options));
     Connection connection;
-    in_arena(context, [&] { connection = connect_all(points, options, context, guide); });
+    in_arena(context, [&] { connection = connect_all(points, {}, options, context, guide); });
+    return connection;
+  });
+}
+
+Result<Connection> connect(SpatialIndex index, NeighborTable near, const ConnectOptions& options,
+                           const Context& context) {
+  const Positions& points = index.points();
+  const std::size_t width =
+      std::min(std::size_t(options.neighbours), std::max<std::size_t>(points.size(), 1) - 1);
+  if (near.items.size() != points.size() * width)
+    throw std::invalid_argument("connect: near is not the table that the options ask for");
+  return guarded([&] {
+    value_or_throw(validate(options));
+    Connection connection;
+    in_arena(context, [&] {
+      connection = connect_all(points, Cloud{std::move(index), std::move(near)}, options, context, nullptr);
+    });
     return connection;
   });
 }

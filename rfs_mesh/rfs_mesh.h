@@ -20,6 +20,7 @@
 #include "rfsmooth/rfs_mesh/context.h"
 #include "rfsmooth/rfs_mesh/local_surface.h"
 #include "rfsmooth/rfs_mesh/mesh.h"
+#include "rfsmooth/rfs_mesh/neighbors.h"
 #include "rfsmooth/rfs_mesh/options.h"
 #include "rfsmooth/rfs_mesh/sdg.h"
 #include "rfsmooth/rfs_mesh/stage_times.h"
@@ -71,5 +72,10 @@ struct Connection {
 /// another size. O(n log n); parallel, the same bytes for any number of threads. Thread safe.
 Result<Connection> connect(const Positions& points, const ConnectOptions& options, const Context& context,
                            const Positions* guide = nullptr);
+
+/// The same for a caller who has an index over the points already and the rows of their nearest
+/// `options.neighbours`. \throw std::invalid_argument if `near` is of another width or size.
+Result<Connection> connect(SpatialIndex index, NeighborTable near, const ConnectOptions& options,
+                           const Context& context);
 
 }  // namespace rfsmooth::rfs_mesh

@@ -42,6 +42,12 @@ Positions fair(const rfs_mesh::Mesh& mesh, double strength, const Context& conte
   return x;
 }
 
+std::vector<double> heights(const HeightField& field, const Context& context) {
+  std::vector<double> all(field.size());
+  for_each_index(context, field.size(), [&](std::size_t i) { all[i] = field.height(i); });
+  return all;
+}
+
 /// Adds the scale of `members` points to the mixture. `before` holds the risk of the scale before it.
 void add_scale(const HeightField& field, std::size_t members, const std::vector<Index>& seeds,
                const std::vector<double>& sigma, std::vector<double>& before, Mixture& mixture,
@@ -50,7 +56,7 @@ void add_scale(const HeightField& field, std::size_t members, const std::vector<
   const Prediction prediction = patches.predict(context);
   std::vector<double> difference(field.size());
   for_each_index(context, field.size(), [&](std::size_t i) {
-    const double e = (field.heights()[i] - prediction.height[i]) / sigma[i];
+    const double e = (field.height(i) - prediction.height[i]) / sigma[i];
     const double risk = prediction.covered[i] ? e * e + 2 * prediction.own[i] - 1 : before[i];
     difference[i] = risk - before[i];
     before[i] = risk;
@@ -88,7 +94,7 @@ Positions automatic_smoothing(const rfs_mesh::Mesh& mesh, const rfs_mesh::NoiseF
 
   // The data themselves are the first candidate: no error against themselves, all their own.
   std::vector<double> risk(n, 1);
-  Mixture mixture(field.heights());
+  Mixture mixture(heights(field, context));
   std::vector<Index> seeds;  // empty: all
   const double narrowest = std::max(kFewest, kNarrowest * share * share);
   const double widest = std::max(kWidest, kWidestShare * narrowest);
@@ -107,11 +113,11 @@ Positions automatic_smoothing(const rfs_mesh::Mesh& mesh, const rfs_mesh::NoiseF
 
   Positions smooth = mesh.positions;
   for_each_index(context, n, [&](std::size_t i) {
-    const Eigen::Vector3d move = field.guide()[i] + height[i] * field.normals()[i] - mesh.positions[i];
+    const Eigen::Vector3d move = field.guide()[i] + height[i] * field.normal(i) - mesh.positions[i];
     if (move.allFinite() && move.norm() <= kStrayFrom * std::max(sigma, noise.local[i])) smooth[i] += move;
   });
   const double square = sum_over(context, n, 0.0, [&](std::size_t i) {
-    const double e = field.heights()[i] - height[i];
+    const double e = field.height(i) - height[i];
     return e * e + (2 * own[i] - 1) * noise.local[i] * noise.local[i];
   });
   report.left = std::sqrt(std::max(square, 0.0) / double(n));

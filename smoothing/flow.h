@@ -171,6 +171,9 @@ class Flow {
   /// Whether the flow keeps points that it cannot place where they are; if not, the caller limits moves.
   virtual bool limits_moves() const { return false; }
 
+  /// Whether step() reads the mesh's faces; if not, its rings are enough.
+  virtual bool needs_faces() const { return true; }
+
   /// What the automatic flow chose; empty before its first step and for other flows.
   virtual std::optional<AutomaticReport> automatic() const { return {}; }
 

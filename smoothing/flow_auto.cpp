@@ -46,16 +46,18 @@ class AutomaticFlow : public Flow {
       noise = rfs_mesh::measure_noise(index, context);
     }
     const double sigma = noise_ ? noise_->resolve(spacing) : measured(noise, spacing);
-    noise = scaled(std::move(noise), sigma);
+    noise = scaled(std::move(noise), strength_ * sigma);
     report_.emplace();
-    const Positions before = mesh.positions;
-    mesh.positions = automatic_smoothing(mesh, scaled(noise, strength_ * sigma), spacing, *report_, context);
+    Positions smooth = automatic_smoothing(mesh, noise, spacing, *report_, context);
+    mesh.positions.swap(smooth);
+    const Positions before = std::move(smooth);
     report_->noise = sigma;
     if (report_->guide_strength > 0) move_along_surface(before, sigma, spacing, mesh.positions, context);
-    limit(before, noise.local, mesh.positions, context);
+    if (strength_ > 0) limit(before, noise.local, mesh.positions, context);
   }
 
   bool limits_moves() const override { return true; }
+  bool needs_faces() const override { return false; }
   std::optional<AutomaticReport> automatic() const override { return report_; }
 
  private:
@@ -71,10 +73,11 @@ class AutomaticFlow : public Flow {
     }
   }
 
+  /// `local`: sigma times strength.
   void limit(const Positions& before, const std::vector<double>& local, Positions& points,
              const Context& context) const {
     for_each_index(context, points.size(), [&](std::size_t i) {
-      const double most = kMostLocalSigma * std::max(1.0, strength_) * local[i];
+      const double most = kMostLocalSigma * std::max(1.0, 1 / strength_) * local[i];
       const Eigen::Vector3d move = points[i] - before[i];
       if (const double length = move.norm(); length > most) points[i] = before[i] + most / length * move;
     });

@@ -15,34 +15,25 @@ namespace {
 
 constexpr std::size_t kPlane = 24;  // neighbours of the plane that gives the normal
 constexpr std::size_t kLinked = 8;  // neighbours with which a normal agrees on a side; 6 leave islands
-constexpr double kSameSheet = 0.5;  // cosine of 60 degrees
 constexpr double kWeightUnit = 255, kRounded = 0.5;
 
 }  // namespace
-
-double same_sheet(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  const double cosine = a.dot(b);
-  return cosine < kSameSheet ? 0 : cosine * cosine;
-}
 
 HeightField::HeightField(Positions guide, rfs_mesh::NeighborTable near, const Positions& data,
                          const Context& context)
     : guide_(std::move(guide)), index_(guide_, context), near_(std::move(near)) {
   if (near_.size() != size() || data.size() != size())
     throw std::invalid_argument("HeightField: guide, neighbours and data are not of the same points");
-  normals_.resize(size());
-  heights_.resize(size());
   local_.resize(size());
   for_each_index(context, size(), [&](std::size_t i) {
     const auto row = near_[i];
-    normals_[i] = plane_normal(guide_, i, {row.begin(), row.begin() + std::min(row.size(), kPlane)});
-    if (!normals_[i].allFinite()) normals_[i] = Eigen::Vector3d::UnitZ();
+    const Eigen::Vector3d normal =
+        plane_normal(guide_, i, {row.begin(), row.begin() + std::min(row.size(), kPlane)});
+    local_[i].normal = normal.allFinite() ? Eigen::Vector3f(normal.cast<float>()) : Eigen::Vector3f::UnitZ();
   });
   orient(context);
-  for_each_index(context, size(), [&](std::size_t i) {
-    heights_[i] = normals_[i].dot(data[i] - guide_[i]);
-    local_[i] = {normals_[i].cast<float>(), float(heights_[i])};
-  });
+  for_each_index(context, size(),
+                 [&](std::size_t i) { local_[i].height = float(normal(i).dot(data[i] - guide_[i])); });
   near_weight_.resize(near_.items.size());
   for_each_index(context, size(), [&](std::size_t i) {
     const auto row = near_[i];
@@ -67,12 +58,12 @@ void HeightField::orient(const Context& context) {
     for (auto j = first; j != last; ++j) {
       const auto [back, end] = linked(*j);
       if (*j < i && std::find(back, end, Index(i)) != end) continue;  // the other has this link
-      emit({Index(i), *j, float(normals_[i].dot(normals_[*j])), 1});
+      emit({Index(i), *j, local_[i].normal.dot(local_[*j].normal), 1});
     }
   });
   const rfs_mesh::Regions regions = rfs_mesh::grow_regions(size(), links, {}, context);
   for_each_index(context, size(), [&](std::size_t i) {
-    if (regions.turned[i] != 0) normals_[i] = -normals_[i];
+    if (regions.turned[i] != 0) local_[i].normal = -local_[i].normal;
   });
 }
 

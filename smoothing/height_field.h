@@ -21,7 +21,7 @@ class HeightField {
  public:
   static constexpr int kNear = 32;  ///< neighbours over which values are averaged
 
-  /// A point in single precision, together for those who read many at random.
+  /// A point's normal and height, together for those who read many at random.
   struct Local {
     Eigen::Vector3f normal;
     float height;
@@ -38,9 +38,10 @@ class HeightField {
 
   std::size_t size() const { return guide_.size(); }
   const Positions& guide() const { return guide_; }
-  const std::vector<Eigen::Vector3d>& normals() const { return normals_; }  ///< n, unit
-  const std::vector<double>& heights() const { return heights_; }           ///< n: z, world units
-  const rfs_mesh::SpatialIndex& index() const { return index_; }            ///< over the guide
+  /// Unit; from single precision, like the height.
+  Eigen::Vector3d normal(std::size_t i) const { return local_[i].normal.cast<double>(); }
+  double height(std::size_t i) const { return double(local_[i].height); }  ///< z, world units
+  const rfs_mesh::SpatialIndex& index() const { return index_; }           ///< over the guide
 
   const std::vector<Local>& local() const { return local_; }          ///< n: normals and heights
   const rfs_mesh::NeighborTable& neighbors() const { return near_; }  ///< n x kNear, on the guide
@@ -54,16 +55,12 @@ class HeightField {
   Positions guide_;
   rfs_mesh::SpatialIndex index_;
   rfs_mesh::NeighborTable near_;
-  std::vector<Eigen::Vector3d> normals_;
-  std::vector<double> heights_;
   std::vector<Local> local_;
   std::vector<std::uint8_t> near_weight_;  ///< of near_, in 1/255: 1 - d^2/r^2; 0 on another sheet
 };
 
-/// cos^2 of the angle between two normals; 0 beyond 60 degrees: another sheet, or round an edge.
-double same_sheet(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
-
-/// The same of the cosine.
+/// cos^2 of the angle between two normals from its cosine; 0 beyond 60 degrees: another sheet, or round an
+/// edge.
 inline float same_sheet(float cosine) {
   return cosine < 0.5F ? 0 : cosine * cosine;
 }

@@ -64,7 +64,7 @@ HiddenSheets split_hidden_sheets(const HeightField& field, double sigma, std::ve
   const std::size_t n = field.size();
   std::vector<double> residual(n), v(n);
   for_each_index(context, n, [&](std::size_t i) {
-    residual[i] = std::clamp((field.heights()[i] - height[i]) / sigma, -kFar, kFar);
+    residual[i] = std::clamp((field.height(i) - height[i]) / sigma, -kFar, kFar);
     v[i] = residual[i] * residual[i] + 2 * own[i];
   });
   // A mean over few points follows its own points and makes any noise look like two sheets: where it does not

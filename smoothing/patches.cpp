@@ -83,20 +83,18 @@ void Patches::fit_one(std::size_t s, double sigma, Workspace& work) {
   using Matrix6 = Eigen::Matrix<double, 6, 6>;
   using Vector6 = Eigen::Matrix<double, 6, 1>;
   const Index seed = seeds_[s];
-  const auto& normals = field_.normals();
   Patch& patch = patches_[s];
   patch.centre = field_.guide()[seed];
   rfs_mesh::WideNeighbors& near = work.near;
   near.find(patch.centre);
 
-  Eigen::Vector3d axis = 2 * normals[seed];
+  const std::vector<HeightField::Local>& local = field_.local();
+  const Eigen::Vector3f own = local[seed].normal;
+  Eigen::Vector3f sum_of_normals = 2 * own;
   const auto row = field_.neighbors()[seed];
-  for (std::size_t k = 0; k < std::min(row.size(), kAxis - 1); ++k) {
-    const Eigen::Vector3d& n = normals[row[k]];
-    if (same_sheet(n, normals[seed]) == 0) continue;
-    axis += n;
-  }
-  axis.normalize();
+  for (std::size_t k = 0; k < std::min(row.size(), kAxis - 1); ++k)
+    if (const Eigen::Vector3f& n = local[row[k]].normal; same_sheet(n.dot(own)) > 0) sum_of_normals += n;
+  const Eigen::Vector3d axis = sum_of_normals.cast<double>().normalized();
   // A little beyond the farthest point, so that it counts.
   const float square = std::max(1.1F * near.farthest(), std::numeric_limits<float>::min());
   const float shrink = 1 / std::sqrt(square);  // from the lengths of `near` to radii
@@ -115,14 +113,14 @@ void Patches::fit_one(std::size_t s, double sigma, Workspace& work) {
   double sum = 0, squares = 0;
   for (std::size_t k = 0; k < members_; ++k) {
     const Index i = near.index()[k];
-    const HeightField::Local& local = field_.local()[i];
-    const float cosine = patch.axis.dot(local.normal);
+    const HeightField::Local& here = local[i];
+    const float cosine = patch.axis.dot(here.normal);
     const float inside = 1 - near.squared()[k] / square;
     const float w = same_sheet(cosine) * inside * inside;
     const Eigen::Vector3f r(near.x()[k], near.y()[k], near.z()[k]);
     work.u[k] = u.dot(r);
     work.v[k] = v.dot(r);
-    work.height[k] = w > 0 ? up.dot(r) + local.height * in_radii / cosine : 0;
+    work.height[k] = w > 0 ? up.dot(r) + here.height * in_radii / cosine : 0;
     work.weight[k] = w;
     work.cosine[k] = cosine;
     indices[k] = i;

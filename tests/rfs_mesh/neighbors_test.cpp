@@ -114,4 +114,20 @@ TEST(Neighbors, CancelStopsTheSearch) {
   EXPECT_THROW(SpatialIndex(points, context), rfsmooth::Failure);
 }
 
+TEST(Neighbors, OfWhatIsLeftAreThoseOfTheRestAlone) {
+  const Positions points = rfsmooth::test::noisy_sphere(2000, 0.1, 1);
+  const NeighborTable near = SpatialIndex(points, {}).nearest(9, {});
+  for (const std::size_t every : {1000, 7, 2, 1}) {
+    std::vector<char> gone(points.size(), 0);
+    for (std::size_t i = 0; i + 5 < points.size(); i += every) gone[i] = 1;
+    Positions rest;
+    for (std::size_t i = 0; i < points.size(); ++i)
+      if (gone[i] == 0) rest.push_back(points[i]);
+    const SpatialIndex left(rest, {});
+    const NeighborTable expected = left.nearest(9, {}), found = nearest_left(near, gone, left, {});
+    EXPECT_EQ(found.k, expected.k) << every;
+    EXPECT_EQ(found.items, expected.items) << every;
+  }
+}
+
 }  // namespace

@@ -202,6 +202,16 @@ TEST(Connection, GuideDecidesConnectivityAndPointsStay) {
   EXPECT_TRUE(guided.mesh.positions == noisy);
 }
 
+TEST(Connection, IsTheSameFromNeighboursThatAreKnown) {
+  const Positions points = test::noisy_sphere(3000, 0.02, 1);
+  const SpatialIndex index(points, {});
+  const Connection from_known = connect(index, index.nearest(24, {}), {}, {}).value(),
+                   own = connected(points);
+  EXPECT_EQ(from_known.mesh.faces, own.mesh.faces);
+  EXPECT_EQ(from_known.noise.field, own.noise.field);
+  EXPECT_THROW((void)connect(index, index.nearest(23, {}), {}, {}), std::invalid_argument);
+}
+
 TEST(Connection, SaysWhatItCannotDo) {
   ConnectOptions options;
   options.umbrella.quality = 2;

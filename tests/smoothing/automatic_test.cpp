@@ -125,7 +125,7 @@ TEST(Patches, PredictAQuadricExactlyWhateverTheSharesOfThePointsAre) {
     const Prediction p = patches.predict({});
     for (std::size_t i = 0; i < guide.size(); ++i) {
       ASSERT_TRUE(p.covered[i]);
-      EXPECT_NEAR(p.height[i], field.heights()[i], 1e-4) << m;
+      EXPECT_NEAR(p.height[i], field.height(i), 1e-4) << m;
       EXPECT_GT(p.own[i], 0);
       EXPECT_LT(p.own[i], 1);
     }
@@ -149,7 +149,7 @@ TEST(Patches, OwnIsTheDerivativeOfAPredictionByThePointsHeight) {
   data[i].z() += step;
   const HeightField lifted(guide, support::near_on(guide), data, {});
   const Prediction after = Patches(lifted, 24, seeds, sigma, {}).predict({});
-  const double side = field.normals()[i].z();
+  const double side = field.normal(i).z();
   EXPECT_NEAR(side * (after.height[i] - before.height[i]) / (side * step * side), before.own[i], 1e-4);
 }
 

@@ -31,7 +31,7 @@ struct Sheet {
         data.back().z() = truth.back() + (right ? louder : 1) * noise(random);
       }
     field = std::make_unique<HeightField>(guide, support::near_on(guide), data, Context{});
-    up = field->normals()[0].z();
+    up = field->normal(0).z();
     height.assign(guide.size(), 0);
     own.assign(guide.size(), 0.01);
   }
