@@ -113,7 +113,8 @@ Cloud search(const Positions& points, const ConnectOptions& options, const Conte
 /// on_shadow of `c`; returns what the tests are made on.
 Ground survey(Cloud cloud, const ConnectOptions& options, const Context& context, const Positions* guide,
               Connection& c, Stages& stages) {
-  const auto& [index, near] = cloud;
+  const SpatialIndex& index = cloud.index;
+  const NeighborTable& near = cloud.near;
   const Positions& points = index.points();
   const std::size_t n = points.size();
   const NoiseScale scale = stages.run("noise", 0.15, [&] { return noise_scale(index, context); });
