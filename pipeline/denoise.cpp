@@ -224,8 +224,8 @@ Result<DenoiseReport> denoise(double* xyz, std::size_t n, const DenoiseOptions& 
 }
 
 std::size_t denoise_memory(std::size_t n) {
-  // Peaks of 767 to 816 bytes a point beyond the input on a bumpy sphere of a million points with noise of
-  // one spacing, one to four threads (tests/bench `speed`); the rest is room.
+  // Peaks of 573 to 603 bytes a point beyond the input on a bumpy sphere of 200,000 and a million points with
+  // noise of one spacing, one and four threads; the rest is room, for noise that takes more patches as well.
   constexpr std::size_t kBytesPerPoint = 950, kFixed = std::size_t{20} << 20;
   return kFixed + n * kBytesPerPoint;
 }
