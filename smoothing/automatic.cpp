@@ -75,6 +75,18 @@ void add_scale(const HeightField& field, std::size_t members, const std::vector<
   mixture.add(prediction.height, prediction.own, difference, context);
 }
 
+/// Root mean square error of the smoothed heights (automatic.h, step 5).
+double noise_left(const HeightField& field, const std::vector<double>& height, const std::vector<double>& own,
+                  const rfs_mesh::NoiseField& noise, const Context& context) {
+  // The points that count, their variance, and their risk.
+  const Eigen::Vector3d sums = sum_over(context, field.size(), Eigen::Vector3d(0, 0, 0), [&](std::size_t i) {
+    const double e = field.height(i) - height[i], square = noise.local[i] * noise.local[i];
+    if (!(std::abs(e) <= kStrayFrom * std::max(noise.sigma, noise.local[i]))) return Eigen::Vector3d(0, 0, 0);
+    return Eigen::Vector3d(1, own[i] * square, e * e + (2 * own[i] - 1) * square);
+  });
+  return sums[0] > 0 ? std::sqrt(std::max({0.0, sums[1], sums[2]}) / sums[0]) : noise.sigma;
+}
+
 }  // namespace
 
 Positions automatic_smoothing(const rfs_mesh::Mesh& mesh, const rfs_mesh::NoiseField& noise, double spacing,
@@ -116,11 +128,7 @@ Positions automatic_smoothing(const rfs_mesh::Mesh& mesh, const rfs_mesh::NoiseF
     const Eigen::Vector3d move = field.guide()[i] + height[i] * field.normal(i) - mesh.positions[i];
     if (move.allFinite() && move.norm() <= kStrayFrom * std::max(sigma, noise.local[i])) smooth[i] += move;
   });
-  const double square = sum_over(context, n, 0.0, [&](std::size_t i) {
-    const double e = field.height(i) - height[i];
-    return e * e + (2 * own[i] - 1) * noise.local[i] * noise.local[i];
-  });
-  report.left = std::sqrt(std::max(square, 0.0) / double(n));
+  report.left = noise_left(field, height, own, noise, context);
   return smooth;
 }
 

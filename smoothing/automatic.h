@@ -18,6 +18,11 @@
 ///    edges and thin parts narrow ones, and where every patch is worse than the data the data stay.
 /// 4. Walls thinner than the noise, which look like one sheet with more of it, are taken apart where the
 ///    cloud as a whole says that they are walls (hidden_sheets.h).
+/// 5. What is left: the mean risk of the mixture, at least the variance that the data's own weight passes on,
+///    sum sigma^2 df/dz. Points farther than 5 sigma from the result stay where they are and do not count:
+///    strays are no noise. On the development shapes (10,000 points, noise of 0.2 to 2 spacings) the estimate
+///    is off by a quarter in the middle, at worst four times too high on a sphere, of which hardly anything
+///    is left: an error of 2 % in sigma is then as much.
 ///
 /// One strength for the whole cloud cannot do this: on the development shapes the best single c differs by
 /// 100 times between the flat and the thin parts of one cloud. Points move along the guide's normals from the

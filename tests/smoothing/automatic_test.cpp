@@ -70,6 +70,23 @@ TEST(Automatic, LeavesATenthOfTheErrorOfANoisySphereAndKnowsWhatIsLeft) {
   }
 }
 
+TEST(Automatic, WhatIsLeftIsNearTheTruthAndStraysAreNotPartOfIt) {
+  double sigma = 0;
+  rfs_mesh::Mesh mesh = noisy_sphere(0.5, sigma);
+  AutomaticReport report;
+  const double truth = support::rms_off_unit_sphere(smoothed(mesh, sigma, report));
+  const double left = report.left;
+  EXPECT_GT(left, 0.7 * truth);
+  EXPECT_LT(left, 1.5 * truth);
+  // One point in five hundred thirty sigma off.
+  for (std::size_t i = 0; i < mesh.positions.size(); i += 500) mesh.positions[i] *= 1 + 30 * sigma;
+  const Positions smooth = smoothed(mesh, sigma, report);
+  Positions others;
+  for (std::size_t i = 0; i < smooth.size(); ++i)
+    if (i % 500 != 0) others.push_back(smooth[i]);
+  EXPECT_LT(report.left, 1.5 * support::rms_off_unit_sphere(others));
+}
+
 TEST(Automatic, NoiseThatVariesIsSmoothedAwayWhereItIsLoud) {
   // Four times the noise on one half of a sphere: with one figure for both it would stay, taken for shape.
   rfs_mesh::Mesh mesh = support::icosphere(5), noise = mesh;
