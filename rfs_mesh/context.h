@@ -19,7 +19,7 @@ struct Context {
   /// Number of threads; 0 = all cores. The result is the same for every value.
   int threads = 0;
 
-  /// Seed of everything random (today: nothing in the library draws random numbers without it).
+  /// Seed of everything random: nothing in the library draws random numbers without it.
   std::uint64_t seed = 1;
 
   /// Called on the caller's thread with the stage's name and the share done in [0, 1]; return false to
