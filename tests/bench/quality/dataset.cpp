@@ -146,6 +146,7 @@ rfs_mesh::Mesh load_shape(const std::string& shape) {
   if (solid != solids().end()) return solid->second();
   for (const auto& name : shape_names())
     if (name == shape) return read_off(fs::path(RFSMOOTH_BENCH_MESHES) / (shape + ".off"));
+  if (fs::path(shape).extension() == ".off") return read_off(shape);
   throw std::invalid_argument("no shape is called \"" + shape + "\"");
 }
 
@@ -156,7 +157,8 @@ std::shared_ptr<const Sample> make_sample(const std::string& name, const rfs_mes
 
 std::shared_ptr<const Sample> load_sample(const std::string& shape, std::size_t n, const fs::path& cache) {
   rfs_mesh::Mesh mesh = load_shape(shape);
-  if (cache.empty()) return make_sample(shape, mesh, n);
+  const bool from_elsewhere = fs::path(shape).extension() == ".off";  // may change under its name
+  if (cache.empty() || from_elsewhere) return make_sample(fs::path(shape).stem().string(), mesh, n);
   const fs::path folder = cache / "samples";
   const fs::path file =
       folder / (shape + "-" + std::to_string(n) + "-v" + std::to_string(kSampleVersion) + ".xyz64");

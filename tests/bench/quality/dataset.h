@@ -46,12 +46,12 @@ struct Case {
 const std::vector<std::string>& shape_names();   ///< all thirteen
 const std::vector<std::string>& sharp_shapes();  ///< those with edges: cube, L-part, anchor_dense, rotor
 
-/// The surface of a shape, in its own units. \throw std::invalid_argument for an unknown name,
-/// std::runtime_error if its file is not there.
+/// The surface of a shape, in its own units; `shape` may also be the path of an OFF file. \throw
+/// std::invalid_argument for an unknown name, std::runtime_error if its file is not there.
 rfs_mesh::Mesh load_shape(const std::string& shape);
 
-/// n Poisson-disk points of a shape, normalised. Kept under `cache` (created if absent; empty = not kept) and
-/// read from there the next time. Same bytes for the same arguments.
+/// n Poisson-disk points of a shape, normalised. Kept under `cache` (created if absent; empty = not kept;
+/// files of other folders are not) and read from there the next time. Same bytes for the same arguments.
 std::shared_ptr<const Sample> load_sample(const std::string& shape, std::size_t n,
                                           const std::filesystem::path& cache);
 

@@ -62,7 +62,7 @@ int run(int argc, char** argv) {
   app.add_flag("--no-goals", no_goals, "tables and ratios only, without the goals on data of their own");
   app.add_option("--cache", plan.cache, "folder of samples and peers' results")->capture_default_str();
   app.add_option("--threads", plan.threads, "for every tool")->capture_default_str();
-  app.add_option("--shapes", plan.shapes, "only these");
+  app.add_option("--shapes", plan.shapes, "only these; the path of an OFF file is one, too");
   app.add_option("--sizes", plan.sizes, "numbers of points")->capture_default_str();
   app.add_option("--tier", plan.most_tier, "0: only the strong quick peers, 1: all but WLOP, 2: all")
       ->capture_default_str();
