@@ -17,6 +17,11 @@ std::string short_number(double x) {
   return text;
 }
 
+/// As a column shows it: a file's name without its folder.
+std::string label(const std::string& shape) {
+  return std::filesystem::path(shape).stem().string().substr(0, 16);
+}
+
 void print_row(const std::string& name, const std::map<std::string, Row>& rows,
                const std::vector<std::string>& shapes) {
   const auto over = [&](auto&& get) {
@@ -37,9 +42,9 @@ void print_row(const std::string& name, const std::map<std::string, Row>& rows,
   const std::string cd = worst(Measure::chamfer), p2s = worst(Measure::p2s);
   std::printf("  %-34s %8s %8s %-16s %8s %8s %-16s %6.1f %6.3f %7.2f\n", name.c_str(),
               short_number(kUnit * mean(rows, shapes, Measure::chamfer)).c_str(),
-              short_number(kUnit * value(rows.at(cd), Measure::chamfer)).c_str(), cd.substr(0, 16).c_str(),
+              short_number(kUnit * value(rows.at(cd), Measure::chamfer)).c_str(), label(cd).c_str(),
               short_number(kUnit * mean(rows, shapes, Measure::p2s)).c_str(),
-              short_number(kUnit * value(rows.at(p2s), Measure::p2s)).c_str(), p2s.substr(0, 16).c_str(),
+              short_number(kUnit * value(rows.at(p2s), Measure::p2s)).c_str(), label(p2s).c_str(),
               over([](const Row& r) { return r.measures.normal; }),
               over([](const Row& r) { return r.measures.evenness; }),
               over([](const Row& r) { return r.seconds; }));
@@ -105,13 +110,13 @@ Ratio compare(const Cell& cell, const std::string& ours, const std::vector<std::
     const double x = value(row->second, measure);
     if (x / here.value > ratio.worst) {
       ratio.worst = x / here.value;
-      ratio.worst_shape = shape;
+      ratio.worst_shape = label(shape);
       ratio.worst_peer = here.setting;
     }
     const double fixed = x / value(cell.at(best.setting).at(shape), measure);
     if (fixed > ratio.worst_fixed) {
       ratio.worst_fixed = fixed;
-      ratio.worst_fixed_shape = shape;
+      ratio.worst_fixed_shape = label(shape);
     }
   }
   return ratio;
