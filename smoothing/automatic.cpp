@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "rfsmooth/rfs_mesh/parallel.h"
 #include "rfsmooth/smoothing/height_field.h"
@@ -27,10 +29,11 @@ constexpr double kStrayFrom = 5;          // sigma
 
 constexpr double kNoNoise = 0.05;     // spacings: less than this is left alone
 constexpr std::size_t kTooFew = 32;   // points
+constexpr std::size_t kDense = 4;     // a subset with a point in so many has its own among the nearest
 constexpr std::size_t kOwnMean = 60;  // from this many members on, patches average; below, near neighbours do
-constexpr double kNearEvidence = 10;  // nats per sigma^2 of a near mean
-constexpr double kPatchEvidence = 0.25;  // the same of a patch mean, per member (Leung and Barron's 1/4)
-constexpr double kTolerated = 0.15;      // sigma^2: what a near mean scatters by without meaning anything
+constexpr float kNearEvidence = 10;   // nats per sigma^2 of a near mean
+constexpr float kPatchEvidence = 0.25F;  // the same of a patch mean, per member (Leung and Barron's 1/4)
+constexpr float kTolerated = 0.15F;      // sigma^2: what a near mean scatters by without meaning anything
 
 Positions fair(const rfs_mesh::Mesh& mesh, double strength, const Context& context) {
   const Operator op = umbrella(mesh, context);
@@ -42,47 +45,48 @@ Positions fair(const rfs_mesh::Mesh& mesh, double strength, const Context& conte
   return x;
 }
 
-std::vector<double> heights(const HeightField& field, const Context& context) {
-  std::vector<double> all(field.size());
-  for_each_index(context, field.size(), [&](std::size_t i) { all[i] = field.height(i); });
+std::vector<float> heights(const HeightField& field, const Context& context) {
+  std::vector<float> all(field.size());
+  for_each_index(context, field.size(), [&](std::size_t i) { all[i] = field.local()[i].height; });
   return all;
 }
 
 /// Adds the scale of `members` points to the mixture. `before` holds the risk of the scale before it.
 void add_scale(const HeightField& field, std::size_t members, const std::vector<Index>& seeds,
-               const std::vector<double>& sigma, std::vector<double>& before, Mixture& mixture,
+               const std::vector<double>& sigma, std::vector<float>& before, Mixture& mixture,
                const Context& context) {
   const Patches patches(field, members, seeds, sigma, context);
-  const Prediction prediction = patches.predict(context);
-  std::vector<double> difference(field.size());
+  Prediction prediction = patches.predict(context);
+  std::vector<float> difference(field.size());
   for_each_index(context, field.size(), [&](std::size_t i) {
-    const double e = (field.height(i) - prediction.height[i]) / sigma[i];
-    const double risk = prediction.covered[i] ? e * e + 2 * prediction.own[i] - 1 : before[i];
+    const float e = (field.local()[i].height - prediction.height[i]) / float(sigma[i]);
+    const float risk = prediction.covered[i] != 0 ? e * e + 2 * prediction.own[i] - 1 : before[i];
     difference[i] = risk - before[i];
     before[i] = risk;
   });
   // A wide patch is judged over its own width, but must not be far off anywhere near the point either: the
   // few points that it misses by sigmas would be outvoted.
-  const std::vector<double> near = field.local_mean(field.local_mean(difference, context), context);
+  const std::vector<float> near = field.local_mean(field.local_mean(difference, context), context);
   const bool wide = members >= kOwnMean;
   if (wide) difference = patches.mean(patches.mean(difference, context), context);
   for_each_index(context, field.size(), [&](std::size_t i) {
-    const double against = wide ? kPatchEvidence * double(members) * difference[i] +
-                                      kNearEvidence * std::max(0.0, near[i] - kTolerated)
-                                : kNearEvidence * near[i];
-    difference[i] = prediction.covered[i] ? -against : std::nan("");
+    const float against = wide ? kPatchEvidence * float(members) * difference[i] +
+                                     kNearEvidence * std::max(0.0F, near[i] - kTolerated)
+                               : kNearEvidence * near[i];
+    difference[i] = prediction.covered[i] != 0 ? -against : std::numeric_limits<float>::quiet_NaN();
   });
-  mixture.add(prediction.height, prediction.own, difference, context);
+  mixture.add(std::move(prediction.height), std::move(prediction.own), difference, context);
 }
 
 /// Root mean square error of the smoothed heights (automatic.h, step 5).
-double noise_left(const HeightField& field, const std::vector<double>& height, const std::vector<double>& own,
+double noise_left(const HeightField& field, const std::vector<float>& height, const std::vector<float>& own,
                   const rfs_mesh::NoiseField& noise, const Context& context) {
   // The points that count, their variance, and their risk.
   const Eigen::Vector3d sums = sum_over(context, field.size(), Eigen::Vector3d(0, 0, 0), [&](std::size_t i) {
-    const double e = field.height(i) - height[i], square = noise.local[i] * noise.local[i];
+    const double e = field.height(i) - double(height[i]), share = double(own[i]),
+                 square = noise.local[i] * noise.local[i];
     if (!(std::abs(e) <= kStrayFrom * std::max(noise.sigma, noise.local[i]))) return Eigen::Vector3d(0, 0, 0);
-    return Eigen::Vector3d(1, own[i] * square, e * e + (2 * own[i] - 1) * square);
+    return Eigen::Vector3d(1, share * square, e * e + (2 * share - 1) * square);
   });
   return sums[0] > 0 ? std::sqrt(std::max({0.0, sums[1], sums[2]}) / sums[0]) : noise.sigma;
 }
@@ -90,7 +94,9 @@ double noise_left(const HeightField& field, const std::vector<double>& height, c
 }  // namespace
 
 Positions automatic_smoothing(const rfs_mesh::Mesh& mesh, const rfs_mesh::NoiseField& noise, double spacing,
-                              AutomaticReport& report, const Context& context) {
+                              AutomaticReport& report, rfs_mesh::NeighborTable& near,
+                              const Context& context) {
+  near = {};
   const std::size_t n = mesh.positions.size();
   const double sigma = noise.sigma;
   report = {};
@@ -102,10 +108,10 @@ Positions automatic_smoothing(const rfs_mesh::Mesh& mesh, const rfs_mesh::NoiseF
   context.report("smooth", 0.1);
   rfs_mesh::NeighborTable near_guide;
   report.stranded = land_stranded(mesh, kStrayFrom * sigma, guide, near_guide, context);
-  const HeightField field(std::move(guide), std::move(near_guide), mesh.positions, context);
+  HeightField field(std::move(guide), std::move(near_guide), mesh.positions, context);
 
   // The data themselves are the first candidate: no error against themselves, all their own.
-  std::vector<double> risk(n, 1);
+  std::vector<float> risk(n, 1);
   Mixture mixture(heights(field, context));
   std::vector<Index> seeds;  // empty: all
   const double narrowest = std::max(kFewest, kNarrowest * share * share);
@@ -113,22 +119,25 @@ Positions automatic_smoothing(const rfs_mesh::Mesh& mesh, const rfs_mesh::NoiseF
   for (double m = narrowest; m <= widest; m *= 2) {
     context.report("smooth", 0.1 + 0.9 * std::log(m / narrowest) / std::log(2 * widest / narrowest));
     const std::size_t members = std::min(std::size_t(m), n / 2);
-    if (seeds.empty()) seeds = thin_all(field.guide(), field.neighbors(), context);
-    while (seeds.size() * members > kMostOverlap * n) seeds = thin(field.guide(), seeds, context);
+    if (seeds.empty()) seeds = thin_all(field.index(), field.neighbors(), context);
+    while (seeds.size() * members > kMostOverlap * n)
+      seeds = seeds.size() > n / kDense ? thin_dense(field.index(), field.neighbors(), seeds, context)
+                                        : thin(field.guide(), seeds, context);
     add_scale(field, members, seeds, noise.local, risk, mixture, context);
     if (m >= double(n) / 2) break;
   }
 
-  std::vector<double> height, own;
+  std::vector<float> height, own;
   mixture.average(height, own, context);
   split_hidden_sheets(field, sigma, height, own, context);
 
   Positions smooth = mesh.positions;
   for_each_index(context, n, [&](std::size_t i) {
-    const Eigen::Vector3d move = field.guide()[i] + height[i] * field.normal(i) - mesh.positions[i];
+    const Eigen::Vector3d move = field.guide()[i] + double(height[i]) * field.normal(i) - mesh.positions[i];
     if (move.allFinite() && move.norm() <= kStrayFrom * std::max(sigma, noise.local[i])) smooth[i] += move;
   });
   report.left = noise_left(field, height, own, noise, context);
+  near = field.release_neighbors();
   return smooth;
 }
 

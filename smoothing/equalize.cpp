@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
+#include <stdexcept>
+#include <utility>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
@@ -84,13 +87,58 @@ bool surrounded(const Around& around) {
   return widest < kWidestGap;
 }
 
-std::vector<Eigen::Vector3f> plane_normals(const Positions& points, const rfs_mesh::NeighborTable& near,
-                                           const Context& context) {
-  std::vector<Eigen::Vector3f> normals(points.size());
-  for_each_index(context, points.size(),
-                 [&](std::size_t i) { normals[i] = plane_normal(points, i, near[i]).cast<float>(); });
-  return normals;
-}
+/// The kNear nearest of every point.
+class Near {
+ public:
+  /// Picks them out of the rows of a table, in place. Also makes the normals of their planes.
+  Near(rfs_mesh::NeighborTable table, const Positions& points, std::vector<Eigen::Vector3f>& normals,
+       const Context& context)
+      : table_(std::move(table)) {
+    if (table_.size() != points.size() || table_.k < kNear || table_.k > kMostRanked)
+      throw std::invalid_argument("equalize: every point needs 24 to 256 neighbours");
+    normals.resize(points.size());
+    const auto width = std::size_t(table_.k);
+    for_each_index(context, points.size(), [&](std::size_t i) {
+      pick(points, points[i], table_.items.data() + i * width, width);
+      normals[i] = plane_normal(points, i, (*this)[i]).cast<float>();
+    });
+  }
+
+  rfs_mesh::Adjacency::Row operator[](std::size_t i) const {
+    const Index* const first = table_.items.data() + i * std::size_t(table_.k);
+    return {first, first + kNear};
+  }
+
+ private:
+  static constexpr int kMostRanked = 256;
+
+  /// Brings the nearest to the front of the row, nearer ones first; those equally far up to 1e-5 as they
+  /// were.
+  static void pick(const Positions& points, const Eigen::Vector3d& p, Index* row, std::size_t width) {
+    // The bits of positive numbers are in the order of the numbers. The place in the row takes the last
+    // eight, so no two are equal and counting the smaller ones gives every one a place of its own.
+    constexpr std::size_t kPadded = 4;
+    std::array<std::int32_t, kMostRanked> key;
+    std::array<Index, kMostRanked> old;
+    for (std::size_t k = 0; k < width; ++k) {
+      const auto square = float((points[row[k]] - p).squaredNorm());
+      std::memcpy(&key[k], &square, sizeof square);
+      key[k] = std::int32_t(std::uint32_t(key[k]) & 0xffffff00U) | std::int32_t(k);
+      old[k] = row[k];
+    }
+    for (std::size_t k = width; k % kPadded != 0; ++k) key[k] = std::numeric_limits<std::int32_t>::max();
+    typedef std::int32_t Keys __attribute__((vector_size(kPadded * sizeof(std::int32_t))));
+    for (std::size_t k = 0; k < width; k += kPadded) {
+      Keys own, nearer = {};
+      std::memcpy(&own, key.data() + k, sizeof own);
+      for (std::size_t j = 0; j < width; ++j) nearer -= key[j] < own;
+      for (std::size_t lane = 0; lane < std::min(kPadded, width - k); ++lane)
+        row[std::size_t(nearer[lane])] = old[k + lane];
+    }
+  }
+
+  rfs_mesh::NeighborTable table_;
+};
 
 Frame open_frame(const Positions& points, const std::vector<Eigen::Vector3f>& normals, std::size_t i,
                  rfs_mesh::Adjacency::Row near, Around& around) {
@@ -163,11 +211,12 @@ Eigen::Vector3f push(const Positions& points, const Eigen::Vector3d& p, const In
 
 }  // namespace
 
-void slide_back(Positions& points, const Positions& before, double share, const Context& context) {
+void slide_back(Positions& points, const Positions& before, double share, rfs_mesh::NeighborTable table,
+                const Context& context) {
   const std::size_t n = points.size();
   if (n <= std::size_t(kNear)) return;
-  const rfs_mesh::NeighborTable near = rfs_mesh::SpatialIndex(points, context).nearest(kNear, context);
-  const std::vector<Eigen::Vector3f> normals = plane_normals(points, near, context);
+  std::vector<Eigen::Vector3f> normals;
+  const Near near(std::move(table), points, normals, context);
   Positions back(n);
   for_each_index(context, n, [&](std::size_t i) {
     Around around;
@@ -178,15 +227,14 @@ void slide_back(Positions& points, const Positions& before, double share, const 
 }
 
 Equalized equalize(Positions& points, const Positions& before, double sigma, double spacing,
-                   const Context& context) {
+                   rfs_mesh::NeighborTable table, const Context& context) {
   const std::size_t n = points.size();
   if (n <= std::size_t(kNear) || !(sigma > 0)) return {};
-  const rfs_mesh::NeighborTable near = rfs_mesh::SpatialIndex(points, context).nearest(kNear, context);
+  std::vector<Eigen::Vector3f> normals;
+  const Near near(std::move(table), points, normals, context);
   std::vector<Frame> frames(n);
-  {
-    const std::vector<Eigen::Vector3f> normals = plane_normals(points, near, context);
-    for_each_index(context, n, [&](std::size_t i) { frames[i] = make_frame(points, normals, i, near[i]); });
-  }
+  for_each_index(context, n, [&](std::size_t i) { frames[i] = make_frame(points, normals, i, near[i]); });
+  std::vector<Eigen::Vector3f>().swap(normals);
 
   // Beside a rim the pushes from outside are missing too: points there stay as well.
   std::vector<char> inside(n);

@@ -25,6 +25,7 @@
 #include <vector>
 
 #include "rfsmooth/rfs_mesh/context.h"
+#include "rfsmooth/rfs_mesh/neighbors.h"
 #include "rfsmooth/rfs_mesh/points.h"
 
 namespace rfsmooth::smoothing {
@@ -37,14 +38,18 @@ struct Equalized {
 /// Gives smoothed points back a share of where they were along the surface. Each point goes to `share` (0 to
 /// 1) of the tangential offset of `before` (n x 3, its noisy place), on the quadric through the smoothed
 /// points around it, rising by at most 0.3 of the way. With share 1 what is left of the smoothing is a move
-/// along the normal. O(n log n), parallel, the same bits for any number of threads.
-void slide_back(Positions& points, const Positions& before, double share, const Context& context);
+/// along the normal. `near` as in equalize. O(n), parallel, the same bits for any number of threads.
+void slide_back(Positions& points, const Positions& before, double share, rfs_mesh::NeighborTable near,
+                const Context& context);
 
 /// Moves `points` (n x 3, near a surface), which noise with standard deviation `sigma` (world units) had
 /// moved; `before` (n x 3): where they were then. By pushing no point moves farther along the surface than
 /// half the local distance between points, half of `spacing` (world units), or 0.7 sigma: noise has hardly
-/// carried it farther. O(n log n), parallel, the same bits for any number of threads.
+/// carried it farther. `near`: n x 24 or more (up to 256), neighbours of every point where it was about as
+/// near to them as now, say on the guide: the 24 nearest are picked among those (clouds of 24 points or fewer
+/// stay as they are). O(n), parallel, the same bits for any number of threads. \throw std::invalid_argument
+/// if there are fewer.
 Equalized equalize(Positions& points, const Positions& before, double sigma, double spacing,
-                   const Context& context);
+                   rfs_mesh::NeighborTable near, const Context& context);
 
 }  // namespace rfsmooth::smoothing

@@ -1,5 +1,6 @@
 /// The automatic flow (automatic.h): strength chosen at every point from the data.
 #include <algorithm>
+#include <utility>
 
 #include "rfsmooth/rfs_mesh/local_surface.h"
 #include "rfsmooth/rfs_mesh/noise.h"
@@ -48,11 +49,13 @@ class AutomaticFlow : public Flow {
     const double sigma = noise_ ? noise_->resolve(spacing) : measured(noise, spacing);
     noise = scaled(std::move(noise), strength_ * sigma);
     report_.emplace();
-    Positions smooth = automatic_smoothing(mesh, noise, spacing, *report_, context);
+    rfs_mesh::NeighborTable near;
+    Positions smooth = automatic_smoothing(mesh, noise, spacing, *report_, near, context);
     mesh.positions.swap(smooth);
     const Positions before = std::move(smooth);
     report_->noise = sigma;
-    if (report_->guide_strength > 0) move_along_surface(before, sigma, spacing, mesh.positions, context);
+    if (report_->guide_strength > 0)
+      move_along_surface(before, sigma, spacing, std::move(near), mesh.positions, context);
     if (strength_ > 0) limit(before, noise.local, mesh.positions, context);
   }
 
@@ -62,14 +65,14 @@ class AutomaticFlow : public Flow {
 
  private:
   /// Evens the points out; or takes back what the guide moved them, so that they move along normals only.
-  void move_along_surface(const Positions& before, double sigma, double spacing, Positions& points,
-                          const Context& context) {
+  void move_along_surface(const Positions& before, double sigma, double spacing, rfs_mesh::NeighborTable near,
+                          Positions& points, const Context& context) {
     if (equalize_) {
-      const Equalized moved = equalize(points, before, strength_ * sigma, spacing, context);
+      const Equalized moved = equalize(points, before, strength_ * sigma, spacing, std::move(near), context);
       report_->equalized = moved.rms;
       report_->equalized_most = moved.largest;
     } else {
-      slide_back(points, before, 1, context);
+      slide_back(points, before, 1, std::move(near), context);
     }
   }
 

@@ -8,6 +8,7 @@
 #include "rfsmooth/rfs_mesh/parallel.h"
 #include "rfsmooth/rfs_mesh/sides.h"
 #include "rfsmooth/smoothing/plane_normal.h"
+#include "rfsmooth/smoothing/weighted_sum.h"
 
 namespace rfsmooth::smoothing {
 
@@ -15,7 +16,7 @@ namespace {
 
 constexpr std::size_t kPlane = 24;  // neighbours of the plane that gives the normal
 constexpr std::size_t kLinked = 8;  // neighbours with which a normal agrees on a side; 6 leave islands
-constexpr double kWeightUnit = 255, kRounded = 0.5;
+constexpr float kWeightUnit = 255, kRounded = 0.5F;
 
 }  // namespace
 
@@ -43,7 +44,7 @@ HeightField::HeightField(Positions guide, rfs_mesh::NeighborTable near, const Po
       const double away = square > 0 ? (guide_[row[k]] - guide_[i]).squaredNorm() / square : 0;
       const bool same = same_sheet(local_[i].normal.dot(local_[row[k]].normal)) > 0;
       near_weight_[i * row.size() + k] =
-          std::uint8_t(same ? kWeightUnit * std::clamp(1 - away, 0.0, 1.0) + kRounded : 0);
+          std::uint8_t(same ? kWeightUnit * float(std::clamp(1 - away, 0.0, 1.0)) + kRounded : 0);
     }
   });
 }
@@ -67,17 +68,13 @@ void HeightField::orient(const Context& context) {
   });
 }
 
-std::vector<double> HeightField::local_mean(const std::vector<double>& values, const Context& context) const {
-  std::vector<double> mean(values.size());
+std::vector<float> HeightField::local_mean(const std::vector<float>& values, const Context& context) const {
+  const auto width = std::size_t(near_.k);
+  std::vector<float> mean(values.size());
   for_each_index(context, size(), [&](std::size_t i) {
-    const auto row = near_[i];
-    const std::uint8_t* const weight = near_weight_.data() + i * row.size();
-    double sum = kWeightUnit * values[i], weights = kWeightUnit;
-    for (std::size_t k = 0; k < row.size(); ++k) {
-      sum += double(weight[k]) * values[row[k]];
-      weights += double(weight[k]);
-    }
-    mean[i] = sum / weights;
+    const WeightedSum around =
+        weighted_sum(width, near_.items.data() + i * width, near_weight_.data() + i * width, values.data());
+    mean[i] = (kWeightUnit * values[i] + around.sum) / (kWeightUnit + around.weights);
   });
   return mean;
 }

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "rfsmooth/rfs_mesh/context.h"
@@ -47,7 +48,10 @@ class HeightField {
   const rfs_mesh::NeighborTable& neighbors() const { return near_; }  ///< n x kNear, on the guide
 
   /// The mean of `values` over the nearest points on the same sheet, nearer ones weighing more. O(n).
-  std::vector<double> local_mean(const std::vector<double>& values, const Context& context) const;
+  std::vector<float> local_mean(const std::vector<float>& values, const Context& context) const;
+
+  /// The neighbours, for one who goes on with them; the field is of no use afterwards.
+  rfs_mesh::NeighborTable release_neighbors() { return std::move(near_); }
 
  private:
   void orient(const Context& context);

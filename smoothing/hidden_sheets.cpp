@@ -20,14 +20,32 @@ constexpr double kPrior = 0.15;         // standard deviation of ln c
 constexpr int kRounds = 4, kAgain = 4;  // local means in all 16, over some 500 points
 constexpr double kFar = 4;              // sigma: residuals beyond belong to strays
 
-/// The logarithm of the ratio of the likelihoods: two sheets against louder noise.
-double for_sheets(double residual, double squared_distance, double variance) {
-  const double all = variance + squared_distance, square = residual * residual,
-               x = std::sqrt(squared_distance) * std::abs(residual) / variance;
-  const double log_cosh = x + std::log1p(std::exp(-2 * x)) - std::log(2.0);
-  return 0.5 * std::log(all / variance) - (square + squared_distance) / (2 * variance) + log_cosh +
-         square / (2 * all);
-}
+/// The sum of the logarithms of the ratios of the likelihoods: two sheets against louder noise.
+class ForSheets {
+ public:
+  void add(double residual, double squared_distance, double variance) {
+    const double all = variance + squared_distance, square = residual * residual, per_variance = 1 / variance,
+                 x = std::sqrt(squared_distance) * std::abs(residual) * per_variance;
+    // log cosh x = x + log((1 + e^-2x) / 2)
+    const double near_one = 0.5 + 0.5 * double(std::exp(float(-2 * x)));
+    sum_ += x - 0.5 * ((square + squared_distance) * per_variance - square / all);
+    product_ *= all * per_variance * near_one * near_one;
+    if (!(product_ > kLow && product_ < kHigh)) gather();
+  }
+  double sum() {
+    gather();
+    return sum_;
+  }
+
+ private:
+  static constexpr double kLow = 1e-200, kHigh = 1e200;  // one more factor stays within the numbers
+  /// Logarithms are taken of products: of one where it would have been hundreds.
+  void gather() {
+    sum_ += 0.5 * std::log(product_);
+    product_ = 1;
+  }
+  double sum_ = 0, product_ = 1;
+};
 
 struct Sum {
   double evidence = 0;
@@ -40,15 +58,26 @@ struct Sum {
 };
 
 /// Over all c; `v` are the residuals' local means.
-HiddenSheets best_evidence(const std::vector<double>& residual, const std::vector<double>& own,
-                           const std::vector<double>& v, const Context& context) {
+HiddenSheets best_evidence(const std::vector<float>& residual, const std::vector<float>& own,
+                           const std::vector<float>& v, const Context& context) {
   const std::size_t n = v.size();
   HiddenSheets best;
   for (double c = 1.1; c > 0.55; c *= 0.9) {
-    const Sum sum = sum_over(context, n, Sum(), [&](std::size_t i) {
-      if (own[i] > kMostOwn || v[i] < kLouder * c || v[i] > kLoudest) return Sum();
-      return Sum{for_sheets(residual[i], v[i] - c, c * (1 - 2 * own[i])), 1};
-    });
+    const Sum sum = reduce_blocks(
+        context, n, Sum(),
+        [&](std::size_t begin, std::size_t end) {
+          ForSheets evidence;
+          Sum part;
+          for (std::size_t i = begin; i < end; ++i) {
+            const double mean = double(v[i]), share = double(own[i]);
+            if (share > kMostOwn || mean < kLouder * c || mean > kLoudest) continue;
+            evidence.add(double(residual[i]), mean - c, c * (1 - 2 * share));
+            ++part.points;
+          }
+          part.evidence = evidence.sum();
+          return part;
+        },
+        [](Sum a, const Sum& b) { return a += b; });
     const double unlikely = std::log(c) / kPrior, evidence = sum.evidence - unlikely * unlikely / 2;
     if (double(sum.points) < kLeastShare * double(n) || evidence <= best.evidence) continue;
     best.evidence = evidence;
@@ -59,12 +88,12 @@ HiddenSheets best_evidence(const std::vector<double>& residual, const std::vecto
 
 }  // namespace
 
-HiddenSheets split_hidden_sheets(const HeightField& field, double sigma, std::vector<double>& height,
-                                 std::vector<double>& own, const Context& context) {
+HiddenSheets split_hidden_sheets(const HeightField& field, double sigma, std::vector<float>& height,
+                                 std::vector<float>& own, const Context& context) {
   const std::size_t n = field.size();
-  std::vector<double> residual(n), v(n);
+  std::vector<float> residual(n), v(n);
   for_each_index(context, n, [&](std::size_t i) {
-    residual[i] = std::clamp((field.height(i) - height[i]) / sigma, -kFar, kFar);
+    residual[i] = float(std::clamp((field.height(i) - double(height[i])) / sigma, -kFar, kFar));
     v[i] = residual[i] * residual[i] + 2 * own[i];
   });
   // A mean over few points follows its own points and makes any noise look like two sheets: where it does not
@@ -77,10 +106,11 @@ HiddenSheets split_hidden_sheets(const HeightField& field, double sigma, std::ve
   }
   const double c = found.variance;
   found.split = sum_over(context, n, std::size_t(0), [&](std::size_t i) {
-    if (v[i] < kLouder * c) return std::size_t(0);
-    const double d = std::sqrt(v[i] - c), side = std::tanh(d * residual[i] / c);
-    height[i] += sigma * d * side;
-    own[i] += (1 - own[i]) * d * d / c * (1 - side * side);
+    const double mean = double(v[i]), share = double(own[i]);
+    if (mean < kLouder * c) return std::size_t(0);
+    const double d = std::sqrt(mean - c), side = std::tanh(d * double(residual[i]) / c);
+    height[i] = float(double(height[i]) + sigma * d * side);
+    own[i] = float(share + (1 - share) * d * d / c * (1 - side * side));
     return std::size_t(1);
   });
   return found;

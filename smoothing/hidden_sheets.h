@@ -39,7 +39,7 @@ struct HiddenSheets {
 /// Moves `height` (n: the smoothed heights over the field, world units) of points on hidden double sheets to
 /// the nearer one, and their `own` share along (n, automatic.h). \param sigma the noise, world units, > 0.
 /// O(n); parallel, the same bits for any number of threads.
-HiddenSheets split_hidden_sheets(const HeightField& field, double sigma, std::vector<double>& height,
-                                 std::vector<double>& own, const Context& context);
+HiddenSheets split_hidden_sheets(const HeightField& field, double sigma, std::vector<float>& height,
+                                 std::vector<float>& own, const Context& context);
 
 }  // namespace rfsmooth::smoothing

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include <Eigen/Core>
 
@@ -21,35 +22,36 @@ using Weights = Eigen::Array<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMost, 
 
 }  // namespace
 
-Mixture::Mixture(const std::vector<double>& data) : evidence_(data.size(), 0) {
-  candidates_.push_back({{data.begin(), data.end()}, std::vector<float>(data.size(), 1), evidence_});
+Mixture::Mixture(std::vector<float> data) : evidence_(data.size(), 0) {
+  std::vector<float> own(data.size(), 1);
+  candidates_.push_back({std::move(data), std::move(own), evidence_});
 }
 
-void Mixture::add(const std::vector<double>& height, const std::vector<double>& own,
-                  const std::vector<double>& gain, const Context& context) {
+void Mixture::add(std::vector<float> height, std::vector<float> own, const std::vector<float>& gain,
+                  const Context& context) {
   if (candidates_.size() == kMost) throw std::length_error("Mixture: more than 16 candidates");
-  Candidate c{{height.begin(), height.end()}, {own.begin(), own.end()}, std::vector<float>(gain.size())};
+  Candidate c{std::move(height), std::move(own), std::vector<float>(gain.size())};
   for_each_index(context, gain.size(), [&](std::size_t i) {
-    if (!std::isnan(gain[i])) evidence_[i] += float(gain[i]);
+    if (!std::isnan(gain[i])) evidence_[i] += gain[i];
     c.evidence[i] = std::isnan(gain[i]) ? -std::numeric_limits<float>::infinity() : evidence_[i];
   });
   candidates_.push_back(std::move(c));
 }
 
-void Mixture::average(std::vector<double>& height, std::vector<double>& own, const Context& context) const {
+void Mixture::average(std::vector<float>& height, std::vector<float>& own, const Context& context) {
   const std::size_t n = evidence_.size(), count = candidates_.size();
   const auto rows = Eigen::Index(count);
-  std::vector<float> largest(n);
+  // From here on e^(evidence - the largest): the exponential is the dear part.
   for_each_index(context, n, [&](std::size_t i) {
-    largest[i] = candidates_[0].evidence[i];
-    for (const Candidate& c : candidates_) largest[i] = std::max(largest[i], c.evidence[i]);
+    float largest = candidates_[0].evidence[i];
+    for (const Candidate& c : candidates_) largest = std::max(largest, c.evidence[i]);
+    for (Candidate& c : candidates_) c.evidence[i] = std::exp(c.evidence[i] - largest);
   });
   const auto weights = [&](std::size_t i, const Weights& shares) {
     Weights w(rows);
     for (std::size_t s = 0; s < count; ++s)
-      w[Eigen::Index(s)] =
-          shares[Eigen::Index(s)] * std::exp(double(candidates_[s].evidence[i]) - double(largest[i]));
-    return Weights(w / w.sum());
+      w[Eigen::Index(s)] = shares[Eigen::Index(s)] * double(candidates_[s].evidence[i]);
+    return Weights(w * (1 / w.sum()));
   };
   Weights shares = Weights::Constant(rows, 1 / double(count));
   for (int round = 0; round < kRounds; ++round) {
@@ -61,11 +63,13 @@ void Mixture::average(std::vector<double>& height, std::vector<double>& own, con
   own.resize(n);
   for_each_index(context, n, [&](std::size_t i) {
     const Weights w = weights(i, shares);
-    height[i] = own[i] = 0;
+    double mixed = 0, mixed_own = 0;
     for (std::size_t s = 0; s < count; ++s) {
-      height[i] += w[Eigen::Index(s)] * double(candidates_[s].height[i]);
-      own[i] += w[Eigen::Index(s)] * double(candidates_[s].own[i]);
+      mixed += w[Eigen::Index(s)] * double(candidates_[s].height[i]);
+      mixed_own += w[Eigen::Index(s)] * double(candidates_[s].own[i]);
     }
+    height[i] = float(mixed);
+    own[i] = float(mixed_own);
   });
 }
 

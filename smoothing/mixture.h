@@ -20,17 +20,17 @@ namespace rfsmooth::smoothing {
 class Mixture {
  public:
   /// \param data n: the heights themselves are the first candidate, all their own, with evidence 0.
-  explicit Mixture(const std::vector<double>& data);
+  explicit Mixture(std::vector<float> data);
 
   /// A further candidate, of at most 15. \param height, own n: as in Prediction. \param gain n: its evidence
   /// over the candidate before it, nats; NaN: no prediction here (the evidence stays for the next). \throw
   /// std::length_error.
-  void add(const std::vector<double>& height, const std::vector<double>& own, const std::vector<double>& gain,
+  void add(std::vector<float> height, std::vector<float> own, const std::vector<float>& gain,
            const Context& context);
 
-  /// Replaces `height` and `own` (n) by the averages. O(n) times the number of candidates; parallel, the same
-  /// bits for any number of threads.
-  void average(std::vector<double>& height, std::vector<double>& own, const Context& context) const;
+  /// Replaces `height` and `own` (n) by the averages; the mixture is used up. O(n) times the number of
+  /// candidates; parallel, the same bits for any number of threads.
+  void average(std::vector<float>& height, std::vector<float>& own, const Context& context);
 
  private:
   struct Candidate {

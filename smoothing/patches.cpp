@@ -11,6 +11,7 @@
 #include "rfsmooth/rfs_mesh/parallel.h"
 #include "rfsmooth/smoothing/quadric_sums.h"
 #include "rfsmooth/smoothing/thinning.h"
+#include "rfsmooth/smoothing/weighted_sum.h"
 
 namespace rfsmooth::smoothing {
 
@@ -43,7 +44,10 @@ struct Patches::Covering {
 
 Patches::Patches(const HeightField& field, std::size_t members, std::vector<Index> seeds,
                  const std::vector<double>& sigma, const Context& context)
-    : field_(field), members_(std::min(members, field.size())), seeds_(std::move(seeds)) {
+    : field_(field),
+      members_(std::min(members, field.size())),
+      per_member_(1 / double(members_)),
+      seeds_(std::move(seeds)) {
   Covering covering(field_.size());
   fit(0, seeds_.size(), sigma, covering, context);
   // A place between sheets or at the end of something thin may be in no patch, or only at the rim of one.
@@ -188,12 +192,12 @@ void Patches::transpose(Covering& covering, const Context& context) {
 
 Prediction Patches::predict(const Context& context) const {
   const std::size_t n = field_.size();
-  Prediction p{std::vector<double>(n, 0), std::vector<double>(n, 0), std::vector<char>(n, 0)};
+  Prediction p{std::vector<float>(n, 0), std::vector<float>(n, 0), std::vector<char>(n, 0)};
   for_each_index(context, n, [&](std::size_t i) {
     const Eigen::Vector3f& normal = field_.local()[i].normal;
     float height = 0, own = 0, weights = 0;
     for (Index k = over_start_[i]; k < over_start_[i + 1]; ++k) {
-      const Patch& patch = patches_[over_[k] / Index(members_)];
+      const Patch& patch = patches_[patch_of(over_[k])];
       const float e = float(member_weight_[over_[k]]) / kWeightUnit, w = e * patch.weight;
       const Eigen::Vector3f r = (field_.guide()[i] - patch.centre).cast<float>();
       const float a = r.dot(patch.u), b = r.dot(patch.v);
@@ -209,31 +213,28 @@ Prediction Patches::predict(const Context& context) const {
       weights += w;
     }
     if (!(weights > 0)) return;
-    p.height[i] = double(height / weights);
-    p.own[i] = double(own / weights);
+    p.height[i] = height / weights;
+    p.own[i] = own / weights;
     p.covered[i] = 1;
   });
   return p;
 }
 
-std::vector<double> Patches::mean(const std::vector<double>& values, const Context& context) const {
-  std::vector<double> of_patch(patches_.size(), 0), mean = values;
+std::vector<float> Patches::mean(const std::vector<float>& values, const Context& context) const {
+  std::vector<float> of_patch(patches_.size(), 0), mean = values;
   for_each_index(
       context, patches_.size(),
       [&](std::size_t s) {
-        double sum = 0, weights = 0;
-        for (std::size_t k = s * members_; k < (s + 1) * members_; ++k) {
-          sum += double(member_weight_[k]) * values[member_[k]];
-          weights += double(member_weight_[k]);
-        }
-        if (weights > 0) of_patch[s] = sum / weights;
+        const WeightedSum inside = weighted_sum(members_, member_.data() + s * members_,
+                                                member_weight_.data() + s * members_, values.data());
+        if (inside.weights > 0) of_patch[s] = inside.sum / inside.weights;
       },
       kTogether);
   for_each_index(context, field_.size(), [&](std::size_t i) {
-    double sum = 0, weights = 0;
+    float sum = 0, weights = 0;
     for (Index k = over_start_[i]; k < over_start_[i + 1]; ++k) {
-      const double w = member_weight_[over_[k]];
-      sum += w * of_patch[over_[k] / Index(members_)];
+      const float w = member_weight_[over_[k]];
+      sum += w * of_patch[patch_of(over_[k])];
       weights += w;
     }
     if (weights > 0) mean[i] = sum / weights;

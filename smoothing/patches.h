@@ -24,9 +24,9 @@ namespace rfsmooth::smoothing {
 
 /// What the patches say of every point.
 struct Prediction {
-  std::vector<double> height;  ///< n, along the point's own normal over the guide
-  std::vector<double> own;     ///< n: d height_i / d z_i, the share of the point's own height
-  std::vector<char> covered;   ///< n: whether any patch reaches the point
+  std::vector<float> height;  ///< n, along the point's own normal over the guide
+  std::vector<float> own;     ///< n: d height_i / d z_i, the share of the point's own height
+  std::vector<char> covered;  ///< n: whether any patch reaches the point
 };
 
 /// Overlapping quadrics over one number of points.
@@ -43,7 +43,7 @@ class Patches {
   Prediction predict(const Context& context) const;
 
   /// Averages over patches of the patches' averages: a mean over about twice `members` points. O(n).
-  std::vector<double> mean(const std::vector<double>& values, const Context& context) const;
+  std::vector<float> mean(const std::vector<float>& values, const Context& context) const;
 
  private:
   /// One fitted quadric, over u and v in radii. A monomial of either polynomial stands behind those of lower
@@ -67,8 +67,13 @@ class Patches {
   void fit_one(std::size_t s, double sigma, Workspace& work);
   void transpose(Covering& covering, const Context& context);
 
+  /// Whose member k is: k / members_, rounded down. Halves from the next whole number, the product cannot
+  /// round to it.
+  std::size_t patch_of(Index k) const { return std::size_t((double(k) + 0.5) * per_member_); }
+
   const HeightField& field_;
   std::size_t members_ = 0;
+  double per_member_ = 0;  ///< 1 / members
   std::vector<Index> seeds_;
   std::vector<Patch> patches_;
   std::vector<Index> member_;          ///< patches x members

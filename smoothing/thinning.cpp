@@ -1,8 +1,10 @@
 #include "rfsmooth/smoothing/thinning.h"
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 
-#include "rfsmooth/rfs_mesh/neighbors.h"
+#include "rfsmooth/rfs_mesh/collect.h"
 #include "rfsmooth/rfs_mesh/parallel.h"
 
 namespace rfsmooth::smoothing {
@@ -11,64 +13,145 @@ namespace {
 
 constexpr std::size_t kNear = 3;
 
+using Three = std::array<Index, kNear>;
+
 enum class State : unsigned char { open, kept, dropped };
 
-}  // namespace
+/// Marks that several threads set, none takes back.
+using Marks = std::vector<std::atomic<char>>;
+void mark(std::atomic<char>& at) {
+  at.store(1, std::memory_order_relaxed);
+}
 
-std::vector<Index> thin(const Positions& points, const std::vector<Index>& subset, const Context& context) {
-  const std::size_t n = subset.size();
-  if (n <= kNear) return {subset.begin(), subset.begin() + std::ptrdiff_t(std::min<std::size_t>(n, 1))};
-  Positions at(n);
-  for_each_index(context, n, [&](std::size_t s) { at[s] = points[subset[s]]; });
-  std::vector<Index> kept =
-      thin_all(at, rfs_mesh::SpatialIndex(at, context).nearest(int(kNear), context), context);
+/// The thinning of points whose three nearest are known. An edge of the graph is seen from one end only, so
+/// each end may tell the other.
+class Thinning {
+ public:
+  Thinning(const Positions& at, const std::vector<Three>& near, const Context& context)
+      : near_(near),
+        context_(context),
+        priority_(at.size()),
+        state_(at.size(), State::open),
+        blocked_(at.size()),
+        covered_(at.size()),
+        open_(at.size()) {
+    for_each_index(context, at.size(), [&](std::size_t s) {
+      // A sum, since two points that are each other's third neighbours would tie.
+      double sum = 0;
+      for (const Index t : near_[s]) sum += (at[t] - at[s]).squaredNorm();
+      priority_[s] = sum;
+      open_[s] = Index(s);
+    });
+  }
+
+  std::vector<Index> run() {
+    while (!open_.empty()) {
+      // Open ones before all their open neighbours are kept, then the neighbours of kept ones are dropped.
+      for_open([&](Index s) {
+        for (const Index t : near_[s])
+          if (state_[t] == State::open) mark(blocked_[before(t, s) ? s : t]);
+      });
+      for_open([&](Index s) {
+        if (blocked_[s] == 0) state_[s] = State::kept;
+      });
+      for_open([&](Index s) {
+        for (const Index t : near_[s]) {
+          if (state_[s] == State::kept) mark(covered_[t]);
+          if (state_[t] == State::kept) mark(covered_[s]);
+        }
+      });
+      for_open([&](Index s) {
+        blocked_[s].store(0, std::memory_order_relaxed);
+        if (state_[s] == State::open && covered_[s] != 0) state_[s] = State::dropped;
+      });
+      const std::vector<Index> all = std::move(open_);
+      open_ = rfs_mesh::collect<Index>(context_, all.size(), [&](std::size_t k, auto&& emit) {
+        if (state_[all[k]] == State::open) emit(all[k]);
+      });
+    }
+    return rfs_mesh::collect<Index>(context_, state_.size(), [&](std::size_t s, auto&& emit) {
+      if (state_[s] == State::kept) emit(Index(s));
+    });
+  }
+
+ private:
+  bool before(Index a, Index b) const {
+    return priority_[a] != priority_[b] ? priority_[a] > priority_[b] : a < b;
+  }
+  template <class Body>
+  void for_open(const Body& body) {
+    for_each_index(context_, open_.size(), [&](std::size_t k) { body(open_[k]); });
+  }
+
+  const std::vector<Three>& near_;
+  const Context& context_;
+  std::vector<double> priority_;
+  std::vector<State> state_;
+  Marks blocked_, covered_;
+  std::vector<Index> open_;
+};
+
+Positions places(const Positions& points, const std::vector<Index>& subset, const Context& context) {
+  Positions at(subset.size());
+  for_each_index(context, subset.size(), [&](std::size_t s) { at[s] = points[subset[s]]; });
+  return at;
+}
+
+/// Those of a set with fewer than four points: one, if there is any.
+std::vector<Index> first_of(const std::vector<Index>& subset) {
+  return {subset.begin(), subset.begin() + std::ptrdiff_t(std::min<std::size_t>(subset.size(), 1))};
+}
+
+std::vector<Index> named(std::vector<Index> kept, const std::vector<Index>& subset) {
   for (Index& k : kept) k = subset[k];
   return kept;
 }
 
-std::vector<Index> thin_all(const Positions& at, const rfs_mesh::NeighborTable& near,
+std::vector<Three> first_three(const rfs_mesh::NeighborTable& near, const Context& context) {
+  std::vector<Three> three(near.size());
+  for_each_index(context, near.size(),
+                 [&](std::size_t s) { std::copy_n(near[s].begin(), kNear, three[s].begin()); });
+  return three;
+}
+
+}  // namespace
+
+std::vector<Index> thin(const Positions& points, const std::vector<Index>& subset, const Context& context) {
+  if (subset.size() <= kNear) return first_of(subset);
+  const Positions at = places(points, subset, context);
+  const auto three = first_three(rfs_mesh::SpatialIndex(at, context).nearest(int(kNear), context), context);
+  return named(Thinning(at, three, context).run(), subset);
+}
+
+std::vector<Index> thin_all(const rfs_mesh::SpatialIndex& index, const rfs_mesh::NeighborTable& near,
                             const Context& context) {
-  const std::size_t n = at.size();
-  std::vector<double> priority(n);
-  std::vector<rfs_mesh::Edge> edges(n * kNear);
-  for_each_index(context, n, [&](std::size_t s) {
-    // A sum, since two points that are each other's third neighbours would tie.
-    priority[s] = 0;
-    for (std::size_t k = 0; k < kNear; ++k) {
-      const Index t = near[s][k];
-      priority[s] += (at[t] - at[s]).squaredNorm();
-      edges[s * kNear + k] = {std::min(Index(s), t), std::max(Index(s), t)};
+  return Thinning(index.points(), first_three(near, context), context).run();
+}
+
+std::vector<Index> thin_dense(const rfs_mesh::SpatialIndex& index, const rfs_mesh::NeighborTable& near,
+                              const std::vector<Index>& subset, const Context& context) {
+  const Positions& points = index.points();
+  if (subset.size() <= kNear) return first_of(subset);
+  std::vector<Index> number(points.size(), kNone);
+  for_each_index(context, subset.size(), [&](std::size_t s) { number[subset[s]] = Index(s); });
+  std::vector<Three> three(subset.size());
+  for_blocks(context, subset.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    std::vector<rfs_mesh::Neighbor> found;
+    for (std::size_t s = begin; s < end; ++s) {
+      std::size_t to = 0;
+      const auto offer = [&](Index j) {
+        if (to < kNear && number[j] != kNone && j != subset[s]) three[s][to++] = number[j];
+      };
+      for (const Index j : near[subset[s]]) offer(j);
+      for (std::size_t k = 4 * std::size_t(near.k); to < kNear; k *= 4) {
+        index.nearest(points[subset[s]], int(std::min(k, points.size())), found);
+        to = 0;
+        for (const rfs_mesh::Neighbor& q : found) offer(q.index);
+      }
     }
   });
-  const rfs_mesh::Adjacency graph = rfs_mesh::make_adjacency(n, edges, context);
-  const auto before = [&](std::size_t a, std::size_t b) {
-    return priority[a] != priority[b] ? priority[a] > priority[b] : a < b;
-  };
-
-  std::vector<State> state(n, State::open);
-  for (bool open = true; open;) {
-    // Two sweeps against a snapshot each: first the open ones before all their open neighbours are kept, then
-    // the neighbours of kept ones are dropped.
-    std::vector<State> next = state;
-    for_each_index(context, n, [&](std::size_t s) {
-      if (state[s] != State::open) return;
-      for (const Index t : graph[s])
-        if (state[t] == State::open && before(t, s)) return;
-      next[s] = State::kept;
-    });
-    state = next;
-    for_each_index(context, n, [&](std::size_t s) {
-      if (state[s] != State::open) return;
-      for (const Index t : graph[s])
-        if (state[t] == State::kept) next[s] = State::dropped;
-    });
-    state.swap(next);
-    open = std::find(state.begin(), state.end(), State::open) != state.end();
-  }
-  std::vector<Index> kept;
-  for (std::size_t s = 0; s < n; ++s)
-    if (state[s] == State::kept) kept.push_back(Index(s));
-  return kept;
+  const Positions at = places(points, subset, context);
+  return named(Thinning(at, three, context).run(), subset);
 }
 
 }  // namespace rfsmooth::smoothing

@@ -17,8 +17,13 @@ namespace rfsmooth::smoothing {
 /// index if `subset` has any. O(n log n) in the size of the subset, deterministic.
 std::vector<Index> thin(const Positions& points, const std::vector<Index>& subset, const Context& context);
 
-/// The same of all points, whose nearest (three or more) are known.
-std::vector<Index> thin_all(const Positions& points, const rfs_mesh::NeighborTable& near,
+/// The same of all points of `index` (four or more), whose nearest (three or more) are known.
+std::vector<Index> thin_all(const rfs_mesh::SpatialIndex& index, const rfs_mesh::NeighborTable& near,
                             const Context& context);
+
+/// thin() of a subset that is not much sparser than the points: the nearest of the subset are found among the
+/// nearest of all, and searched only where too few of them belong to it.
+std::vector<Index> thin_dense(const rfs_mesh::SpatialIndex& index, const rfs_mesh::NeighborTable& near,
+                              const std::vector<Index>& subset, const Context& context);
 
 }  // namespace rfsmooth::smoothing

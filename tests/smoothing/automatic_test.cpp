@@ -44,7 +44,8 @@ rfs_mesh::NoiseField even(double sigma, std::size_t n) {
 }
 
 Positions smoothed(const rfs_mesh::Mesh& mesh, const rfs_mesh::NoiseField& noise, AutomaticReport& report) {
-  return automatic_smoothing(mesh, noise, spacing(mesh.positions), report, {});
+  rfs_mesh::NeighborTable near;
+  return automatic_smoothing(mesh, noise, spacing(mesh.positions), report, near, {});
 }
 
 Positions smoothed(const rfs_mesh::Mesh& mesh, double sigma, AutomaticReport& report) {
@@ -142,7 +143,7 @@ TEST(Patches, PredictAQuadricExactlyWhateverTheSharesOfThePointsAre) {
     const Prediction p = patches.predict({});
     for (std::size_t i = 0; i < guide.size(); ++i) {
       ASSERT_TRUE(p.covered[i]);
-      EXPECT_NEAR(p.height[i], field.height(i), 1e-4) << m;
+      EXPECT_NEAR(double(p.height[i]), field.height(i), 1e-4) << m;
       EXPECT_GT(p.own[i], 0);
       EXPECT_LT(p.own[i], 1);
     }
@@ -167,17 +168,17 @@ TEST(Patches, OwnIsTheDerivativeOfAPredictionByThePointsHeight) {
   const HeightField lifted(guide, support::near_on(guide), data, {});
   const Prediction after = Patches(lifted, 24, seeds, sigma, {}).predict({});
   const double side = field.normal(i).z();
-  EXPECT_NEAR(side * (after.height[i] - before.height[i]) / (side * step * side), before.own[i], 1e-4);
+  EXPECT_NEAR(double(after.height[i] - before.height[i]) / (side * step), double(before.own[i]), 1e-4);
 }
 
 TEST(Patches, MeanOfAConstantIsTheConstant) {
   const rfs_mesh::Mesh mesh = support::icosphere(3);
   const HeightField field(mesh.positions, support::near_on(mesh.positions), mesh.positions, {});
-  const std::vector<double> seven(field.size(), 7);
+  const std::vector<float> seven(field.size(), 7);
   const Patches patches(field, 40, thin(mesh.positions, all(field.size()), {}),
                         std::vector<double>(field.size(), 1), {});
-  for (const double v : patches.mean(seven, {})) EXPECT_NEAR(v, 7, 1e-5);
-  for (const double v : field.local_mean(seven, {})) EXPECT_NEAR(v, 7, 1e-12);
+  for (const float v : patches.mean(seven, {})) EXPECT_NEAR(v, 7, 1e-5);
+  for (const float v : field.local_mean(seven, {})) EXPECT_NEAR(v, 7, 1e-5);
 }
 
 TEST(Thinning, KeepsAnIndependentSetThatEveryPointIsNearTo) {
@@ -196,6 +197,11 @@ TEST(Thinning, KeepsAnIndependentSetThatEveryPointIsNearTo) {
   const auto near = index.nearest(3, {});
   for (const Index k : kept)
     for (const Index j : near[k]) EXPECT_EQ(in.count(j), 0u);
+  // By the neighbours of all: the same, first of all points, then of what was kept.
+  const auto wide = index.nearest(32, {});
+  EXPECT_EQ(thin_all(index, near, {}), kept);
+  EXPECT_EQ(thin_dense(index, wide, kept, {}), thin(mesh.positions, kept, {}));
+  EXPECT_EQ(thin_dense(index, near, kept, {}), thin(mesh.positions, kept, {})) << "too few in the rows";
   EXPECT_TRUE(thin(mesh.positions, {}, {}).empty());
   EXPECT_EQ(thin(mesh.positions, {4}, {}), std::vector<Index>{4});
 }

@@ -37,10 +37,14 @@ Positions random_sphere(std::size_t n) {
   return points;
 }
 
+rfs_mesh::NeighborTable near(const Positions& points) {
+  return rfs_mesh::SpatialIndex(points, {}).nearest(32, {});
+}
+
 /// Of points that nothing has smoothed: they are where they were before.
 smoothing::Equalized spread(Positions& points, double sigma, double spacing, const Context& context) {
   const Positions before = points;
-  return equalize(points, before, sigma, spacing, context);
+  return equalize(points, before, sigma, spacing, near(points), context);
 }
 
 TEST(Equalize, EvensAClumpedSphereAndStaysOnIt) {
@@ -136,7 +140,7 @@ TEST(Equalize, WhatWasMovedSidewaysGoesBackWhereNoiseIsSmall) {
   for (const auto& [noise, share] : {std::pair{0.25, 0.75}, {4.0, 0.019}}) {
     Positions points = before;
     for (auto& p : points) p += aside;
-    equalize(points, before, noise, 1, {});
+    equalize(points, before, noise, 1, near(points), {});
     for (std::size_t i = 0; i < points.size(); ++i)
       EXPECT_LT((points[i] - before[i] - (1 - share) * aside).norm(), 0.01) << noise;
   }
@@ -187,7 +191,7 @@ TEST(SlideBack, LeavesAMoveAlongTheNormalAndStaysOnTheSurface) {
   clouds::add_noise(before, 0.4 * spacing, 2);
   for (const double share : {1.0, 0.5}) {
     Positions points = clean;
-    smoothing::slide_back(points, before, share, {});
+    smoothing::slide_back(points, before, share, near(points), {});
     for (std::size_t i = 0; i < points.size(); ++i) {
       EXPECT_NEAR(points[i].norm(), 1, 0.05 * spacing);
       const Eigen::Vector3d n = clean[i], wanted = clean[i] + share * (before[i] - clean[i]);
@@ -196,7 +200,7 @@ TEST(SlideBack, LeavesAMoveAlongTheNormalAndStaysOnTheSurface) {
     }
   }
   Positions points = clean;
-  smoothing::slide_back(points, clean, 1, {});
+  smoothing::slide_back(points, clean, 1, near(points), {});
   for (std::size_t i = 0; i < points.size(); ++i)
     EXPECT_EQ(points[i], clean[i]) << "not moved, nothing to undo";
 }

@@ -33,17 +33,18 @@ struct Sheet {
     field = std::make_unique<HeightField>(guide, support::near_on(guide), data, Context{});
     up = field->normal(0).z();
     height.assign(guide.size(), 0);
-    own.assign(guide.size(), 0.01);
+    own.assign(guide.size(), 0.01F);
   }
 
   double error() const {
     double sum = 0;
-    for (std::size_t i = 0; i < height.size(); ++i) sum += std::pow(height[i] * up - truth[i], 2);
+    for (std::size_t i = 0; i < height.size(); ++i) sum += std::pow(double(height[i]) * up - truth[i], 2);
     return sum / double(height.size());
   }
 
   std::unique_ptr<HeightField> field;
-  std::vector<double> truth, height, own;
+  std::vector<double> truth;
+  std::vector<float> height, own;
   double up = 1;
 };
 
@@ -62,7 +63,7 @@ TEST(HiddenSheets, PointsOfAWallThinnerThanTheNoiseGoToItsTwoSheets) {
 TEST(HiddenSheets, LouderNoiseIsNotTakenForThem) {
   for (const double louder : {1.2, 1.4, 1.8}) {
     Sheet sheet(0, louder);
-    const std::vector<double> before = sheet.height;
+    const std::vector<float> before = sheet.height;
     const HiddenSheets found = split_hidden_sheets(*sheet.field, 1, sheet.height, sheet.own, {});
     EXPECT_LT(found.evidence, 7) << louder;
     EXPECT_EQ(found.split, 0u);
@@ -72,16 +73,16 @@ TEST(HiddenSheets, LouderNoiseIsNotTakenForThem) {
 
 TEST(HiddenSheets, OwnIsTheDerivativeByThePointsHeight) {
   Sheet sheet(1, 1);
-  const std::vector<double> plain = sheet.height, share = sheet.own;
+  const std::vector<float> plain = sheet.height, share = sheet.own;
   split_hidden_sheets(*sheet.field, 1, sheet.height, sheet.own, {});
   // A smoothed height that is `step` nearer to the data stands for data that are `step` / (1 - own) nearer.
   const std::size_t i = kSide * 20 + 57;
-  const double step = 1e-4;
-  std::vector<double> moved = plain, own = share;
+  const float step = 1e-3F;
+  std::vector<float> moved = plain, own = share;
   moved[i] -= step;
   split_hidden_sheets(*sheet.field, 1, moved, own, {});
-  const double by_residual = (moved[i] + step - sheet.height[i]) / step;
-  EXPECT_NEAR(sheet.own[i], share[i] + (1 - share[i]) * by_residual, 0.01);
+  const double by_residual = double((moved[i] + step - sheet.height[i]) / step);
+  EXPECT_NEAR(double(sheet.own[i]), double(share[i]) + double(1 - share[i]) * by_residual, 0.01);
 }
 
 }  // namespace

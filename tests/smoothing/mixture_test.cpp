@@ -9,7 +9,7 @@ using rfsmooth::smoothing::Mixture;
 
 namespace {
 
-using Values = std::vector<double>;
+using Values = std::vector<float>;
 
 TEST(Mixture, AloneTheDataAreTheirOwnMixture) {
   const Values data{1, -2, 3};
@@ -21,8 +21,8 @@ TEST(Mixture, AloneTheDataAreTheirOwnMixture) {
 
 TEST(Mixture, LargeEvidenceDecidesAndEvidenceAddsUpAlongTheChain) {
   Mixture mixture({0, 0, 0});
-  mixture.add({1, 1, 1}, {0.5, 0.5, 0.5}, {60, -60, 60}, {});
-  mixture.add({2, 2, 2}, {0.1, 0.1, 0.1}, {60, 60, -60}, {});  // in all: 120, 0, 0
+  mixture.add({1, 1, 1}, {0.5F, 0.5F, 0.5F}, {60, -60, 60}, {});
+  mixture.add({2, 2, 2}, {0.1F, 0.1F, 0.1F}, {60, 60, -60}, {});  // in all: 120, 0, 0
   Values height, own;
   mixture.average(height, own, {});
   EXPECT_NEAR(height[0], 2, 1e-9);
@@ -34,8 +34,8 @@ TEST(Mixture, LargeEvidenceDecidesAndEvidenceAddsUpAlongTheChain) {
 
 TEST(Mixture, WhereThereIsNoPredictionTheOthersServe) {
   Mixture mixture({0, 0});
-  mixture.add({1, 7}, {0.5, 0.5}, {60, std::nan("")}, {});
-  mixture.add({2, 2}, {0.1, 0.1}, {-120, 60}, {});
+  mixture.add({1, 7}, {0.5F, 0.5F}, {60, std::nanf("")}, {});
+  mixture.add({2, 2}, {0.1F, 0.1F}, {-120, 60}, {});
   Values height, own;
   mixture.average(height, own, {});
   EXPECT_NEAR(height[0], 1, 1e-9);
@@ -60,8 +60,8 @@ TEST(Mixture, TheRestOfTheCloudOutvotesFaintEvidence) {
 
 TEST(Mixture, StatesHowManyCandidatesItTakes) {
   Mixture mixture({0});
-  for (int k = 0; k < 15; ++k) mixture.add({0}, {0}, {0}, {});
-  EXPECT_THROW(mixture.add({0}, {0}, {0}, {}), std::length_error);
+  for (int k = 0; k < 15; ++k) mixture.add({0.0F}, {0.0F}, {0.0F}, {});
+  EXPECT_THROW(mixture.add({0.0F}, {0.0F}, {0.0F}, {}), std::length_error);
 }
 
 }  // namespace
