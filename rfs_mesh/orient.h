@@ -9,8 +9,8 @@
 ///    orientations in point clouds", section 3; Hoppe et al. 1992, 3.3, compares n_i . n_j, which fails at
 ///    the last two).
 /// 2. Along the edges of the mesh and of the EMST points grow together into regions, the surest first, by
-///    what all edges between two regions say together (sides.h). Bridges are no neighbourhood; a part of fewer
-///    than 32 points follows the bridge that it hangs on, every other part gets its side as a whole:
+///    what all edges between two regions say together (sides.h). Bridges are no neighbourhood; a part of
+///    fewer than 32 points follows the bridge that it hangs on, every other part gets its side as a whole:
 /// 3. Without a viewpoint outward, by the sign of its volume, sum of a_i (p_i - c) . n_i over its points of
 ///    area a_i and centroid c. A part that is as good as flat has no outward and is turned to +z (then +y,
 ///    +x); an open sheet faces away from its centroid.
