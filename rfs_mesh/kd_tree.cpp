@@ -18,6 +18,8 @@ struct Item {
 constexpr std::uint32_t kSerialLeaves =
     512;  // subtrees below this size are built by one thread, in its cache
 
+constexpr double kLargest = 1e150;  // squares stay finite
+
 class Builder {
  public:
   Builder(std::vector<Item>& items, std::vector<KdTree::Node>& nodes, std::vector<KdTree::Leaf>& leaves)
@@ -108,7 +110,6 @@ class Builder {
 
 KdTree::KdTree(const Positions& points, const Context& context) {
   if (points.empty()) return;
-  constexpr double kLargest = 1e150;  // squares stay finite
   std::vector<Item> items(points.size());
   for_each_index(context, points.size(), [&](std::size_t i) {
     const Eigen::Vector3d& p = points[i];
@@ -119,6 +120,53 @@ KdTree::KdTree(const Positions& points, const Context& context) {
   leaves_.resize((points.size() + kLeaf - 1) / kLeaf);
   nodes_.resize(2 * leaves_.size() - 1);
   Builder(items, nodes_, leaves_).build(root(), context);
+}
+
+/// The box around those of the children.
+void KdTree::enclose_children(const Cursor& c) {
+  const Node &left = nodes_[c.left().node], &right = nodes_[c.right().node];
+  nodes_[c.node].low = left.low.cwiseMin(right.low);
+  nodes_[c.node].high = left.high.cwiseMax(right.high);
+}
+
+/// The nodes of a subtree, from its leaves up.
+void KdTree::enclose(const Positions& points, const Cursor& c) {
+  if (!c.is_leaf()) {
+    enclose(points, c.left());
+    enclose(points, c.right());
+    return enclose_children(c);
+  }
+  Leaf& leaf = leaves_[c.first];
+  Node& box = nodes_[c.node];
+  box.low = box.high = points[leaf.id[0]];
+  for (std::size_t i = 0; i < kLeaf && leaf.id[i] != kNone; ++i) {
+    const Eigen::Vector3d& p = points[leaf.id[i]];
+    if (!(p.array().abs() < kLargest).all())
+      throw std::invalid_argument("KdTree: a coordinate is not finite");
+    leaf.x[i] = p[0];
+    leaf.y[i] = p[1];
+    leaf.z[i] = p[2];
+    box.low = box.low.cwiseMin(p);
+    box.high = box.high.cwiseMax(p);
+  }
+}
+
+void KdTree::follow(const Positions& points, const Context& context) {
+  if (empty()) return;
+  const std::vector<Cursor> small = subtrees(kSerialLeaves);
+  for_each_index(
+      context, small.size(), [&](std::size_t i) { enclose(points, small[i]); }, 1);
+  // The nodes above them: in preorder a node comes before what is below it.
+  std::vector<Cursor> above, stack = {root()};
+  while (!stack.empty()) {
+    const Cursor c = stack.back();
+    stack.pop_back();
+    if (c.last - c.first <= kSerialLeaves) continue;
+    above.push_back(c);
+    stack.push_back(c.left());
+    stack.push_back(c.right());
+  }
+  for (std::size_t i = above.size(); i-- > 0;) enclose_children(above[i]);
 }
 
 std::vector<KdTree::Cursor> KdTree::subtrees(std::uint32_t leaves) const {

@@ -50,6 +50,11 @@ class KdTree {
   /// \throw std::invalid_argument if a coordinate is not finite or squares of lengths overflow.
   KdTree(const Positions& points, const Context& context);
 
+  /// Goes on with the same points at other places (finite, as above): the leaves keep their points, boxes are
+  /// tight again. Searches stay exact; they are as fast as in a new tree if neighbours stayed neighbours.
+  /// O(n), parallel, a tenth of the time of a new tree.
+  void follow(const Positions& points, const Context& context);
+
   bool empty() const { return leaves_.empty(); }
   Cursor root() const { return {0, 0, std::uint32_t(leaves_.size())}; }
   const Node& node(std::uint32_t i) const { return nodes_[i]; }
@@ -61,6 +66,9 @@ class KdTree {
   std::vector<Cursor> subtrees(std::uint32_t leaves) const;
 
  private:
+  void enclose(const Positions& points, const Cursor& c);
+  void enclose_children(const Cursor& c);
+
   std::vector<Node> nodes_;   // preorder
   std::vector<Leaf> leaves_;  // left to right
 };

@@ -6,6 +6,8 @@
 #include <limits>
 #include <numeric>
 
+#include "rfsmooth/rfs_mesh/wide.h"
+
 namespace rfsmooth::rfs_mesh {
 
 namespace {
@@ -29,16 +31,52 @@ std::size_t most_ranked(std::size_t k) {
   return 64 + 2 * k;
 }
 
-constexpr std::size_t kLanes = 4;
+constexpr std::size_t kLanes = 8;
 typedef float Keys __attribute__((vector_size(kLanes * sizeof(float))));
 typedef std::int32_t Counts __attribute__((vector_size(kLanes * sizeof(std::int32_t))));
 
-void squared_distances(const KdTree::Leaf& leaf, const Vector3d& q, double* __restrict d2) {
+inline void squared_distances(const KdTree::Leaf& leaf, const Vector3d& q, double* __restrict d2) {
   const double x0 = q[0], y0 = q[1], z0 = q[2];
   for (std::uint32_t i = 0; i < kLeaf; ++i) {
     const double x = leaf.x[i] - x0, y = leaf.y[i] - y0, z = leaf.z[i] - z0;
     d2[i] = (x * x + y * y) + z * z;
   }
+}
+
+/// Keeps the points of the leaves within the bound, except `self`; returns how many.
+RFSMOOTH_WIDE
+std::size_t keep(const KdTree& tree, const std::uint32_t* leaves, std::size_t count, const Vector3d& q,
+                 Index self, double squared_bound, double* distance, Index* id) {
+  std::size_t kept = 0;
+  for (std::size_t l = 0; l < count; ++l) {
+    const KdTree::Leaf& leaf = tree.leaf(leaves[l]);
+    double d2[kLeaf];
+    squared_distances(leaf, q, d2);
+    for (std::uint32_t i = 0; i < kLeaf; ++i) {
+      distance[kept] = d2[i];
+      id[kept] = leaf.id[i];
+      kept += std::size_t(int(d2[i] <= squared_bound) & int(leaf.id[i] != self));
+    }
+  }
+  return kept;
+}
+
+/// place[number of smaller keys] of each of the keys, which are padded with larger ones; returns the sum of
+/// these numbers.
+RFSMOOTH_WIDE
+std::size_t place_by_rank(const float* key, std::size_t kept, std::uint32_t* place) {
+  std::size_t sum = 0;
+  for (std::size_t i = 0; i < kept; i += kLanes) {
+    Keys own;
+    std::memcpy(&own, key + i, sizeof own);
+    Counts nearer = {};
+    for (std::size_t j = 0; j < kept; ++j) nearer -= key[j] < own;
+    for (std::size_t lane = 0; lane < std::min(kLanes, kept - i); ++lane) {
+      sum += std::size_t(nearer[lane]);
+      place[std::size_t(nearer[lane])] = std::uint32_t(i + lane);
+    }
+  }
+  return sum;
 }
 
 }  // namespace
@@ -93,20 +131,7 @@ void LeafNeighbors::keep_within(const Vector3d& q, Index self, double squared_bo
   }
   distance_.resize((near + 1) * kLeaf);
   id_.resize((near + 1) * kLeaf);
-  double* const distance = distance_.data();
-  Index* const id = id_.data();
-  std::size_t kept = 0;
-  for (std::size_t l = 0; l < near; ++l) {
-    const KdTree::Leaf& leaf = tree_.leaf(near_[l]);
-    double d2[kLeaf];
-    squared_distances(leaf, q, d2);
-    for (std::uint32_t i = 0; i < kLeaf; ++i) {
-      distance[kept] = d2[i];
-      id[kept] = leaf.id[i];
-      kept += std::size_t(int(d2[i] <= squared_bound) & int(leaf.id[i] != self));
-    }
-  }
-  kept_ = kept;
+  kept_ = keep(tree_, near_.data(), near, q, self, squared_bound, distance_.data(), id_.data());
 }
 
 /// Places (place_) every kept point by the number of nearer ones. False if two look equally far.
@@ -119,18 +144,7 @@ bool LeafNeighbors::rank(double squared_bound) {
   const double scale = 1 / squared_bound;
   for (std::size_t i = 0; i < kept; ++i) key_[i] = float(distance_[i] * scale);
   for (std::size_t i = kept; i < padded; ++i) key_[i] = 2;
-  std::size_t sum = 0;
-  for (std::size_t i = 0; i < kept; i += kLanes) {
-    Keys own;
-    std::memcpy(&own, key_.data() + i, sizeof own);
-    Counts nearer = {};
-    for (std::size_t j = 0; j < kept; ++j) nearer -= key_[j] < own;
-    for (std::size_t lane = 0; lane < std::min(kLanes, kept - i); ++lane) {
-      sum += std::size_t(nearer[lane]);
-      place_[std::size_t(nearer[lane])] = std::uint32_t(i + lane);
-    }
-  }
-  return 2 * sum == kept * (kept - 1);
+  return 2 * place_by_rank(key_.data(), kept, place_.data()) == kept * (kept - 1);
 }
 
 void LeafNeighbors::sort() {

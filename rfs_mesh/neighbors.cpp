@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "rfsmooth/rfs_mesh/leaf_neighbors.h"
 #include "rfsmooth/rfs_mesh/parallel.h"
@@ -134,21 +135,40 @@ void find_nearest(const KdTree& tree, const Vector3d& q, Index self, std::size_t
 SpatialIndex::SpatialIndex(const Positions& points, const Context& context)
     : points_(points), tree_(points, context) {}
 
+SpatialIndex::SpatialIndex(const Positions& points, KdTree tree, const Context& context)
+    : points_(points), tree_(std::move(tree)) {
+  tree_.follow(points, context);
+}
+
 NeighborTable SpatialIndex::nearest(int k, const Context& context) const {
   NeighborTable table;
   if (points_.size() < 2 || k < 1) return table;
   table.k = int(std::min(std::size_t(k), points_.size() - 1));
+  table.items.resize(points_.size() * std::size_t(table.k));
+  fill(table, nullptr, context);
+  return table;
+}
+
+void SpatialIndex::renew(NeighborTable& table, const std::vector<char>& wanted,
+                         const Context& context) const {
+  fill(table, &wanted, context);
+}
+
+void SpatialIndex::fill(NeighborTable& table, const std::vector<char>* wanted, const Context& context) const {
   const auto width = std::size_t(table.k);
-  table.items.resize(points_.size() * width);
+  const auto skip = [wanted](Index i) { return wanted != nullptr && (*wanted)[i] == 0; };
   constexpr std::size_t kGrain = 64;  // leaves
   for_blocks(context, tree_.leaf_count(), kGrain, [&](std::size_t begin, std::size_t end) {
     LeafNeighbors together(tree_, width);
     std::vector<Neighbor> found;
     for (std::size_t l = begin; l < end; ++l) {
       const KdTree::Leaf& leaf = tree_.leaf(std::uint32_t(l));
+      if (std::all_of(leaf.id, leaf.id + KdTree::kLeaf, [&](Index i) { return i == kNone || skip(i); }))
+        continue;
       const bool prepared = together.prepare(std::uint32_t(l));
       for (std::uint32_t slot = 0; slot < KdTree::kLeaf && leaf.id[slot] != kNone; ++slot) {
         const Index i = leaf.id[slot];
+        if (skip(i)) continue;
         Index* const row = table.items.data() + i * width;
         if (prepared && together.find(slot, row)) continue;
         find_nearest(tree_, points_[i], i, width, found);
@@ -157,7 +177,6 @@ NeighborTable SpatialIndex::nearest(int k, const Context& context) const {
       }
     }
   });
-  return table;
 }
 
 NeighborTable nearest_left(const NeighborTable& near, const std::vector<char>& gone, const SpatialIndex& left,

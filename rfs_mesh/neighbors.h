@@ -11,6 +11,7 @@
 ///     nanoflann      0.11    0.59    1.67
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -56,11 +57,17 @@ class SpatialIndex {
   /// Keeps a reference to `points` (n x 3, finite): they must outlive the index and not move meanwhile.
   SpatialIndex(const Positions& points, const Context& context);
 
+  /// With the tree of the same points at other places, near these: saves most of the time.
+  SpatialIndex(const Positions& points, KdTree tree, const Context& context);
+
   const Positions& points() const { return points_; }
   const KdTree& tree() const { return tree_; }
 
   /// The k nearest other points of every point (a coincident one counts, at distance 0). Parallel.
   NeighborTable nearest(int k, const Context& context) const;
+
+  /// Searches the rows of the points `wanted` (n flags) anew. `table`: as from nearest().
+  void renew(NeighborTable& table, const std::vector<char>& wanted, const Context& context) const;
 
   /// The k nearest points of any query (fewer if there are fewer), ascending by (distance, index). A point of
   /// the cloud at the query is part of the answer. Replaces `out`.
@@ -72,7 +79,12 @@ class SpatialIndex {
   /// Whether there is one. O(log n), cheapest where there is none.
   bool any_within(const Eigen::Vector3d& query, double radius) const;
 
+  /// The tree, for an index of the same points elsewhere; this one is of no use afterwards.
+  KdTree release_tree() { return std::move(tree_); }
+
  private:
+  void fill(NeighborTable& table, const std::vector<char>* wanted, const Context& context) const;
+
   const Positions& points_;
   KdTree tree_;
 };

@@ -57,18 +57,60 @@ std::vector<double> smooth(const NoiseSites& sites, const SpatialIndex& index, d
   return field;
 }
 
+/// The sites nearest to each of a few points that lie together: searched once for all of them.
+class SitesAround {
+ public:
+  explicit SitesAround(const SpatialIndex& sites) : sites_(sites) {}
+
+  /// Finds those that may be among the `kBlend` nearest of any of the points.
+  void prepare(const Eigen::Vector3d* points, std::size_t count) {
+    Eigen::Vector3d low = points[0], high = points[0];
+    for (std::size_t i = 1; i < count; ++i) {
+      low = low.cwiseMin(points[i]);
+      high = high.cwiseMax(points[i]);
+    }
+    const Eigen::Vector3d centre = (low + high) / 2;
+    sites_.nearest(centre, int(kBlend), around_);
+    // A point is at most half a diagonal from the centre, and so much farther from each of its nearest.
+    constexpr double kRounding = 1 + 1e-9;
+    const double reach = std::sqrt(around_.back().squared_distance) + (high - low).norm();
+    sites_.within(centre, kRounding * reach, around_);
+  }
+
+  /// The mean of the values at the sites nearest to one of the points.
+  double mean(const Eigen::Vector3d& p, const std::vector<double>& values) {
+    if (around_.size() > kMost) {
+      sites_.nearest(p, int(kBlend), near_);
+    } else {
+      near_.resize(around_.size());
+      for (std::size_t k = 0; k < around_.size(); ++k)
+        near_[k] = {around_[k].index, squared_distance(p, sites_.points()[around_[k].index])};
+      const std::size_t kept = std::min(kBlend, near_.size());
+      std::partial_sort(near_.begin(), near_.begin() + std::ptrdiff_t(kept), near_.end());
+      near_.resize(kept);
+    }
+    double sum = 0;
+    for (const Neighbor& q : near_) sum += values[q.index];
+    return sum / double(near_.size());
+  }
+
+ private:
+  static constexpr std::size_t kMost = 64;  // more are not worth comparing one by one
+  const SpatialIndex& sites_;
+  std::vector<Neighbor> around_, near_;
+};
+
 /// To every point the mean of the values at the sites nearest to it.
 std::vector<double> blend(const SpatialIndex& sites, const std::vector<double>& values,
                           const Positions& points, const Context& context) {
   std::vector<double> local(points.size(), values.front());
   if (std::all_of(values.begin(), values.end(), [&](double v) { return v == values.front(); })) return local;
-  for_blocks(context, points.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    std::vector<Neighbor> near;
+  constexpr std::size_t kTogether = 64;  // along a Morton curve they lie together
+  for_blocks(context, points.size(), 16 * kTogether, [&](std::size_t begin, std::size_t end) {
+    SitesAround around(sites);
     for (std::size_t i = begin; i < end; ++i) {
-      sites.nearest(points[i], int(kBlend), near);
-      double sum = 0;
-      for (const Neighbor& q : near) sum += values[q.index];
-      local[i] = sum / double(near.size());
+      if ((i - begin) % kTogether == 0) around.prepare(points.data() + i, std::min(kTogether, end - i));
+      local[i] = around.mean(points[i], values);
     }
   });
   return local;

@@ -14,6 +14,7 @@
 #pragma once
 
 #include <algorithm>
+#include <functional>
 #include <numeric>
 #include <vector>
 
@@ -72,5 +73,13 @@ struct Regions {
 /// the same for any number of threads.
 Regions grow_regions(std::size_t n, std::vector<SideLink> links, const std::vector<double>& votes,
                      const Context& context);
+
+/// The links of the points [begin, end), to be appended to `out`.
+using LinksOf = std::function<void(std::size_t begin, std::size_t end, std::vector<SideLink>& out)>;
+
+/// The same of many points that lie in memory about as in space, without ever holding all links: first the
+/// points of every block of 4096 grow together by the surest of the links among them, at least 0.8, then the
+/// regions of the blocks as above. Parallel; the same for any number of threads.
+Regions grow_regions_in_blocks(std::size_t n, const LinksOf& links, const Context& context);
 
 }  // namespace rfsmooth::rfs_mesh

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "rfsmooth/rfs_mesh/wide.h"
+
 namespace rfsmooth::rfs_mesh {
 
 namespace {
@@ -15,6 +17,29 @@ constexpr double kWiden = 1;
 constexpr double kLeastGrowth = 1.3;  // of the squared distance after too few were found
 constexpr int kBins = 128;
 constexpr std::size_t kLeaf = KdTree::kLeaf;
+
+/// Appends the points of a leaf within the bound, in its units; returns how many there are then.
+RFSMOOTH_WIDE
+std::size_t keep(const KdTree::Leaf& leaf, const Eigen::Vector3d& place, double scale, std::size_t kept,
+                 float* squared, float* x, float* y, float* z, Index* id) {
+  const double x0 = place[0], y0 = place[1], z0 = place[2];
+  float dx[kLeaf], dy[kLeaf], dz[kLeaf], square[kLeaf];
+  for (std::size_t i = 0; i < kLeaf; ++i) {
+    dx[i] = float((leaf.x[i] - x0) * scale);
+    dy[i] = float((leaf.y[i] - y0) * scale);
+    dz[i] = float((leaf.z[i] - z0) * scale);
+    square[i] = (dx[i] * dx[i] + dy[i] * dy[i]) + dz[i] * dz[i];
+  }
+  for (std::size_t i = 0; i < kLeaf; ++i) {
+    squared[kept] = square[i];
+    x[kept] = dx[i];
+    y[kept] = dy[i];
+    z[kept] = dz[i];
+    id[kept] = leaf.id[i];
+    kept += std::size_t(square[i] <= 1);
+  }
+  return kept;
+}
 
 }  // namespace
 
@@ -70,23 +95,7 @@ void WideNeighbors::gather(const Eigen::Vector3d& place, double squared_bound) {
       }
       const KdTree::Leaf& leaf = tree.leaf(at.first);
       if (kept_ + kLeaf > x_.size()) make_room(2 * x_.size());
-      float dx[kLeaf], dy[kLeaf], dz[kLeaf];
-      for (std::size_t i = 0; i < kLeaf; ++i) {
-        dx[i] = float((leaf.x[i] - place[0]) * scale);
-        dy[i] = float((leaf.y[i] - place[1]) * scale);
-        dz[i] = float((leaf.z[i] - place[2]) * scale);
-      }
-      std::size_t kept = kept_;
-      for (std::size_t i = 0; i < kLeaf; ++i) {
-        const float square = (dx[i] * dx[i] + dy[i] * dy[i]) + dz[i] * dz[i];
-        squared_[kept] = square;
-        x_[kept] = dx[i];
-        y_[kept] = dy[i];
-        z_[kept] = dz[i];
-        id_[kept] = leaf.id[i];
-        kept += std::size_t(square <= 1);
-      }
-      kept_ = kept;
+      kept_ = keep(leaf, place, scale, kept_, squared_.data(), x_.data(), y_.data(), z_.data(), id_.data());
       break;
     }
   }

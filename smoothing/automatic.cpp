@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <utility>
+#include <vector>
 
 #include "rfsmooth/rfs_mesh/parallel.h"
 #include "rfsmooth/smoothing/height_field.h"
@@ -51,31 +52,69 @@ std::vector<float> heights(const HeightField& field, const Context& context) {
   return all;
 }
 
-/// Adds the scale of `members` points to the mixture. `before` holds the risk of the scale before it.
-void add_scale(const HeightField& field, std::size_t members, const std::vector<Index>& seeds,
-               const std::vector<double>& sigma, std::vector<float>& before, Mixture& mixture,
-               const Context& context) {
+/// What the patches of one scale say.
+struct Scale {
+  std::size_t members;
+  Prediction prediction;
+  std::vector<float> worse;  ///< n: the risk's difference to the scale before
+  std::vector<float> mean;   ///< n: of that, as the patches see it; empty if they are narrow
+};
+
+/// `before` holds the risk of the scale before it.
+Scale try_scale(const HeightField& field, std::size_t members, const std::vector<Index>& seeds,
+                const std::vector<double>& sigma, std::vector<float>& before, const Context& context) {
   const Patches patches(field, members, seeds, sigma, context);
-  Prediction prediction = patches.predict(context);
-  std::vector<float> difference(field.size());
+  Scale scale{members, patches.predict(context), std::vector<float>(field.size()), {}};
+  const Prediction& prediction = scale.prediction;
   for_each_index(context, field.size(), [&](std::size_t i) {
     const float e = (field.local()[i].height - prediction.height[i]) / float(sigma[i]);
     const float risk = prediction.covered[i] != 0 ? e * e + 2 * prediction.own[i] - 1 : before[i];
-    difference[i] = risk - before[i];
+    scale.worse[i] = risk - before[i];
     before[i] = risk;
   });
-  // A wide patch is judged over its own width, but must not be far off anywhere near the point either: the
-  // few points that it misses by sigmas would be outvoted.
-  const std::vector<float> near = field.local_mean(field.local_mean(difference, context), context);
-  const bool wide = members >= kOwnMean;
-  if (wide) difference = patches.mean(patches.mean(difference, context), context);
-  for_each_index(context, field.size(), [&](std::size_t i) {
-    const float against = wide ? kPatchEvidence * float(members) * difference[i] +
-                                     kNearEvidence * std::max(0.0F, near[i] - kTolerated)
-                               : kNearEvidence * near[i];
-    difference[i] = prediction.covered[i] != 0 ? -against : std::numeric_limits<float>::quiet_NaN();
-  });
-  mixture.add(std::move(prediction.height), std::move(prediction.own), difference, context);
+  if (members >= kOwnMean) scale.mean = patches.mean(patches.mean(scale.worse, context), context);
+  return scale;
+}
+
+/// Means over near neighbours for all scales, each in place of `worse`.
+void average_near(const HeightField& field, std::vector<Scale>& scales, const Context& context) {
+  constexpr std::size_t kTogether = HeightField::Columns::SizeAtCompileTime;
+  for (std::size_t first = 0; first < scales.size(); first += kTogether) {
+    const std::size_t count = std::min(kTogether, scales.size() - first);
+    std::vector<HeightField::Columns> near(field.size());
+    for_each_index(context, field.size(), [&](std::size_t i) {
+      near[i].setZero();
+      for (std::size_t s = 0; s < count; ++s) near[i][Eigen::Index(s)] = scales[first + s].worse[i];
+    });
+    near = field.local_mean(field.local_mean(near, context), context);
+    for_each_index(context, field.size(), [&](std::size_t i) {
+      for (std::size_t s = 0; s < count; ++s) scales[first + s].worse[i] = near[i][Eigen::Index(s)];
+    });
+  }
+}
+
+/// The mixture of the data and all scales, by their evidence.
+void mix(const HeightField& field, std::vector<Scale> scales, std::vector<float>& height,
+         std::vector<float>& own, const Context& context) {
+  // The data themselves are the first candidate: no error against themselves, all their own.
+  Mixture mixture(heights(field, context));
+  average_near(field, scales, context);
+  for (Scale& scale : scales) {
+    // A wide patch is judged over its own width, but must not be far off anywhere near the point either: the
+    // few points that it misses by sigmas would be outvoted.
+    std::vector<float>& gain = scale.worse;
+    for_each_index(context, field.size(), [&](std::size_t i) {
+      const float near = gain[i];
+      const float against = scale.mean.empty() ? kNearEvidence * near
+                                               : kPatchEvidence * float(scale.members) * scale.mean[i] +
+                                                     kNearEvidence * std::max(0.0F, near - kTolerated);
+      gain[i] = scale.prediction.covered[i] != 0 ? -against : std::numeric_limits<float>::quiet_NaN();
+    });
+    mixture.add(std::move(scale.prediction.height), std::move(scale.prediction.own), std::move(gain),
+                context);
+    scale = {};
+  }
+  mixture.average(height, own, context);
 }
 
 /// Root mean square error of the smoothed heights (automatic.h, step 5).
@@ -106,13 +145,13 @@ Positions automatic_smoothing(const rfs_mesh::Mesh& mesh, const rfs_mesh::NoiseF
   report.guide_strength = kGuide * share * share * std::max(1.0, share * share);
   Positions guide = fair(mesh, report.guide_strength, context);
   context.report("smooth", 0.1);
-  rfs_mesh::NeighborTable near_guide;
-  report.stranded = land_stranded(mesh, kStrayFrom * sigma, guide, near_guide, context);
-  HeightField field(std::move(guide), std::move(near_guide), mesh.positions, context);
+  Landed landed = land_stranded(mesh, kStrayFrom * sigma, guide, context);
+  report.stranded = landed.stranded;
+  HeightField field(std::move(guide), std::move(landed.tree), std::move(landed.near), mesh.positions,
+                    context);
 
-  // The data themselves are the first candidate: no error against themselves, all their own.
-  std::vector<float> risk(n, 1);
-  Mixture mixture(heights(field, context));
+  std::vector<float> risk(n, 1);  // of the data themselves: no error, all their own
+  std::vector<Scale> scales;
   std::vector<Index> seeds;  // empty: all
   const double narrowest = std::max(kFewest, kNarrowest * share * share);
   const double widest = std::max(kWidest, kWidestShare * narrowest);
@@ -123,12 +162,13 @@ Positions automatic_smoothing(const rfs_mesh::Mesh& mesh, const rfs_mesh::NoiseF
     while (seeds.size() * members > kMostOverlap * n)
       seeds = seeds.size() > n / kDense ? thin_dense(field.index(), field.neighbors(), seeds, context)
                                         : thin(field.guide(), seeds, context);
-    add_scale(field, members, seeds, noise.local, risk, mixture, context);
+    scales.push_back(try_scale(field, members, seeds, noise.local, risk, context));
     if (m >= double(n) / 2) break;
   }
 
   std::vector<float> height, own;
-  mixture.average(height, own, context);
+  std::vector<float>().swap(risk);
+  mix(field, std::move(scales), height, own, context);
   split_hidden_sheets(field, sigma, height, own, context);
 
   Positions smooth = mesh.positions;

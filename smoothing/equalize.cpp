@@ -8,13 +8,14 @@
 #include <stdexcept>
 #include <utility>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
 #include "rfsmooth/rfs_mesh/neighbors.h"
 #include "rfsmooth/rfs_mesh/parallel.h"
+#include "rfsmooth/rfs_mesh/wide.h"
 #include "rfsmooth/smoothing/plane_normal.h"
 #include "rfsmooth/smoothing/quadric_sums.h"
+#include "rfsmooth/smoothing/small_cholesky.h"
 
 namespace rfsmooth::smoothing {
 
@@ -64,20 +65,40 @@ struct Frame {
 struct Around {
   static_assert(kNear % kLanes == 0);
   std::array<float, kNear> u, v, height, weight;
+  std::array<float, kNear> cosine;  ///< between the normals
 };
+
+/// Whether there is a neighbour in each of the six sectors of 60 degrees: nearly always.
+bool all_around(const Around& around) {
+  constexpr std::size_t kFour = 4;
+  typedef float Floats __attribute__((vector_size(kFour * sizeof(float))));
+  typedef std::int32_t Flags __attribute__((vector_size(kFour * sizeof(std::int32_t))));
+  const float root = std::sqrt(3.0F);
+  Flags found[6] = {};
+  for (std::size_t k = 0; k < around.u.size(); k += kFour) {
+    Floats u, v;
+    std::memcpy(&u, around.u.data() + k, sizeof u);
+    std::memcpy(&v, around.v.data() + k, sizeof v);
+    const Floats slope = root * u;
+    const Flags below = v < 0, ahead = below ? slope > -v : slope > v,
+                behind = below ? -slope > -v : -slope > v;
+    found[0] |= ahead & ~below;
+    found[1] |= ~(ahead | behind | below);
+    found[2] |= behind & ~below;
+    found[3] |= ahead & below;
+    found[4] |= ~(ahead | behind) & below;
+    found[5] |= behind & below;
+  }
+  bool all = true;
+  for (const Flags& f : found) all &= (f[0] | f[1] | f[2] | f[3]) != 0;
+  return all;
+}
 
 /// Whether the directions to the nearest neighbours leave no wide gap.
 bool surrounded(const Around& around) {
-  unsigned sectors = 0;
-  for (std::size_t k = 0; k < around.u.size(); ++k) {
-    // Sectors of 60 degrees, numbered anticlockwise: a neighbour in each of the six leaves no gap of 120, and
-    // that is nearly always so.
-    const double slope = std::sqrt(3.0) * double(around.u[k]), height = std::abs(double(around.v[k]));
-    const unsigned from_axis = slope > height ? 0 : -slope > height ? 2 : 1;
-    sectors |= 1U << (around.v[k] < 0 ? 5 - from_axis : from_axis);
-  }
+  // A neighbour in each sector leaves no gap of 120 degrees.
   static_assert(kWidestGap > 2 * M_PI / 3);
-  if (sectors == 0x3f) return true;
+  if (all_around(around)) return true;
   std::array<double, kNear> angles = {};
   for (std::size_t k = 0; k < angles.size(); ++k)
     angles[k] = std::atan2(double(around.v[k]), double(around.u[k]));
@@ -111,13 +132,13 @@ class Near {
 
  private:
   static constexpr int kMostRanked = 256;
+  static constexpr std::size_t kPadded = 8;  // keys compared at once
 
   /// Brings the nearest to the front of the row, nearer ones first; those equally far up to 1e-5 as they
   /// were.
   static void pick(const Positions& points, const Eigen::Vector3d& p, Index* row, std::size_t width) {
     // The bits of positive numbers are in the order of the numbers. The place in the row takes the last
     // eight, so no two are equal and counting the smaller ones gives every one a place of its own.
-    constexpr std::size_t kPadded = 4;
     std::array<std::int32_t, kMostRanked> key;
     std::array<Index, kMostRanked> old;
     for (std::size_t k = 0; k < width; ++k) {
@@ -127,10 +148,15 @@ class Near {
       old[k] = row[k];
     }
     for (std::size_t k = width; k % kPadded != 0; ++k) key[k] = std::numeric_limits<std::int32_t>::max();
+    rank(key.data(), old.data(), width, row);
+  }
+
+  /// row[number of smaller keys] = old, for each of the keys; they are all different.
+  RFSMOOTH_WIDE static void rank(const std::int32_t* key, const Index* old, std::size_t width, Index* row) {
     typedef std::int32_t Keys __attribute__((vector_size(kPadded * sizeof(std::int32_t))));
     for (std::size_t k = 0; k < width; k += kPadded) {
       Keys own, nearer = {};
-      std::memcpy(&own, key.data() + k, sizeof own);
+      std::memcpy(&own, key + k, sizeof own);
       for (std::size_t j = 0; j < width; ++j) nearer -= key[j] < own;
       for (std::size_t lane = 0; lane < std::min(kPadded, width - k); ++lane)
         row[std::size_t(nearer[lane])] = old[k + lane];
@@ -156,7 +182,8 @@ Frame open_frame(const Positions& points, const std::vector<Eigen::Vector3f>& no
   std::size_t same = 0;
   for (std::size_t k = 0; k < around.u.size(); ++k) {
     const Eigen::Vector3f d = ((points[near[k]] - p) * (1 / reach)).cast<float>();
-    const bool alike = std::abs(normals[near[k]].dot(f.n)) >= kSameNormal;
+    around.cosine[k] = std::abs(normals[near[k]].dot(f.n));
+    const bool alike = around.cosine[k] >= kSameNormal;
     same += std::size_t(alike);
     around.u[k] = d.dot(f.t);
     around.v[k] = d.dot(f.b);
@@ -164,11 +191,12 @@ Frame open_frame(const Positions& points, const std::vector<Eigen::Vector3f>& no
     around.weight[k] = alike ? 1.1F - d.squaredNorm() : 0;
   }
   // The quadric goes through the point: without the constant term.
-  const QuadricSums sums = sum_quadric(around.u.size(), around.u.data(), around.v.data(),
-                                       around.height.data(), around.weight.data());
+  QuadricSums sums;
+  sum_quadric(around.u.size(), around.u.data(), around.v.data(), around.height.data(), around.weight.data(),
+              sums);
   Matrix5 a = sums.a.bottomRightCorner<5, 5>();
   a.diagonal().array() += 1e-9;
-  Vector5 quadric = a.llt().solve(sums.right.tail<5>());
+  Vector5 quadric = SmallCholesky<5>(a).solve(sums.right.tail<5>());
   quadric.tail<3>() /= reach;
   f.quadric = quadric.cast<float>();
   f.movable = same >= kFewest && f.quadric.allFinite();
@@ -186,7 +214,7 @@ Frame make_frame(const Positions& points, const std::vector<Eigen::Vector3f>& no
   // Beside an edge the points beyond it push harder than those on this side, being nearer through the air.
   float least = kSameNormal;
   for (std::size_t k = 0; k < kPushers; ++k) {
-    const float cosine = std::abs(normals[near[k]].dot(f.n));
+    const float cosine = around.cosine[k];
     if (cosine < kEdgeNormal) f.movable = false;
     if (cosine >= least) continue;
     least = cosine;
@@ -197,16 +225,20 @@ Frame make_frame(const Positions& points, const std::vector<Eigen::Vector3f>& no
   return f;
 }
 
-/// What the neighbours nearer than `reach` push p by, without a branch: most pairs are near the limit.
+/// What the neighbours nearer than `reach` push p by, all side by side and without a branch: most pairs are
+/// near the limit.
 Eigen::Vector3f push(const Positions& points, const Eigen::Vector3d& p, const Index* near, float reach) {
-  Eigen::Vector3f force = Eigen::Vector3f::Zero();
+  using Lanes = Eigen::Array<float, int(kPushers), 1>;
+  Lanes x, y, z;
   for (std::size_t k = 0; k < kPushers; ++k) {
-    const Eigen::Vector3f d = (p - points[near[k]]).cast<float>();
-    const float length = std::max(std::sqrt(d.squaredNorm()), std::numeric_limits<float>::min());
-    const float overlap = std::max(0.0F, 1 - length / reach);
-    force += (overlap * overlap / length) * d;
+    const Eigen::Vector3d& q = points[near[k]];
+    x[Eigen::Index(k)] = float(p[0] - q[0]);
+    y[Eigen::Index(k)] = float(p[1] - q[1]);
+    z[Eigen::Index(k)] = float(p[2] - q[2]);
   }
-  return force;
+  const Lanes length = (x * x + y * y + z * z).sqrt().max(std::numeric_limits<float>::min());
+  const Lanes overlap = (1 - length * (1 / reach)).max(0), force = overlap * overlap / length;
+  return {(force * x).sum(), (force * y).sum(), (force * z).sum()};
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "rfsmooth/rfs_mesh/collect.h"
 #include "rfsmooth/rfs_mesh/parallel.h"
 #include "rfsmooth/rfs_mesh/sides.h"
 #include "rfsmooth/smoothing/plane_normal.h"
@@ -20,9 +19,9 @@ constexpr float kWeightUnit = 255, kRounded = 0.5F;
 
 }  // namespace
 
-HeightField::HeightField(Positions guide, rfs_mesh::NeighborTable near, const Positions& data,
-                         const Context& context)
-    : guide_(std::move(guide)), index_(guide_, context), near_(std::move(near)) {
+HeightField::HeightField(Positions guide, rfs_mesh::KdTree tree, rfs_mesh::NeighborTable near,
+                         const Positions& data, const Context& context)
+    : guide_(std::move(guide)), index_(guide_, std::move(tree), context), near_(std::move(near)) {
   if (near_.size() != size() || data.size() != size())
     throw std::invalid_argument("HeightField: guide, neighbours and data are not of the same points");
   local_.resize(size());
@@ -54,15 +53,17 @@ void HeightField::orient(const Context& context) {
     const auto near = near_[i];
     return std::make_pair(near.begin(), near.begin() + std::min(near.size(), kLinked));
   };
-  const auto links = rfs_mesh::collect<rfs_mesh::SideLink>(context, size(), [&](std::size_t i, auto&& emit) {
-    const auto [first, last] = linked(i);
-    for (auto j = first; j != last; ++j) {
-      const auto [back, end] = linked(*j);
-      if (*j < i && std::find(back, end, Index(i)) != end) continue;  // the other has this link
-      emit({Index(i), *j, local_[i].normal.dot(local_[*j].normal), 1});
+  const auto links = [&](std::size_t begin, std::size_t end, std::vector<rfs_mesh::SideLink>& out) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto [first, last] = linked(i);
+      for (auto j = first; j != last; ++j) {
+        const auto [back, stop] = linked(*j);
+        if (*j < i && std::find(back, stop, Index(i)) != stop) continue;  // the other has this link
+        out.push_back({Index(i), *j, local_[i].normal.dot(local_[*j].normal), 1});
+      }
     }
-  });
-  const rfs_mesh::Regions regions = rfs_mesh::grow_regions(size(), links, {}, context);
+  };
+  const rfs_mesh::Regions regions = rfs_mesh::grow_regions_in_blocks(size(), links, context);
   for_each_index(context, size(), [&](std::size_t i) {
     if (regions.turned[i] != 0) local_[i].normal = -local_[i].normal;
   });
@@ -75,6 +76,24 @@ std::vector<float> HeightField::local_mean(const std::vector<float>& values, con
     const WeightedSum around =
         weighted_sum(width, near_.items.data() + i * width, near_weight_.data() + i * width, values.data());
     mean[i] = (kWeightUnit * values[i] + around.sum) / (kWeightUnit + around.weights);
+  });
+  return mean;
+}
+
+std::vector<HeightField::Columns> HeightField::local_mean(const std::vector<Columns>& values,
+                                                          const Context& context) const {
+  const auto width = std::size_t(near_.k);
+  std::vector<Columns> mean(values.size());
+  for_each_index(context, size(), [&](std::size_t i) {
+    const Index* const row = near_.items.data() + i * width;
+    const std::uint8_t* const weight = near_weight_.data() + i * width;
+    Columns sum = kWeightUnit * values[i];
+    unsigned weights = unsigned(kWeightUnit);
+    for (std::size_t k = 0; k < width; ++k) {
+      sum += float(weight[k]) * values[row[k]];
+      weights += weight[k];
+    }
+    mean[i] = sum * (1 / float(weights));
   });
   return mean;
 }

@@ -29,11 +29,13 @@ class HeightField {
   };
 
   /// \param guide n x 3, near the surface; n >= 2.
+  /// \param tree of the guide points, here or at places near these.
   /// \param near n x kNear (n - 1 where that is less): the nearest of every guide point.
   /// \param data n x 3, the noisy points of the same indices.
   /// \throw std::invalid_argument if the three differ in n.
   /// O(n log n), parallel, the same bits for any number of threads.
-  HeightField(Positions guide, rfs_mesh::NeighborTable near, const Positions& data, const Context& context);
+  HeightField(Positions guide, rfs_mesh::KdTree tree, rfs_mesh::NeighborTable near, const Positions& data,
+              const Context& context);
   HeightField(const HeightField&) = delete;
   HeightField& operator=(const HeightField&) = delete;
 
@@ -49,6 +51,11 @@ class HeightField {
 
   /// The mean of `values` over the nearest points on the same sheet, nearer ones weighing more. O(n).
   std::vector<float> local_mean(const std::vector<float>& values, const Context& context) const;
+
+  /// Several values of a point, whose means are taken together: reading the neighbours is what takes the
+  /// time.
+  using Columns = Eigen::Array<float, 8, 1>;
+  std::vector<Columns> local_mean(const std::vector<Columns>& values, const Context& context) const;
 
   /// The neighbours, for one who goes on with them; the field is of no use afterwards.
   rfs_mesh::NeighborTable release_neighbors() { return std::move(near_); }

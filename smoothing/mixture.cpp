@@ -27,15 +27,15 @@ Mixture::Mixture(std::vector<float> data) : evidence_(data.size(), 0) {
   candidates_.push_back({std::move(data), std::move(own), evidence_});
 }
 
-void Mixture::add(std::vector<float> height, std::vector<float> own, const std::vector<float>& gain,
+void Mixture::add(std::vector<float> height, std::vector<float> own, std::vector<float> gain,
                   const Context& context) {
   if (candidates_.size() == kMost) throw std::length_error("Mixture: more than 16 candidates");
-  Candidate c{std::move(height), std::move(own), std::vector<float>(gain.size())};
   for_each_index(context, gain.size(), [&](std::size_t i) {
-    if (!std::isnan(gain[i])) evidence_[i] += gain[i];
-    c.evidence[i] = std::isnan(gain[i]) ? -std::numeric_limits<float>::infinity() : evidence_[i];
+    const bool here = !std::isnan(gain[i]);
+    if (here) evidence_[i] += gain[i];
+    gain[i] = here ? evidence_[i] : -std::numeric_limits<float>::infinity();
   });
-  candidates_.push_back(std::move(c));
+  candidates_.push_back({std::move(height), std::move(own), std::move(gain)});
 }
 
 void Mixture::average(std::vector<float>& height, std::vector<float>& own, const Context& context) {

@@ -25,7 +25,7 @@ class Mixture {
   /// A further candidate, of at most 15. \param height, own n: as in Prediction. \param gain n: its evidence
   /// over the candidate before it, nats; NaN: no prediction here (the evidence stays for the next). \throw
   /// std::length_error.
-  void add(std::vector<float> height, std::vector<float> own, const std::vector<float>& gain,
+  void add(std::vector<float> height, std::vector<float> own, std::vector<float> gain,
            const Context& context);
 
   /// Replaces `height` and `own` (n) by the averages; the mixture is used up. O(n) times the number of

@@ -1,15 +1,18 @@
 #include "rfsmooth/smoothing/patches.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <stdexcept>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
+#include "rfsmooth/rfs_mesh/collect.h"
 #include "rfsmooth/rfs_mesh/parallel.h"
 #include "rfsmooth/smoothing/quadric_sums.h"
+#include "rfsmooth/smoothing/small_cholesky.h"
 #include "rfsmooth/smoothing/thinning.h"
 #include "rfsmooth/smoothing/weighted_sum.h"
 
@@ -18,10 +21,24 @@ namespace rfsmooth::smoothing {
 namespace {
 
 constexpr std::size_t kAxis = 12;                      // nearest points whose normals make the patch's axis
-constexpr float kCovered = 0.2F;                       // least weight of the best patch over a point
 constexpr float kWeightUnit = 65535, kRounded = 0.5F;  // of the weights kept
+constexpr float kCovered = 0.2F * kWeightUnit;         // least weight of the best patch over a point
 constexpr std::size_t kPowers[6][2] = {{0, 0}, {1, 0}, {0, 1}, {2, 0}, {1, 1}, {0, 2}};  // of u and v
 constexpr std::size_t kTogether = 64;  // patches fitted in a row: each tells the next how far to look
+constexpr std::size_t kRange = 16384;  // points whose lists are made together
+constexpr std::size_t kGroup = 4096;   // members looked through together for them
+
+typedef float Floats __attribute__((vector_size(4 * sizeof(float))));
+
+Floats four(const float* at) {
+  Floats f;
+  std::memcpy(&f, at, sizeof f);
+  return f;
+}
+
+float total(const Floats& f) {
+  return (f[0] + f[1]) + (f[2] + f[3]);
+}
 
 }  // namespace
 
@@ -34,36 +51,40 @@ struct Patches::Workspace {
   std::vector<float> u, v, height, weight, cosine;
 };
 
-/// Filled by all fits at once: counting and marking do not depend on the order.
+/// How many patches are over each point, and where their members are. Points are taken in ranges and members
+/// in groups; both lie in memory about as in space, so a group has members in few ranges.
 struct Patches::Covering {
-  explicit Covering(std::size_t n) : patches(n), covered(n) {}
-  std::vector<std::atomic<Index>>
-      patches;                             ///< n: how many are over the point; later, where its next one goes
-  std::vector<std::atomic<char>> covered;  ///< n
+  explicit Covering(std::size_t n) : groups((n + kRange - 1) / kRange), patches(n, 0), covered(n, 0) {}
+  /// The members [begin, end).
+  struct Group {
+    std::size_t begin, end;
+  };
+  std::vector<std::vector<Group>> groups;  ///< of each range, ascending
+  std::vector<Index> patches;              ///< n
+  std::vector<char> covered;               ///< n
 };
 
 Patches::Patches(const HeightField& field, std::size_t members, std::vector<Index> seeds,
                  const std::vector<double>& sigma, const Context& context)
-    : field_(field),
-      members_(std::min(members, field.size())),
-      per_member_(1 / double(members_)),
-      seeds_(std::move(seeds)) {
+    : field_(field), members_(std::min(members, field.size())), seeds_(std::move(seeds)) {
   Covering covering(field_.size());
-  fit(0, seeds_.size(), sigma, covering, context);
+  fit(0, seeds_.size(), sigma, context);
+  count(0, seeds_.size(), covering, context);
   // A place between sheets or at the end of something thin may be in no patch, or only at the rim of one.
-  std::vector<Index> missing;
-  for (std::size_t i = 0; i < field_.size(); ++i)
-    if (covering.covered[i] == 0) missing.push_back(Index(i));
+  const auto missing = rfs_mesh::collect<Index>(context, field_.size(), [&](std::size_t i, auto&& emit) {
+    if (covering.covered[i] == 0) emit(Index(i));
+  });
   if (!missing.empty()) {
     const std::size_t first = seeds_.size();
     const std::vector<Index> more = thin(field.guide(), missing, context);
     seeds_.insert(seeds_.end(), more.begin(), more.end());
-    fit(first, seeds_.size(), sigma, covering, context);
+    fit(first, seeds_.size(), sigma, context);
+    count(first, seeds_.size(), covering, context);
   }
   transpose(covering, context);
 }
 
-void Patches::fit(std::size_t first, std::size_t last, const std::vector<double>& sigma, Covering& covering,
+void Patches::fit(std::size_t first, std::size_t last, const std::vector<double>& sigma,
                   const Context& context) {
   if (last * members_ > kNone) throw std::length_error("Patches: too many members");
   patches_.resize(last);
@@ -71,15 +92,7 @@ void Patches::fit(std::size_t first, std::size_t last, const std::vector<double>
   member_weight_.resize(last * members_);
   for_blocks(context, last - first, kTogether, [&](std::size_t begin, std::size_t end) {
     Workspace work(field_, members_);
-    for (std::size_t s = first + begin; s < first + end; ++s) {
-      fit_one(s, sigma[seeds_[s]], work);
-      for (std::size_t k = 0; k < members_; ++k) {
-        const Index i = member_[s * members_ + k];
-        if (member_weight_[s * members_ + k] == 0) continue;
-        covering.patches[i].fetch_add(1, std::memory_order_relaxed);
-        if (work.weight[k] >= kCovered) covering.covered[i].store(1, std::memory_order_relaxed);
-      }
-    }
+    for (std::size_t s = first + begin; s < first + end; ++s) fit_one(s, sigma[seeds_[s]], work);
   });
 }
 
@@ -105,11 +118,18 @@ void Patches::fit_one(std::size_t s, double sigma, Workspace& work) {
   const double radius = near.unit() / double(shrink);
   const Eigen::Vector3d across = axis.unitOrthogonal();
   patch.radius = float(radius);
-  patch.axis = axis.cast<float>();
-  const Eigen::Vector3f u = across.cast<float>() * shrink, v = axis.cross(across).cast<float>() * shrink,
-                        up = patch.axis * shrink;
-  patch.u = (across / radius).cast<float>();
-  patch.v = (axis.cross(across) / radius).cast<float>();
+  const Eigen::Vector3f along = axis.cast<float>(), u = across.cast<float>() * shrink,
+                        v = axis.cross(across).cast<float>() * shrink, up = along * shrink;
+  const Eigen::Vector3f u_in_radii = (across / radius).cast<float>(),
+                        v_in_radii = (axis.cross(across) / radius).cast<float>();
+  for (std::size_t of = 0; of < 3; ++of) {
+    const auto x = Eigen::Index(of);
+    float* const parts = patch.frame.data() + 4 * of;
+    parts[0] = u_in_radii[x];
+    parts[1] = v_in_radii[x];
+    parts[2] = along[x];
+    parts[3] = 0;
+  }
 
   const auto in_radii = float(1 / radius);
   Weight* const weights = member_weight_.data() + s * members_;
@@ -118,7 +138,7 @@ void Patches::fit_one(std::size_t s, double sigma, Workspace& work) {
   for (std::size_t k = 0; k < members_; ++k) {
     const Index i = near.index()[k];
     const HeightField::Local& here = local[i];
-    const float cosine = patch.axis.dot(here.normal);
+    const float cosine = along.dot(here.normal);
     const float inside = 1 - near.squared()[k] / square;
     const float w = same_sheet(cosine) * inside * inside;
     const Eigen::Vector3f r(near.x()[k], near.y()[k], near.z()[k]);
@@ -137,19 +157,18 @@ void Patches::fit_one(std::size_t s, double sigma, Workspace& work) {
     return;
   }
   const std::size_t size = padded(members_);
-  const QuadricSums sums =
-      sum_quadric(size, work.u.data(), work.v.data(), work.height.data(), work.weight.data());
+  QuadricSums sums;
+  sum_quadric(size, work.u.data(), work.v.data(), work.height.data(), work.weight.data(), sums);
   // Few points, or points in a line, leave the quadric undetermined: the ridge makes it flat there.
   Matrix6 system = sums.a;
   system.diagonal().array() += 1e-9 * system(0, 0) + 1e-12;
-  const Matrix6 inverse = system.llt().solve(Matrix6::Identity());
+  const Matrix6 inverse = SmallCholesky<6>(system).inverse();
   const Vector6 quadric = inverse * sums.right;
   for (int a = 0; a < 6; ++a) {
-    patch.quadric[std::size_t(a)] = float(quadric[a]);
+    patch.quadric[4 * kPowers[a][1] + kPowers[a][0]] = float(quadric[a]);
     for (int b = 0; b < 6; ++b) {
-      const std::size_t v_power = kPowers[a][1] + kPowers[b][1],
-                        degree = kPowers[a][0] + kPowers[b][0] + v_power;
-      patch.spread[degree * (degree + 1) / 2 + v_power] += float(inverse(a, b));
+      const std::size_t u_power = kPowers[a][0] + kPowers[b][0], v_power = kPowers[a][1] + kPowers[b][1];
+      (u_power == 4 ? patch.spread_u4 : patch.spread[4 * v_power + u_power]) += float(inverse(a, b));
     }
   }
 
@@ -157,37 +176,79 @@ void Patches::fit_one(std::size_t s, double sigma, Workspace& work) {
   const double residuals = in_sigma * in_sigma *
                            sum_residuals(size, work.u.data(), work.v.data(), work.height.data(),
                                          work.weight.data(), work.cosine.data(), quadric);
-  const double leverage =
-      (inverse.array() * sum_squared_weights(size, work.u.data(), work.v.data(), work.weight.data()).array())
-          .sum();
+  Matrix6 squared;
+  sum_squared_weights(size, work.u.data(), work.v.data(), work.weight.data(), squared);
+  const double leverage = inverse.cwiseProduct(squared).sum();
   const double points = sum * sum / squares, variance = 6 / points;
   const double excess = (residuals - (sum - leverage)) / sum - std::sqrt(2 / points);
   patch.weight = float(variance / (variance + std::max(0.0, excess)));
 }
 
-/// Which patches are over each point: the lists of members the other way round.
-void Patches::transpose(Covering& covering, const Context& context) {
+/// Counts the patches [first, last) over the points.
+void Patches::count(std::size_t first, std::size_t last, Covering& covering, const Context& context) {
+  const std::size_t in_group = std::max<std::size_t>(1, kGroup / members_);
+  const auto members_of = [&](std::size_t g) {
+    return Covering::Group{(first + g * in_group) * members_,
+                           std::min(last, first + (g + 1) * in_group) * members_};
+  };
+  std::vector<std::vector<Index>> ranges((last - first + in_group - 1) / in_group);  // that a group touches
+  for_each_index(
+      context, ranges.size(),
+      [&](std::size_t g) {
+        const Covering::Group group = members_of(g);
+        Index before = kNone;
+        for (std::size_t k = group.begin; k < group.end; ++k) {
+          const auto range = Index(member_[k] / kRange);
+          if (range == before) continue;
+          before = range;
+          if (std::find(ranges[g].begin(), ranges[g].end(), range) == ranges[g].end())
+            ranges[g].push_back(range);
+        }
+      },
+      16);
+  for (std::size_t g = 0; g < ranges.size(); ++g)
+    for (const Index range : ranges[g]) covering.groups[range].push_back(members_of(g));
+  for_each_index(
+      context, covering.groups.size(),
+      [&](std::size_t range) {
+        for (const Covering::Group& group : covering.groups[range]) {
+          if (group.begin < first * members_) continue;  // counted before
+          for (std::size_t k = group.begin; k < group.end; ++k) {
+            const Index i = member_[k];
+            if (i / kRange != range || member_weight_[k] == 0) continue;
+            ++covering.patches[i];
+            if (member_weight_[k] >= kCovered) covering.covered[i] = 1;
+          }
+        }
+      },
+      1);
+}
+
+/// The lists of members the other way round.
+void Patches::transpose(const Covering& covering, const Context& context) {
   const std::size_t n = field_.size();
   over_start_.resize(n + 1);
   over_start_[0] = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    over_start_[i + 1] = over_start_[i] + covering.patches[i];
-    covering.patches[i] = over_start_[i];
-  }
+  for (std::size_t i = 0; i < n; ++i) over_start_[i + 1] = over_start_[i] + covering.patches[i];
   over_.resize(over_start_[n]);
+  over_weight_.resize(over_start_[n]);
   for_each_index(
-      context, patches_.size(),
-      [&](std::size_t s) {
-        for (std::size_t k = s * members_; k < (s + 1) * members_; ++k)
-          if (member_weight_[k] != 0)
-            over_[covering.patches[member_[k]].fetch_add(1, std::memory_order_relaxed)] = Index(k);
+      context, covering.groups.size(),
+      [&](std::size_t range) {
+        const std::size_t begin = range * kRange, end = std::min(n, begin + kRange);
+        std::vector<Index> next(over_start_.begin() + std::ptrdiff_t(begin),
+                                over_start_.begin() + std::ptrdiff_t(end));
+        for (const Covering::Group& group : covering.groups[range])
+          for (std::size_t s = group.begin / members_; s < group.end / members_; ++s)
+            for (std::size_t k = s * members_; k < (s + 1) * members_; ++k) {
+              const Index i = member_[k];
+              if (i / kRange != range || member_weight_[k] == 0) continue;
+              const Index to = next[i - begin]++;
+              over_[to] = Index(s);
+              over_weight_[to] = member_weight_[k];
+            }
       },
-      kTogether);
-  // Threads put them in any order.
-  for_each_index(context, n, [&](std::size_t i) {
-    std::sort(over_.begin() + std::ptrdiff_t(over_start_[i]),
-              over_.begin() + std::ptrdiff_t(over_start_[i + 1]));
-  });
+      1);
 }
 
 Prediction Patches::predict(const Context& context) const {
@@ -197,19 +258,20 @@ Prediction Patches::predict(const Context& context) const {
     const Eigen::Vector3f& normal = field_.local()[i].normal;
     float height = 0, own = 0, weights = 0;
     for (Index k = over_start_[i]; k < over_start_[i + 1]; ++k) {
-      const Patch& patch = patches_[patch_of(over_[k])];
-      const float e = float(member_weight_[over_[k]]) / kWeightUnit, w = e * patch.weight;
+      const Patch& patch = patches_[over_[k]];
+      const float e = float(over_weight_[k]) / kWeightUnit, w = e * patch.weight;
       const Eigen::Vector3f r = (field_.guide()[i] - patch.centre).cast<float>();
-      const float a = r.dot(patch.u), b = r.dot(patch.v);
-      const std::array<float, 6>& q = patch.quadric;
-      const std::array<float, 15>& s = patch.spread;
-      const float value = q[0] + a * (q[1] + a * q[3] + b * q[4]) + b * (q[2] + b * q[5]);
-      const float aa = a * a, bb = b * b, ab = a * b;
-      const float spread = s[0] + (a * s[1] + b * s[2]) + (aa * s[3] + ab * s[4] + bb * s[5]) +
-                           (aa * (a * s[6] + b * s[7]) + bb * (a * s[8] + b * s[9])) +
-                           (aa * (aa * s[10] + ab * s[11] + bb * s[12]) + bb * (ab * s[13] + bb * s[14]));
-      height += w * (value * patch.radius - r.dot(patch.axis)) * patch.axis.dot(normal);
-      own += w * e * spread;
+      const Floats x = four(patch.frame.data()), y = four(patch.frame.data() + 4),
+                   z = four(patch.frame.data() + 8), parts = r.x() * x + r.y() * y + r.z() * z;
+      const float cosine = normal.x() * x[2] + normal.y() * y[2] + normal.z() * z[2];
+      const float u = parts[0], v = parts[1], uu = u * u;
+      const Floats powers = {1, u, uu, uu * u};
+      const float *const q = patch.quadric.data(), *const s = patch.spread.data();
+      const float value = total(powers * (four(q) + v * (four(q + 4) + v * four(q + 8))));
+      const Floats in_v =
+          four(s) + v * (four(s + 4) + v * (four(s + 8) + v * (four(s + 12) + v * four(s + 16))));
+      height += w * (value * patch.radius - parts[2]) * cosine;
+      own += w * e * (total(powers * in_v) + patch.spread_u4 * uu * uu);
       weights += w;
     }
     if (!(weights > 0)) return;
@@ -233,8 +295,8 @@ std::vector<float> Patches::mean(const std::vector<float>& values, const Context
   for_each_index(context, field_.size(), [&](std::size_t i) {
     float sum = 0, weights = 0;
     for (Index k = over_start_[i]; k < over_start_[i + 1]; ++k) {
-      const float w = member_weight_[over_[k]];
-      sum += w * of_patch[patch_of(over_[k])];
+      const float w = over_weight_[k];
+      sum += w * of_patch[over_[k]];
       weights += w;
     }
     if (weights > 0) mean[i] = sum / weights;

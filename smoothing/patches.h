@@ -14,7 +14,7 @@
 #pragma once
 
 #include <array>
-#include <atomic>
+#include <cstdint>
 #include <vector>
 
 #include "rfsmooth/rfs_mesh/wide_neighbors.h"
@@ -35,7 +35,7 @@ class Patches {
   /// Patches of `members` points each (at most the number of points) around the points `seeds`, evenly
   /// spread; eight patches over a point are good (16 gain 2 % of the error at twice the time). Places that
   /// they leave uncovered get seeds of their own. \param sigma n: the noise, world units, > 0. It only
-  /// weighs patches against each other. O(n log n); memory about 10 bytes a point and patch over it, and 200
+  /// weighs patches against each other. O(n log n); memory about 12 bytes a point and patch over it, and 220
   /// bytes a patch. \throw std::length_error for 2^32 members in all.
   Patches(const HeightField& field, std::size_t members, std::vector<Index> seeds,
           const std::vector<double>& sigma, const Context& context);
@@ -46,40 +46,37 @@ class Patches {
   std::vector<float> mean(const std::vector<float>& values, const Context& context) const;
 
  private:
-  /// One fitted quadric, over u and v in radii. A monomial of either polynomial stands behind those of lower
-  /// degree, and within its degree behind those of a higher power of u.
+  /// One fitted quadric, over u and v in radii, laid out for sums over four numbers at a time: the
+  /// coefficient of u^p v^q of a polynomial is number 4 q + p.
   struct Patch {
     Eigen::Vector3d centre;
-    Eigen::Vector3f axis, u, v;  ///< u, v: divided by the radius
     float radius = 0, weight = 0;
-    std::array<float, 6> quadric = {};  ///< the height, in radii
-    std::array<float, 15> spread = {};  ///< f^T A^-1 f, A the normal equations
+    std::array<float, 12> frame;         ///< of x, y, z each: its parts along u, v (in radii) and the axis
+    std::array<float, 12> quadric = {};  ///< the height, in radii
+    std::array<float, 20> spread = {};   ///< f^T A^-1 f, A the normal equations, but for
+    float spread_u4 = 0;                 ///< the coefficient of u^4
   };
 
   /// Weights of members in 1/65535.
   using Weight = std::uint16_t;
 
   struct Workspace;
-  struct Covering;  // what the fits say of the points
+  struct Covering;
 
-  void fit(std::size_t first, std::size_t last, const std::vector<double>& sigma, Covering& covering,
-           const Context& context);
+  void fit(std::size_t first, std::size_t last, const std::vector<double>& sigma, const Context& context);
   void fit_one(std::size_t s, double sigma, Workspace& work);
-  void transpose(Covering& covering, const Context& context);
-
-  /// Whose member k is: k / members_, rounded down. Halves from the next whole number, the product cannot
-  /// round to it.
-  std::size_t patch_of(Index k) const { return std::size_t((double(k) + 0.5) * per_member_); }
+  void count(std::size_t first, std::size_t last, Covering& covering, const Context& context);
+  void transpose(const Covering& covering, const Context& context);
 
   const HeightField& field_;
   std::size_t members_ = 0;
-  double per_member_ = 0;  ///< 1 / members
   std::vector<Index> seeds_;
   std::vector<Patch> patches_;
   std::vector<Index> member_;          ///< patches x members
   std::vector<Weight> member_weight_;  ///< (1 - d^2/r^2)^2 cos^2 of each; 0 for points of another sheet
   std::vector<Index> over_start_;      ///< n + 1
-  std::vector<Index> over_;  ///< of each point: where it is in member_, ascending, if its weight is not 0
+  std::vector<Index> over_;            ///< of each point: the patches over it, ascending, weight not 0
+  std::vector<Weight> over_weight_;    ///< the point's weight in each
 };
 
 }  // namespace rfsmooth::smoothing

@@ -3,70 +3,90 @@
 #include <cstring>
 
 #include "rfsmooth/rfs_mesh/quadric_moments.h"
+#include "rfsmooth/rfs_mesh/wide.h"
 
 namespace rfsmooth::smoothing {
 
 namespace {
 
-typedef double Doubles __attribute__((vector_size(2 * sizeof(double))));
+constexpr std::size_t kDoubles = kLanes / 2;  // side by side
+typedef double Doubles __attribute__((vector_size(kDoubles * sizeof(double))));
+typedef float Halves __attribute__((vector_size(kDoubles * sizeof(float))));
 typedef float Floats __attribute__((vector_size(kLanes * sizeof(float))));
 
-Doubles doubles(const float* at) {
-  return Doubles{double(at[0]), double(at[1])};
-}
-
-Floats floats(const float* at) {
-  Floats f;
+inline void load(const float* at, Doubles& to) {
+  Halves f;
   std::memcpy(&f, at, sizeof f);
-  return f;
+  to = __builtin_convertvector(f, Doubles);
 }
 
-double total(const Doubles& d) {
-  return d[0] + d[1];
+inline void load(const float* at, Floats& to) {
+  std::memcpy(&to, at, sizeof to);
 }
 
-double total(const Floats& f) {
-  return (double(f[0]) + double(f[1])) + (double(f[2]) + double(f[3]));
-}
-
-const auto kTotal = [](const auto& lanes) { return total(lanes); };
+const auto kTotal = [](const auto& lanes) {
+  double sum = 0;
+  for (std::size_t k = 0; k < sizeof lanes / sizeof lanes[0]; ++k) sum += double(lanes[k]);
+  return sum;
+};
 
 }  // namespace
 
-QuadricSums sum_quadric(std::size_t size, const float* u, const float* v, const float* y, const float* w) {
+RFSMOOTH_WIDE
+void sum_quadric(std::size_t size, const float* u, const float* v, const float* y, const float* w,
+                 QuadricSums& sums) {
   rfs_mesh::QuadricMoments<Doubles> moments;
-  for (std::size_t k = 0; k < size; k += 2) moments.add(doubles(u + k), doubles(v + k), doubles(w + k));
+  Doubles a, b, c, d;
+  for (std::size_t k = 0; k < size; k += kDoubles) {
+    load(u + k, a);
+    load(v + k, b);
+    load(w + k, c);
+    moments.add(a, b, c);
+  }
   rfs_mesh::QuadricHeights<Doubles> heights;
-  for (std::size_t k = 0; k < size; k += 2)
-    heights.add(doubles(u + k), doubles(v + k), doubles(w + k) * doubles(y + k));
-  QuadricSums sums;
+  for (std::size_t k = 0; k < size; k += kDoubles) {
+    load(u + k, a);
+    load(v + k, b);
+    load(w + k, c);
+    load(y + k, d);
+    d *= c;
+    heights.add(a, b, d);
+  }
   sums.a = moments.matrix(kTotal);
   sums.right = heights.vector(kTotal);
-  return sums;
 }
 
-Eigen::Matrix<double, 6, 6> sum_squared_weights(std::size_t size, const float* u, const float* v,
-                                                const float* w) {
+RFSMOOTH_WIDE
+void sum_squared_weights(std::size_t size, const float* u, const float* v, const float* w,
+                         Eigen::Matrix<double, 6, 6>& sums) {
   rfs_mesh::QuadricMoments<Floats> moments;
+  Floats a, b, c;
   for (std::size_t k = 0; k < size; k += kLanes) {
-    const Floats weight = floats(w + k);
-    moments.add(floats(u + k), floats(v + k), weight * weight);
+    load(u + k, a);
+    load(v + k, b);
+    load(w + k, c);
+    c *= c;
+    moments.add(a, b, c);
   }
-  return moments.matrix(kTotal);
+  sums = moments.matrix(kTotal);
 }
 
+RFSMOOTH_WIDE
 double sum_residuals(std::size_t size, const float* u, const float* v, const float* y, const float* w,
                      const float* c, const Eigen::Matrix<double, 6, 1>& q) {
-  Floats f[6];
+  Floats f[6], sum = {}, a, b, e, factor;
   for (int t = 0; t < 6; ++t) f[t] = Floats{} + float(q[t]);
-  Floats sum = {};
   for (std::size_t k = 0; k < size; k += kLanes) {
-    const Floats a = floats(u + k), b = floats(v + k);
-    const Floats height = f[0] + a * (f[1] + a * f[3] + b * f[4]) + b * (f[2] + b * f[5]);
-    const Floats e = (floats(y + k) - height) * floats(c + k);
-    sum += floats(w + k) * e * e;
+    load(u + k, a);
+    load(v + k, b);
+    load(y + k, e);
+    e -= f[0] + a * (f[1] + a * f[3] + b * f[4]) + b * (f[2] + b * f[5]);
+    load(c + k, factor);
+    e *= factor;
+    load(w + k, factor);
+    sum += factor * e * e;
   }
-  return total(sum);
+  return kTotal(sum);
 }
 
 }  // namespace rfsmooth::smoothing

@@ -10,7 +10,7 @@
 namespace rfsmooth::smoothing {
 
 /// Points are taken so many at a time: arrays are to be filled up to a multiple with zeros.
-inline constexpr std::size_t kLanes = 4;
+inline constexpr std::size_t kLanes = 8;
 
 /// The next multiple of kLanes.
 inline std::size_t padded(std::size_t size) {
@@ -25,11 +25,12 @@ struct QuadricSums {
 
 /// \param size padded(number of points). u, v and y are of the order of one. O(size), the same bits every
 /// time.
-QuadricSums sum_quadric(std::size_t size, const float* u, const float* v, const float* y, const float* w);
+void sum_quadric(std::size_t size, const float* u, const float* v, const float* y, const float* w,
+                 QuadricSums& sums);
 
 /// b, summed in single precision.
-Eigen::Matrix<double, 6, 6> sum_squared_weights(std::size_t size, const float* u, const float* v,
-                                                const float* w);
+void sum_squared_weights(std::size_t size, const float* u, const float* v, const float* w,
+                         Eigen::Matrix<double, 6, 6>& sums);
 
 /// The sum of w ((y - q.f) c)^2.
 double sum_residuals(std::size_t size, const float* u, const float* v, const float* y, const float* w,

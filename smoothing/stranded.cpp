@@ -4,6 +4,7 @@
 #include <array>
 #include <iterator>
 #include <optional>
+#include <utility>
 
 #include <Eigen/Eigenvalues>
 
@@ -31,6 +32,9 @@ class MovingGuide {
       : before_(guide), index_(before_, context), gone_(guide.size(), 0) {}
 
   const rfs_mesh::SpatialIndex& before() const { return index_; }
+
+  /// The end of it.
+  rfs_mesh::KdTree release_tree() { return index_.release_tree(); }
 
   /// Takes a point out, or puts it back where it was.
   void set_gone(Index i, bool gone) { gone_[i] = char(gone); }
@@ -158,27 +162,24 @@ void renew(const MovingGuide& surface, const Positions& guide, std::size_t i, Ne
     if (q.index != i && to < width) row[to++] = q.index;
 }
 
-/// New rows for those that had a moved point near.
-void renew_around(const MovingGuide& surface, const Positions& guide, NeighborTable& near,
-                  const Context& context) {
-  for_blocks(context, guide.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    MovingGuide::Search search;
-    for (std::size_t i = begin; i < end; ++i) {
-      const auto row = near[i];
-      if (surface.stays(Index(i)) &&
-          !std::all_of(row.begin(), row.end(), [&](Index j) { return surface.stays(j); }))
-        renew(surface, guide, i, near, search);
-    }
+/// Who is to have a new row: the moved points, and those that had one near.
+std::vector<char> beside_moved(const MovingGuide& surface, const NeighborTable& near,
+                               const Context& context) {
+  std::vector<char> beside(near.size());
+  for_each_index(context, near.size(), [&](std::size_t i) {
+    const auto row = near[i];
+    beside[i] = char(!surface.stays(Index(i)) ||
+                     !std::all_of(row.begin(), row.end(), [&](Index j) { return surface.stays(j); }));
   });
+  return beside;
 }
 
 }  // namespace
 
-std::size_t land_stranded(const rfs_mesh::Mesh& mesh, double most, Positions& guide, NeighborTable& near,
-                          const Context& context) {
+Landed land_stranded(const rfs_mesh::Mesh& mesh, double most, Positions& guide, const Context& context) {
   MovingGuide surface(guide, context);
-  near = surface.before().nearest(int(kLast) + 1, context);
-  if (guide.size() < kTooFew) return 0;
+  NeighborTable near = surface.before().nearest(int(kLast) + 1, context);
+  if (guide.size() < kTooFew) return {0, std::move(near), surface.release_tree()};
   std::vector<Index> moved;
   std::size_t first = 0;
   for (int round = 0; round < kRounds; ++round) {
@@ -204,8 +205,10 @@ std::size_t land_stranded(const rfs_mesh::Mesh& mesh, double most, Positions& gu
       for (std::size_t k = begin; k < end; ++k) renew(surface, guide, moved[k], near, search);
     });
   }
-  if (!moved.empty()) renew_around(surface, guide, near, context);
-  return first;
+  const std::vector<char> beside = moved.empty() ? std::vector<char>() : beside_moved(surface, near, context);
+  rfs_mesh::SpatialIndex index(guide, surface.release_tree(), context);
+  if (!beside.empty()) index.renew(near, beside, context);
+  return {first, std::move(near), index.release_tree()};
 }
 
 }  // namespace rfsmooth::smoothing

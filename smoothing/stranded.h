@@ -14,13 +14,17 @@
 
 namespace rfsmooth::smoothing {
 
+/// What was done, and what others need of the guide afterwards.
+struct Landed {
+  std::size_t stranded = 0;      ///< points that were found at first
+  rfs_mesh::NeighborTable near;  ///< the 32 nearest of every guide point. A point that has a moved one near
+                                 ///< it anew may not know.
+  rfs_mesh::KdTree tree;         ///< of the guide points, here or where they were before
+};
+
 /// Moves the stranded points of `guide` (n x 3, the faired mesh.positions), except those farther from the
 /// surface than `most` (world units): they are strays. Then once more: the landed ones make the surface
-/// denser, and smaller islands stand out. Returns how many were found at first.
-/// \param near out: the 32 nearest of every guide point. A point that has a moved one near it anew may not
-/// know.
-/// O(n log n), parallel, deterministic.
-std::size_t land_stranded(const rfs_mesh::Mesh& mesh, double most, Positions& guide,
-                          rfs_mesh::NeighborTable& near, const Context& context);
+/// denser, and smaller islands stand out. O(n log n), parallel, deterministic.
+Landed land_stranded(const rfs_mesh::Mesh& mesh, double most, Positions& guide, const Context& context);
 
 }  // namespace rfsmooth::smoothing

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstring>
 
 #include "rfsmooth/rfs_mesh/points.h"
 
@@ -17,11 +18,14 @@ struct WeightedSum {
 template <class Weight>
 WeightedSum weighted_sum(std::size_t size, const Index* picked, const Weight* weight, const float* values) {
   typedef float Floats __attribute__((vector_size(4 * sizeof(float))));
+  typedef Weight Weights __attribute__((vector_size(4 * sizeof(Weight))));
   Floats sum = {}, weights = {};
   std::size_t k = 0;
   for (; k + 4 <= size; k += 4) {
     const Floats v = {values[picked[k]], values[picked[k + 1]], values[picked[k + 2]], values[picked[k + 3]]};
-    const Floats w = {float(weight[k]), float(weight[k + 1]), float(weight[k + 2]), float(weight[k + 3])};
+    Weights whole;
+    std::memcpy(&whole, weight + k, sizeof whole);
+    const Floats w = __builtin_convertvector(whole, Floats);
     sum += w * v;
     weights += w;
   }

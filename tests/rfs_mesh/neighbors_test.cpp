@@ -1,6 +1,7 @@
 #include "rfsmooth/rfs_mesh/neighbors.h"
 
 #include <algorithm>
+#include <limits>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -82,6 +83,40 @@ TEST_P(Neighbors, QueriesAnywhereMatchBruteForce) {
       EXPECT_EQ(found, expected);
     }
   }
+}
+
+TEST(Neighbors, OfATreeThatFollowsItsPointsAreThoseOfANewOne) {
+  std::mt19937_64 engine(9);
+  std::normal_distribution<double> normal;
+  Positions points(9001);
+  for (Eigen::Vector3d& p : points) p = {normal(engine), normal(engine), normal(engine)};
+  SpatialIndex index(points, {});
+  Positions moved = points;
+  for (Eigen::Vector3d& p : moved) p += Eigen::Vector3d(1, 0, 0.3 * normal(engine));
+  const SpatialIndex after(moved, index.release_tree(), {}), fresh(moved, {});
+  EXPECT_EQ(after.nearest(12, {}).items, fresh.nearest(12, {}).items);
+  std::vector<Neighbor> found, expected;
+  after.nearest({1, 0.5, 0}, 40, found);
+  fresh.nearest({1, 0.5, 0}, 40, expected);
+  EXPECT_EQ(found, expected);
+  moved[77].x() = std::numeric_limits<double>::infinity();
+  EXPECT_THROW(SpatialIndex(moved, SpatialIndex(points, {}).release_tree(), {}), std::invalid_argument);
+}
+
+TEST(Neighbors, OnlyRowsThatAreWantedAreRenewed) {
+  std::mt19937_64 engine(4);
+  std::uniform_real_distribution<double> uniform;
+  Positions points(500);
+  for (Eigen::Vector3d& p : points) p = {uniform(engine), uniform(engine), uniform(engine)};
+  const SpatialIndex index(points, {});
+  const NeighborTable exact = index.nearest(9, {});
+  NeighborTable table = exact;
+  std::fill(table.items.begin(), table.items.end(), kNone);
+  std::vector<char> wanted(points.size());
+  for (std::size_t i = 0; i < points.size(); i += 7) wanted[i] = 1;
+  index.renew(table, wanted, {});
+  for (std::size_t i = 0; i < points.size(); ++i)
+    for (std::size_t k = 0; k < 9; ++k) EXPECT_EQ(table[i][k], wanted[i] != 0 ? exact[i][k] : kNone);
 }
 
 TEST(Neighbors, SameTableForAnyNumberOfThreads) {

@@ -43,6 +43,29 @@ TEST(Sides, VotesRefuseAJoinThatSpeaksSofter) {
   EXPECT_EQ(grow_regions(2, links, {1, 0.6}, {}).of_point, (std::vector<Index>{0, 0}));
 }
 
+TEST(Sides, InBlocksPointsFindTheSameSideAsAllAtOnce) {
+  // A strip many blocks long whose points are turned at random; every hundredth column agrees faintly only.
+  const std::size_t width = 10, n = 3000 * width;
+  std::mt19937 engine(5);
+  std::vector<float> side(n);
+  for (float& s : side) s = engine() % 2 == 0 ? 1 : -1;
+  const auto links = [&](std::size_t begin, std::size_t end, std::vector<SideLink>& out) {
+    for (std::size_t i = begin; i < end; ++i)
+      for (const std::size_t step : {std::size_t{1}, width}) {
+        if (i + step >= n || (step == 1 && (i + 1) % width == 0)) continue;
+        const float sure = step == width && i / width % 100 == 7 ? 0.3F : 0.95F;
+        out.push_back({Index(i + step), Index(i), sure * side[i] * side[i + step], 1});
+      }
+  };
+  std::vector<SideLink> all;
+  links(0, n, all);
+  const Regions once = grow_regions(n, all, {}, {}), blocks = grow_regions_in_blocks(n, links, {});
+  EXPECT_EQ(blocks.of_point, std::vector<Index>(n, 0));
+  EXPECT_EQ(blocks.of_point, once.of_point);
+  EXPECT_EQ(blocks.turned, once.turned);
+  for (std::size_t i = 0; i < n; ++i) ASSERT_EQ(blocks.turned[i] != 0, side[i] != side[0]);
+}
+
 TEST(Orient, DoesNotDependOnTheSideTheNormalsCameWith) {
   const Positions points = test::poisson_points(test::cube(), 2000, 1);
   const Connection c = connect(points, {}, {}).value();

@@ -136,7 +136,7 @@ TEST(Patches, PredictAQuadricExactlyWhateverTheSharesOfThePointsAre) {
       guide.emplace_back(x, y, 0);
       data.emplace_back(x, y, 0.01 * x * x - 0.02 * x * y + 0.3 * y - 1);
     }
-  const HeightField field(guide, support::near_on(guide), data, {});
+  const HeightField field(guide, rfs_mesh::KdTree(guide, {}), support::near_on(guide), data, {});
   for (const std::size_t m : {16, 100}) {
     std::vector<Index> seeds = thin(guide, all(guide.size()), {});
     const Patches patches(field, m, seeds, std::vector<double>(guide.size(), 1), {});
@@ -162,10 +162,10 @@ TEST(Patches, OwnIsTheDerivativeOfAPredictionByThePointsHeight) {
   const std::size_t i = 207;
   const double step = 0.5;
   const std::vector<double> sigma(guide.size(), 10);
-  const HeightField field(guide, support::near_on(guide), data, {});
+  const HeightField field(guide, rfs_mesh::KdTree(guide, {}), support::near_on(guide), data, {});
   const Prediction before = Patches(field, 24, seeds, sigma, {}).predict({});
   data[i].z() += step;
-  const HeightField lifted(guide, support::near_on(guide), data, {});
+  const HeightField lifted(guide, rfs_mesh::KdTree(guide, {}), support::near_on(guide), data, {});
   const Prediction after = Patches(lifted, 24, seeds, sigma, {}).predict({});
   const double side = field.normal(i).z();
   EXPECT_NEAR(double(after.height[i] - before.height[i]) / (side * step), double(before.own[i]), 1e-4);
@@ -173,7 +173,8 @@ TEST(Patches, OwnIsTheDerivativeOfAPredictionByThePointsHeight) {
 
 TEST(Patches, MeanOfAConstantIsTheConstant) {
   const rfs_mesh::Mesh mesh = support::icosphere(3);
-  const HeightField field(mesh.positions, support::near_on(mesh.positions), mesh.positions, {});
+  const HeightField field(mesh.positions, rfs_mesh::KdTree(mesh.positions, {}),
+                          support::near_on(mesh.positions), mesh.positions, {});
   const std::vector<float> seven(field.size(), 7);
   const Patches patches(field, 40, thin(mesh.positions, all(field.size()), {}),
                         std::vector<double>(field.size(), 1), {});
@@ -209,9 +210,8 @@ TEST(Thinning, KeepsAnIndependentSetThatEveryPointIsNearTo) {
 /// land_stranded, and whether the table still holds every point's nearest, nearer ones first.
 std::size_t land(const rfs_mesh::Mesh& mesh, double most, Positions& guide) {
   const rfs_mesh::NeighborTable before = rfs_mesh::SpatialIndex(guide, {}).nearest(32, {});
-  rfs_mesh::NeighborTable near;
   const Positions start = guide;
-  const std::size_t found = land_stranded(mesh, most, guide, near, {});
+  const auto [found, near, tree] = land_stranded(mesh, most, guide, {});
   const rfs_mesh::SpatialIndex index(guide, {});
   const rfs_mesh::NeighborTable exact = index.nearest(32, {});
   for (std::size_t i = 0; i < guide.size(); ++i) {

@@ -30,7 +30,8 @@ struct Sheet {
         data.push_back(guide.back());
         data.back().z() = truth.back() + (right ? louder : 1) * noise(random);
       }
-    field = std::make_unique<HeightField>(guide, support::near_on(guide), data, Context{});
+    field = std::make_unique<HeightField>(guide, rfs_mesh::KdTree(guide, {}), support::near_on(guide), data,
+                                          Context{});
     up = field->normal(0).z();
     height.assign(guide.size(), 0);
     own.assign(guide.size(), 0.01F);
