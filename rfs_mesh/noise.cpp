@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "rfsmooth/rfs_mesh/noise_sites.h"
+#include "rfsmooth/rfs_mesh/noise_field.h"
 #include "rfsmooth/rfs_mesh/parallel.h"
 
 namespace rfsmooth::rfs_mesh {
@@ -18,8 +18,6 @@ constexpr double kFigureNarrow = 0.4, kFigureWide = 0.45;
 // Where hardly a site speaks, most of the cloud is rough, and what does speak there is half roughness.
 constexpr double kFewSpeak = 0.1, kFigureOfFew = 0.2;
 constexpr double kLittleShape = 0.25;  // more of it makes places differ that are as noisy
-constexpr std::size_t kSmooth = 24;    // sites whose median is the field
-constexpr double kNoSay = 0.07;        // logarithm: less is the measurement's own scatter
 constexpr std::size_t kBlend = 4;      // sites that a point takes the mean of
 constexpr std::size_t kSpacingSites = 4000, kSpacingPoints = 16;
 
@@ -34,27 +32,6 @@ double mean_of_alike(const std::vector<Weighed>& values, double typical) {
     weights += v.weight;
   }
   return weights > 0 ? std::sqrt(sum / weights) : typical;
-}
-
-/// The field at the sites: the median around each, relative to the figure, where it means something.
-std::vector<double> smooth(const NoiseSites& sites, const SpatialIndex& index, double figure,
-                           const Context& context) {
-  std::vector<double> field(sites.at.size(), figure);
-  for_each_index(
-      context, sites.at.size(),
-      [&](std::size_t s) {
-        std::vector<Neighbor> near;
-        std::vector<double> around;
-        index.nearest(sites.at[s], int(kSmooth), near);
-        for (const Neighbor& q : near)
-          if (sites.speaks[q.index])
-            around.push_back(std::log(std::clamp(sites.sigma[q.index] / figure, 0.2, 3.0)));
-        if (around.empty()) return;
-        const double d = quantile(around, 0.5);
-        if (std::abs(d) > kNoSay) field[s] = figure * std::exp(d - kNoSay * kNoSay / d);
-      },
-      64);
-  return field;
 }
 
 /// The sites nearest to each of a few points that lie together: searched once for all of them.
@@ -126,7 +103,7 @@ NoiseField measure_noise(const SpatialIndex& index, const Context& context) {
   const NoiseStart start = search_noise(index, context);
   noise.neighbours = start.m;
   if (!(start.least > 0)) return noise;
-  NoiseSites sites = listen(index, start, context);
+  const NoiseSites sites = listen(index, start, context);
   std::vector<Weighed> heard, shape;
   double all = 0, saying = 0;
   for (std::size_t s = 0; s < sites.at.size(); ++s) {
@@ -144,12 +121,10 @@ NoiseField measure_noise(const SpatialIndex& index, const Context& context) {
     noise.sigma = mean_of_alike(heard, noise.sigma);
   if (noise.sigma <= start.least) noise.sigma = 0;
   if (!(noise.sigma > 0)) return noise;
-  if (noise.sigma > start.most) {  // the windows let a second sheet in nearly everywhere
-    for (double& v : sites.sigma) v *= start.most / noise.sigma;
-    noise.sigma = start.most;
-  }
-  const SpatialIndex places(sites.at, context);
-  noise.local = blend(places, smooth(sites, places, noise.sigma, context), index.points(), context);
+  noise.sigma = std::min(noise.sigma, start.most);  // the windows let a second sheet in nearly everywhere
+  std::vector<double> local = relative_noise(sites, noise.sigma, context);
+  for (double& v : local) v *= noise.sigma;
+  noise.local = blend(SpatialIndex(sites.at, context), local, index.points(), context);
   return noise;
 }
 

@@ -10,9 +10,10 @@
 /// - Depths in steps and noise that neighbours share: they grow, too, but stop growing (noise_sites.h).
 /// - Scans have most points where their surface is nearest: places count by their area.
 ///
-/// The figure is the typical place's. The field is the median of nearby places relative to the figure, and
-/// says nothing of less than 7 % (what the measurement itself scatters by): on a cloud of even noise it is
-/// constant. Real scans agree with what a plane through their flat places leaves, within a factor of 1.7.
+/// The figure is the typical place's. The field is the mean of places that are near each other and face the
+/// same way, relative to the figure (noise_field.h), and says nothing of less than 7 to 10 % (what the
+/// measurement itself scatters by): on a cloud of even noise it is constant. Real scans agree with what a
+/// plane through their flat places leaves, within a factor of 1.7.
 #pragma once
 
 #include <vector>

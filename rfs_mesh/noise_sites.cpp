@@ -120,9 +120,11 @@ NoiseSites listen(const SpatialIndex& index, const NoiseStart& start, const Cont
   Listener listener(index, sites.at, start, context);
   listener.find_floor();
   for (int round = 0; round < 3; ++round) listener.hear(start.m, true);
-  sites.area = areas(listener.hear(start.m, false));
+  sites.fits = listener.hear(start.m, false);
+  sites.area = areas(sites.fits);
   sites.sigma = listener.sigma;
   sites.speaks = listener.speaks;
+  sites.floor = listener.floor;
   for (int round = 0; round < 2; ++round) listener.hear(std::min(n, 2 * start.m), false);
 
   const double least = start.m == kNarrowestScatter ? kLeastNarrow : kLeastWide;

@@ -23,6 +23,8 @@ struct NoiseSites {
   std::vector<double> shape;  ///< part of s^2(m) taken off as shape, 0 to 0.6
   std::vector<double> area;   ///< how much the site counts, 0 to 1
   std::vector<char> speaks;   ///< whether sigma is of this place; else it is what came nearest to it
+  std::vector<double> floor;  ///< what depths in steps or shared noise make sure of, world units; 0: nothing
+  std::vector<Scatter> fits;  ///< to the m nearest of the site by itself
 };
 
 /// \param start sigma and m to start from, `least` > 0. O(log n). Parallel, deterministic.

@@ -87,6 +87,7 @@ Scatter ScatterFit::operator()(const SpatialIndex& index, const Eigen::Vector3d&
     }
     s.freedom = 0;
     s.foot = place;
+    s.normal = axes.col(0);
     if (round > 0 && kept < kLeastKept * all) return s;
     a.diagonal().array() += 1e-9 * kept;
     const Eigen::LLT<Matrix6> solver(a.selfadjointView<Eigen::Lower>());
@@ -98,6 +99,7 @@ Scatter ScatterFit::operator()(const SpatialIndex& index, const Eigen::Vector3d&
     s.variance = r * r * std::max(0.0, residual) / left / (round > 0 ? kInside : 1);
     s.freedom = left * left / squares;
     s.foot = place + r * c[0] * axes.col(0);
+    s.normal = (axes.col(0) - c[1] / flat * axes.col(2) - c[2] / flat * axes.col(1)).normalized();
     window = high;
   }
   return s;

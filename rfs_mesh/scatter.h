@@ -24,10 +24,11 @@ double variance_inside(double c);
 
 /// How far the points around one scatter about the quadric through them.
 struct Scatter {
-  double variance = 0;                             ///< s^2, world units squared
-  double freedom = 0;                              ///< its degrees of freedom; 0: nothing can be said here
-  double radius = 0;                               ///< of the ball of neighbours, world units
-  Eigen::Vector3d foot = Eigen::Vector3d::Zero();  ///< the surface at the place
+  double variance = 0;                               ///< s^2, world units squared
+  double freedom = 0;                                ///< its degrees of freedom; 0: nothing can be said here
+  double radius = 0;                                 ///< of the ball of neighbours, world units
+  Eigen::Vector3d foot = Eigen::Vector3d::Zero();    ///< the surface at the place
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< there; zero if the points coincide
 };
 
 /// Fits one after the other, keeping its buffers. Not for several threads at once.
