@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -62,8 +63,9 @@ struct Scale {
 
 /// `before` holds the risk of the scale before it.
 Scale try_scale(const HeightField& field, std::size_t members, const std::vector<Index>& seeds,
-                const std::vector<double>& sigma, std::vector<float>& before, const Context& context) {
-  const Patches patches(field, members, seeds, sigma, context);
+                const std::vector<double>& sigma, std::vector<float>& before, Patches::Memory& memory,
+                const Context& context) {
+  const Patches patches(field, members, seeds, sigma, memory, context);
   Scale scale{members, patches.predict(context), std::vector<float>(field.size()), {}};
   const Prediction& prediction = scale.prediction;
   for_each_index(context, field.size(), [&](std::size_t i) {
@@ -152,6 +154,7 @@ Positions automatic_smoothing(const rfs_mesh::Mesh& mesh, const rfs_mesh::NoiseF
 
   std::vector<float> risk(n, 1);  // of the data themselves: no error, all their own
   std::vector<Scale> scales;
+  std::optional<Patches::Memory> memory(std::in_place);
   std::vector<Index> seeds;  // empty: all
   const double narrowest = std::max(kFewest, kNarrowest * share * share);
   const double widest = std::max(kWidest, kWidestShare * narrowest);
@@ -162,12 +165,13 @@ Positions automatic_smoothing(const rfs_mesh::Mesh& mesh, const rfs_mesh::NoiseF
     while (seeds.size() * members > kMostOverlap * n)
       seeds = seeds.size() > n / kDense ? thin_dense(field.index(), field.neighbors(), seeds, context)
                                         : thin(field.guide(), seeds, context);
-    scales.push_back(try_scale(field, members, seeds, noise.local, risk, context));
+    scales.push_back(try_scale(field, members, seeds, noise.local, risk, *memory, context));
     if (m >= double(n) / 2) break;
   }
 
   std::vector<float> height, own;
   std::vector<float>().swap(risk);
+  memory.reset();
   mix(field, std::move(scales), height, own, context);
   split_hidden_sheets(field, sigma, height, own, context);
 

@@ -15,6 +15,7 @@
 #include "rfsmooth/rfs_mesh/wide.h"
 #include "rfsmooth/smoothing/plane_normal.h"
 #include "rfsmooth/smoothing/quadric_sums.h"
+#include "rfsmooth/smoothing/raw_array.h"
 #include "rfsmooth/smoothing/small_cholesky.h"
 
 namespace rfsmooth::smoothing {
@@ -42,10 +43,10 @@ constexpr double kWidestGap = 2.4;  // radians between neighbours' directions: w
 /// precision: it only gives moves, which are short.
 struct Frame {
   Eigen::Vector3f t, b, n;
-  Eigen::Matrix<float, 5, 1> quadric = Eigen::Matrix<float, 5, 1>::Zero();
-  float distance = 0;  ///< between points near here, as on a hexagonal grid
-  bool movable = false, rim = false, slides = false;
-  Eigen::Vector2f along = Eigen::Vector2f::Zero();  ///< the edge that a sliding point stays beside, unit
+  Eigen::Matrix<float, 5, 1> quadric;
+  float distance;  ///< between points near here, as on a hexagonal grid; 0: no frame
+  bool movable, rim, slides;
+  Eigen::Vector2f along;  ///< the edge that a sliding point stays beside, unit
 
   /// The part along the surface; 0 where there is none.
   Eigen::Vector2f offset(const Eigen::Vector3f& d) const {
@@ -172,6 +173,10 @@ Frame open_frame(const Positions& points, const std::vector<Eigen::Vector3f>& no
   using Matrix5 = Eigen::Matrix<double, 5, 5>;
   Frame f;
   f.n = normals[i];
+  f.quadric.setZero();
+  f.distance = 0;
+  f.movable = f.rim = f.slides = false;
+  f.along.setZero();
   const Eigen::Vector3d& p = points[i];
   const double reach = (points[near[near.size() - 1]] - p).norm();
   if (!f.n.allFinite() || !(reach > 0)) return f;
@@ -264,7 +269,7 @@ Equalized equalize(Positions& points, const Positions& before, double sigma, dou
   if (n <= std::size_t(kNear) || !(sigma > 0)) return {};
   std::vector<Eigen::Vector3f> normals;
   const Near near(std::move(table), points, normals, context);
-  std::vector<Frame> frames(n);
+  RawArray<Frame> frames(n);
   for_each_index(context, n, [&](std::size_t i) { frames[i] = make_frame(points, normals, i, near[i]); });
   std::vector<Eigen::Vector3f>().swap(normals);
 

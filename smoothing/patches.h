@@ -19,6 +19,7 @@
 
 #include "rfsmooth/rfs_mesh/wide_neighbors.h"
 #include "rfsmooth/smoothing/height_field.h"
+#include "rfsmooth/smoothing/raw_array.h"
 
 namespace rfsmooth::smoothing {
 
@@ -31,14 +32,41 @@ struct Prediction {
 
 /// Overlapping quadrics over one number of points.
 class Patches {
+  // What Memory holds.
+  /// One fitted quadric, over u and v in radii, laid out for sums over four numbers at a time: the
+  /// coefficient of u^p v^q of a polynomial is number 4 q + p.
+  struct Patch {
+    Eigen::Vector3d centre;
+    float radius, weight;
+    std::array<float, 12> frame;    ///< of x, y, z each: its parts along u, v (in radii) and the axis
+    std::array<float, 12> quadric;  ///< the height, in radii
+    std::array<float, 20> spread;   ///< f^T A^-1 f, A the normal equations, but for
+    float spread_u4;                ///< the coefficient of u^4
+  };
+
+  /// Weights of members in 1/65535.
+  using Weight = std::uint16_t;
+
  public:
+  /// What patches are kept in; to be used again for the next ones, since the system takes longer to give out
+  /// so much memory than a pass over it takes.
+  class Memory {
+    friend class Patches;
+    RawArray<Patch> patches;
+    RawArray<Index> member;          ///< patches x members
+    RawArray<Weight> member_weight;  ///< (1 - d^2/r^2)^2 cos^2 of each; 0 for points of another sheet
+    std::vector<Index> over_start;   ///< n + 1
+    RawArray<Index> over;            ///< of each point: the patches over it, ascending, weight not 0
+    RawArray<Weight> over_weight;    ///< the point's weight in each
+  };
+
   /// Patches of `members` points each (at most the number of points) around the points `seeds`, evenly
   /// spread; eight patches over a point are good (16 gain 2 % of the error at twice the time). Places that
   /// they leave uncovered get seeds of their own. \param sigma n: the noise, world units, > 0. It only
-  /// weighs patches against each other. O(n log n); memory about 12 bytes a point and patch over it, and 220
-  /// bytes a patch. \throw std::length_error for 2^32 members in all.
+  /// weighs patches against each other. `memory` outlives them. O(n log n); memory about 12 bytes a point and
+  /// patch over it, and 220 bytes a patch. \throw std::length_error for 2^32 members in all.
   Patches(const HeightField& field, std::size_t members, std::vector<Index> seeds,
-          const std::vector<double>& sigma, const Context& context);
+          const std::vector<double>& sigma, Memory& memory, const Context& context);
 
   Prediction predict(const Context& context) const;
 
@@ -46,20 +74,6 @@ class Patches {
   std::vector<float> mean(const std::vector<float>& values, const Context& context) const;
 
  private:
-  /// One fitted quadric, over u and v in radii, laid out for sums over four numbers at a time: the
-  /// coefficient of u^p v^q of a polynomial is number 4 q + p.
-  struct Patch {
-    Eigen::Vector3d centre;
-    float radius = 0, weight = 0;
-    std::array<float, 12> frame;         ///< of x, y, z each: its parts along u, v (in radii) and the axis
-    std::array<float, 12> quadric = {};  ///< the height, in radii
-    std::array<float, 20> spread = {};   ///< f^T A^-1 f, A the normal equations, but for
-    float spread_u4 = 0;                 ///< the coefficient of u^4
-  };
-
-  /// Weights of members in 1/65535.
-  using Weight = std::uint16_t;
-
   struct Workspace;
   struct Covering;
 
@@ -71,12 +85,7 @@ class Patches {
   const HeightField& field_;
   std::size_t members_ = 0;
   std::vector<Index> seeds_;
-  std::vector<Patch> patches_;
-  std::vector<Index> member_;          ///< patches x members
-  std::vector<Weight> member_weight_;  ///< (1 - d^2/r^2)^2 cos^2 of each; 0 for points of another sheet
-  std::vector<Index> over_start_;      ///< n + 1
-  std::vector<Index> over_;            ///< of each point: the patches over it, ascending, weight not 0
-  std::vector<Weight> over_weight_;    ///< the point's weight in each
+  Memory& memory_;
 };
 
 }  // namespace rfsmooth::smoothing

@@ -139,7 +139,8 @@ TEST(Patches, PredictAQuadricExactlyWhateverTheSharesOfThePointsAre) {
   const HeightField field(guide, rfs_mesh::KdTree(guide, {}), support::near_on(guide), data, {});
   for (const std::size_t m : {16, 100}) {
     std::vector<Index> seeds = thin(guide, all(guide.size()), {});
-    const Patches patches(field, m, seeds, std::vector<double>(guide.size(), 1), {});
+    Patches::Memory memory;
+    const Patches patches(field, m, seeds, std::vector<double>(guide.size(), 1), memory, {});
     const Prediction p = patches.predict({});
     for (std::size_t i = 0; i < guide.size(); ++i) {
       ASSERT_TRUE(p.covered[i]);
@@ -163,10 +164,11 @@ TEST(Patches, OwnIsTheDerivativeOfAPredictionByThePointsHeight) {
   const double step = 0.5;
   const std::vector<double> sigma(guide.size(), 10);
   const HeightField field(guide, rfs_mesh::KdTree(guide, {}), support::near_on(guide), data, {});
-  const Prediction before = Patches(field, 24, seeds, sigma, {}).predict({});
+  Patches::Memory memory;
+  const Prediction before = Patches(field, 24, seeds, sigma, memory, {}).predict({});
   data[i].z() += step;
   const HeightField lifted(guide, rfs_mesh::KdTree(guide, {}), support::near_on(guide), data, {});
-  const Prediction after = Patches(lifted, 24, seeds, sigma, {}).predict({});
+  const Prediction after = Patches(lifted, 24, seeds, sigma, memory, {}).predict({});
   const double side = field.normal(i).z();
   EXPECT_NEAR(double(after.height[i] - before.height[i]) / (side * step), double(before.own[i]), 1e-4);
 }
@@ -176,8 +178,9 @@ TEST(Patches, MeanOfAConstantIsTheConstant) {
   const HeightField field(mesh.positions, rfs_mesh::KdTree(mesh.positions, {}),
                           support::near_on(mesh.positions), mesh.positions, {});
   const std::vector<float> seven(field.size(), 7);
+  Patches::Memory memory;
   const Patches patches(field, 40, thin(mesh.positions, all(field.size()), {}),
-                        std::vector<double>(field.size(), 1), {});
+                        std::vector<double>(field.size(), 1), memory, {});
   for (const float v : patches.mean(seven, {})) EXPECT_NEAR(v, 7, 1e-5);
   for (const float v : field.local_mean(seven, {})) EXPECT_NEAR(v, 7, 1e-5);
 }
