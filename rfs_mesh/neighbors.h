@@ -20,6 +20,7 @@
 #include "rfsmooth/rfs_mesh/kd_tree.h"
 #include "rfsmooth/rfs_mesh/mesh.h"
 #include "rfsmooth/rfs_mesh/points.h"
+#include "rfsmooth/rfs_mesh/unfilled.h"
 
 namespace rfsmooth::rfs_mesh {
 
@@ -39,8 +40,8 @@ struct Neighbor {
 
 /// The k nearest of every point: n x k.
 struct NeighborTable {
-  int k = 0;                 ///< as asked for, but at most n - 1: every row is full
-  std::vector<Index> items;  ///< row i: ascending by (distance, index), without i itself
+  int k = 0;                                  ///< as asked for, but at most n - 1: every row is full
+  std::vector<Index, Unfilled<Index>> items;  ///< row i: ascending by (distance, index), without i itself
 
   std::size_t size() const { return k == 0 ? 0 : items.size() / std::size_t(k); }
   Adjacency::Row operator[](std::size_t i) const {

@@ -308,7 +308,14 @@ Equalized equalize(Positions& points, const Positions& before, double sigma, dou
   Equalized done;
   done.rms = std::sqrt(
       sum_over(context, n, 0.0, [&](std::size_t i) { return double(moved[i].squaredNorm()); }) / double(n));
-  for (const Eigen::Vector2f& m : moved) done.largest = std::max(done.largest, double(m.norm()));
+  done.largest = reduce_blocks(
+      context, n, 0.0,
+      [&](std::size_t begin, std::size_t end) {
+        float largest = 0;
+        for (std::size_t i = begin; i < end; ++i) largest = std::max(largest, moved[i].norm());
+        return double(largest);
+      },
+      [](double a, double b) { return std::max(a, b); });
   return done;
 }
 

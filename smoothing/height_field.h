@@ -14,6 +14,7 @@
 
 #include "rfsmooth/rfs_mesh/context.h"
 #include "rfsmooth/rfs_mesh/neighbors.h"
+#include "rfsmooth/smoothing/raw_array.h"
 
 namespace rfsmooth::smoothing {
 
@@ -67,7 +68,7 @@ class HeightField {
   rfs_mesh::SpatialIndex index_;
   rfs_mesh::NeighborTable near_;
   std::vector<Local> local_;
-  std::vector<std::uint8_t> near_weight_;  ///< of near_, in 1/255: 1 - d^2/r^2; 0 on another sheet
+  RawArray<std::uint8_t> near_weight_;  ///< of near_, in 1/255: 1 - d^2/r^2; 0 on another sheet
 };
 
 /// cos^2 of the angle between two normals from its cosine; 0 beyond 60 degrees: another sheet, or round an
