@@ -121,12 +121,12 @@ TEST(Neighbors, OnlyRowsThatAreWantedAreRenewed) {
 
 TEST(Neighbors, SameTableForAnyNumberOfThreads) {
   const Positions points = rfsmooth::test::noisy_sphere(30000, 0.01, 1);
-  std::vector<Index> first;
+  decltype(NeighborTable::items) first;
   for (const int threads : {1, 2, 4, 7}) {
     Context context;
     context.threads = threads;
     rfsmooth::in_arena(context, [&] {
-      const std::vector<Index> items = SpatialIndex(points, context).nearest(8, context).items;
+      const auto items = SpatialIndex(points, context).nearest(8, context).items;
       if (first.empty()) first = items;
       EXPECT_EQ(items, first) << threads;
     });
