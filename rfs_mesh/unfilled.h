@@ -2,6 +2,7 @@
 /// write them, side by side.
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <new>
 #include <utility>
@@ -10,14 +11,15 @@ namespace rfsmooth::rfs_mesh {
 
 /// For numbers: after resize() new elements hold anything.
 template <class T>
-struct Unfilled : std::allocator<T> {
-  template <class Other>
-  struct rebind {
-    using other = Unfilled<Other>;
-  };
+class Unfilled {
+ public:
+  using value_type = T;
   Unfilled() = default;
   template <class Other>
-  Unfilled(const Unfilled<Other>& other) noexcept : std::allocator<T>(other) {}
+  Unfilled(const Unfilled<Other>&) noexcept {}
+
+  T* allocate(std::size_t size) { return std::allocator<T>().allocate(size); }
+  void deallocate(T* at, std::size_t size) noexcept { std::allocator<T>().deallocate(at, size); }
 
   template <class U>
   void construct(U* at) noexcept {
@@ -27,6 +29,9 @@ struct Unfilled : std::allocator<T> {
   void construct(U* at, From&&... from) {
     ::new (static_cast<void*>(at)) U(std::forward<From>(from)...);
   }
+
+  friend bool operator==(const Unfilled&, const Unfilled&) { return true; }
+  friend bool operator!=(const Unfilled&, const Unfilled&) { return false; }
 };
 
 }  // namespace rfsmooth::rfs_mesh

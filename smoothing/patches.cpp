@@ -67,11 +67,11 @@ struct Patches::Covering {
 Patches::Patches(const HeightField& field, std::size_t members, std::vector<Index> seeds,
                  const std::vector<double>& sigma, Memory& memory, const Context& context)
     : field_(field), members_(std::min(members, field.size())), seeds_(std::move(seeds)), memory_(memory) {
-  memory_.patches = {};  // wide patches are few
-  memory_.member.clear();
-  memory_.member_weight.clear();
-  memory_.over.clear();
-  memory_.over_weight.clear();
+  memory_.patches_ = {};  // wide patches are few
+  memory_.member_.clear();
+  memory_.member_weight_.clear();
+  memory_.over_.clear();
+  memory_.over_weight_.clear();
   Covering covering(field_.size());
   fit(0, seeds_.size(), sigma, context);
   count(0, seeds_.size(), covering, context);
@@ -92,9 +92,9 @@ Patches::Patches(const HeightField& field, std::size_t members, std::vector<Inde
 void Patches::fit(std::size_t first, std::size_t last, const std::vector<double>& sigma,
                   const Context& context) {
   if (last * members_ > kNone) throw std::length_error("Patches: too many members");
-  memory_.patches.resize(last);
-  memory_.member.resize(last * members_);
-  memory_.member_weight.resize(last * members_);
+  memory_.patches_.resize(last);
+  memory_.member_.resize(last * members_);
+  memory_.member_weight_.resize(last * members_);
   for_blocks(context, last - first, kTogether, [&](std::size_t begin, std::size_t end) {
     Workspace work(field_, members_);
     for (std::size_t s = first + begin; s < first + end; ++s) fit_one(s, sigma[seeds_[s]], work);
@@ -105,7 +105,7 @@ void Patches::fit_one(std::size_t s, double sigma, Workspace& work) {
   using Matrix6 = Eigen::Matrix<double, 6, 6>;
   using Vector6 = Eigen::Matrix<double, 6, 1>;
   const Index seed = seeds_[s];
-  Patch& patch = memory_.patches[s];
+  Patch& patch = memory_.patches_[s];
   patch.centre = field_.guide()[seed];
   patch.weight = 0;
   patch.quadric.fill(0);
@@ -141,8 +141,8 @@ void Patches::fit_one(std::size_t s, double sigma, Workspace& work) {
   }
 
   const auto in_radii = float(1 / radius);
-  Weight* const weights = memory_.member_weight.data() + s * members_;
-  Index* const indices = memory_.member.data() + s * members_;
+  Weight* const weights = memory_.member_weight_.data() + s * members_;
+  Index* const indices = memory_.member_.data() + s * members_;
   double sum = 0, squares = 0;
   for (std::size_t k = 0; k < members_; ++k) {
     const Index i = near.index()[k];
@@ -204,7 +204,7 @@ void Patches::count(std::size_t first, std::size_t last, Covering& covering, con
         const Covering::Group group = members_of(g);
         Index before = kNone;
         for (std::size_t k = group.begin; k < group.end; ++k) {
-          const auto range = Index(memory_.member[k] / kRange);
+          const auto range = Index(memory_.member_[k] / kRange);
           if (range == before) continue;
           before = range;
           if (std::find(ranges[g].begin(), ranges[g].end(), range) == ranges[g].end())
@@ -220,10 +220,10 @@ void Patches::count(std::size_t first, std::size_t last, Covering& covering, con
         for (const Covering::Group& group : covering.groups[range]) {
           if (group.begin < first * members_) continue;  // counted before
           for (std::size_t k = group.begin; k < group.end; ++k) {
-            const Index i = memory_.member[k];
-            if (i / kRange != range || memory_.member_weight[k] == 0) continue;
+            const Index i = memory_.member_[k];
+            if (i / kRange != range || memory_.member_weight_[k] == 0) continue;
             ++covering.patches[i];
-            if (memory_.member_weight[k] >= kCovered) covering.covered[i] = 1;
+            if (memory_.member_weight_[k] >= kCovered) covering.covered[i] = 1;
           }
         }
       },
@@ -233,25 +233,26 @@ void Patches::count(std::size_t first, std::size_t last, Covering& covering, con
 /// The lists of members the other way round.
 void Patches::transpose(const Covering& covering, const Context& context) {
   const std::size_t n = field_.size();
-  memory_.over_start.resize(n + 1);
-  memory_.over_start[0] = 0;
-  for (std::size_t i = 0; i < n; ++i) memory_.over_start[i + 1] = memory_.over_start[i] + covering.patches[i];
-  memory_.over.resize(memory_.over_start[n]);
-  memory_.over_weight.resize(memory_.over_start[n]);
+  memory_.over_start_.resize(n + 1);
+  memory_.over_start_[0] = 0;
+  for (std::size_t i = 0; i < n; ++i)
+    memory_.over_start_[i + 1] = memory_.over_start_[i] + covering.patches[i];
+  memory_.over_.resize(memory_.over_start_[n]);
+  memory_.over_weight_.resize(memory_.over_start_[n]);
   for_each_index(
       context, covering.groups.size(),
       [&](std::size_t range) {
         const std::size_t begin = range * kRange, end = std::min(n, begin + kRange);
-        std::vector<Index> next(memory_.over_start.begin() + std::ptrdiff_t(begin),
-                                memory_.over_start.begin() + std::ptrdiff_t(end));
+        std::vector<Index> next(memory_.over_start_.begin() + std::ptrdiff_t(begin),
+                                memory_.over_start_.begin() + std::ptrdiff_t(end));
         for (const Covering::Group& group : covering.groups[range])
           for (std::size_t s = group.begin / members_; s < group.end / members_; ++s)
             for (std::size_t k = s * members_; k < (s + 1) * members_; ++k) {
-              const Index i = memory_.member[k];
-              if (i / kRange != range || memory_.member_weight[k] == 0) continue;
+              const Index i = memory_.member_[k];
+              if (i / kRange != range || memory_.member_weight_[k] == 0) continue;
               const Index to = next[i - begin]++;
-              memory_.over[to] = Index(s);
-              memory_.over_weight[to] = memory_.member_weight[k];
+              memory_.over_[to] = Index(s);
+              memory_.over_weight_[to] = memory_.member_weight_[k];
             }
       },
       1);
@@ -263,9 +264,9 @@ Prediction Patches::predict(const Context& context) const {
   for_each_index(context, n, [&](std::size_t i) {
     const Eigen::Vector3f& normal = field_.local()[i].normal;
     float height = 0, own = 0, weights = 0;
-    for (Index k = memory_.over_start[i]; k < memory_.over_start[i + 1]; ++k) {
-      const Patch& patch = memory_.patches[memory_.over[k]];
-      const float e = float(memory_.over_weight[k]) / kWeightUnit, w = e * patch.weight;
+    for (Index k = memory_.over_start_[i]; k < memory_.over_start_[i + 1]; ++k) {
+      const Patch& patch = memory_.patches_[memory_.over_[k]];
+      const float e = float(memory_.over_weight_[k]) / kWeightUnit, w = e * patch.weight;
       const Eigen::Vector3f r = (field_.guide()[i] - patch.centre).cast<float>();
       const Floats x = four(patch.frame.data()), y = four(patch.frame.data() + 4),
                    z = four(patch.frame.data() + 8), parts = r.x() * x + r.y() * y + r.z() * z;
@@ -289,20 +290,20 @@ Prediction Patches::predict(const Context& context) const {
 }
 
 std::vector<float> Patches::mean(const std::vector<float>& values, const Context& context) const {
-  std::vector<float> of_patch(memory_.patches.size(), 0), mean = values;
+  std::vector<float> of_patch(memory_.patches_.size(), 0), mean = values;
   for_each_index(
-      context, memory_.patches.size(),
+      context, memory_.patches_.size(),
       [&](std::size_t s) {
-        const WeightedSum inside = weighted_sum(members_, memory_.member.data() + s * members_,
-                                                memory_.member_weight.data() + s * members_, values.data());
+        const WeightedSum inside = weighted_sum(members_, memory_.member_.data() + s * members_,
+                                                memory_.member_weight_.data() + s * members_, values.data());
         if (inside.weights > 0) of_patch[s] = inside.sum / inside.weights;
       },
       kTogether);
   for_each_index(context, field_.size(), [&](std::size_t i) {
     float sum = 0, weights = 0;
-    for (Index k = memory_.over_start[i]; k < memory_.over_start[i + 1]; ++k) {
-      const float w = memory_.over_weight[k];
-      sum += w * of_patch[memory_.over[k]];
+    for (Index k = memory_.over_start_[i]; k < memory_.over_start_[i + 1]; ++k) {
+      const float w = memory_.over_weight_[k];
+      sum += w * of_patch[memory_.over_[k]];
       weights += w;
     }
     if (weights > 0) mean[i] = sum / weights;

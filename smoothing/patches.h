@@ -52,12 +52,12 @@ class Patches {
   /// so much memory than a pass over it takes.
   class Memory {
     friend class Patches;
-    RawArray<Patch> patches;
-    RawArray<Index> member;          ///< patches x members
-    RawArray<Weight> member_weight;  ///< (1 - d^2/r^2)^2 cos^2 of each; 0 for points of another sheet
-    std::vector<Index> over_start;   ///< n + 1
-    RawArray<Index> over;            ///< of each point: the patches over it, ascending, weight not 0
-    RawArray<Weight> over_weight;    ///< the point's weight in each
+    RawArray<Patch> patches_;
+    RawArray<Index> member_;          ///< patches x members
+    RawArray<Weight> member_weight_;  ///< (1 - d^2/r^2)^2 cos^2 of each; 0 for points of another sheet
+    std::vector<Index> over_start_;   ///< n + 1
+    RawArray<Index> over_;            ///< of each point: the patches over it, ascending, weight not 0
+    RawArray<Weight> over_weight_;    ///< the point's weight in each
   };
 
   /// Patches of `members` points each (at most the number of points) around the points `seeds`, evenly
