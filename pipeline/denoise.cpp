@@ -65,41 +65,38 @@ std::vector<double> reaches(const rfs_mesh::Mesh& mesh, const Context& context) 
   return reach;
 }
 
-/// How far every working point moved, at most its reach (empty: any). \throw Failure if a flow left the realm
-/// of numbers.
-Positions displacements(const Positions& from, const Positions& to, const std::vector<double>& reach,
-                        const DenoiseOptions& options, const Context& context) {
-  Positions moved(from.size());
-  for_each_index(context, from.size(), [&](std::size_t i) {
-    moved[i] = to[i] - from[i];
-    if (!moved[i].allFinite())
+/// \throw Failure if a flow left the realm of numbers.
+void check_finite(const Positions& points, const DenoiseOptions& options, const Context& context) {
+  for_each_index(context, points.size(), [&](std::size_t i) {
+    if (!points[i].allFinite())
       throw Failure(
           {ErrorCode::usage, fmt::format("the flow '{}' diverges with these options; smaller steps or "
                                          "fewer iterations are needed",
                                          options.flow.flow)});
-    if (reach.empty()) return;
-    if (const double length = moved[i].norm(); length > reach[i]) moved[i] *= reach[i] / length;
   });
-  return moved;
 }
 
-/// Adds each row's displacement to the row; the only place that writes to the caller's array, and it cannot
-/// fail or be cancelled.
-void commit(double* xyz, std::size_t n, const rfs_mesh::WorkingCloud& cloud, const Positions& moved,
-            DenoiseReport& report) {
+/// Moves each row to where its working point is now, at most as far as its reach (empty: any); the only place
+/// that writes to the caller's array, and it cannot fail or be cancelled.
+void commit(double* xyz, const rfs_mesh::WorkingCloud& cloud, const Positions& now,
+            const std::vector<double>& reach, DenoiseReport& report) {
   double square_sum = 0;
-  for (std::size_t i = 0; i < n; ++i) {
+  for (std::size_t i = 0; i < cloud.of_input.size(); ++i) {
     const Index p = cloud.of_input[i];
     if (p == kNone) continue;
+    double* const row = xyz + 3 * i;
+    Eigen::Vector3d moved = now[p] - (Eigen::Vector3d(row[0], row[1], row[2]) - cloud.origin);
+    if (!reach.empty())
+      if (const double length = moved.norm(); length > reach[p]) moved *= reach[p] / length;
     bool changed = false;
     for (int axis = 0; axis < 3; ++axis) {
-      const double before = xyz[3 * i + std::size_t(axis)], after = before + moved[p][axis];
+      const double before = row[axis], after = before + moved[axis];
       if (after == before) continue;  // keeps -0 and whatever bits the caller had
-      xyz[3 * i + std::size_t(axis)] = after;
+      row[axis] = after;
       changed = true;
     }
     report.moved += changed;
-    const double square = moved[p].squaredNorm();
+    const double square = moved.squaredNorm();
     square_sum += square;
     report.largest_move = std::max(report.largest_move, std::sqrt(square));
   }
@@ -108,8 +105,8 @@ void commit(double* xyz, std::size_t n, const rfs_mesh::WorkingCloud& cloud, con
 
 /// The strengths of the working points: of rows that share one, the least.
 std::vector<double> working_strengths(const std::vector<double>& strength,
-                                      const rfs_mesh::WorkingCloud& cloud) {
-  std::vector<double> working(strength.empty() ? 0 : cloud.points.size(), 1);
+                                      const rfs_mesh::WorkingCloud& cloud, std::size_t points) {
+  std::vector<double> working(strength.empty() ? 0 : points, 1);
   for (std::size_t i = 0; i < strength.size(); ++i)
     if (const Index p = cloud.of_input[i]; p != kNone) working[p] = std::min(working[p], strength[i]);
   return working;
@@ -153,6 +150,10 @@ DenoiseReport run(double* xyz, std::size_t n, const DenoiseOptions& options, con
   }
   rfs_mesh::ConnectOptions connect = options.connect;
   connect.tree_of_points = false;
+  // Points that no face reaches have no surface to be smoothed onto: as in the paper their edges go, and
+  // without neighbours they stay. Kept, such an edge would carry a stray over its whole length, and HC's
+  // push-back would throw its neighbour after it.
+  connect.loose_edges = false;
   std::optional<rfs_mesh::SpatialIndex> index;
   {
     const Stopwatch watch(report.seconds, "index");
@@ -183,25 +184,19 @@ DenoiseReport run(double* xyz, std::size_t n, const DenoiseOptions& options, con
   report.bridges = connection.bridges.size();
   report.faceless = connection.faceless;
   rfs_mesh::Mesh mesh = std::move(connection.mesh);
-  connection = {};  // the tree, the graph and the surfaces are not needed while smoothing
-  // Points that no face reaches have no surface to be smoothed onto: as in the paper their edges go, and
-  // without neighbours they stay. Kept, such an edge would carry a stray over its whole length, and HC's
-  // push-back would throw its neighbour after it.
-  if (!mesh.loose_edges.empty()) {
-    mesh.loose_edges.clear();
-    rfs_mesh::rebuild_adjacency(mesh, context);
-  }
+  connection = {};                 // the tree, the graph and the surfaces are not needed while smoothing
+  Positions().swap(cloud.points);  // nor these: the mesh has them, and the caller
   report.faces = mesh.faces.size();
   report.edges = mesh.edge_count();
 
   report.noise_left = report.noise;
-  const auto flow = value_or_throw(
-      smoothing::make_flow(mesh, options.flow, context, {{}, working_strengths(strength, cloud)}));
+  const auto flow = value_or_throw(smoothing::make_flow(
+      mesh, options.flow, context, {{}, working_strengths(strength, cloud, mesh.positions.size())}));
   const std::vector<double> reach = flow->limits_moves() ? std::vector<double>() : reaches(mesh, context);
   alternate(*flow, mesh, options, report, context);
-  const Positions moved = displacements(cloud.points, mesh.positions, reach, options, context);
+  check_finite(mesh.positions, options, context);
   context.check_stop();
-  commit(xyz, n, cloud, moved, report);
+  commit(xyz, cloud, mesh.positions, reach, report);
   return report;
 }
 

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
+#include <limits>
 
 #include <Eigen/Eigenvalues>
 
@@ -93,10 +95,17 @@ class Search {
 
   void measure_isolation() {
     for_each_index(context_, points_.size(), [&](std::size_t i) {
-      std::array<double, kNear> around = {};
-      for (std::size_t k = 0; k < kNear; ++k) around[k] = reach_[near_[i][k]];
-      std::nth_element(around.begin(), around.begin() + kNear / 4, around.end());
-      usual_[i] = around[kNear / 4];
+      std::array<double, kNear / 4 + 1> least = {};
+      least.fill(std::numeric_limits<double>::infinity());
+      for (std::size_t k = 0; k < kNear; ++k) {
+        double reach = reach_[near_[i][k]];
+        for (double& kept : least) {  // no branches: which is less is anyone's guess
+          const double lower = reach < kept ? reach : kept;
+          reach = reach < kept ? kept : reach;
+          kept = lower;
+        }
+      }
+      usual_[i] = least.back();
       isolated_[i] = reach_[i] > kIsolated * usual_[i];
     });
   }
@@ -134,22 +143,25 @@ class Search {
     measure_isolation();
   }
 
-  std::vector<int> known_by() const {
-    std::vector<int> known(points_.size(), 0);
-    for (std::size_t i = 0; i < points_.size(); ++i)
-      if (on_surface(Index(i)))
-        for (const Index j : near_[i]) ++known[j];
+  /// For isolated points: who on the surfaces has them among their own.
+  std::vector<std::atomic<int>> known_by() const {
+    std::vector<std::atomic<int>> known(points_.size());
+    for_each_index(context_, points_.size(), [&](std::size_t i) {
+      if (!on_surface(Index(i))) return;
+      for (const Index j : near_[i])
+        if (isolated_[j] != 0) known[j].fetch_add(1, std::memory_order_relaxed);
+    });
     return known;
   }
 
   /// One round; returns whether it found any.
   bool find(bool again) {
     measure_isolation();
-    std::size_t surface = 0;
-    for (std::size_t i = 0; i < points_.size(); ++i) surface += std::size_t(on_surface(Index(i)));
+    const auto surface = sum_over(context_, points_.size(), std::size_t{0},
+                                  [&](std::size_t i) { return std::size_t(on_surface(Index(i))); });
     if (surface < kTooFew) return false;
     if (again) measure_again();
-    const std::vector<int> known = known_by();
+    const auto known = known_by();
     std::vector<char> found(points_.size(), 0);
     for_blocks(context_, points_.size(), 1024, [&](std::size_t begin, std::size_t end) {
       std::vector<Neighbor> around;
@@ -173,10 +185,23 @@ class Search {
     if (reach_[i] > kFarOff * usual_[i]) return true;
     nearest_on_surface(points_[i], 1, around);
     if (around.empty()) return false;
-    nearest_on_surface(points_[around.front().index], std::max(kPlane, noise_.neighbours), around);
+    const Index beside = around.front().index;
+    if (!may_be_off(i, beside)) return false;
+    nearest_on_surface(points_[beside], std::max(kPlane, noise_.neighbours), around);
     const Plane plane = fit_plane(points_, around);
     const double off = std::abs(plane.normal.dot(points_[i] - plane.centre));
     return off > kOff * usual_[i] && off > kSigmas * std::max(std::sqrt(plane.variances[0]), noise_.sigma);
+  }
+
+  /// Whether i is worth the search for a plane, by the middle of the nearest around the point beside it,
+  /// which is on this side of the plane if at all: a point of the noise's tail hardly ever is.
+  bool may_be_off(std::size_t i, Index beside) const {
+    constexpr double kSurely = 0.7;
+    Eigen::Vector3d middle = points_[beside];
+    for (const Index j : near_[beside]) middle += points_[j];
+    middle /= double(kNear + 1);
+    const double least = kSurely * std::max(kOff * usual_[i], kSigmas * noise_.sigma);
+    return (points_[i] - middle).squaredNorm() > least * least;
   }
 
   bool floats(std::size_t i, std::vector<Neighbor>& around) const {

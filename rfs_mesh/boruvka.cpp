@@ -73,6 +73,8 @@ class Boruvka {
 
   /// The edges, in no order worth knowing.
   std::vector<Edge> run() {
+    choose_nearest();
+    join();
     while (roots_.size() > 1) {
       for_each_index(context_, roots_.size(), [&](std::size_t r) {
         best_length_[roots_[r]].store(kNothing, std::memory_order_relaxed);
@@ -89,6 +91,14 @@ class Boruvka {
  private:
   double length(Index a, Index b) const { return squared_distance(points_[a], points_[b]); }
   double best_of(Index root) const { return to_length(best_length_[root].load(std::memory_order_relaxed)); }
+
+  /// The first round: every point is a component, and its nearest is known.
+  void choose_nearest() {
+    for_each_index(context_, n_, [&](std::size_t i) {
+      best_length_[i].store(to_bits(reach_[i]), std::memory_order_relaxed);
+      best_pair_[i].store(pair_of(Index(i), candidate_[i]), std::memory_order_relaxed);
+    });
+  }
 
   /// Every point offers its nearest known point in another component.
   void look_along_lists() {

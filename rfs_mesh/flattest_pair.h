@@ -24,9 +24,15 @@ struct ProposedFaces {
 /// O(n), parallel, deterministic.
 ProposedFaces proposed_faces(const std::vector<Umbrella>& umbrellas, const Context& context);
 
-/// The proposed faces that stay, in their order. `same_fold`: dihedral angles count as equal within steps of
-/// that many degrees, > 0. O(faces), parallel, deterministic.
-std::vector<Face> keep_flattest_pairs(const Positions& at, const ProposedFaces& proposed, double same_fold,
-                                      const Context& context);
+/// What stays of them.
+struct FlattestPairs {
+  std::vector<Face> faces;  ///< in the order in which they were proposed
+  Adjacency one_ring;       ///< the vertices' neighbours by these faces
+};
+
+/// `same_fold`: dihedral angles count as equal within steps of that many degrees, > 0. O(faces), parallel,
+/// deterministic.
+FlattestPairs keep_flattest_pairs(const Positions& at, const ProposedFaces& proposed, double same_fold,
+                                  const Context& context);
 
 }  // namespace rfsmooth::rfs_mesh

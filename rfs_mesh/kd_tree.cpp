@@ -1,9 +1,13 @@
 #include "rfsmooth/rfs_mesh/kd_tree.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 
+#include "rfsmooth/rfs_mesh/halving.h"
 #include "rfsmooth/rfs_mesh/parallel.h"
 
 namespace rfsmooth::rfs_mesh {
@@ -18,12 +22,44 @@ struct Item {
 constexpr std::uint32_t kSerialLeaves =
     512;  // subtrees below this size are built by one thread, in its cache
 
+/// The longest axis of a box around some of `count` points, and where the box lies on it. Enough to halve
+/// them well, and a fraction of the time that all of them would take.
+struct Span {
+  int axis = 0;
+  double low = 0, extent = 0;
+
+  template <class At>
+  Span(std::size_t count, At&& at) {
+    constexpr std::size_t kSome = 128;
+    constexpr double kGolden = 0.6180339887498949;  // its multiples fall evenly, and on no grid
+    std::array<double, 3> lows = {}, highs = {};
+    const std::size_t some = std::min(count, kSome);
+    for (std::size_t s = 0; s < some; ++s) {
+      const double share = kGolden * double(s);
+      const double* const p =
+          at(some == count ? s : std::size_t((share - std::floor(share)) * double(count)));
+      for (std::size_t k = 0; k < 3; ++k) {
+        lows[k] = s == 0 || p[k] < lows[k] ? p[k] : lows[k];
+        highs[k] = s == 0 || p[k] > highs[k] ? p[k] : highs[k];
+      }
+    }
+    for (std::size_t k = 0; k < 3; ++k)
+      if (k == 0 || highs[k] - lows[k] > extent) {
+        axis = int(k);
+        low = lows[k];
+        extent = highs[k] - lows[k];
+      }
+  }
+};
+
 constexpr double kLargest = 1e150;  // squares stay finite
 
 class Builder {
  public:
-  Builder(std::vector<Item>& items, std::vector<KdTree::Node>& nodes, std::vector<KdTree::Leaf>& leaves)
-      : items_(items), nodes_(nodes), leaves_(leaves) {}
+  Builder(const Positions& points, std::vector<KdTree::Node>& nodes, std::vector<KdTree::Leaf>& leaves)
+      : points_(points), order_(points.size()), spare_(points.size()), nodes_(nodes), leaves_(leaves) {
+    std::iota(order_.begin(), order_.end(), Index{0});
+  }
 
   /// The whole tree: the upper nodes level by level, then the subtrees below them, each by one thread.
   void build(KdTree::Cursor root, const Context& context) {
@@ -40,68 +76,74 @@ class Builder {
         level.push_back(c.right());
       }
     }
-    for_each_index(
-        context, small.size(), [&](std::size_t i) { build_serial(small[i]); }, 1);
-    for (std::size_t i = upper.size(); i-- > 0;) nodes_[upper[i].node].least_id = least_of_children(upper[i]);
+    for_blocks(context, small.size(), 1, [&](std::size_t begin, std::size_t) {
+      const KdTree::Cursor& c = small[begin];
+      Halving halving;
+      std::vector<Item> items(end_of(c.last) - begin_of(c.first)), spare(items.size());
+      for (std::size_t i = 0; i < items.size(); ++i) {
+        const Index id = order_[begin_of(c.first) + i];
+        items[i] = {{points_[id][0], points_[id][1], points_[id][2]}, id};
+      }
+      build_serial(c, items.data(), spare.data(), halving);
+    });
+    for (std::size_t i = upper.size(); i-- > 0;) join_children(upper[i]);
   }
 
  private:
   std::size_t begin_of(std::uint32_t leaf) const { return std::size_t(leaf) * KdTree::kLeaf; }
-  std::size_t end_of(std::uint32_t leaf) const { return std::min(items_.size(), begin_of(leaf)); }
-  Index least_of_children(const KdTree::Cursor& c) const {
-    return std::min(nodes_[c.left().node].least_id, nodes_[c.right().node].least_id);
-  }
+  std::size_t end_of(std::uint32_t leaf) const { return std::min(points_.size(), begin_of(leaf)); }
+  std::size_t count_of(const KdTree::Cursor& c) const { return end_of(c.last) - begin_of(c.first); }
 
-  void set_box(const KdTree::Cursor& c) {
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    Eigen::Vector3d low = Eigen::Vector3d::Constant(kInfinity), high = -low;
-    for (std::size_t i = begin_of(c.first); i < end_of(c.last); ++i)
-      for (int axis = 0; axis < 3; ++axis) {
-        low[axis] = std::min(low[axis], items_[i].at[axis]);
-        high[axis] = std::max(high[axis], items_[i].at[axis]);
-      }
-    nodes_[c.node].low = low;
-    nodes_[c.node].high = high;
-  }
-
-  /// Puts the lower half of the node's points before its middle; ties by id, so that the halves are unique.
+  /// Puts the lower half of an upper node's points before its middle.
   void split(const KdTree::Cursor& c) {
-    set_box(c);
-    int axis = 0;
-    (nodes_[c.node].high - nodes_[c.node].low).maxCoeff(&axis);
-    const auto at = [&](std::size_t i) { return items_.begin() + std::ptrdiff_t(i); };
-    std::nth_element(at(begin_of(c.first)), at(begin_of(c.middle())), at(end_of(c.last)),
-                     [axis](const Item& a, const Item& b) {
-                       return a.at[axis] != b.at[axis] ? a.at[axis] < b.at[axis] : a.id < b.id;
-                     });
+    Index *const ids = order_.data() + begin_of(c.first), *const to = spare_.data() + begin_of(c.first);
+    const std::size_t count = count_of(c);
+    const Span span(count, [&](std::size_t i) { return points_[ids[i]].data(); });
+    Halving()(ids, count, begin_of(c.middle()) - begin_of(c.first), span.low, span.extent, to,
+              [&](Index id) { return points_[id][span.axis]; });
+    std::copy(to, to + count, ids);
   }
 
-  void build_serial(const KdTree::Cursor& c) {
-    if (c.is_leaf()) return fill(c);
-    split(c);
-    build_serial(c.left());
-    build_serial(c.right());
-    nodes_[c.node].least_id = least_of_children(c);
+  void build_serial(const KdTree::Cursor& c, Item* items, Item* spare, Halving& halving) {
+    if (c.is_leaf()) return fill(c, items);
+    const std::size_t count = count_of(c), half = begin_of(c.middle()) - begin_of(c.first);
+    const Span span(count, [&](std::size_t i) { return items[i].at; });
+    halving(items, count, half, span.low, span.extent, spare,
+            [axis = span.axis](const Item& item) { return item.at[axis]; });
+    build_serial(c.left(), spare, items, halving);
+    build_serial(c.right(), spare + half, items + half, halving);
+    join_children(c);
   }
 
-  void fill(const KdTree::Cursor& c) {
-    set_box(c);
+  void join_children(const KdTree::Cursor& c) {
+    const KdTree::Node &left = nodes_[c.left().node], &right = nodes_[c.right().node];
+    nodes_[c.node] = {left.low.cwiseMin(right.low), left.high.cwiseMax(right.high),
+                      std::min(left.least_id, right.least_id)};
+  }
+
+  /// The points ascend by id.
+  void fill(const KdTree::Cursor& c, const Item* items) {
     KdTree::Leaf& leaf = leaves_[c.first];
-    const std::size_t begin = begin_of(c.first), count = end_of(c.last) - begin;
-    std::sort(items_.begin() + std::ptrdiff_t(begin), items_.begin() + std::ptrdiff_t(begin + count),
-              [](const Item& a, const Item& b) { return a.id < b.id; });
-    nodes_[c.node].least_id = items_[begin].id;
+    KdTree::Node& node = nodes_[c.node];
+    const std::size_t count = count_of(c);
     constexpr double kFar = std::numeric_limits<double>::infinity();
+    node.low = node.high = Eigen::Vector3d(items[0].at[0], items[0].at[1], items[0].at[2]);
+    node.least_id = items[0].id;
     for (std::size_t i = 0; i < KdTree::kLeaf; ++i) {
       const bool there = i < count;
-      leaf.x[i] = there ? items_[begin + i].at[0] : kFar;
-      leaf.y[i] = there ? items_[begin + i].at[1] : kFar;
-      leaf.z[i] = there ? items_[begin + i].at[2] : kFar;
-      leaf.id[i] = there ? items_[begin + i].id : kNone;
+      leaf.x[i] = there ? items[i].at[0] : kFar;
+      leaf.y[i] = there ? items[i].at[1] : kFar;
+      leaf.z[i] = there ? items[i].at[2] : kFar;
+      leaf.id[i] = there ? items[i].id : kNone;
+      if (!there) continue;
+      const Eigen::Vector3d p(items[i].at[0], items[i].at[1], items[i].at[2]);
+      node.low = node.low.cwiseMin(p);
+      node.high = node.high.cwiseMax(p);
     }
   }
 
-  std::vector<Item>& items_;
+  const Positions& points_;
+  std::vector<Index> order_, spare_;
   std::vector<KdTree::Node>& nodes_;
   std::vector<KdTree::Leaf>& leaves_;
 };
@@ -110,16 +152,13 @@ class Builder {
 
 KdTree::KdTree(const Positions& points, const Context& context) {
   if (points.empty()) return;
-  std::vector<Item> items(points.size());
   for_each_index(context, points.size(), [&](std::size_t i) {
-    const Eigen::Vector3d& p = points[i];
-    if (!(p.array().abs() < kLargest).all())
+    if (!(points[i].array().abs() < kLargest).all())
       throw std::invalid_argument("KdTree: a coordinate is not finite");
-    items[i] = {{p[0], p[1], p[2]}, Index(i)};
   });
   leaves_.resize((points.size() + kLeaf - 1) / kLeaf);
   nodes_.resize(2 * leaves_.size() - 1);
-  Builder(items, nodes_, leaves_).build(root(), context);
+  Builder(points, nodes_, leaves_).build(root(), context);
 }
 
 /// The box around those of the children.

@@ -1,13 +1,16 @@
 /// The k nearest of all points of one leaf of the kd-tree at once: how SpatialIndex fills its table.
 ///
 /// The eight points share one walk through the tree. How far to look is guessed from the k-th neighbour of
-/// the point before, which is near, and checked by counting: if k points lie within the guess, the k nearest
-/// are among them; if not, the point is given a second look as far as the walk went, and failing that a
-/// search of its own. So a bad guess costs time, never exactness. A point scans the listed leaves that its
-/// bound reaches, keeps what lies within without a branch, and ranks the few kept by counting the nearer ones
-/// of each: no heap, no comparison that the processor would have to foresee.
+/// the point before, which is near. The points of the leaves listed are turned into single precision around
+/// the leaf, and what is within the guess is kept and ranked by counting the nearer ones of each: no heap, no
+/// comparison that the processor would have to foresee. Where k are within the guess, the k nearest are among
+/// them; where not, the point is given a second look as far as the walk went, and failing that a search of
+/// its own. Where two are as far up to what single precision can tell, the distances are taken in double
+/// precision. So a bad guess or rounding costs time, never exactness.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <vector>
 
 #include "rfsmooth/rfs_mesh/kd_tree.h"
@@ -32,9 +35,12 @@ class LeafNeighbors {
 
  private:
   void list_leaves(const KdTree::Node& box, double squared_bound);
-  void keep_within(const Eigen::Vector3d& q, Index self, double squared_bound);
-  bool rank(double squared_bound);
-  void sort();
+  bool find_within(std::uint32_t slot, double share);
+  bool rank();
+  void rank_exactly(std::uint32_t slot);
+  void load_listed(const KdTree::Node& box);
+  double squared_distance_to(std::uint32_t slot, std::uint32_t place) const;
+  Index id_at(std::uint32_t place) const;
   Eigen::Vector3d point(std::uint32_t slot) const { return {leaf_->x[slot], leaf_->y[slot], leaf_->z[slot]}; }
 
   const KdTree& tree_;
@@ -45,13 +51,26 @@ class LeafNeighbors {
   const KdTree::Leaf* leaf_ = nullptr;
   double list_bound_ = 0;            // squared; leaves farther from the leaf's box are not listed
   std::vector<std::uint32_t> list_;  // leaves
-  std::vector<KdTree::Node> boxes_;  // of the listed leaves
-  std::vector<std::uint32_t> near_;  // of the listed leaves: those within one point's bound
-  std::vector<double> distance_;     // squared, of the points kept for it
-  std::vector<Index> id_;
-  std::vector<std::uint32_t> place_;  // of rank 0, 1, ...: where it is in distance_ and id_
-  std::vector<float> key_;
-  std::size_t kept_ = 0;
+  // The points of the listed leaves: from the middle of the leaf's box, in units of the bound.
+  std::vector<float> x_, y_, z_, key_;
+  std::array<float, KdTree::kLeaf> own_x_, own_y_, own_z_;  // those of the leaf
+  float uncertain_ = 0;                                     // what rounding may do to a squared distance
+
+  std::vector<std::uint16_t> kept_;   // places in x_
+  std::vector<float> kept_key_;       // squared distances of the kept
+  std::vector<std::uint32_t> place_;  // of rank 0, 1, ... (0 is the point itself): its place in x_
+  std::vector<float> sorted_;         // keys by rank
+  std::vector<std::uint32_t> nearer_;
+  struct Exact {
+    double squared_distance;
+    Index id;
+    std::uint32_t place;
+    friend bool operator<(const Exact& a, const Exact& b) {
+      return a.squared_distance != b.squared_distance ? a.squared_distance < b.squared_distance : a.id < b.id;
+    }
+  };
+  std::vector<Exact> exact_;
+  std::size_t kept_count_ = 0;
 };
 
 }  // namespace rfsmooth::rfs_mesh

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "rfsmooth/rfs_mesh/collect.h"
 #include "rfsmooth/rfs_mesh/parallel.h"
 
 namespace rfsmooth::rfs_mesh {
@@ -117,6 +118,26 @@ Adjacency make_adjacency(std::size_t n, const std::vector<Edge>& edges, const Co
       });
 }
 
+Adjacency joined(const Adjacency& one, const Adjacency& other, const Context& context) {
+  const std::size_t n = one.size();
+  Adjacency rows;
+  rows.start.resize(n + 1);
+  for_each_index(context, n + 1, [&](std::size_t i) { rows.start[i] = one.start[i] + other.start[i]; });
+  rows.items.resize(rows.start[n]);
+  for_each_index(context, n, [&](std::size_t i) {
+    const auto a = one[i], b = other[i];
+    std::merge(a.begin(), a.end(), b.begin(), b.end(), rows.items.begin() + rows.start[i]);
+  });
+  return rows;
+}
+
+std::vector<Edge> edges_of(const Adjacency& graph, const Context& context) {
+  return collect<Edge>(context, graph.size(), [&](std::size_t i, auto&& emit) {
+    for (const Index j : graph[i])
+      if (i < j) emit({Index(i), j});
+  });
+}
+
 void rebuild_adjacency(Mesh& mesh, const Context& context) {
   using Others = std::array<Index, 2>;  // of a face; of a loose edge its other end twice
   const std::size_t faces = mesh.faces.size();
@@ -161,6 +182,32 @@ Adjacency vertex_faces(std::size_t n, const std::vector<Face>& faces, const Cont
 
 Adjacency vertex_faces(const Mesh& mesh, const Context& context) {
   return vertex_faces(mesh.positions.size(), mesh.faces, context);
+}
+
+Adjacency one_ring(const Adjacency& around, const std::vector<Face>& faces, const std::vector<char>& kept,
+                   const Context& context) {
+  const std::size_t n = around.size();
+  Adjacency rows;
+  rows.start.assign(n + 1, 0);
+  // Every face adds two vertices at most. Not a vector: pages that no row needs are never touched.
+  const std::unique_ptr<Index[]> finished(new Index[2 * around.items.size()]);
+  for_each_index(context, n, [&](std::size_t i) {
+    Index* const row = finished.get() + 2 * std::size_t(around.start[i]);
+    std::size_t size = 0;
+    for (const Index f : around[i]) {
+      if (kept[f] == 0) continue;
+      for (const Index v : faces[f])
+        if (v != Index(i)) size = insert_sorted(row, size, v);
+    }
+    rows.start[i + 1] = Index(size);
+  });
+  prefix_sum(rows.start, context);
+  rows.items.resize(rows.start[n]);
+  for_each_index(context, n, [&](std::size_t i) {
+    std::copy_n(finished.get() + 2 * std::size_t(around.start[i]), rows.degree(i),
+                rows.items.begin() + rows.start[i]);
+  });
+  return rows;
 }
 
 std::vector<std::string> check(const Mesh& mesh) {

@@ -52,6 +52,12 @@ struct Mesh {
 /// degree).
 Adjacency make_adjacency(std::size_t n, const std::vector<Edge>& edges, const Context& context);
 
+/// The edges of two graphs over the same vertices that have none in common.
+Adjacency joined(const Adjacency& one, const Adjacency& other, const Context& context);
+
+/// Every edge once, ascending.
+std::vector<Edge> edges_of(const Adjacency& graph, const Context& context);
+
 /// Recomputes mesh.one_ring from faces and loose_edges.
 void rebuild_adjacency(Mesh& mesh, const Context& context);
 
@@ -60,6 +66,11 @@ Adjacency vertex_faces(const Mesh& mesh, const Context& context);
 
 /// The same for bare faces over n vertices.
 Adjacency vertex_faces(std::size_t n, const std::vector<Face>& faces, const Context& context);
+
+/// The one-ring by those of the faces over n vertices that are `kept` (m flags); `around`: all their
+/// vertex_faces. Faster than rebuild_adjacency, for who has these already.
+Adjacency one_ring(const Adjacency& around, const std::vector<Face>& faces, const std::vector<char>& kept,
+                   const Context& context);
 
 /// What is wrong with the mesh's invariants, one line each; empty if nothing is.
 std::vector<std::string> check(const Mesh& mesh);

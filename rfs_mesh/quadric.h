@@ -34,16 +34,15 @@ struct Quadric {
   double curvature() const { return (std::abs(c[3] + c[5]) + std::hypot(c[3] - c[5], c[4])) / radius; }
 };
 
-/// Room for the neighbours of one point, reused along a block so that nothing is allocated per point.
+/// Room for the neighbours of one point, reused along a block so that nothing is allocated per point. By
+/// coordinate, padded to whole vectors with samples of no weight.
 struct QuadricWorkspace {
-  /// One neighbour: offset from the centre and its weight.
-  struct Sample {
-    Eigen::Vector3d d;
-    double weight;
-  };
-  std::vector<Sample> samples;
-  std::vector<Eigen::Vector3d> local;  ///< (u, v, z)
+  std::vector<double> x, y, z;   ///< offsets from the centre, in units of the radius
+  std::vector<double> u, v, h;   ///< the same along t1, t2, n
+  std::vector<double> distance;  ///< the samples' weights by distance
+  std::vector<double> weight;    ///< and by residual
   std::vector<double> residual, sorted;
+  std::size_t count = 0, padded = 0;
 };
 
 /// The quadric at `p` from `count` neighbours and p itself. O(count).

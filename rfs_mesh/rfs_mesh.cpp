@@ -5,6 +5,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "rfsmooth/rfs_mesh/boruvka.h"
 #include "rfsmooth/rfs_mesh/collect.h"
 #include "rfsmooth/rfs_mesh/emst.h"
 #include "rfsmooth/rfs_mesh/flattest_pair.h"
@@ -44,7 +45,7 @@ struct Ground {
   Positions at;
   std::vector<LocalSurface> surfaces;
   NeighborTable near;
-  std::vector<Edge> tree;
+  std::vector<Edge> tree;     // in any order
   std::vector<char> between;  // two sheets: n flags, or none
 };
 
@@ -54,7 +55,7 @@ Ground ground_at(const Positions& guide, int k, const Context& context) {
   ground.at = guide;
   const SpatialIndex index(ground.at, context);
   ground.near = index.nearest(k, context);
-  ground.tree = emst(index, ground.near, context);
+  ground.tree = boruvka(index, ground.near, context);
   ground.surfaces = local_surfaces(ground.at, ground.near, context);
   return ground;
 }
@@ -73,7 +74,7 @@ Ground shadow_ground(const Positions& points, std::vector<LocalSurface> surfaces
   ground.at = shadows(ground.surfaces, context);
   const SpatialIndex index(ground.at, context);
   ground.near = index.nearest(k, context);
-  ground.tree = emst(index, ground.near, context);
+  ground.tree = boruvka(index, ground.near, context);
   if (scale.neighbours <= std::size_t(k)) {
     const NoiseScale left = {kNoiseLeft * scale.sigma, scale.neighbours};
     ground.surfaces = shared_local_surfaces(index, ground.near, left, scale.neighbours, context);
@@ -84,15 +85,10 @@ Ground shadow_ground(const Positions& points, std::vector<LocalSurface> surfaces
   return ground;
 }
 
-/// SDG edges of the vertices that no face reaches.
-std::vector<Edge> loose_edges(std::size_t n, const std::vector<Face>& faces, const std::vector<Edge>& sdg,
-                              std::size_t& faceless, const Context& context) {
-  std::vector<char> reached(n, 0);
-  for (const Face& f : faces)
-    for (const Index v : f) reached[v] = 1;
-  faceless = std::size_t(std::count(reached.begin(), reached.end(), 0));
+/// SDG edges of the vertices that no face reaches: those without a ring.
+std::vector<Edge> loose_edges(const Adjacency& ring, const std::vector<Edge>& sdg, const Context& context) {
   return collect<Edge>(context, sdg.size(), [&](std::size_t e, auto&& emit) {
-    if (!reached[sdg[e][0]] || !reached[sdg[e][1]]) emit(sdg[e]);
+    if (ring.degree(sdg[e][0]) == 0 || ring.degree(sdg[e][1]) == 0) emit(sdg[e]);
   });
 }
 
@@ -157,17 +153,22 @@ Connection connect_all(const Positions& points, std::optional<Cloud> known, cons
   c.bridges = std::move(sdg.bridges);
   std::vector<Edge>().swap(ground.tree);
   const ProposedFaces proposed = stages.run("umbrellas", 0.75, [&] {
-    const Adjacency graph = make_adjacency(n, c.sdg, context);
-    const std::vector<Umbrella> umbrellas = open_umbrellas(terrain, graph, options.umbrella, context);
+    const std::vector<Umbrella> umbrellas = open_umbrellas(terrain, sdg.graph, options.umbrella, context);
     ground.near = NeighborTable();
+    sdg = {};
     return proposed_faces(umbrellas, context);
   });
   stages.run("rfs-mesh", 0.9, [&] {
-    c.mesh.faces = keep_flattest_pairs(ground.at, proposed, options.umbrella.same_fold, context);
-    c.mesh.loose_edges = loose_edges(n, c.mesh.faces, c.sdg, c.faceless, context);
-    c.mesh.positions = points;
+    FlattestPairs kept = keep_flattest_pairs(ground.at, proposed, options.umbrella.same_fold, context);
+    c.mesh.faces = std::move(kept.faces);
+    c.mesh.one_ring = std::move(kept.one_ring);
     Positions().swap(ground.at);
-    rebuild_adjacency(c.mesh, context);
+    c.mesh.positions = points;
+    for (std::size_t i = 0; i < n; ++i) c.faceless += std::size_t(c.mesh.one_ring.degree(i) == 0);
+    if (options.loose_edges && c.faceless > 0) {
+      c.mesh.loose_edges = loose_edges(c.mesh.one_ring, c.sdg, context);
+      rebuild_adjacency(c.mesh, context);
+    }
   });
   c.surfaces = std::move(ground.surfaces);
   return c;

@@ -38,6 +38,9 @@ struct ConnectOptions {
   UmbrellaOptions umbrella;
   /// Whether Connection::emst is wanted where the tests are made on the shadow, on a tree of its own.
   bool tree_of_points = true;
+  /// Whether vertices that no face reaches keep their SDG edges (Mesh::loose_edges) and are neighbours by
+  /// them.
+  bool loose_edges = true;
 
   template <class Self, class Visit>
   static void describe(Self& self, Visit&& visit) {

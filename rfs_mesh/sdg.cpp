@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
+
+#include <Eigen/Geometry>
 
 #include "rfsmooth/rfs_mesh/collect.h"
 #include "rfsmooth/rfs_mesh/median.h"
@@ -18,33 +19,37 @@ using Eigen::Vector3d;
 
 constexpr std::size_t kMostDirections = 32;  ///< vertices of higher degree have no gap worth closing
 
-/// Lengths of the EMST edges within two hops of v: the edges of v, its neighbours and theirs; the first of
-/// them where there are more than fit (coincident points are joined to one of them).
-template <std::size_t kMost>
-std::size_t lengths_around(const Positions& at, const Adjacency& tree, Index v,
-                           std::array<double, kMost>& lengths) {
+/// The median length of the EMST edges within two hops of v: the edges of v, its neighbours and theirs; of
+/// the first of them where there are more than fit (coincident points are joined to one of them). \param
+/// squares their squared lengths, item for item of `tree`
+double local_length(const std::vector<float>& squares, const Adjacency& tree, Index v) {
+  constexpr std::size_t kMost = 64;
+  std::array<float, kMost> around;
   std::size_t count = 0;
-  const auto filled_by = [&](Index a, Index b) {
-    lengths[count++] = (at[a] - at[b]).norm();
-    return count == kMost;
+  const auto add = [&](Index from, Index not_to) {
+    for (Index k = tree.start[from]; k < tree.start[from + 1]; ++k)
+      if (tree.items[k] != not_to && count < kMost) around[count++] = squares[k];
   };
+  add(v, kNone);
   for (const Index a : tree[v]) {
-    if (filled_by(v, a)) return count;
-    for (const Index b : tree[a]) {
-      if (b == v) continue;
-      if (filled_by(a, b)) return count;
-      for (const Index c : tree[b])
-        if (c != a && filled_by(b, c)) return count;
-    }
+    add(a, v);
+    for (const Index b : tree[a])
+      if (b != v && count < kMost) add(b, a);
+    if (count == kMost) break;
   }
-  return count;
+  return count > 0 ? std::sqrt(double(nth_of_few(around, count, count / 2))) : 0;
 }
 
-/// Their median.
-double local_length(const Positions& at, const Adjacency& tree, Index v) {
-  std::array<double, 64> lengths;
-  const std::size_t count = lengths_around(at, tree, v, lengths);
-  return median(lengths.begin(), lengths.begin() + std::ptrdiff_t(count));
+std::vector<double> local_lengths(const Positions& at, const Adjacency& tree, const Context& context) {
+  std::vector<float> squares(tree.items.size());
+  for_each_index(context, at.size(), [&](std::size_t v) {
+    for (Index k = tree.start[v]; k < tree.start[v + 1]; ++k)
+      squares[k] = float((at[tree.items[k]] - at[v]).squaredNorm());
+  });
+  std::vector<double> lengths(at.size());
+  for_each_index(context, at.size(),
+                 [&](std::size_t v) { lengths[v] = local_length(squares, tree, Index(v)); });
+  return lengths;
 }
 
 /// The rules of sdg.h over one terrain; `graph` is the snapshot they read.
@@ -57,7 +62,8 @@ class Rules {
         length_(length),
         graph_(graph),
         options_(options),
-        cos_normal_(std::cos(radians(options.normal_angle))) {}
+        cos_normal_(std::cos(radians(options.normal_angle))),
+        clearance_(Eigen::Rotation2Dd(radians(options.gap_clearance)).toRotationMatrix()) {}
 
   /// (A) Where a leaf wants to go on, or kNone.
   Index beyond_leaf(Index v) const {
@@ -78,22 +84,30 @@ class Rules {
     const std::size_t degree = graph_.degree(v);
     if (degree == 0 || degree > kMostDirections) return kNone;
     const TangentPlane plane(normal(v));
-    std::array<double, kMostDirections> directions;
-    for (std::size_t j = 0; j < degree; ++j) directions[j] = plane.angle(at_[graph_[v][j]] - at_[v]);
-    std::sort(directions.begin(), directions.begin() + std::ptrdiff_t(degree));
-    double from = directions[degree - 1], widest = turn(from, directions[0]);
-    if (degree == 1) widest = 2 * M_PI;
+    std::array<Spoke, kMostDirections> spokes;
+    for (std::size_t j = 0; j < degree; ++j) spokes[j] = Spoke(plane.project(at_[graph_[v][j]] - at_[v]));
+    std::sort(spokes.begin(), spokes.begin() + std::ptrdiff_t(degree),
+              [](const Spoke& x, const Spoke& y) { return x.angle < y.angle; });
+    std::size_t from = degree - 1, to = 0;
+    double widest = degree == 1 ? 2 * M_PI : turn(spokes[from].angle, spokes[to].angle);
     for (std::size_t j = 0; j + 1 < degree; ++j)
-      if (const double gap = directions[j + 1] - directions[j]; gap > widest) {
+      if (const double gap = spokes[j + 1].angle - spokes[j].angle; gap > widest) {
         widest = gap;
-        from = directions[j];
+        from = j;
+        to = j + 1;
       }
     if (widest <= radians(degree <= 2 ? options_.gap_sparse : options_.gap)) return kNone;
-    const double clearance = radians(options_.gap_clearance);
-    const Sector inside(from + clearance, widest - 2 * clearance);
+    const Sector inside(clearance_ * spokes[from].along, clearance_.transpose() * spokes[to].along,
+                        widest - 2 * radians(options_.gap_clearance));
     for (const Index q : terrain_.near[v])
       if (inside.holds(plane.project(at_[q] - at_[v])) && admissible(v, q, options_.lune)) return q;
     return kNone;
+  }
+
+  /// The same for who wanted to reach `last` while the graph was a part of what it is now and v had the same
+  /// neighbours: what was not admissible then is not now.
+  Index across_gap_still(Index v, Index last) const {
+    return last == kNone || !within_two_hops(v, last) ? last : across_gap(v);
   }
 
   bool short_enough_alone(Index v, Index q) const {
@@ -109,6 +123,15 @@ class Rules {
   }
 
  private:
+  /// An edge's direction in the tangent plane.
+  struct Spoke {
+    Eigen::Vector2d along;  ///< not of unit length
+    double angle;
+    Spoke() = default;
+    explicit Spoke(const Eigen::Vector2d& d)
+        : along(d.isZero(0) ? Eigen::Vector2d(Eigen::Vector2d::UnitX()) : d), angle(direction(d[0], d[1])) {}
+  };
+
   const Vector3d& normal(Index v) const { return terrain_.surfaces[v].normal; }
   double reach(Index v) const { return std::max(length_[v], terrain_.noise); }
 
@@ -151,6 +174,7 @@ class Rules {
   const Adjacency& graph_;
   const SdgOptions& options_;
   double cos_normal_;
+  Eigen::Matrix2d clearance_;  ///< turns counter-clockwise by it
 };
 
 /// The edges that the wishes make: wish[v] = q counts if `granted(v, q)`; each edge once.
@@ -172,19 +196,27 @@ std::vector<Index> wishes(std::size_t n, const Context& context, Wish&& wish) {
   return all;
 }
 
-void append(std::vector<Edge>& edges, const std::vector<Edge>& more) {
-  edges.insert(edges.end(), more.begin(), more.end());
-}
-
 std::vector<Edge> extend_leaves(const Rules& rules, std::size_t n, const Context& context) {
   const auto wish = wishes(n, context, [&](Index v) { return rules.beyond_leaf(v); });
   return granted_edges(wish, context, [](Index, Index) { return true; });
 }
 
-std::vector<Edge> fill_gaps(const Rules& rules, std::size_t n, const Context& context) {
-  const auto wish = wishes(n, context, [&](Index v) { return rules.across_gap(v); });
-  return granted_edges(wish, context,
-                       [&](Index v, Index q) { return wish[q] == v || rules.short_enough_alone(v, q); });
+/// Adds edges to the graph across gaps, in two rounds.
+void fill_gaps(const Rules& rules, Adjacency& graph, const Context& context) {
+  const std::size_t n = graph.size();
+  constexpr int kRounds = 2;  // the second sees what the first has closed; a third adds under 1 %
+  std::vector<Index> wish;
+  std::vector<char> changed(n, 1);
+  for (int round = 0; round < kRounds; ++round) {
+    wish = wishes(n, context, [&](Index v) {
+      return changed[v] != 0 ? rules.across_gap(v) : rules.across_gap_still(v, wish[v]);
+    });
+    const std::vector<Edge> edges = granted_edges(
+        wish, context, [&](Index v, Index q) { return wish[q] == v || rules.short_enough_alone(v, q); });
+    std::fill(changed.begin(), changed.end(), 0);
+    for (const Edge& e : edges) changed[e[0]] = changed[e[1]] = 1;
+    graph = joined(graph, make_adjacency(n, edges, context), context);
+  }
 }
 
 std::vector<Edge> pick(const std::vector<Edge>& edges, const Context& context, const std::vector<char>& flag,
@@ -201,26 +233,20 @@ Sdg make_sdg(const Terrain& terrain, const std::vector<Edge>& tree, const SdgOpt
   const std::size_t n = terrain.at.size();
   Sdg sdg;
   Adjacency graph = make_adjacency(n, tree, context);
-  sdg.local_length.resize(n);
-  for_each_index(context, n,
-                 [&](std::size_t v) { sdg.local_length[v] = local_length(terrain.at, graph, Index(v)); });
+  sdg.local_length = local_lengths(terrain.at, graph, context);
   const Rules rules(terrain, sdg.local_length, graph, options);
 
   std::vector<char> bridge(tree.size());
   for_each_index(context, tree.size(),
                  [&](std::size_t e) { bridge[e] = rules.is_bridge(tree[e][0], tree[e][1]); });
-  sdg.edges = pick(tree, context, bridge, 0);
   sdg.bridges = pick(tree, context, bridge, 1);
   parallel_sort(context, sdg.bridges, std::less<Edge>());
+  if (!sdg.bridges.empty()) graph = make_adjacency(n, pick(tree, context, bridge, 0), context);
 
-  graph = make_adjacency(n, sdg.edges, context);
-  append(sdg.edges, extend_leaves(rules, n, context));
-  constexpr int kGapRounds = 2;  // the second sees what the first has closed; a third adds under 1 %
-  for (int round = 0; round < kGapRounds; ++round) {
-    graph = make_adjacency(n, sdg.edges, context);
-    append(sdg.edges, fill_gaps(rules, n, context));
-  }
-  parallel_sort(context, sdg.edges, std::less<Edge>());
+  graph = joined(graph, make_adjacency(n, extend_leaves(rules, n, context), context), context);
+  fill_gaps(rules, graph, context);
+  sdg.edges = edges_of(graph, context);
+  sdg.graph = std::move(graph);
   return sdg;
 }
 

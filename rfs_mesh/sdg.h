@@ -93,11 +93,13 @@ struct Terrain {
 /// The graph.
 struct Sdg {
   std::vector<Edge> edges;           ///< tree and added edges, ascending; bridges are not among them
+  Adjacency graph;                   ///< the same by vertex
   std::vector<Edge> bridges;         ///< tree edges by rule (C), ascending: edges + bridges is connected
   std::vector<double> local_length;  ///< n: median EMST edge length within two hops, measured in `at`
 };
 
-/// `tree` is the EMST (a < b in every edge). O(n k), parallel, the same for any number of threads.
+/// `tree` is the EMST (a < b in every edge), in any order. O(n k), parallel, the same for any number of
+/// threads.
 Sdg make_sdg(const Terrain& terrain, const std::vector<Edge>& tree, const SdgOptions& options,
              const Context& context);
 

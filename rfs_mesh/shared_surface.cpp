@@ -80,11 +80,13 @@ class SharedQuadrics {
     const double leaves = double(scale.neighbours) * kPointsPerSeed / KdTree::kLeaf;
     const std::vector<Cursor> groups = index.tree().subtrees(std::uint32_t(std::max(1.0, leaves)));
     quadrics_.resize(groups.size());
+    curvature_.resize(groups.size());
     for_blocks(context, groups.size(), 16, [&](std::size_t begin, std::size_t end) {
       Fitter fitter(index, scale, least);
       for (std::size_t g = begin; g < end; ++g) {
         for_members(groups[g], [&](Index i) { group_[i] = Index(g); });
         quadrics_[g] = fitter.fit(middle(groups[g]));
+        curvature_[g] = quadrics_[g].radius > 0 ? quadrics_[g].curvature() : 0;
       }
     });
   }
@@ -108,14 +110,21 @@ class SharedQuadrics {
       if (off > square(kFarthestOff)) continue;
       const double trust = inside * square(square(sigma_ / scatter)) * std::exp(-0.5 * off);
       const double weight = inside * inside * trust;
-      const Vector3d n = q.normal(u, v), turned = q.normal(kTurn * u, kTurn * v);
-      const double lift = q.n.dot(n) * above * q.radius;  // along n
-      shift -= (weight * lift) * n;
-      normal += turned.dot(normal) < 0 ? Vector3d(-trust * turned) : Vector3d(trust * turned);
+      // The normal over (u, v) is (n - a t1 - b t2) / sqrt(1 + a^2 + b^2), and so is the turned one.
+      const auto slope = [&q](double at_u, double at_v) {
+        return Eigen::Vector2d(q.c[1] + 2 * q.c[3] * at_u + q.c[4] * at_v,
+                               q.c[2] + q.c[4] * at_u + 2 * q.c[5] * at_v);
+      };
+      const Eigen::Vector2d here = slope(u, v), turned = slope(kTurn * u, kTurn * v);
+      const double lift = weight * above * q.radius / (1 + here.squaredNorm());
+      shift -= lift * (q.n - here[0] * q.t1 - here[1] * q.t2);
+      const Vector3d way = q.n - turned[0] * q.t1 - turned[1] * q.t2;
+      const double length = trust / std::sqrt(1 + turned.squaredNorm());
+      normal += (way.dot(normal) < 0 ? -length : length) * way;
       agreement += trust;
       total += weight;
       residual += weight * q.residual;
-      curvature += weight * q.curvature();
+      curvature += weight * curvature_[g];
     }
     if (total < kLeastWeight || normal.norm() < 0.5 * agreement) return false;
     surface = {normal.normalized(), p + shift / total, curvature / total, residual / total};
@@ -150,7 +159,8 @@ class SharedQuadrics {
   const SpatialIndex& index_;
   double sigma_;
   std::vector<Quadric> quadrics_;
-  std::vector<Index> group_;  // n
+  std::vector<double> curvature_;  // of each quadric
+  std::vector<Index> group_;       // n
 };
 
 }  // namespace

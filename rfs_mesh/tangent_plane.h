@@ -57,10 +57,10 @@ inline double between(double a, double b) {
 class Sector {
  public:
   Sector(double from, double width)
-      : first_(std::cos(from), std::sin(from)),
-        last_(std::cos(from + width), std::sin(from + width)),
-        empty_(!(width >= 0)),
-        narrow_(width <= M_PI) {}
+      : Sector({std::cos(from), std::sin(from)}, {std::cos(from + width), std::sin(from + width)}, width) {}
+  /// The same by its ends, of any length.
+  Sector(const Eigen::Vector2d& first, const Eigen::Vector2d& last, double width)
+      : first_(first), last_(last), empty_(!(width >= 0)), narrow_(width <= M_PI) {}
 
   bool holds(const Eigen::Vector2d& d) const {
     const bool past_first = cross(first_, d) >= 0, before_last = cross(d, last_) >= 0;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "rfsmooth/rfs_mesh/measure.h"
+#include "rfsmooth/rfs_mesh/median.h"
 #include "rfsmooth/rfs_mesh/parallel.h"
 #include "rfsmooth/rfs_mesh/tangent_plane.h"
 
@@ -21,21 +22,27 @@ struct Candidate {
   friend bool operator<(const Candidate& a, const Candidate& b) {
     return a.squared_length != b.squared_length ? a.squared_length < b.squared_length : a.point < b.point;
   }
-  friend bool operator==(const Candidate& a, const Candidate& b) { return a.point == b.point; }
 };
 
+/// Kept in order: nearest neighbours come nearest first and find their place at once.
 struct Candidates {
   std::array<Candidate, kMostCandidates> items;
   std::size_t count = 0;
   void add(Index point, double squared_length) {
-    if (count < items.size()) items[count++] = {point, squared_length};
+    if (count == items.size()) return;
+    const Candidate candidate = {point, squared_length};
+    std::size_t at = count;
+    for (; at > 0 && candidate < items[at - 1]; --at) items[at] = items[at - 1];
+    items[at] = candidate;
+    ++count;
   }
-  auto begin() { return items.begin(); }
-  auto end() { return items.begin() + std::ptrdiff_t(count); }
-  void sort_unique() {
-    std::sort(begin(), end());
-    count = std::size_t(std::unique(begin(), end()) - begin());
+  void add_new(Index point, double squared_length) {
+    bool known = false;
+    for (std::size_t k = 0; k < count; ++k) known |= items[k].point == point;
+    if (!known) add(point, squared_length);
   }
+  auto begin() const { return items.begin(); }
+  auto end() const { return items.begin() + std::ptrdiff_t(count); }
 };
 
 /// A rib and its direction in the tangent plane.
@@ -68,36 +75,26 @@ class Opener {
  private:
   double squared(Index a, Index b) const { return (at_[a] - at_[b]).squaredNorm(); }
 
-  /// Squared lengths of the SDG edges of v and of its neighbours, the first of them where there are more than
-  /// fit.
-  std::size_t squares_around(Index v, std::array<double, kMostCandidates>& squares) const {
+  /// The 90th percentile of the lengths of the SDG edges of v and of its neighbours, of the first of them
+  /// where there are more than fit.
+  double long_edge(Index v) const {
+    std::array<float, kMostCandidates> squares;
     std::size_t count = 0;
-    const auto filled_by = [&](Index a, Index b) {
-      squares[count++] = squared(a, b);
-      return count == squares.size();
+    const auto add = [&](Index a, Index b) {
+      if (count < squares.size()) squares[count++] = float(squared(a, b));
     };
     for (const Index a : graph_[v]) {
-      if (filled_by(v, a)) return count;
+      add(v, a);
       for (const Index b : graph_[a])
-        if (b != v && filled_by(a, b)) return count;
+        if (b != v) add(a, b);
+      if (count == squares.size()) break;
     }
-    return count;
-  }
-
-  /// Their 90th percentile, as a length.
-  double long_edge(Index v) const {
-    std::array<double, kMostCandidates> squares;
-    const std::size_t count = squares_around(v, squares);
-    if (count == 0) return 0;
-    const auto nth = squares.begin() + std::ptrdiff_t(count * 9 / 10);
-    std::nth_element(squares.begin(), nth, squares.begin() + std::ptrdiff_t(count));
-    return std::sqrt(*nth);
+    return count > 0 ? std::sqrt(double(nth_of_few(squares, count, count * 9 / 10))) : 0;
   }
 
   /// The SDG neighbours of v and k_v nearest ones, nearest first.
   Candidates candidates(Index v) const {
     Candidates found;
-    for (const Index q : graph_[v]) found.add(q, squared(v, q));
     const double radius = options_.fill * long_edge(v);
     int nearest = 0;
     for (const Index q : terrain_.near[v]) {
@@ -107,7 +104,7 @@ class Opener {
       found.add(q, d);
       ++nearest;
     }
-    found.sort_unique();
+    for (const Index q : graph_[v]) found.add_new(q, squared(v, q));
     return found;
   }
 

@@ -22,6 +22,21 @@ TEST(Median, HasHalfOfTheOthersOnEachSide) {
   }
 }
 
+TEST(NthOfFew, IsWhatSortingPutsThere) {
+  std::mt19937_64 engine(2);
+  std::uniform_int_distribution<int> tied(0, 9);
+  for (std::size_t n = 1; n <= 64; ++n) {
+    std::array<float, 64> values = {};
+    for (std::size_t i = 0; i < n; ++i) values[i] = float(tied(engine));
+    std::array<float, 64> sorted = values;
+    std::sort(sorted.begin(), sorted.begin() + std::ptrdiff_t(n));
+    for (const std::size_t nth : {std::size_t{0}, n / 2, n * 9 / 10, n - 1}) {
+      std::array<float, 64> copy = values;
+      EXPECT_EQ(rfsmooth::rfs_mesh::nth_of_few(copy, n, nth), sorted[nth]) << n;
+    }
+  }
+}
+
 TEST(Median, IsOfTheGivenPartOnly) {
   std::vector<double> values = {1, 7, 3, 100, -100};
   EXPECT_EQ(median(values.begin(), values.begin() + 3), 3);

@@ -37,6 +37,28 @@ TEST(Mesh, VertexFacesListEveryCorner) {
   EXPECT_EQ(around.degree(4), 0u);
 }
 
+TEST(Mesh, OneRingIsThatOfTheKeptFaces) {
+  Mesh mesh = two_triangles_and_a_tail();
+  mesh.loose_edges.clear();
+  const Adjacency around = vertex_faces(mesh, {}), all = one_ring(around, mesh.faces, {1, 1}, {});
+  rebuild_adjacency(mesh, {});
+  EXPECT_EQ(all.start, mesh.one_ring.start);
+  EXPECT_EQ(all.items, mesh.one_ring.items);
+  const Adjacency one = one_ring(around, mesh.faces, {0, 1}, {});
+  EXPECT_EQ(row(one, 0), (std::vector<Index>{2, 3}));
+  EXPECT_EQ(one.degree(1), 0u);
+}
+
+TEST(Mesh, JoinedGraphsHaveTheEdgesOfBoth) {
+  const std::vector<Edge> all = {{0, 1}, {0, 3}, {1, 2}, {2, 3}, {2, 4}};
+  const Adjacency graph =
+      joined(make_adjacency(5, {all[1], all[4]}, {}), make_adjacency(5, {all[0], all[2], all[3]}, {}), {});
+  const Adjacency at_once = make_adjacency(5, all, {});
+  EXPECT_EQ(graph.start, at_once.start);
+  EXPECT_EQ(graph.items, at_once.items);
+  EXPECT_EQ(edges_of(graph, {}), all);
+}
+
 TEST(Mesh, MakeAdjacencyDropsDuplicatesAndSelfEdges) {
   const Adjacency rows = make_adjacency(3, {{0, 1}, {1, 0}, {2, 2}, {0, 1}}, {});
   EXPECT_EQ(rows.items.size(), 2u);
