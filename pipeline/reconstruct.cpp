@@ -4,6 +4,7 @@
 
 #include "rfsmooth/pipeline/hole_filling.h"
 #include "rfsmooth/pipeline/normals.h"
+#include "rfsmooth/pipeline/pinches.h"
 #include "rfsmooth/pipeline/surface_cleanup.h"
 #include "rfsmooth/rfs_mesh/local_surface.h"
 #include "rfsmooth/rfs_mesh/neighbors.h"
@@ -57,8 +58,9 @@ void clean_up(rfs_mesh::Mesh& mesh, const SurfaceInput& input, const Reconstruct
   const double trim = options.trim.resolve(input.spacing),
                longest = options.fill_holes.resolve(input.spacing);
   if (closes_all && trim > 0) trim_far_faces(mesh, input.points, trim, context);
+  part_pinches(mesh, context);
   drop_specks(mesh, kSpeck, context);
-  if (!closes_all && longest > 0) report.filled = fill_holes(mesh, longest, context);
+  if (longest > 0) report.filled = fill_holes(mesh, longest, context);
   drop_unused_vertices(mesh, context);
 }
 

@@ -24,11 +24,10 @@ struct ReconstructOptions {
   std::string method = "poisson";
   bool denoise = true;
   /// Poisson: faces with a corner farther than this from every point go. On the development shapes with 2 %
-  /// noise 2.5 spacings leave holes in most surfaces of 50,000 points, 3 in few; 4 leave a tenth to a fifth
-  /// more error at 10,000.
-  Length trim = {3, true};
-  Length fill_holes = {
-      8, true};  ///< the others: the longest edge of a face put into a hole; 0 = none are filled
+  /// noise the holes that it leaves can be filled from 2.5 spacings on; more leaves more of the flaps that
+  /// Poisson invents where normals disagree.
+  Length trim = {2.5, true};
+  Length fill_holes = {8, true};  ///< the longest edge of a face put into a hole; 0 = none are filled
   DenoiseOptions denoising;
 
   template <class Self, class Visit>
@@ -40,8 +39,7 @@ struct ReconstructOptions {
     visit(OptionInfo{"trim", "poisson: drop faces that are farther than this from every point; 0 keeps all",
                      "world units or x spacing", 0},
           self.trim);
-    visit(OptionInfo{"fill-holes",
-                     "other methods: fill holes that need no edge longer than this; 0 leaves them open",
+    visit(OptionInfo{"fill-holes", "fill holes that need no edge longer than this; 0 leaves them open",
                      "world units or x spacing", 0},
           self.fill_holes);
     DenoiseOptions::describe(self.denoising, visit);
@@ -58,8 +56,7 @@ struct SurfaceInput {
 /// A way of making a surface, as the adapters offer it.
 struct SurfaceMethod {
   std::string name;  ///< as --method takes it
-  /// Closes every gap, however wide: its faces far from the points are trimmed. A method that does not leaves
-  /// specks and small holes instead, which are dropped and filled.
+  /// Closes every gap, however wide: its faces far from the points are trimmed.
   bool closes_all = false;
   std::function<Result<rfs_mesh::Mesh>(const SurfaceInput& input, const Context& context)> run;
 };

@@ -3,8 +3,11 @@
 /// so.
 ///
 /// Differs from the paper: where the front all but bounds a solid, the boundary of that solid is given back
-/// (solid.h): slits and welds of the front are mended with other facets of the same Delaunay tetrahedra, and
-/// a closed shape comes out closed.
+/// (solid.h): slits and welds of the front are mended with other facets of the same Delaunay tetrahedra,
+/// walls that noise has merged into one sheet get their two sides back, and a closed shape comes out closed.
+/// Not so if the solid's surface looks against the normals, as both sides of an open sheet cannot but do, or
+/// spans an opening with faces beyond the longest edge. Differs from CGAL: candidates of one priority wait in
+/// the order of the points, not of addresses in memory, so the same points give the same surface.
 #pragma once
 
 #include "rfsmooth/pipeline/reconstruct.h"
@@ -14,8 +17,9 @@
 
 namespace rfsmooth::cgal {
 
-/// The vertices are the points, in order (those the surface does not reach have no face); faces are oriented
-/// consistently within each piece. `normals`: n x 3, on one side: pieces are turned to agree with them, and a
+/// The vertices are the points, in order (those the surface does not reach have no face), and after them
+/// copies of those at which the solid touches itself (pipeline/pinches.h); faces are oriented consistently
+/// within each piece. `normals`: n x 3, on one side: pieces are turned to agree with them, and a
 /// front that all but bounds a solid is closed; empty: neither. Faces with an edge longer than `longest_edge`
 /// (world units; 0 = no limit), which lie across gaps, are dropped. Errors: no_usable_points if there is no
 /// surface. O(n log n), one thread, deterministic; not interruptible.

@@ -1,10 +1,12 @@
 #include "rfsmooth/cgal/solid.h"
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <unordered_map>
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <boost/graph/adjacency_list.hpp>
 #include <boost/graph/boykov_kolmogorov_max_flow.hpp>
 
@@ -58,9 +60,16 @@ class Cut {
   std::size_t outside_, inside_;
 };
 
+// Chosen on the closed development shapes with 2 % noise, 10,000 and 50,000 points: with 6 and less it is
+// cheaper to cut an ear of armadillo off than to fill its merged root, with 15 and more walls grow flaps.
+constexpr double kOfNormals = 10;
+constexpr double kOfOthers = 0.4;  // x longest edge squared: the area of an even triangle is 0.43 of it
+constexpr double kOfFront = 0.02;
+
 class Builder {
  public:
-  Builder(const Delaunay& tetrahedra, const Positions& points) : all_(tetrahedra), points_(points) {
+  Builder(const Delaunay& tetrahedra, const Positions& points, const Positions& normals)
+      : all_(tetrahedra), points_(points), normals_(normals) {
     for (auto c = all_.all_cells_begin(); c != all_.all_cells_end(); ++c) {
       number_.emplace(&*c, cells_.size());
       cells_.push_back(c);
@@ -68,9 +77,14 @@ class Builder {
     on_front_.assign(4 * cells_.size(), 0);
   }
 
-  Solid solve(const std::vector<FrontFace>& front, const Context& context) {
+  Solid solve(const std::vector<FrontFace>& front, double longest, const Context& context) {
     Cut cut(cells_.size());
-    for (const FrontFace& face : front) vote(face, cut);
+    double whole = 0;
+    for (const FrontFace& face : front) {
+      vote(face, cut);
+      whole += area(face.corners);
+    }
+    let_normals_vote(kOfNormals * whole / double(points_.size()), cut);
     for (std::size_t k = 0; k < cells_.size(); ++k) {
       if (all_.is_infinite(cells_[k])) cut.pull_outside(k, std::numeric_limits<float>::max());
       for (int i = 0; i < 4; ++i) join(k, i, cut);
@@ -78,8 +92,7 @@ class Builder {
     context.check_stop();
     inside_ = cut.solve();
     context.check_stop();
-    while (open_pinches()) context.check_stop();
-    return boundary(front);
+    return boundary(whole, longest);
   }
 
  private:
@@ -110,15 +123,39 @@ class Builder {
     cut.pull_outside(number(out), weight);
   }
 
+  /// The tetrahedra behind and before each point say which is inside.
+  void let_normals_vote(double weight, Cut& cut) const {
+    std::vector<Cell> cells;
+    for (auto v = all_.finite_vertices_begin(); v != all_.finite_vertices_end(); ++v) {
+      cells.clear();
+      all_.incident_cells(v, std::back_inserter(cells));
+      const auto p = Index(v->id());
+      for (const Cell c : cells) {
+        if (all_.is_infinite(c)) continue;
+        const int i = c->index(v);
+        Eigen::Matrix3d edges;
+        for (int k = 0; k < 3; ++k) edges.col(k) = points_[corner(c, (i + 1 + k) & 3)] - points_[p];
+        const Eigen::Vector3d along = edges.partialPivLu().solve(normals_[p]);
+        if (along.minCoeff() >= 0) cut.pull_outside(number(c), weight);
+        if (along.maxCoeff() <= 0) cut.pull_inside(number(c), weight);
+      }
+    }
+  }
+
   void join(std::size_t k, int i, Cut& cut) const {
     const Cell c = cells_[k], n = c->neighbor(i);
     const std::size_t m = number(n);
     if (m < k || (all_.is_infinite(c) && all_.is_infinite(n))) return;
     const Face f = corners(c, i);
+    cut.join(k, m,
+             on_front_[4 * k + std::size_t(i)] != 0 ? kOfFront * area(f) : kOfOthers * longest_square(f));
+  }
+
+  double longest_square(const Face& f) const {
     double longest = 0;
     for (std::size_t e = 0; e < 3; ++e)
       longest = std::max(longest, (points_[f[e]] - points_[f[(e + 1) % 3]]).squaredNorm());
-    cut.join(k, m, on_front_[4 * k + std::size_t(i)] ? 0.02 * area(f) : longest);
+    return longest;
   }
 
   /// Calls visit(face, whether it is the front's) for the boundary of the inside.
@@ -130,52 +167,32 @@ class Builder {
           visit(corners(cells_[k], i), on_front_[4 * k + std::size_t(i)] != 0);
   }
 
-  /// Where the boundary touches itself, at an edge or a vertex, what is inside there goes outside. Whether
-  /// there was such a place; each round leaves less inside.
-  bool open_pinches() {
-    std::vector<Face> faces;
-    for_each_face([&](const Face& f, bool) { faces.push_back(f); });
-    const std::vector<char> pinched = pinched_vertices(faces);
-    bool found = false;
-    for (std::size_t k = 0; k < cells_.size(); ++k)
-      for (int i = 0; inside_[k] && i < 4; ++i)
-        if (pinched[corner(cells_[k], i)]) {
-          inside_[k] = 0;
-          found = true;
-        }
-    return found;
-  }
-
-  std::vector<char> pinched_vertices(const std::vector<Face>& faces) const {
-    std::vector<char> pinched(points_.size(), 0);
-    pipeline::Groups fans(3 * faces.size());
-    pipeline::for_each_edge(pipeline::face_sides(faces), [&](const pipeline::FaceSide* first,
-                                                             const pipeline::FaceSide* last) {
-      if (last - first > 2) pinched[first->a] = 1;  // with one end open the edge is no edge any more
-      for (const Index v : {first->a, first->b})
-        fans.join(pipeline::corner_of(faces, first->face, v), pipeline::corner_of(faces, first[1].face, v));
-    });
-    std::vector<Index> count(points_.size(), 0);
-    for (Index c = 0; c < 3 * faces.size(); ++c)
-      if (fans.of(c) == c && ++count[faces[c / 3][c % 3]] > 1) pinched[faces[c / 3][c % 3]] = 1;
-    return pinched;
-  }
-
-  Solid boundary(const std::vector<FrontFace>& front) const {
+  Solid boundary(double whole, double longest) const {
     Solid solid;
+    double all = 0;
+    std::vector<Face> far;
     for_each_face([&](const Face& f, bool of_front) {
       solid.faces.push_back(f);
-      (of_front ? solid.kept : solid.invented) += area(f);
+      const Eigen::Vector3d cross = (points_[f[1]] - points_[f[0]]).cross(points_[f[2]] - points_[f[0]]);
+      all += area(f);
+      if (of_front) solid.kept += area(f) / whole;
+      if (cross.dot(normals_[f[0]] + normals_[f[1]] + normals_[f[2]]) < 0) solid.disagreeing += area(f);
+      if (longest_square(f) > longest * longest) far.push_back(f);
     });
-    double whole = 0;
-    for (const FrontFace& face : front) whole += area(face.corners);
-    solid.kept /= whole;
-    solid.invented /= whole;
+    if (all > 0) solid.disagreeing /= all;
+    pipeline::Groups gaps(points_.size());
+    for (const Face& f : far) {
+      gaps.join(f[0], f[1]);
+      gaps.join(f[1], f[2]);
+    }
+    std::unordered_map<Index, double> areas;
+    for (const Face& f : far) solid.widest_gap = std::max(solid.widest_gap, areas[gaps.of(f[0])] += area(f));
     return solid;
   }
 
   const Delaunay& all_;
   const Positions& points_;
+  const Positions& normals_;
   std::vector<Cell> cells_;
   std::unordered_map<const void*, std::size_t> number_;
   std::vector<char> on_front_;  ///< 4 per cell
@@ -184,9 +201,9 @@ class Builder {
 
 }  // namespace
 
-Solid solid_of(const Delaunay& tetrahedra, const Positions& points, const std::vector<FrontFace>& front,
-               const Context& context) {
-  return Builder(tetrahedra, points).solve(front, context);
+Solid solid_of(const Delaunay& tetrahedra, const Positions& points, const Positions& normals,
+               const std::vector<FrontFace>& front, double longest, const Context& context) {
+  return Builder(tetrahedra, points, normals).solve(front, longest, context);
 }
 
 }  // namespace rfsmooth::cgal

@@ -139,6 +139,38 @@ TEST(Normals, EveryClosedPieceFacesOutwardAndTheWallOfACavityFacesTheCavity) {
   EXPECT_EQ(share_on_side(ball, inner, from_centre), 0);
 }
 
+TEST(Normals, NestedSpheresLookAwayFromTheMaterialBetweenThem) {
+  Positions points;
+  for (const double radius : {1.0, 0.8, 0.6})
+    for (const Vector3d& p :
+         test::poisson_points(test::unit_sphere(), std::size_t(5000 * radius * radius), 1))
+      points.push_back(radius * p);
+  EXPECT_GT(share_on_side(points, normals_of(points),
+                          [](const Vector3d& p) {
+                            const double r = p.norm();
+                            return Vector3d(r > 0.7 && r < 0.9 ? -p : p);
+                          }),
+            0.995);
+}
+
+TEST(Normals, BothSidesOfTheWallOfABowlAndItsRimLookOutOfTheWall) {
+  constexpr double kInner = 0.85;
+  Positions points;
+  for (const Vector3d& p : test::poisson_points(test::unit_sphere(), 12000, 1))
+    if (p[2] < 0) points.push_back(p);
+  for (const Vector3d& p : test::poisson_points(test::unit_sphere(), 9000, 2))
+    if (p[2] < 0) points.push_back(kInner * p);
+  for (const Vector3d& p : test::poisson_points(test::plane(), 3800, 3)) {
+    const Vector3d q(2 * p[0] - 1, 2 * p[1] - 1, 0);
+    if (q.norm() < 1 && q.norm() > kInner) points.push_back(q);
+  }
+  const double share = share_on_side(points, normals_of(points), [](const Vector3d& p) {
+    if (p[2] == 0) return Vector3d(Vector3d::UnitZ());
+    return Vector3d(p.norm() > 0.5 * (1 + kInner) ? p : -p);
+  });
+  EXPECT_GT(share, 0.995) << "at the two edges of the rim a normal may take the other face's side";
+}
+
 TEST(Normals, AnOpenSheetHasOneSide) {
   const auto sheet = clouds::make_wavy_sheet();
   const Positions points = clouds::sample(*sheet, 4000, 1);

@@ -21,7 +21,7 @@ std::vector<double> grid_rows(int side) {
   return xyz;
 }
 
-/// Joins every point to its right and upper neighbour.
+/// Joins every point to its right and upper neighbour, and those to theirs but at the last corner.
 Result<rfs_mesh::Mesh> join_grid(const SurfaceInput& input, const Context& context) {
   rfs_mesh::Mesh mesh;
   mesh.positions = input.points;
@@ -33,7 +33,12 @@ Result<rfs_mesh::Mesh> join_grid(const SurfaceInput& input, const Context& conte
   for (Index i = 0; i < input.points.size(); ++i) {
     const Index right = at(input.points[i] + Eigen::Vector3d(1, 0, 0)),
                 up = at(input.points[i] + Eigen::Vector3d(0, 1, 0));
-    if (right != kNone && up != kNone) mesh.faces.push_back({i, right, up});
+    if (right == kNone || up == kNone) continue;
+    mesh.faces.push_back({i, right, up});
+    const Index across = at(input.points[i] + Eigen::Vector3d(1, 1, 0));
+    if (at(input.points[across] + Eigen::Vector3d(1, 0, 0)) != kNone ||
+        at(input.points[across] + Eigen::Vector3d(0, 1, 0)) != kNone)
+      mesh.faces.push_back({right, across, up});
   }
   rebuild_adjacency(mesh, context);
   return mesh;

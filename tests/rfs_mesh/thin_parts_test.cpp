@@ -29,16 +29,16 @@ struct Oriented {
   }
 };
 
-/// Two square sheets about z = 0 from x on, with a fifth of a spacing or less between them; `side`: 1 for a
-/// wall, -1 for a slit.
-void add_sheets(Oriented& cloud, double x, double width, double side) {
+/// Two square sheets about z = 0 from x on, at most 2 `half`, by default a fifth of a spacing, apart; `side`:
+/// 1 for a wall, -1 for a slit.
+void add_sheets(Oriented& cloud, double x, double width, double side, double half = 0.005) {
   cloud.thin = cloud.points.size();
   std::mt19937_64 engine(5);
   std::uniform_real_distribution<double> height(0.1, 1);
   for (const double z : {-1.0, 1.0})
     for (const Vector3d& p :
          test::poisson_points(test::plane(), std::size_t(270 * width * width), z > 0 ? 2 : 3))
-      cloud.add({x + width * p[0], width * (p[1] - 0.5), 0.005 * z * height(engine)}, {0, 0, side * z});
+      cloud.add({x + width * p[0], width * (p[1] - 0.5), half * z * height(engine)}, {0, 0, side * z});
 }
 
 /// The cube [-1, 1]^3.
@@ -80,12 +80,48 @@ TEST(ThinParts, MostOfBothSidesOfASlitPointIntoIt) {  // it is narrow: much of i
   EXPECT_GT(cloud.right(normals), 2.0 / 3);
 }
 
-TEST(ThinParts, WhatIsRightStays) {
-  const Oriented cloud = cube();
-  Positions normals = cloud.normals;
+TEST(ThinParts, MostOfAShapeMayBeWall) {
+  Oriented cloud = cube();
+  add_sheets(cloud, 1, 3.5, 1, 0.04);  // as rough as noise leaves it
+  ASSERT_GT(cloud.points.size() - cloud.thin, cloud.thin);
+  Positions normals = one_sided(cloud);
+  EXPECT_LT(cloud.right(normals), 0.55);
   const SpatialIndex index(cloud.points, {});
-  EXPECT_EQ(turn_out_of_thin_parts(index, normals, {}), 0u);
-  EXPECT_EQ(normals, cloud.normals);
+  EXPECT_GT(turn_out_of_thin_parts(index, normals, {}), 0u);
+  EXPECT_GT(cloud.right(normals), 0.9);
+}
+
+/// A ball of radius 1 with a hollow of radius 0.8 and in it a ball of radius 0.6: every sheet looks away from
+/// the material.
+Oriented nested_spheres() {
+  Oriented cloud;
+  for (const Vector3d& p : test::poisson_points(test::unit_sphere(), 6000, 1)) cloud.add(p, p);
+  for (const Vector3d& p : test::poisson_points(test::unit_sphere(), 3800, 2)) cloud.add(0.8 * p, -p);
+  for (const Vector3d& p : test::poisson_points(test::unit_sphere(), 2200, 3)) cloud.add(0.6 * p, p);
+  return cloud;
+}
+
+/// The lower halves of two spheres of radius 1 and 0.85 and the ring between them: a closed bowl.
+Oriented thin_walled_bowl() {
+  Oriented cloud;
+  for (const Vector3d& p : test::poisson_points(test::unit_sphere(), 8000, 1)) {
+    if (p[2] < 0) cloud.add(p, p);
+    if (p[2] < 0) cloud.add(0.85 * p, -p);
+  }
+  for (Vector3d p : test::poisson_points(test::plane(), 3000, 1)) {
+    p = {2 * p[0] - 1, 2 * p[1] - 1, 0};
+    if (p.norm() < 1 && p.norm() > 0.85) cloud.add(p, Vector3d::UnitZ());
+  }
+  return cloud;
+}
+
+TEST(ThinParts, WhatIsRightStays) {
+  for (const Oriented& cloud : {cube(), nested_spheres(), thin_walled_bowl()}) {
+    Positions normals = cloud.normals;
+    const SpatialIndex index(cloud.points, {});
+    EXPECT_EQ(turn_out_of_thin_parts(index, normals, {}), 0u);
+    EXPECT_EQ(normals, cloud.normals);
+  }
 }
 
 TEST(ThinParts, OpenSurfacesStay) {

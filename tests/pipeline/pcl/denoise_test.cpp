@@ -413,4 +413,48 @@ TEST(PclDenoiseCloud2, WithoutCoordinatesIsAStatus) {
   EXPECT_NE(denoise.getStatus(), "");
 }
 
+TEST(PclDenoiseSettings, WhatIsSetIsWhatOneGets) {
+  Denoise<::pcl::PointXYZ> denoise;
+  EXPECT_EQ(denoise.getFlow(), rfsmooth::pipeline::DenoiseOptions().flow.flow);
+  EXPECT_EQ(denoise.getOutliers(), rfsmooth::pipeline::DenoiseOptions().outliers);
+  EXPECT_FALSE(denoise.getKeepOrganized());
+  EXPECT_EQ(denoise.getNumberOfThreads(), 0);
+
+  denoise.setFlow("hc");
+  denoise.setOutliers("remove");
+  denoise.setKeepOrganized(true);
+  denoise.setNumberOfThreads(3);
+  EXPECT_EQ(denoise.getFlow(), "hc");
+  EXPECT_EQ(denoise.getOutliers(), "remove");
+  EXPECT_TRUE(denoise.getKeepOrganized());
+  EXPECT_EQ(denoise.getNumberOfThreads(), 3);
+  EXPECT_EQ(denoise.getOptions().flow.flow, "hc") << "one set of options behind all setters";
+  EXPECT_EQ(denoise.getOptions().outliers, "remove");
+
+  rfsmooth::pipeline::DenoiseOptions options;
+  options.flow.flow = "taubin";
+  options.outliers = "off";
+  denoise.setOptions(options);
+  EXPECT_EQ(denoise.getFlow(), "taubin");
+  EXPECT_EQ(denoise.getOutliers(), "off");
+  EXPECT_EQ(denoise.getOptions().flow.flow, "taubin");
+}
+
+TEST(PclDenoiseSettings, OptionsSetAsAWholeAreTheOnesThatRun) {
+  const auto cloud = sheet<::pcl::PointXYZ>();
+  Denoise<::pcl::PointXYZ> one, other;
+  one.setInputCloud(cloud);
+  other.setInputCloud(cloud);
+  one.setFlow("taubin");
+  rfsmooth::pipeline::DenoiseOptions options;
+  options.flow.flow = "taubin";
+  other.setOptions(options);
+  ::pcl::PointCloud<::pcl::PointXYZ> a, b;
+  one.filter(a);
+  other.filter(b);
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i)
+    EXPECT_EQ(std::memcmp(&a[i].x, &b[i].x, 3 * sizeof(float)), 0) << i;
+}
+
 }  // namespace
