@@ -1,9 +1,10 @@
 /// The kd-tree under SpatialIndex: buckets of eight points, tight boxes, no pointers.
 ///
 /// The points are partitioned at medians of about the widest axis (halving.h) into leaves of exactly kLeaf
-/// points (the last may be short). Nodes lie in preorder; which leaves a node covers follows from the number of leaves alone: the
-/// node over the leaves [first, last) has its left child right behind it and its right child behind the left
-/// subtree. A leaf keeps its coordinates by axis, so that a scan of it is a few vector instructions.
+/// points (the last may be short). Nodes lie in preorder; which leaves a node covers follows from the number
+/// of leaves alone: the node over the leaves [first, last) has its left child right behind it and its right
+/// child behind the left subtree. A leaf keeps its coordinates by axis, so that a scan of it is a few vector
+/// instructions.
 ///
 /// Exactness: squared distances to points and to boxes are both evaluated as (dx^2 + dy^2) + dz^2 without
 /// contraction; rounding is monotone, so the distance to a box never exceeds that of a point in it.

@@ -23,7 +23,8 @@
 /// of 2.5; what is below the measurement's own scatter counts as no difference. On the development shapes
 /// with noise along rays a constant field is off by 11 %, a median over the nearest sites by 10 % (it is as
 /// unsure as the noise differs), this by 9 %. Measured again without every thousandth point, which moves all
-/// sites, the field of six real scans differs by at most 3 to 36 % at 99 of 100 points (a median: 8 to 320 %).
+/// sites, the field of six real scans differs by at most 3 to 36 % at 99 of 100 points (a median: 8 to
+/// 320 %).
 ///
 /// Source: P. J. Huber 1964, Robust estimation of a location parameter.
 #pragma once
