@@ -1,8 +1,6 @@
 #include "rfsmooth/rfs_mesh/kd_tree.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <limits>
 #include <numeric>
 #include <stdexcept>
@@ -22,30 +20,25 @@ struct Item {
 constexpr std::uint32_t kSerialLeaves =
     512;  // subtrees below this size are built by one thread, in its cache
 
-/// The longest axis of a box around some of `count` points, and where the box lies on it. Enough to halve
-/// them well, and a fraction of the time that all of them would take.
+/// The longest axis of the box around `count` points, and where the box lies on it.
 struct Span {
   int axis = 0;
   double low = 0, extent = 0;
 
   template <class At>
   Span(std::size_t count, At&& at) {
-    constexpr std::size_t kSome = 128;
-    constexpr double kGolden = 0.6180339887498949;  // its multiples fall evenly, and on no grid
-    std::array<double, 3> lows = {}, highs = {};
-    const std::size_t some = std::min(count, kSome);
-    for (std::size_t s = 0; s < some; ++s) {
-      const double share = kGolden * double(s);
-      const double* const p =
-          at(some == count ? s : std::size_t((share - std::floor(share)) * double(count)));
-      for (std::size_t k = 0; k < 3; ++k) {
-        lows[k] = s == 0 || p[k] < lows[k] ? p[k] : lows[k];
-        highs[k] = s == 0 || p[k] > highs[k] ? p[k] : highs[k];
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    double lows[3] = {kInfinity, kInfinity, kInfinity}, highs[3] = {-kInfinity, -kInfinity, -kInfinity};
+    for (std::size_t i = 0; i < count; ++i) {
+      const double* const p = at(i);
+      for (int k = 0; k < 3; ++k) {
+        lows[k] = std::min(lows[k], p[k]);
+        highs[k] = std::max(highs[k], p[k]);
       }
     }
-    for (std::size_t k = 0; k < 3; ++k)
+    for (int k = 0; k < 3; ++k)
       if (k == 0 || highs[k] - lows[k] > extent) {
-        axis = int(k);
+        axis = k;
         low = lows[k];
         extent = highs[k] - lows[k];
       }
