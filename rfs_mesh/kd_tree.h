@@ -1,6 +1,6 @@
 /// The kd-tree under SpatialIndex: buckets of eight points, tight boxes, no pointers.
 ///
-/// The points are partitioned at medians of about the widest axis (halving.h) into leaves of exactly kLeaf
+/// The points are partitioned at medians of the widest axis (halving.h) into leaves of exactly kLeaf
 /// points (the last may be short). Nodes lie in preorder; which leaves a node covers follows from the number
 /// of leaves alone: the node over the leaves [first, last) has its left child right behind it and its right
 /// child behind the left subtree. A leaf keeps its coordinates by axis, so that a scan of it is a few vector
