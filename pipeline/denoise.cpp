@@ -23,12 +23,11 @@ void alternate(smoothing::Flow& flow, rfs_mesh::Mesh& mesh, const DenoiseOptions
   const int steps = *options.flow.iterations;
   // The positions after the last step are the result: connectivity no longer matters.
   const bool swap = options.swap && steps > 1;
-  if (!flow.needs_faces() && !swap) std::vector<rfs_mesh::Face>().swap(mesh.faces);
   for (int step = 0; step < steps; ++step) {
     context.report("smooth", double(step) / steps);
     {
       const Stopwatch watch(report.seconds, "smooth");
-      flow.step(mesh, context);
+      step + 1 < steps ? flow.step(mesh, context) : flow.last_step(mesh, context);
     }
     if (!swap || step + 1 == steps) continue;
     const Stopwatch watch(report.seconds, "swap");

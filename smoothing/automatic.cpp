@@ -134,8 +134,8 @@ double noise_left(const HeightField& field, const std::vector<float>& height, co
 
 }  // namespace
 
-Positions automatic_smoothing(const rfs_mesh::Mesh& mesh, const rfs_mesh::NoiseField& noise, double spacing,
-                              AutomaticReport& report, rfs_mesh::NeighborTable& near,
+Positions automatic_smoothing(rfs_mesh::Mesh& mesh, bool keep_rings, const rfs_mesh::NoiseField& noise,
+                              double spacing, AutomaticReport& report, rfs_mesh::NeighborTable& near,
                               const Context& context) {
   near = {};
   const std::size_t n = mesh.positions.size();
@@ -149,6 +149,7 @@ Positions automatic_smoothing(const rfs_mesh::Mesh& mesh, const rfs_mesh::NoiseF
   context.report("smooth", 0.1);
   Landed landed = land_stranded(mesh, kStrayFrom * sigma, guide, context);
   report.stranded = landed.stranded;
+  if (!keep_rings) mesh.one_ring = {};
   HeightField field(std::move(guide), std::move(landed.tree), std::move(landed.near), mesh.positions,
                     context);
 

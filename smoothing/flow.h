@@ -162,6 +162,10 @@ class Flow {
   /// finite positions it leaves finite positions, whatever the mesh.
   virtual void step(rfs_mesh::Mesh& mesh, const Context& context) = 0;
 
+  /// The same, on a mesh of which nobody will read more than the positions: the flow may use up its faces and
+  /// rings.
+  virtual void last_step(rfs_mesh::Mesh& mesh, const Context& context) { step(mesh, context); }
+
   /// Told that the connectivity changed (edge swaps) while the vertices stayed the same.
   virtual void connectivity_changed(const rfs_mesh::Mesh&, const Context&) {}
 
@@ -170,9 +174,6 @@ class Flow {
 
   /// Whether the flow keeps points that it cannot place where they are; if not, the caller limits moves.
   virtual bool limits_moves() const { return false; }
-
-  /// Whether step() reads the mesh's faces; if not, its rings are enough.
-  virtual bool needs_faces() const { return true; }
 
   /// What the automatic flow chose; empty before its first step and for other flows.
   virtual std::optional<AutomaticReport> automatic() const { return {}; }

@@ -37,7 +37,17 @@ class AutomaticFlow : public Flow {
   explicit AutomaticFlow(const FlowOptions& options)
       : noise_(options.noise), strength_(*options.strength), equalize_(*options.equalize) {}
 
-  void step(rfs_mesh::Mesh& mesh, const Context& context) override {
+  void step(rfs_mesh::Mesh& mesh, const Context& context) override { advance(mesh, true, context); }
+  void last_step(rfs_mesh::Mesh& mesh, const Context& context) override {
+    std::vector<rfs_mesh::Face>().swap(mesh.faces);
+    advance(mesh, false, context);
+  }
+
+  bool limits_moves() const override { return true; }
+  std::optional<AutomaticReport> automatic() const override { return report_; }
+
+ private:
+  void advance(rfs_mesh::Mesh& mesh, bool keep_rings, const Context& context) {
     if (mesh.positions.size() < 2) return;
     double spacing = 0;
     rfs_mesh::NoiseField noise;
@@ -50,7 +60,7 @@ class AutomaticFlow : public Flow {
     noise = scaled(std::move(noise), strength_ * sigma);
     report_.emplace();
     rfs_mesh::NeighborTable near;
-    Positions smooth = automatic_smoothing(mesh, noise, spacing, *report_, near, context);
+    Positions smooth = automatic_smoothing(mesh, keep_rings, noise, spacing, *report_, near, context);
     mesh.positions.swap(smooth);
     const Positions before = std::move(smooth);
     report_->noise = sigma;
@@ -59,11 +69,6 @@ class AutomaticFlow : public Flow {
     if (strength_ > 0) limit(before, noise.local, mesh.positions, context);
   }
 
-  bool limits_moves() const override { return true; }
-  bool needs_faces() const override { return false; }
-  std::optional<AutomaticReport> automatic() const override { return report_; }
-
- private:
   /// Evens the points out; or takes back what the guide moved them, so that they move along normals only.
   void move_along_surface(const Positions& before, double sigma, double spacing, rfs_mesh::NeighborTable near,
                           Positions& points, const Context& context) {

@@ -1,6 +1,8 @@
 /// The rfsmooth command.
+#include "rfsmooth/pipeline/cli/memory.h"
 #include "rfsmooth/pipeline/cli/program.h"
 
 int main(int argc, char** argv) {
+  rfsmooth::cli::give_memory_back();
   return rfsmooth::cli::run_program(argc, argv, rfsmooth::cli::all_commands());
 }

@@ -7,6 +7,9 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 #include <unistd.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 namespace rfsmooth::cli {
 
@@ -59,6 +62,14 @@ std::optional<Error> refuse_without_memory(std::string_view input, std::size_t n
   return Error{ErrorCode::out_of_memory,
                fmt::format("{}: needs about {} of memory, {} are available; nothing was started", input,
                            in_gb(needed), in_gb(*available))};
+}
+
+void give_memory_back() {
+#ifdef __GLIBC__
+  // Left alone, glibc learns to keep pieces of up to 32 MB: 27 of 610 bytes a point at the peak of denoising
+  // a million. At 4 MB the peak is 2 bytes lower and twice as much time goes into getting pages anew.
+  mallopt(M_MMAP_THRESHOLD, 16 << 20);
+#endif
 }
 
 }  // namespace rfsmooth::cli

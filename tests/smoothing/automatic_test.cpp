@@ -43,9 +43,9 @@ rfs_mesh::NoiseField even(double sigma, std::size_t n) {
   return noise;
 }
 
-Positions smoothed(const rfs_mesh::Mesh& mesh, const rfs_mesh::NoiseField& noise, AutomaticReport& report) {
+Positions smoothed(rfs_mesh::Mesh mesh, const rfs_mesh::NoiseField& noise, AutomaticReport& report) {
   rfs_mesh::NeighborTable near;
-  return automatic_smoothing(mesh, noise, spacing(mesh.positions), report, near, {});
+  return automatic_smoothing(mesh, true, noise, spacing(mesh.positions), report, near, {});
 }
 
 Positions smoothed(const rfs_mesh::Mesh& mesh, double sigma, AutomaticReport& report) {

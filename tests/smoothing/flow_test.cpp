@@ -98,6 +98,15 @@ double disagreement(const Positions& start, const Positions& a, const Positions&
   return support::rms_distance(mapped, b) / (scale * std::max(move, 1e-9));
 }
 
+TEST_P(EveryFlow, TheLastStepGivesThePositionsOfAnyOther) {
+  Mesh mesh = lumpy(), last = mesh;
+  const auto flow = make_flow(mesh, options(), {}), other = make_flow(last, options(), {});
+  ASSERT_TRUE(flow.ok() && other.ok());
+  flow.value()->step(mesh, {});
+  other.value()->last_step(last, {});
+  EXPECT_EQ(mesh.positions, last.positions);
+}
+
 TEST_P(EveryFlow, MovesSomething) {
   Mesh mesh = lumpy();
   const Positions before = mesh.positions;
