@@ -218,8 +218,8 @@ Result<DenoiseReport> denoise(double* xyz, std::size_t n, const DenoiseOptions& 
 }
 
 std::size_t denoise_memory(std::size_t n) {
-  // Peaks of 573 to 603 bytes a point beyond the input on a bumpy sphere of 200,000 and a million points with
-  // noise of one spacing, one and four threads; the rest is room, for noise that takes more patches as well.
+  // Peaks of 526 to 612 bytes a point beyond the input on a bumpy sphere of 200,000 and a million points with
+  // noise of 0.2 to 3 spacings, one and two threads; the rest is room for clouds that take more patches.
   constexpr std::size_t kBytesPerPoint = 950, kFixed = std::size_t{20} << 20;
   return kFixed + n * kBytesPerPoint;
 }

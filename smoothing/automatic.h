@@ -49,7 +49,7 @@ struct AutomaticReport {
 /// points come back as they are; `local`: n, positive. `spacing`: h, world units.
 /// \param keep_rings false: the mesh is left without its one-rings, as soon as they are read.
 /// \param near out: the nearest of every point on the guide (height_field.h); empty if nothing moved.
-/// O(n log n); at most about 650 bytes a point beside the mesh. Parallel, the same bits for any number of
+/// O(n log n); about 500 bytes a point beside the mesh. Parallel, the same bits for any number of
 /// threads. Of the report, `noise` and what was equalized are the flow's to enter (flow_auto.cpp).
 Positions automatic_smoothing(rfs_mesh::Mesh& mesh, bool keep_rings, const rfs_mesh::NoiseField& noise,
                               double spacing, AutomaticReport& report, rfs_mesh::NeighborTable& near,
