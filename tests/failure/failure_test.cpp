@@ -23,6 +23,7 @@
 #include "rfsmooth/smoothing/flow.h"
 
 #include "support/awkward_clouds.h"
+#include "support/sanitized.h"
 
 // With the sanitizers, GCC inlines half of a pair of new and delete and takes the other half for a stranger.
 #pragma GCC diagnostic ignored "-Wmismatched-new-delete"
@@ -101,13 +102,13 @@ std::optional<Error> error_of(const Result<T>& result) {
   return result.error();
 }
 
-/// Makes the call fail at its 1st, 2nd, ... allocation (about a hundred of them, evenly, if there are more)
-/// and calls `untouched` each time. Then the same with a stop at that place. `restore` brings the data back
-/// before each. `polls`: whether the call looks again after some allocation; over one block of a small file
-/// it may not.
+/// Makes the call fail at its 1st, 2nd, ... allocation (about a hundred of them, evenly, if there are more;
+/// forty with the sanitizers) and calls `untouched` each time. Then the same with a stop at that place.
+/// `restore` brings the data back before each. `polls`: whether the call looks again after some allocation;
+/// over one block of a small file it may not.
 void expect_all_or_nothing(const Call& call, const std::function<void()>& restore,
                            const std::function<bool()>& untouched, bool polls = true) {
-  constexpr long kTries = 100;
+  constexpr long kTries = test::kSanitized ? 40 : 100;
   Context context;
   context.threads = 1;  // the k-th allocation is the same one every time
   context.stop = &stop;
