@@ -10,17 +10,22 @@
 namespace rfsmooth::pipeline::io {
 namespace {
 
-// What Windows runtimes print for non-finite numbers, in lower case; from_chars knows "nan", "inf" and
-// "nan(...)".
+// What Windows runtimes print for non-finite numbers: 1.#INF, 1.#QNAN, filled up with zeros; from_chars knows
+// "nan", "inf" and "nan(...)".
 std::optional<double> parse_windows(std::string_view word) {
   const bool negative = !word.empty() && word.front() == '-';
   if (negative) word.remove_prefix(1);
-  const auto is = [&](std::string_view prefix) { return word.substr(0, prefix.size()) == prefix; };
-  if (!is("1.#")) return std::nullopt;
-  word.remove_prefix(3);
-  if (is("INF")) return negative ? -HUGE_VAL : HUGE_VAL;
-  if (is("QNAN") || is("SNAN") || is("IND")) return std::numeric_limits<double>::quiet_NaN();
-  return std::nullopt;
+  const auto take = [&](std::string_view prefix) {
+    if (word.substr(0, prefix.size()) != prefix) return false;
+    word.remove_prefix(prefix.size());
+    return true;
+  };
+  if (!take("1.#")) return std::nullopt;
+  const bool infinite = take("INF");
+  if (!infinite && !take("QNAN") && !take("SNAN") && !take("IND")) return std::nullopt;
+  if (word.find_first_not_of('0') != std::string_view::npos) return std::nullopt;
+  if (!infinite) return std::numeric_limits<double>::quiet_NaN();
+  return negative ? -HUGE_VAL : HUGE_VAL;
 }
 
 template <class T>

@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include "rfsmooth/pipeline/io/text.h"
+
 using namespace rfsmooth;                // NOLINT(google-build-using-namespace)
 using namespace rfsmooth::pipeline::io;  // NOLINT(google-build-using-namespace)
 
@@ -28,6 +30,19 @@ std::string written(const Cloud& cloud, std::optional<Encoding> encoding = {}) {
 
 Cloud parsed(const std::string& bytes) {
   return parse_cloud(bytes, "test", {}, {}).value();
+}
+
+TEST(Numbers, NonFiniteOnesInEverySpellingAndNothingBehindThem) {
+  for (const char* word : {"inf", "INF", "+inf", "infinity", "1.#INF", "1.#INF00"})
+    EXPECT_EQ(parse_real(word).value_or(0), HUGE_VAL) << word;
+  for (const char* word : {"-inf", "-1.#INF", "-1.#INF0000"})
+    EXPECT_EQ(parse_real(word).value_or(0), -HUGE_VAL) << word;
+  for (const char* word :
+       {"nan", "NaN", "-nan", "nan(0)", "1.#QNAN", "1.#QNAN0", "1.#SNAN", "-1.#IND", "-1.#IND00"})
+    EXPECT_TRUE(std::isnan(parse_real(word).value_or(0))) << word;
+  for (const char* word :
+       {"1.#", "1.#INF,2", "1.#INF3", "1.#QNANP,,", "1.#INDex", "infinite", "nan,", "2.#INF", "--1.#INF"})
+    EXPECT_FALSE(parse_real(word).has_value()) << word;
 }
 
 // Every scan: the same bytes for a file we wrote, the same values for one that others compressed.
