@@ -14,6 +14,7 @@
 #include "rfsmooth/smoothing/patches.h"
 #include "rfsmooth/smoothing/solver.h"
 #include "rfsmooth/smoothing/stranded.h"
+#include "rfsmooth/smoothing/thin_walls.h"
 #include "rfsmooth/smoothing/thinning.h"
 
 namespace rfsmooth::smoothing {
@@ -28,6 +29,7 @@ constexpr double kFewest = 16;            // m_0 at small noise: a quadric has s
 constexpr double kWidest = 1600;          // the widest patches, and
 constexpr double kWidestShare = 4;        // at least this many times m_0
 constexpr double kStrayFrom = 5;          // sigma
+constexpr std::size_t kSeeing = 2;        // the scale that looks for walls, of 9 sigma: from 0
 
 constexpr double kNoNoise = 0.05;     // spacings: less than this is left alone
 constexpr std::size_t kTooFew = 32;   // points
@@ -57,8 +59,9 @@ std::vector<float> heights(const HeightField& field, const Context& context) {
 struct Scale {
   std::size_t members;
   Prediction prediction;
-  std::vector<float> worse;  ///< n: the risk's difference to the scale before
-  std::vector<float> mean;   ///< n: of that, as the patches see it; empty if they are narrow
+  std::vector<float> worse;    ///< n: the risk's difference to the scale before
+  std::vector<float> mean;     ///< n: of that, as the patches see it; empty if they are narrow
+  std::vector<Index> several;  ///< places that see more than one sheet
 };
 
 /// `before` holds the risk of the scale before it.
@@ -66,7 +69,8 @@ Scale try_scale(const HeightField& field, std::size_t members, const std::vector
                 const std::vector<double>& sigma, std::vector<float>& before, Patches::Memory& memory,
                 const Context& context) {
   const Patches patches(field, members, seeds, sigma, memory, context);
-  Scale scale{members, patches.predict(context), std::vector<float>(field.size()), {}};
+  Scale scale{
+      members, patches.predict(context), std::vector<float>(field.size()), {}, patches.with_several_sheets()};
   const Prediction& prediction = scale.prediction;
   for_each_index(context, field.size(), [&](std::size_t i) {
     const float e = (field.local()[i].height - prediction.height[i]) / float(sigma[i]);
@@ -170,6 +174,9 @@ Positions automatic_smoothing(rfs_mesh::Mesh& mesh, bool keep_rings, const rfs_m
     if (m >= double(n) / 2) break;
   }
 
+  const Scale& seeing = scales[std::min(kSeeing, scales.size() - 1)];
+  const std::size_t members_seeing = seeing.members;
+  const std::vector<Index> several = seeing.several;
   std::vector<float> height, own;
   std::vector<float>().swap(risk);
   memory.reset();
@@ -181,6 +188,7 @@ Positions automatic_smoothing(rfs_mesh::Mesh& mesh, bool keep_rings, const rfs_m
     const Eigen::Vector3d move = field.guide()[i] + double(height[i]) * field.normal(i) - mesh.positions[i];
     if (move.allFinite() && move.norm() <= kStrayFrom * std::max(sigma, noise.local[i])) smooth[i] += move;
   });
+  part_thin_walls(field, mesh.positions, several, members_seeing, noise, smooth, context);
   report.left = noise_left(field, height, own, noise, context);
   near = field.release_neighbors();
   return smooth;

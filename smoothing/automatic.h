@@ -17,7 +17,8 @@
 ///    2006) times how well each serves the cloud as a whole (mixture.h): smooth places take wide patches,
 ///    edges and thin parts narrow ones, and where every patch is worse than the data the data stay.
 /// 4. Walls thinner than the noise, which look like one sheet with more of it, are taken apart where the
-///    cloud as a whole says that they are walls (hidden_sheets.h).
+///    cloud as a whole says that they are walls (hidden_sheets.h); those of a few sigma get their two sheets
+///    fitted together (thin_walls.h).
 /// 5. What is left: the mean risk of the mixture, at least the variance that the data's own weight passes on,
 ///    sum sigma^2 df/dz. Points farther than 5 sigma from the result stay where they are and do not count:
 ///    strays are no noise. On the development shapes (10,000 points, noise of 0.2 to 2 spacings) the estimate

@@ -24,6 +24,9 @@ constexpr std::size_t kAxis = 12;                      // nearest points whose n
 constexpr float kWeightUnit = 65535, kRounded = 0.5F;  // of the weights kept
 constexpr float kCovered = 0.2F * kWeightUnit;         // least weight of the best patch over a point
 constexpr std::size_t kPowers[6][2] = {{0, 0}, {1, 0}, {0, 1}, {2, 0}, {1, 1}, {0, 2}};  // of u and v
+constexpr float kOpposite = 0.7F;      // cosine of a normal of another sheet that is parallel
+constexpr float kFacing = 0.1F;        // share of such members, and
+constexpr double kRough = 0.1;         // variance beyond the noise's, sigma^2: there is more than one sheet
 constexpr std::size_t kTogether = 64;  // patches fitted in a row: each tells the next how far to look
 constexpr std::size_t kRange = 16384;  // points whose lists are made together
 constexpr std::size_t kGroup = 4096;   // members looked through together for them
@@ -108,6 +111,7 @@ void Patches::fit_one(std::size_t s, double sigma, Workspace& work) {
   Patch& patch = memory_.patches_[s];
   patch.centre = field_.guide()[seed];
   patch.weight = 0;
+  patch.several = false;
   patch.quadric.fill(0);
   patch.spread.fill(0);
   patch.spread_u4 = 0;
@@ -144,12 +148,15 @@ void Patches::fit_one(std::size_t s, double sigma, Workspace& work) {
   Weight* const weights = memory_.member_weight_.data() + s * members_;
   Index* const indices = memory_.member_.data() + s * members_;
   double sum = 0, squares = 0;
+  float parallel = 0, opposite = 0;
   for (std::size_t k = 0; k < members_; ++k) {
     const Index i = near.index()[k];
     const HeightField::Local& here = local[i];
     const float cosine = along.dot(here.normal);
     const float inside = 1 - near.squared()[k] / square;
     const float w = same_sheet(cosine) * inside * inside;
+    parallel += std::abs(cosine) > kOpposite ? inside * inside : 0;
+    opposite += cosine < -kOpposite ? inside * inside : 0;
     const Eigen::Vector3f r(near.x()[k], near.y()[k], near.z()[k]);
     work.u[k] = u.dot(r);
     work.v[k] = v.dot(r);
@@ -187,6 +194,7 @@ void Patches::fit_one(std::size_t s, double sigma, Workspace& work) {
   const double leverage = inverse.cwiseProduct(squared).sum();
   const double points = sum * sum / squares, variance = 6 / points;
   const double excess = (residuals - (sum - leverage)) / sum - std::sqrt(2 / points);
+  patch.several = opposite > kFacing * parallel || excess > kRough;
   patch.weight = float(variance / (variance + std::max(0.0, excess)));
 }
 
@@ -287,6 +295,14 @@ Prediction Patches::predict(const Context& context) const {
     p.covered[i] = 1;
   });
   return p;
+}
+
+std::vector<Index> Patches::with_several_sheets() const {
+  std::vector<Index> found;
+  for (std::size_t s = 0; s < seeds_.size(); ++s)
+    if (memory_.patches_[s].several) found.push_back(seeds_[s]);
+  std::sort(found.begin(), found.end());
+  return found;
 }
 
 std::vector<float> Patches::mean(const std::vector<float>& values, const Context& context) const {

@@ -38,6 +38,7 @@ class Patches {
   struct Patch {
     Eigen::Vector3d centre;
     float radius, weight;
+    bool several;                   ///< sheets, it seems
     std::array<float, 12> frame;    ///< of x, y, z each: its parts along u, v (in radii) and the axis
     std::array<float, 12> quadric;  ///< the height, in radii
     std::array<float, 20> spread;   ///< f^T A^-1 f, A the normal equations, but for
@@ -69,6 +70,10 @@ class Patches {
           const std::vector<double>& sigma, Memory& memory, const Context& context);
 
   Prediction predict(const Context& context) const;
+
+  /// Seeds, ascending, of the patches that see more than one sheet: members with the opposite normal, or
+  /// residuals that vary by more than the noise.
+  std::vector<Index> with_several_sheets() const;
 
   /// Averages over patches of the patches' averages: a mean over about twice `members` points. O(n).
   std::vector<float> mean(const std::vector<float>& values, const Context& context) const;

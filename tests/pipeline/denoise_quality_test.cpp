@@ -94,6 +94,31 @@ TEST(DenoiseQuality, TheSheetsOfAThinWallStayApart) {
   }
 }
 
+// The noise of either sheet reaches past the middle: points go to the nearer sheet, few stay between. A cube
+// beside the wall says how much noise there is; a wall alone would be a louder sheet as well.
+TEST(DenoiseQuality, AWallOfLessThanFourSigmaKeepsTwoFlatSheets) {
+  const double thickness = 0.06, sigma = thickness / 3.6;
+  const auto plate = clouds::make_plate(thickness), cube = clouds::make_shape("cube");
+  constexpr std::size_t kOfWall = 12000;
+  Positions points = clouds::sample(*plate, kOfWall, 1);
+  const double inside = 1 - 4 * clouds::mean_spacing(points);
+  for (const auto& p : clouds::sample(*cube, std::size_t(kOfWall * cube->area() / plate->area()), 3))
+    points.emplace_back(p + Eigen::Vector3d(4, 0, 0));
+  clouds::add_noise(points, sigma, 2);
+  const Positions noisy = points;
+  ASSERT_TRUE(pipeline::denoise(points[0].data(), points.size(), {}, {}).ok());
+  double squares = 0, between = 0, count = 0;
+  for (std::size_t i = 0; i < kOfWall; ++i) {
+    if (std::abs(noisy[i].x()) > inside || std::abs(noisy[i].y()) > 0.8 * inside) continue;
+    const double beside = std::abs(points[i].z()) - thickness / 2;
+    squares += beside * beside;
+    between += beside < -thickness / 4 ? 1 : 0;
+    count += 1;
+  }
+  EXPECT_LT(squares / count, 0.3 * sigma * sigma);  // 0.55 and 0.22 by patches of one sheet
+  EXPECT_LT(between / count, 0.08);
+}
+
 TEST(DenoiseQuality, TheRimOfAnOpenSheetStaysWithinAThirdOfASpacing) {
   const Positions clean = clouds::sample(*clouds::make_wavy_sheet(), 10000, 1);
   const double spacing = clouds::mean_spacing(clean);

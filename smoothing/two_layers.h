@@ -1,0 +1,67 @@
+/// Two layers of heights with one middle between them, told apart while they are fitted.
+///
+///     z = m(u, v) +- d(u, v) + noise,    m a quadric, d linear
+///
+/// A height belongs to the upper layer with the probability P = 1 / (1 + exp(-2 (z - m) d / s^2)), s^2 the
+/// variance of the noise; m, d, s and P are found in turns (expectation maximisation, Dempster, Laird and
+/// Rubin 1977), from one quadric through all and the variance that it leaves. All heights are in units of a
+/// noise that is known well from above only: s^2 is sought between 1/2 and 1.
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace rfsmooth::smoothing {
+
+/// A height over a plane.
+struct LayerPoint {
+  double u, v;       ///< where, within -1 .. 1
+  double height;     ///< z, standard deviations of the noise
+  double estimate;   ///< what is thought of it so far: where it would be without noise
+  double weight;     ///< 0: not fitted to
+  double upper = 0;  ///< out: P
+};
+
+/// The fit, and what speaks for it.
+class TwoLayers {
+ public:
+  /// Fits to `points` and sets their P. O(points).
+  explicit TwoLayers(std::vector<LayerPoint>& points);
+
+  double middle(const LayerPoint& p) const;  ///< m
+  double apart(const LayerPoint& p) const;   ///< d >= 0 where the layers do not cross
+
+  /// Where the point would lie on the layer nearer to it.
+  double nearer(const LayerPoint& p) const {
+    return middle(p) + (p.height < middle(p) ? -apart(p) : apart(p));
+  }
+
+  /// Whether there are two layers so near to each other that they must be fitted together. Not if
+  ///  - one layer with louder noise explains the heights as well (less than 3 nats apart);
+  ///  - more variance is left than the noise has, or the residuals' means over the cells of a 5 x 5 grid are
+  ///    more than noise: then the shape is another one;
+  ///  - where a point is says to which layer it belongs: a step;
+  ///  - what is thought of the points does not know the layers at all: two that only the scatter of the
+  ///    heights shows may be louder noise, which takes more than one place to tell (hidden_sheets.h);
+  ///  - the layers are more than 2.1 from the middle.
+  bool convincing() const { return convincing_; }
+
+ private:
+  using Vector6 = Eigen::Matrix<double, 6, 1>;
+
+  void fit_one(std::vector<LayerPoint>& points);
+  void fit_two(std::vector<LayerPoint>& points);
+  void judge(const std::vector<LayerPoint>& points);
+
+  Vector6 middle_ = Vector6::Zero();
+  Eigen::Vector3d apart_ = Eigen::Vector3d::Zero();
+  Eigen::Matrix<double, 6, 6> normal_;  ///< equations of one quadric, inverted
+  double weights_ = 0;
+  double single_ = 0;    ///< variance about one quadric
+  double variance_ = 1;  ///< s^2
+  double left_ = 0;      ///< variance about the layers, before its bounds
+  bool convincing_ = false;
+};
+
+}  // namespace rfsmooth::smoothing
