@@ -10,6 +10,7 @@
 #include "rfsmooth/rfs_mesh/parallel.h"
 #include "rfsmooth/rfs_mesh/rfs_mesh.h"
 #include "rfsmooth/rfs_mesh/thin_parts.h"
+#include "rfsmooth/rfs_mesh/wall_sides.h"
 
 namespace rfsmooth::pipeline {
 
@@ -64,13 +65,15 @@ NormalsReport run(const double* xyz, std::size_t n, const NormalsOptions& option
     if (connection.on_shadow) calm[i] = connection.surfaces[i].shadow;
   });
   const rfs_mesh::SpatialIndex index(calm, context);
-  bilateral_normals(calm, index.nearest(kFiltered, context), scatter, side, context);
+  const rfs_mesh::NeighborTable near = index.nearest(kFiltered, context);
+  bilateral_normals(calm, near, scatter, side, context);
   std::optional<Eigen::Vector3d> viewpoint = options.viewpoint;
   if (viewpoint) *viewpoint -= cloud.origin;
   report.parts =
       orient(connection.mesh, connection.emst, connection.bridges, viewpoint, side, context, &calm);
   settle(calm, index, connection.mesh, side, context);
   if (!viewpoint) rfs_mesh::turn_out_of_thin_parts(index, side, context);
+  rfs_mesh::turn_to_own_sheet(calm, near, side, context);
   context.check_stop();
   for (std::size_t i = 0; i < n; ++i) {
     const Index p = cloud.of_input[i];
