@@ -19,11 +19,11 @@ constexpr int kPasses = 3;
 constexpr std::size_t kJudged = 16;  // neighbours that say how calm the normals are
 constexpr std::size_t kMiddle = 6;   // which of them, from the calmest
 constexpr double kTolerance = 2;
-constexpr std::size_t kScattered = 24;            // neighbours that say how well points lie on the surface
-constexpr double kOfScatter = 230;                // radians per (r / R)^2
-constexpr double kCalmest = 0.05;                 // radians: what normals of a flat place may differ by
-constexpr double kLeastMost = 0.02, kMost = 0.5;  // radians: bounds of the most
-constexpr double kFarOut = 20;                    // exponents beyond which a neighbour says nothing
+constexpr std::size_t kScattered = 24;  // neighbours that say how well points lie on the surface
+constexpr double kOfScatter = 230;      // radians per (r / R)^2
+constexpr double kCalmest = 0.05;       // radians: what normals of a flat place may differ by
+constexpr double kLeastMost = 0.02, kGreatestMost = 0.5;  // radians: bounds of the most
+constexpr double kFarOut = 20;                            // exponents beyond which a neighbour says nothing
 
 /// |n -+ m|^2: the squared angle, for small ones.
 double apart(const Vector3d& n, const Vector3d& m) {
@@ -40,7 +40,8 @@ std::vector<double> limits(const Positions& points, const NeighborTable& near,
     double sum = scatter[i];
     for (std::size_t k = 0; k < count; ++k) sum += scatter[row[k]];
     const double r = sum / double(count + 1), square = (points[row[count - 1]] - points[i]).squaredNorm();
-    limit[i] = square > 0 ? std::clamp(kOfScatter * r * r / square, kLeastMost, kMost) : kMost;
+    limit[i] =
+        square > 0 ? std::clamp(kOfScatter * r * r / square, kLeastMost, kGreatestMost) : kGreatestMost;
   });
   return limit;
 }

@@ -19,7 +19,7 @@ constexpr double kAlike = 2.5;
 // are above, places within one step of the depths below.
 constexpr float kBelow = 2, kAbove = 1.5;
 constexpr float kCloud = 0.5;  // fits that the mean of the cloud counts as
-constexpr int kRounds = 3;
+constexpr int kFieldRounds = 3;
 
 /// How far sites speak for each other: R over the cloud's rms radius, and A.
 struct Reach {
@@ -98,7 +98,8 @@ struct Heard {
       all.push_back({value[k], weight[k]});
     }
     mean = float(quantile(all, 0.5));
-    for (int round = 0; round < kRounds; ++round) mean += (weight * pull(value - mean)).sum() / weight.sum();
+    for (int round = 0; round < kFieldRounds; ++round)
+      mean += (weight * pull(value - mean)).sum() / weight.sum();
   }
 
   static bool speaks(const NoiseSites& sites, std::size_t i) {
@@ -129,7 +130,7 @@ Means around(const Heard& heard, const Reach& reach, const Context& context) {
       w = (1 - near * squared - alike * (1 - w)).max(0.0F).square() * heard.weight;
       const float weights = w.sum() + kCloud;
       float mean = ((w * heard.value).sum() + kCloud * heard.mean) / weights;
-      for (int round = 0; round < kRounds; ++round) {
+      for (int round = 0; round < kFieldRounds; ++round) {
         off = w * pull(heard.value - mean);
         mean += (off.sum() + kCloud * pull(heard.mean - mean)) / weights;
       }

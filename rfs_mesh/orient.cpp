@@ -19,7 +19,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::size_t kSmall = 32;  // points: such a part follows its bridge
-constexpr double kFlat = 0.01;      // volume / (area x extent) below which a part has no outside
+constexpr double kFlatPart = 0.01;  // volume / (area x extent) below which a part has no outside
 // Chosen on the closed development shapes (tests/bench/normals).
 constexpr std::size_t kSamples = 50000;  // points that the winding number is asked for
 constexpr int kSteps = 4;                // more follow the noise
@@ -187,7 +187,7 @@ class Orienter {
       const Sum& sum = sums[r];
       if (sum.vote != 0)
         turn[r] = sum.vote < 0 ? 1 : 0;
-      else if (std::abs(sum.volume) > kFlat * sum.extent)
+      else if (std::abs(sum.volume) > kFlatPart * sum.extent)
         turn[r] = sum.volume < 0 ? 1 : 0;
       else
         turn[r] = turn_to_positive(sum.normal) ? 1 : 0;

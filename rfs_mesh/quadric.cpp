@@ -29,8 +29,8 @@ double square(double x) {
   return x * x;
 }
 
-constexpr std::size_t kLanes = 4;
-typedef double Lanes __attribute__((vector_size(kLanes * sizeof(double))));
+constexpr std::size_t kSideBySide = 4;
+typedef double Lanes __attribute__((vector_size(kSideBySide * sizeof(double))));
 
 const auto kTotal = [](const Lanes& l) { return (l[0] + l[1]) + (l[2] + l[3]); };
 
@@ -46,7 +46,7 @@ RFSMOOTH_WIDE
 void weigh(QuadricWorkspace& w, double radius, Matrix3d& covariance) {
   const double scale = 1 / radius;
   Lanes sum[10] = {};
-  for (std::size_t k = 0; k < w.padded; k += kLanes) {
+  for (std::size_t k = 0; k < w.padded; k += kSideBySide) {
     Lanes x, y, z;
     load(w.x, k, x);
     load(w.y, k, y);
@@ -56,7 +56,7 @@ void weigh(QuadricWorkspace& w, double radius, Matrix3d& covariance) {
     z *= scale;
     const Lanes inside = 1 - ((x * x + y * y) + z * z);
     Lanes weight = inside * inside;
-    for (std::size_t lane = w.count; lane < k + kLanes; ++lane)
+    for (std::size_t lane = w.count; lane < k + kSideBySide; ++lane)
       if (lane >= k) weight[lane - k] = 0;
     store(x, k, w.x);
     store(y, k, w.y);
@@ -97,7 +97,7 @@ Matrix3d principal_axes(const Matrix3d& covariance) {
 RFSMOOTH_WIDE
 void turn_into(const Quadric& q, QuadricWorkspace& w) {
   const double frame[9] = {q.t1[0], q.t1[1], q.t1[2], q.t2[0], q.t2[1], q.t2[2], q.n[0], q.n[1], q.n[2]};
-  for (std::size_t k = 0; k < w.padded; k += kLanes) {
+  for (std::size_t k = 0; k < w.padded; k += kSideBySide) {
     Lanes x, y, z;
     load(w.x, k, x);
     load(w.y, k, y);
@@ -112,7 +112,7 @@ RFSMOOTH_WIDE
 void sum_up(const QuadricWorkspace& w, QuadricMoments<Lanes>& moments, QuadricHeights<Lanes>& heights) {
   QuadricMoments<Lanes> m;
   QuadricHeights<Lanes> h;
-  for (std::size_t k = 0; k < w.padded; k += kLanes) {
+  for (std::size_t k = 0; k < w.padded; k += kSideBySide) {
     Lanes u, v, z, weight;
     load(w.u, k, u);
     load(w.v, k, v);
@@ -147,7 +147,7 @@ Vector6d fit(const QuadricWorkspace& w, int terms) {
 RFSMOOTH_WIDE
 void find_residuals(QuadricWorkspace& w, const Quadric& q) {
   const double c[6] = {q.c[0], q.c[1], q.c[2], q.c[3], q.c[4], q.c[5]};
-  for (std::size_t k = 0; k < w.padded; k += kLanes) {
+  for (std::size_t k = 0; k < w.padded; k += kSideBySide) {
     Lanes u, v, z;
     load(w.u, k, u);
     load(w.v, k, v);
@@ -160,7 +160,7 @@ void find_residuals(QuadricWorkspace& w, const Quadric& q) {
 RFSMOOTH_WIDE
 void weigh_by_residual(QuadricWorkspace& w, double cut) {
   const double inverse = 1 / cut;
-  for (std::size_t k = 0; k < w.padded; k += kLanes) {
+  for (std::size_t k = 0; k < w.padded; k += kSideBySide) {
     Lanes r, distance;
     load(w.residual, k, r);
     load(w.distance, k, distance);
@@ -198,7 +198,7 @@ double residual_deviation(QuadricWorkspace& w, const Quadric& q, int terms) {
 /// Makes room for the centre and `count` neighbours.
 void make_room(QuadricWorkspace& w, std::size_t count) {
   w.count = count + 1;
-  w.padded = (w.count + kLanes - 1) / kLanes * kLanes;
+  w.padded = (w.count + kSideBySide - 1) / kSideBySide * kSideBySide;
   if (w.x.size() >= w.padded) return;
   for (auto* all : {&w.x, &w.y, &w.z, &w.u, &w.v, &w.h, &w.distance, &w.weight, &w.residual})
     all->resize(2 * w.padded);

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kLeastKept = 0.75;  // of the weight; 3 sigma of half the true sigma keep 0.87
 constexpr double kLeastFlat = 0.5;   // the patch's radius over the ball's, where the window is high
-constexpr int kRounds = 3;           // the first without a window
+constexpr int kScatterRounds = 3;    // the first without a window
 
 /// Axes of least to most spread of the points about `place`, nearer ones weighing more.
 Eigen::Matrix3d axes_of(const Positions& points, const std::vector<Neighbor>& near,
@@ -67,7 +67,7 @@ Scatter ScatterFit::operator()(const SpatialIndex& index, const Eigen::Vector3d&
   }
   Vector6 c = Vector6::Zero();
   double window = std::numeric_limits<double>::infinity();
-  for (int round = 0; round < (sigma > 0 ? kRounds : 1); ++round) {
+  for (int round = 0; round < (sigma > 0 ? kScatterRounds : 1); ++round) {
     Matrix6 a = Matrix6::Zero(), b = Matrix6::Zero();
     Vector6 right = Vector6::Zero();
     double kept = 0, squares = 0, heights = 0;

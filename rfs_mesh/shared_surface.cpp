@@ -29,7 +29,7 @@ constexpr double kTurn = 1.0 / 3;
 /// Less weight than that of one quadric near whose rim the point lies: the point is fitted by itself.
 constexpr double kLeastWeight = 0.01;
 
-double square(double x) {
+double squared(double x) {
   return x * x;
 }
 
@@ -106,9 +106,9 @@ class SharedQuadrics {
       const double inside = 1 - d.squaredNorm();
       if (inside <= 0) continue;
       const double u = q.t1.dot(d), v = q.t2.dot(d), above = q.n.dot(d) - q.height(u, v);
-      const double scatter = std::max(q.residual, sigma_), off = square(above * q.radius / scatter);
-      if (off > square(kFarthestOff)) continue;
-      const double trust = inside * square(square(sigma_ / scatter)) * std::exp(-0.5 * off);
+      const double scatter = std::max(q.residual, sigma_), off = squared(above * q.radius / scatter);
+      if (off > squared(kFarthestOff)) continue;
+      const double trust = inside * squared(squared(sigma_ / scatter)) * std::exp(-0.5 * off);
       const double weight = inside * inside * trust;
       // The normal over (u, v) is (n - a t1 - b t2) / sqrt(1 + a^2 + b^2), and so is the turned one.
       const auto slope = [&q](double at_u, double at_v) {

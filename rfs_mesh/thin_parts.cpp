@@ -21,7 +21,7 @@ using Eigen::Vector3d;
 
 // Chosen on the closed development shapes at 50,000 points, without noise and after 1 %
 // (tests/bench/normals).
-constexpr std::size_t kSamples = 50000;
+constexpr std::size_t kPartSamples = 50000;
 constexpr int kAround = 24;          // samples over which w is judged
 constexpr std::size_t kOfArea = 9;   // of them: those that say how much area a sample has
 constexpr double kOff = 0.25;        // e above which something is tried
@@ -30,7 +30,7 @@ constexpr double kMostLeft = 0.4;    // of all e squared, if more are: 0.31 on r
 constexpr double kMiddleOff = 0.12;  // by which the median of w may be off 1/2: rotor's is 0.09
 constexpr double kMostAbove = 0.07;  // by which its ninth tenth may be above: at most 0.03 there
 constexpr double kLeastTurned = 0.12;
-constexpr int kMiddle = 64;
+constexpr int kMiddleCount = 64;
 constexpr double kPower = -0.75;
 constexpr double kThinnest = 1e-4;  // of C's eigenvalues, beside the largest
 constexpr double kPi = 3.14159265358979323846;
@@ -65,7 +65,7 @@ class ThinParts {
  public:
   ThinParts(const SpatialIndex& index, const Context& context)
       : index_(index), points_(index.points()), context_(context) {
-    const std::size_t n = points_.size(), m = std::min(n, kSamples);
+    const std::size_t n = points_.size(), m = std::min(n, kPartSamples);
     for (std::size_t s = 0; s < m; ++s) row_.push_back(Index(s * n / m));
     for (const Index i : row_) at_.push_back(points_[i]);
     around_ = SpatialIndex(at_, context).nearest(kAround, context);
@@ -167,7 +167,7 @@ class ThinParts {
   }
 
   void turn_out(std::size_t i, double sign, std::vector<Neighbor>& near, Vector3d& normal) const {
-    index_.nearest(points_[i], kMiddle + 1, near);
+    index_.nearest(points_[i], kMiddleCount + 1, near);
     const Vector3d out = out_of_middle(points_, i, near);
     if (out.squaredNorm() > 0) normal = sign * out;
   }

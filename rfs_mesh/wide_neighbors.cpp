@@ -16,21 +16,20 @@ namespace {
 constexpr double kWiden = 1;
 constexpr double kLeastGrowth = 1.3;  // of the squared distance after too few were found
 constexpr int kBins = 128;
-constexpr std::size_t kLeaf = KdTree::kLeaf;
 
 /// Appends the points of a leaf within the bound, in its units; returns how many there are then.
 RFSMOOTH_WIDE
 std::size_t keep(const KdTree::Leaf& leaf, const Eigen::Vector3d& place, double scale, std::size_t kept,
                  float* squared, float* x, float* y, float* z, Index* id) {
   const double x0 = place[0], y0 = place[1], z0 = place[2];
-  float dx[kLeaf], dy[kLeaf], dz[kLeaf], square[kLeaf];
-  for (std::size_t i = 0; i < kLeaf; ++i) {
+  float dx[KdTree::kLeaf], dy[KdTree::kLeaf], dz[KdTree::kLeaf], square[KdTree::kLeaf];
+  for (std::size_t i = 0; i < KdTree::kLeaf; ++i) {
     dx[i] = float((leaf.x[i] - x0) * scale);
     dy[i] = float((leaf.y[i] - y0) * scale);
     dz[i] = float((leaf.z[i] - z0) * scale);
     square[i] = (dx[i] * dx[i] + dy[i] * dy[i]) + dz[i] * dz[i];
   }
-  for (std::size_t i = 0; i < kLeaf; ++i) {
+  for (std::size_t i = 0; i < KdTree::kLeaf; ++i) {
     squared[kept] = square[i];
     x[kept] = dx[i];
     y[kept] = dy[i];
@@ -45,7 +44,7 @@ std::size_t keep(const KdTree::Leaf& leaf, const Eigen::Vector3d& place, double 
 
 WideNeighbors::WideNeighbors(const SpatialIndex& index, std::size_t k)
     : index_(index), k_(std::min(k, index.points().size())) {
-  make_room(2 * k_ + kLeaf);
+  make_room(2 * k_ + KdTree::kLeaf);
 }
 
 void WideNeighbors::make_room(std::size_t size) {
@@ -94,7 +93,7 @@ void WideNeighbors::gather(const Eigen::Vector3d& place, double squared_bound) {
         continue;
       }
       const KdTree::Leaf& leaf = tree.leaf(at.first);
-      if (kept_ + kLeaf > x_.size()) make_room(2 * x_.size());
+      if (kept_ + KdTree::kLeaf > x_.size()) make_room(2 * x_.size());
       kept_ = keep(leaf, place, scale, kept_, squared_.data(), x_.data(), y_.data(), z_.data(), id_.data());
       break;
     }

@@ -23,19 +23,19 @@ namespace rfsmooth::smoothing {
 namespace {
 
 // Chosen on the development shapes (tests/bench/quality).
-constexpr int kNear = 24;             // neighbours of the frame and its quadric
+constexpr int kNearOfFrame = 24;      // neighbours of the frame and its quadric
 constexpr std::size_t kPushers = 12;  // neighbours that push
 constexpr float kReach = 1.9F;        // R in local distances between points
 constexpr double kGain = 0.4;         // step / (sigma/d)^2, in R f
 constexpr double kStep = 0.3;         // the longest
 constexpr int kSteps = 6;
-constexpr double kMost = 0.5 * (1 - 1e-6);  // of the local distance; single precision rounds
+constexpr double kMostMove = 0.5 * (1 - 1e-6);  // of the local distance; single precision rounds
 constexpr double kMostSigmas = 0.7;
-constexpr float kSameNormal = 0.85F;  // cosine: a neighbour beyond it means an edge
-constexpr float kEdgeNormal = 0.6F;   // cosine: the same, so near that the point stays
-constexpr std::size_t kFewest = 10;   // points of the quadric, twice its unknowns
-constexpr float kMostRise = 0.3F;     // of the way along the surface: a quadric is not to be trusted beyond
-constexpr double kShare = 0.75;  // of the tangential offset that is given back at little noise; the rims of
+constexpr float kSameNormal = 0.85F;          // cosine: a neighbour beyond it means an edge
+constexpr float kEdgeNormal = 0.6F;           // cosine: the same, so near that the point stays
+constexpr std::size_t kFewestOfQuadric = 10;  // points of the quadric, twice its unknowns
+constexpr float kMostRise = 0.3F;  // of the way along the surface: a quadric is not to be trusted beyond
+constexpr double kShare = 0.75;    // of the tangential offset that is given back at little noise; the rims of
 constexpr double kShareUpTo = 1.6;  // open sheets want it up to this many sigma per spacing
 constexpr double kWidestGap = 2.4;  // radians between neighbours' directions: wider means a rim
 
@@ -64,9 +64,9 @@ struct Frame {
 
 /// The neighbours of a point in its frame, by axis, in units of the farthest.
 struct Around {
-  static_assert(kNear % kLanes == 0);
-  std::array<float, kNear> u, v, height, weight;
-  std::array<float, kNear> cosine;  ///< between the normals
+  static_assert(kNearOfFrame % kLanes == 0);
+  std::array<float, kNearOfFrame> u, v, height, weight;
+  std::array<float, kNearOfFrame> cosine;  ///< between the normals
 };
 
 /// Whether there is a neighbour in each of the six sectors of 60 degrees: nearly always.
@@ -100,7 +100,7 @@ bool surrounded(const Around& around) {
   // A neighbour in each sector leaves no gap of 120 degrees.
   static_assert(kWidestGap > 2 * M_PI / 3);
   if (all_around(around)) return true;
-  std::array<double, kNear> angles = {};
+  std::array<double, kNearOfFrame> angles = {};
   for (std::size_t k = 0; k < angles.size(); ++k)
     angles[k] = std::atan2(double(around.v[k]), double(around.u[k]));
   std::sort(angles.begin(), angles.end());
@@ -109,14 +109,14 @@ bool surrounded(const Around& around) {
   return widest < kWidestGap;
 }
 
-/// The kNear nearest of every point.
+/// The kNearOfFrame nearest of every point.
 class Near {
  public:
   /// Picks them out of the rows of a table, in place. Also makes the normals of their planes.
   Near(rfs_mesh::NeighborTable table, const Positions& points, std::vector<Eigen::Vector3f>& normals,
        const Context& context)
       : table_(std::move(table)) {
-    if (table_.size() != points.size() || table_.k < kNear || table_.k > kMostRanked)
+    if (table_.size() != points.size() || table_.k < kNearOfFrame || table_.k > kMostRanked)
       throw std::invalid_argument("equalize: every point needs 24 to 256 neighbours");
     normals.resize(points.size());
     const auto width = std::size_t(table_.k);
@@ -128,7 +128,7 @@ class Near {
 
   rfs_mesh::Adjacency::Row operator[](std::size_t i) const {
     const Index* const first = table_.items.data() + i * std::size_t(table_.k);
-    return {first, first + kNear};
+    return {first, first + kNearOfFrame};
   }
 
  private:
@@ -204,7 +204,7 @@ Frame open_frame(const Positions& points, const std::vector<Eigen::Vector3f>& no
   Vector5 quadric = SmallCholesky<5>(a).solve(sums.right.tail<5>());
   quadric.tail<3>() /= reach;
   f.quadric = quadric.cast<float>();
-  f.movable = same >= kFewest && f.quadric.allFinite();
+  f.movable = same >= kFewestOfQuadric && f.quadric.allFinite();
   return f;
 }
 
@@ -251,7 +251,7 @@ Eigen::Vector3f push(const Positions& points, const Eigen::Vector3d& p, const In
 void slide_back(Positions& points, const Positions& before, double share, rfs_mesh::NeighborTable table,
                 const Context& context) {
   const std::size_t n = points.size();
-  if (n <= std::size_t(kNear)) return;
+  if (n <= std::size_t(kNearOfFrame)) return;
   std::vector<Eigen::Vector3f> normals;
   const Near near(std::move(table), points, normals, context);
   Positions back(n);
@@ -266,7 +266,7 @@ void slide_back(Positions& points, const Positions& before, double share, rfs_me
 Equalized equalize(Positions& points, const Positions& before, double sigma, double spacing,
                    rfs_mesh::NeighborTable table, const Context& context) {
   const std::size_t n = points.size();
-  if (n <= std::size_t(kNear) || !(sigma > 0)) return {};
+  if (n <= std::size_t(kNearOfFrame) || !(sigma > 0)) return {};
   std::vector<Eigen::Vector3f> normals;
   const Near near(std::move(table), points, normals, context);
   RawArray<Frame> frames(n);
@@ -298,7 +298,8 @@ Equalized equalize(Positions& points, const Positions& before, double sigma, dou
       if (f.slides) force = f.along * f.along.dot(force);
       const double share = sigma / double(f.distance);
       moved[i] += float(std::min(kStep, kGain * share * share)) * reach * force;
-      const auto limit = float(std::min(kMost * std::min(double(f.distance), spacing), kMostSigmas * sigma));
+      const auto limit =
+          float(std::min(kMostMove * std::min(double(f.distance), spacing), kMostSigmas * sigma));
       if (const float length = moved[i].norm(); length > limit) moved[i] *= limit / length;
       next[i] = f.slide(points[i], start[i] + moved[i]);
     });

@@ -97,8 +97,8 @@ class AutomaticFlow : public Flow {
   std::optional<AutomaticReport> report_;
 };
 
-std::unique_ptr<Flow> make(const rfs_mesh::Mesh&, const FlowOptions& options, const Constraints&,
-                           const Context&) {
+std::unique_ptr<Flow> make_auto(const rfs_mesh::Mesh&, const FlowOptions& options, const Constraints&,
+                                const Context&) {
   return std::make_unique<AutomaticFlow>(options);
 }
 
@@ -114,7 +114,7 @@ FlowEntry flow_auto() {
           "Desbrun 2.6, Kobbelt, Stein 1981",
           {"iterations", "strength", "noise", "equalize"},
           defaults,
-          make};
+          make_auto};
 }
 
 }  // namespace rfsmooth::smoothing

@@ -30,8 +30,8 @@ class BilaplacianSpeed : public Speed {
   Positions scratch_;
 };
 
-std::unique_ptr<Flow> make(const rfs_mesh::Mesh&, const FlowOptions& options, const Constraints&,
-                           const Context&) {
+std::unique_ptr<Flow> make_bilaplacian(const rfs_mesh::Mesh&, const FlowOptions& options, const Constraints&,
+                                       const Context&) {
   return make_explicit(std::make_unique<BilaplacianSpeed>(), *options.lambda, Update::simultaneous);
 }
 
@@ -43,7 +43,7 @@ FlowEntry flow_bilaplacian() {
   defaults.lambda = 0.4;
   return {"bilaplacian", "descends the thin-plate energy; shrinks little",
           "Ohtake 2",    {"iterations", "lambda"},
-          defaults,      make};
+          defaults,      make_bilaplacian};
 }
 
 }  // namespace rfsmooth::smoothing

@@ -6,8 +6,8 @@ namespace rfsmooth::smoothing {
 
 namespace {
 
-std::unique_ptr<Flow> make(const rfs_mesh::Mesh&, const FlowOptions& options, const Constraints&,
-                           const Context&) {
+std::unique_ptr<Flow> make_curvature(const rfs_mesh::Mesh&, const FlowOptions& options, const Constraints&,
+                                     const Context&) {
   return make_explicit(make_curvature_speed(*options.normalised, *options.lambda), *options.lambda,
                        Update::simultaneous);
 }
@@ -24,7 +24,7 @@ FlowEntry flow_curvature() {
           "Desbrun (14), 5.5; Ohtake (7), (8)",
           {"iterations", "lambda", "normalised"},
           defaults,
-          make};
+          make_curvature};
 }
 
 }  // namespace rfsmooth::smoothing

@@ -139,8 +139,8 @@ Vector3d parse_direction(const std::string& text) {
   return d.normalized();
 }
 
-std::unique_ptr<Flow> make(const rfs_mesh::Mesh& mesh, const FlowOptions& options, const Constraints&,
-                           const Context& context) {
+std::unique_ptr<Flow> make_directional(const rfs_mesh::Mesh& mesh, const FlowOptions& options,
+                                       const Constraints&, const Context& context) {
   return make_explicit(
       std::make_unique<DirectionalSpeed>(mesh, *options.power, parse_direction(*options.direction), context),
       *options.lambda, Update::simultaneous);
@@ -159,7 +159,7 @@ FlowEntry flow_directional() {
           "Zhao-Xu (3), (33)",
           {"iterations", "lambda", "power", "direction"},
           defaults,
-          make};
+          make_directional};
 }
 
 }  // namespace rfsmooth::smoothing

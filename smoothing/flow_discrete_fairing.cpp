@@ -77,8 +77,8 @@ class DiscreteFairing : public Flow {
   int iterations_ = 0;
 };
 
-std::unique_ptr<Flow> make(const rfs_mesh::Mesh& mesh, const FlowOptions& options,
-                           const Constraints& constraints, const Context& context) {
+std::unique_ptr<Flow> make_discrete_fairing(const rfs_mesh::Mesh& mesh, const FlowOptions& options,
+                                            const Constraints& constraints, const Context& context) {
   return std::make_unique<DiscreteFairing>(mesh, options, AllowedMoves(constraints, mesh.positions.size()),
                                            context);
 }
@@ -94,7 +94,7 @@ FlowEntry flow_discrete_fairing() {
   defaults.norm = "l2";
   return {"discrete-fairing", "thin-plate smoothing spline from divided differences in local charts",
           "Kobbelt 4",        {"iterations", "dt", "chart", "tolerance", "norm"},
-          defaults,           make};
+          defaults,           make_discrete_fairing};
 }
 
 }  // namespace rfsmooth::smoothing

@@ -52,8 +52,8 @@ class SimultaneousHc : public Flow {
   Positions original_, difference_;
 };
 
-std::unique_ptr<Flow> make(const rfs_mesh::Mesh& mesh, const FlowOptions& options,
-                           const Constraints& constraints, const Context&) {
+std::unique_ptr<Flow> make_hc(const rfs_mesh::Mesh& mesh, const FlowOptions& options,
+                              const Constraints& constraints, const Context&) {
   const Update update = *options.update == "sequential" ? Update::sequential : Update::simultaneous;
   if (update == Update::simultaneous && constraints.hard.empty())
     return std::make_unique<SimultaneousHc>(mesh, *options.alpha, *options.beta);
@@ -74,7 +74,7 @@ FlowEntry flow_hc() {
   defaults.update = "simultaneous";
   return {"hc",        "Laplacian steps pushed back by the mean difference; keeps size and shape",
           "Vollmer 4", {"iterations", "alpha", "beta", "update"},
-          defaults,    make};
+          defaults,    make_hc};
 }
 
 }  // namespace rfsmooth::smoothing

@@ -96,8 +96,8 @@ class HcLimit : public Flow {
   int iterations_ = 0;
 };
 
-std::unique_ptr<Flow> make(const rfs_mesh::Mesh& mesh, const FlowOptions& options,
-                           const Constraints& constraints, const Context&) {
+std::unique_ptr<Flow> make_hc_limit(const rfs_mesh::Mesh& mesh, const FlowOptions& options,
+                                    const Constraints& constraints, const Context&) {
   if (!(*options.alpha > 0 && *options.beta > 0.5))
     throw Failure({ErrorCode::usage, "HC has a limit for --alpha above 0 and --beta above 0.5 only"});
   for (const HardConstraint& constraint : constraints.hard)
@@ -128,7 +128,7 @@ FlowEntry flow_hc_limit() {
           "Vollmer 4, theorem 5.2; our derivation",
           {"iterations", "alpha", "beta", "tolerance", "norm"},
           defaults,
-          make};
+          make_hc_limit};
 }
 
 }  // namespace rfsmooth::smoothing

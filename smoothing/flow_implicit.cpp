@@ -65,8 +65,8 @@ double least_eigenvalue(const FlowOptions& options) {
   return 1 + dt * ((1 - m) * std::pow(k, order) + m * k);
 }
 
-std::unique_ptr<Flow> make(const rfs_mesh::Mesh& mesh, const FlowOptions& options,
-                           const Constraints& constraints, const Context&) {
+std::unique_ptr<Flow> make_implicit(const rfs_mesh::Mesh& mesh, const FlowOptions& options,
+                                    const Constraints& constraints, const Context&) {
   if (!(least_eigenvalue(options) > 0))
     throw Failure({ErrorCode::usage,
                    "--mixture is too negative for this --dt and --order: the system has no "
@@ -91,7 +91,7 @@ FlowEntry flow_implicit() {
           "Desbrun 2.3-2.7, 4, 5",
           {"iterations", "dt", "operator", "order", "mixture", "keep-weights", "tolerance", "norm"},
           defaults,
-          make};
+          make_implicit};
 }
 
 }  // namespace rfsmooth::smoothing

@@ -40,8 +40,8 @@ class AnchoredSpeed : public Speed {
   Positions original_;  ///< empty: the anchor is the centre
 };
 
-std::unique_ptr<Flow> make(const rfs_mesh::Mesh& mesh, const FlowOptions& options, const Constraints&,
-                           const Context&) {
+std::unique_ptr<Flow> make_laplacian(const rfs_mesh::Mesh& mesh, const FlowOptions& options,
+                                     const Constraints&, const Context&) {
   auto speed = make_umbrella_speed(*options.weights == "inverse-distance");
   if (*options.anchor != "none")
     speed = std::make_unique<AnchoredSpeed>(std::move(speed), *options.alpha,
@@ -65,7 +65,7 @@ FlowEntry flow_laplacian() {
           "Vollmer 3; Ohtake (1)-(4)",
           {"iterations", "lambda", "alpha", "anchor", "weights", "update"},
           defaults,
-          make};
+          make_laplacian};
 }
 
 }  // namespace rfsmooth::smoothing

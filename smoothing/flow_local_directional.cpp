@@ -69,8 +69,8 @@ class LocalDirectionalSpeed : public Speed {
   std::vector<char> interior_;
 };
 
-std::unique_ptr<Flow> make(const rfs_mesh::Mesh&, const FlowOptions& options, const Constraints&,
-                           const Context&) {
+std::unique_ptr<Flow> make_local_directional(const rfs_mesh::Mesh&, const FlowOptions& options,
+                                             const Constraints&, const Context&) {
   return make_explicit(std::make_unique<LocalDirectionalSpeed>(*options.eps, *options.lambda),
                        *options.lambda, Update::simultaneous);
 }
@@ -87,7 +87,7 @@ FlowEntry flow_local_directional() {
           "Zhao-Xu (34)-(36)",
           {"iterations", "lambda", "eps"},
           defaults,
-          make};
+          make_local_directional};
 }
 
 }  // namespace rfsmooth::smoothing

@@ -56,8 +56,8 @@ class MedianDirectionSpeed : public Speed {
   Positions median_;
 };
 
-std::unique_ptr<Flow> make(const rfs_mesh::Mesh&, const FlowOptions& options, const Constraints&,
-                           const Context&) {
+std::unique_ptr<Flow> make_median_direction(const rfs_mesh::Mesh&, const FlowOptions& options,
+                                            const Constraints&, const Context&) {
   return make_explicit(std::make_unique<MedianDirectionSpeed>(*options.lambda), *options.lambda,
                        Update::simultaneous);
 }
@@ -73,7 +73,7 @@ FlowEntry flow_median_direction() {
           "Ohtake (12), (13)",
           {"iterations", "lambda"},
           defaults,
-          make};
+          make_median_direction};
 }
 
 }  // namespace rfsmooth::smoothing

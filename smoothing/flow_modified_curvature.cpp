@@ -45,8 +45,8 @@ class ModifiedCurvatureSpeed : public Speed {
   Positions even_;
 };
 
-std::unique_ptr<Flow> make(const rfs_mesh::Mesh&, const FlowOptions& options, const Constraints&,
-                           const Context&) {
+std::unique_ptr<Flow> make_modified_curvature(const rfs_mesh::Mesh&, const FlowOptions& options,
+                                              const Constraints&, const Context&) {
   return make_explicit(std::make_unique<ModifiedCurvatureSpeed>(*options.lambda, *options.tangential),
                        *options.lambda, Update::simultaneous);
 }
@@ -63,7 +63,7 @@ FlowEntry flow_modified_curvature() {
           "Ohtake (11)",
           {"iterations", "lambda", "tangential"},
           defaults,
-          make};
+          make_modified_curvature};
 }
 
 }  // namespace rfsmooth::smoothing

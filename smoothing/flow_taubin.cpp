@@ -27,8 +27,8 @@ class TaubinFlow : public Flow {
   std::unique_ptr<Flow> shrink_, inflate_;
 };
 
-std::unique_ptr<Flow> make(const rfs_mesh::Mesh&, const FlowOptions& options, const Constraints&,
-                           const Context&) {
+std::unique_ptr<Flow> make_taubin(const rfs_mesh::Mesh&, const FlowOptions& options, const Constraints&,
+                                  const Context&) {
   if (!(*options.mu > *options.lambda))
     throw Failure({ErrorCode::usage, "--mu must be greater than --lambda: the second step inflates"});
   return std::make_unique<TaubinFlow>(*options.weights == "inverse-distance", *options.lambda, *options.mu);
@@ -47,7 +47,7 @@ FlowEntry flow_taubin() {
           "Ohtake (6); Desbrun 2.1",
           {"iterations", "lambda", "mu", "weights"},
           defaults,
-          make};
+          make_taubin};
 }
 
 }  // namespace rfsmooth::smoothing

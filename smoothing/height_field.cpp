@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kPlane = 24;  // neighbours of the plane that gives the normal
 constexpr std::size_t kLinked = 8;  // neighbours with which a normal agrees on a side; 6 leave islands
-constexpr float kWeightUnit = 255, kRounded = 0.5F;
+constexpr float kByteUnit = 255, kByteRounded = 0.5F;
 
 }  // namespace
 
@@ -43,7 +43,7 @@ HeightField::HeightField(Positions guide, rfs_mesh::KdTree tree, rfs_mesh::Neigh
       const double away = square > 0 ? (guide_[row[k]] - guide_[i]).squaredNorm() / square : 0;
       const bool same = same_sheet(local_[i].normal.dot(local_[row[k]].normal)) > 0;
       near_weight_[i * row.size() + k] =
-          std::uint8_t(same ? kWeightUnit * float(std::clamp(1 - away, 0.0, 1.0)) + kRounded : 0);
+          std::uint8_t(same ? kByteUnit * float(std::clamp(1 - away, 0.0, 1.0)) + kByteRounded : 0);
     }
   });
 }
@@ -75,7 +75,7 @@ std::vector<float> HeightField::local_mean(const std::vector<float>& values, con
   for_each_index(context, size(), [&](std::size_t i) {
     const WeightedSum around =
         weighted_sum(width, near_.items.data() + i * width, near_weight_.data() + i * width, values.data());
-    mean[i] = (kWeightUnit * values[i] + around.sum) / (kWeightUnit + around.weights);
+    mean[i] = (kByteUnit * values[i] + around.sum) / (kByteUnit + around.weights);
   });
   return mean;
 }
@@ -87,8 +87,8 @@ std::vector<HeightField::Columns> HeightField::local_mean(const std::vector<Colu
   for_each_index(context, size(), [&](std::size_t i) {
     const Index* const row = near_.items.data() + i * width;
     const std::uint8_t* const weight = near_weight_.data() + i * width;
-    Columns sum = kWeightUnit * values[i];
-    unsigned weights = unsigned(kWeightUnit);
+    Columns sum = kByteUnit * values[i];
+    unsigned weights = unsigned(kByteUnit);
     for (std::size_t k = 0; k < width; ++k) {
       sum += float(weight[k]) * values[row[k]];
       weights += weight[k];

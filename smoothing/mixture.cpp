@@ -14,11 +14,11 @@ namespace rfsmooth::smoothing {
 
 namespace {
 
-constexpr int kMost = 16;             // candidates
-constexpr int kRounds = 3;            // of expectation maximisation: a fourth changes the third digit
-constexpr double kLeastShare = 1e-4;  // a scale that nearly no point wants may still be right for a few
+constexpr int kMostCandidates = 16;     // candidates
+constexpr int kMixtureRounds = 3;       // of expectation maximisation: a fourth changes the third digit
+constexpr double kLeastOfScale = 1e-4;  // a scale that nearly no point wants may still be right for a few
 
-using Weights = Eigen::Array<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMost, 1>;
+using CandidateWeights = Eigen::Array<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMostCandidates, 1>;
 
 }  // namespace
 
@@ -29,7 +29,7 @@ Mixture::Mixture(std::vector<float> data) : evidence_(data.size(), 0) {
 
 void Mixture::add(std::vector<float> height, std::vector<float> own, std::vector<float> gain,
                   const Context& context) {
-  if (candidates_.size() == kMost) throw std::length_error("Mixture: more than 16 candidates");
+  if (candidates_.size() == kMostCandidates) throw std::length_error("Mixture: more than 16 candidates");
   for_each_index(context, gain.size(), [&](std::size_t i) {
     const bool here = !std::isnan(gain[i]);
     if (here) evidence_[i] += gain[i];
@@ -47,22 +47,22 @@ void Mixture::average(std::vector<float>& height, std::vector<float>& own, const
     for (const Candidate& c : candidates_) largest = std::max(largest, c.evidence[i]);
     for (Candidate& c : candidates_) c.evidence[i] = std::exp(c.evidence[i] - largest);
   });
-  const auto weights = [&](std::size_t i, const Weights& shares) {
-    Weights w(rows);
+  const auto weights = [&](std::size_t i, const CandidateWeights& shares) {
+    CandidateWeights w(rows);
     for (std::size_t s = 0; s < count; ++s)
       w[Eigen::Index(s)] = shares[Eigen::Index(s)] * double(candidates_[s].evidence[i]);
-    return Weights(w * (1 / w.sum()));
+    return CandidateWeights(w * (1 / w.sum()));
   };
-  Weights shares = Weights::Constant(rows, 1 / double(count));
-  for (int round = 0; round < kRounds; ++round) {
-    const Weights sum =
-        sum_over(context, n, Weights(Weights::Zero(rows)), [&](std::size_t i) { return weights(i, shares); });
-    shares = (sum / double(n)).max(kLeastShare);
+  CandidateWeights shares = CandidateWeights::Constant(rows, 1 / double(count));
+  for (int round = 0; round < kMixtureRounds; ++round) {
+    const CandidateWeights sum = sum_over(context, n, CandidateWeights(CandidateWeights::Zero(rows)),
+                                          [&](std::size_t i) { return weights(i, shares); });
+    shares = (sum / double(n)).max(kLeastOfScale);
   }
   height.resize(n);
   own.resize(n);
   for_each_index(context, n, [&](std::size_t i) {
-    const Weights w = weights(i, shares);
+    const CandidateWeights w = weights(i, shares);
     double mixed = 0, mixed_own = 0;
     for (std::size_t s = 0; s < count; ++s) {
       mixed += w[Eigen::Index(s)] * double(candidates_[s].height[i]);

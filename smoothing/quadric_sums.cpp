@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t kDoubles = kLanes / 2;  // side by side
 typedef double Doubles __attribute__((vector_size(kDoubles * sizeof(double))));
 typedef float Halves __attribute__((vector_size(kDoubles * sizeof(float))));
-typedef float Floats __attribute__((vector_size(kLanes * sizeof(float))));
+typedef float SumFloats __attribute__((vector_size(kLanes * sizeof(float))));
 
 inline void load(const float* at, Doubles& to) {
   Halves f;
@@ -20,7 +20,7 @@ inline void load(const float* at, Doubles& to) {
   to = __builtin_convertvector(f, Doubles);
 }
 
-inline void load(const float* at, Floats& to) {
+inline void load(const float* at, SumFloats& to) {
   std::memcpy(&to, at, sizeof to);
 }
 
@@ -59,8 +59,8 @@ void sum_quadric(std::size_t size, const float* u, const float* v, const float* 
 RFSMOOTH_WIDE
 void sum_squared_weights(std::size_t size, const float* u, const float* v, const float* w,
                          Eigen::Matrix<double, 6, 6>& sums) {
-  rfs_mesh::QuadricMoments<Floats> moments;
-  Floats a, b, c;
+  rfs_mesh::QuadricMoments<SumFloats> moments;
+  SumFloats a, b, c;
   for (std::size_t k = 0; k < size; k += kLanes) {
     load(u + k, a);
     load(v + k, b);
@@ -74,8 +74,8 @@ void sum_squared_weights(std::size_t size, const float* u, const float* v, const
 RFSMOOTH_WIDE
 double sum_residuals(std::size_t size, const float* u, const float* v, const float* y, const float* w,
                      const float* c, const Eigen::Matrix<double, 6, 1>& q) {
-  Floats f[6], sum = {}, a, b, e, factor;
-  for (int t = 0; t < 6; ++t) f[t] = Floats{} + float(q[t]);
+  SumFloats f[6], sum = {}, a, b, e, factor;
+  for (int t = 0; t < 6; ++t) f[t] = SumFloats{} + float(q[t]);
   for (std::size_t k = 0; k < size; k += kLanes) {
     load(u + k, a);
     load(v + k, b);

@@ -15,12 +15,12 @@ namespace rfsmooth::smoothing {
 
 namespace {
 
-constexpr std::size_t kTenth = 9;     // the neighbours whose distances
-constexpr std::size_t kLast = 31;     // measure density
-constexpr float kThin = 1.7F;         // times the usual: 1.4 takes points at edges, 2 leaves small islands
-constexpr int kPlane = 24;            // points of the plane
-constexpr std::size_t kTooFew = 100;  // points: below, nothing is usual
-constexpr int kRounds = 2;
+constexpr std::size_t kTenth = 9;  // the neighbours whose distances
+constexpr std::size_t kLast = 31;  // measure density
+constexpr float kThin = 1.7F;      // times the usual: 1.4 takes points at edges, 2 leaves small islands
+constexpr int kOfPlane = 24;       // points of the plane
+constexpr std::size_t kTooFewPoints = 100;  // points: below, nothing is usual
+constexpr int kStrandedRounds = 2;
 
 using rfs_mesh::Neighbor;
 using rfs_mesh::NeighborTable;
@@ -111,7 +111,7 @@ std::vector<Index> find_stranded(const rfs_mesh::Mesh& mesh, const Positions& gu
 /// p projected onto the plane through the points nearest to `at`.
 Eigen::Vector3d project(const MovingGuide& surface, const Positions& guide, const Eigen::Vector3d& at,
                         const Eigen::Vector3d& p, MovingGuide::Search& search) {
-  const std::vector<Neighbor>& near = surface.nearest(at, kPlane, search);
+  const std::vector<Neighbor>& near = surface.nearest(at, kOfPlane, search);
   const double square = 1.05 * near.back().squared_distance;
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
   double weights = 0;
@@ -179,13 +179,13 @@ std::vector<char> beside_moved(const MovingGuide& surface, const NeighborTable& 
 Landed land_stranded(const rfs_mesh::Mesh& mesh, double most, Positions& guide, const Context& context) {
   MovingGuide surface(guide, context);
   NeighborTable near = surface.before().nearest(int(kLast) + 1, context);
-  if (guide.size() < kTooFew) return {0, std::move(near), surface.release_tree()};
+  if (guide.size() < kTooFewPoints) return {0, std::move(near), surface.release_tree()};
   std::vector<Index> moved;
   std::size_t first = 0;
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kStrandedRounds; ++round) {
     const std::vector<Index> stranded = find_stranded(mesh, guide, near, context);
     if (round == 0) first = stranded.size();
-    if (stranded.empty() || guide.size() - stranded.size() < kTooFew) break;
+    if (stranded.empty() || guide.size() - stranded.size() < kTooFewPoints) break;
     // None of them is part of the surface that they are put onto, wherever it was put before.
     std::vector<Index> others;
     std::set_difference(moved.begin(), moved.end(), stranded.begin(), stranded.end(),

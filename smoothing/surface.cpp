@@ -63,7 +63,7 @@ double angle_deficit(const rfs_mesh::Mesh& mesh, const rfs_mesh::Adjacency& vert
 namespace {
 
 /// One side of a face: the edge low-high, and whether the face runs along it upward.
-struct Side {
+struct EdgeSide {
   Index low, high, face;
   bool upward;
 };
@@ -74,14 +74,14 @@ struct Side {
 template <class Refuse>
 std::vector<Face> oriented_faces(const rfs_mesh::Mesh& mesh, Refuse&& refuse) {
   std::vector<Face> faces = mesh.faces;
-  std::vector<Side> sides;
+  std::vector<EdgeSide> sides;
   sides.reserve(3 * faces.size());
   for (Index f = 0; f < faces.size(); ++f)
     for (int k = 0; k < 3; ++k) {
       const Index a = faces[f][k], b = faces[f][(k + 1) % 3];
       sides.push_back({std::min(a, b), std::max(a, b), f, a < b});
     }
-  std::sort(sides.begin(), sides.end(), [](const Side& x, const Side& y) {
+  std::sort(sides.begin(), sides.end(), [](const EdgeSide& x, const EdgeSide& y) {
     return std::tie(x.low, x.high, x.face) < std::tie(y.low, y.high, y.face);
   });
   struct Link {
@@ -91,11 +91,11 @@ std::vector<Face> oriented_faces(const rfs_mesh::Mesh& mesh, Refuse&& refuse) {
   std::vector<std::array<Link, 3>> links(faces.size());
   std::vector<int> count(faces.size(), 0);
   for (std::size_t s = 0; s < sides.size();) {
-    const Side& one = sides[s];
+    const EdgeSide& one = sides[s];
     std::size_t end = s + 1;
     while (end < sides.size() && sides[end].low == one.low && sides[end].high == one.high) ++end;
     if (end - s == 2) {
-      const Side& two = sides[s + 1];
+      const EdgeSide& two = sides[s + 1];
       const bool same = one.upward == two.upward;
       links[one.face][count[one.face]++] = {two.face, same};
       links[two.face][count[two.face]++] = {one.face, same};

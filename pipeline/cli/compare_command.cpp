@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-struct Options {
+struct CompareCommandOptions {
   bool signed_normals = false;
   bool json = false;
   std::optional<int> threads;
@@ -66,7 +66,7 @@ std::vector<double> normals_of(const pipeline::io::Cloud& cloud, const Context& 
   return {};
 }
 
-int run(const Options& options, const Invocation& typed) {
+int run_compare(const CompareCommandOptions& options, const Invocation& typed) {
   if (typed.arguments.size() != 2)
     throw Failure(
         {ErrorCode::usage, "two files are needed: the cloud and the truth (a mesh or a clean cloud)"});
@@ -120,7 +120,7 @@ int run(const Options& options, const Invocation& typed) {
 }  // namespace
 
 Command compare_command() {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CompareCommandOptions>();
   Command command;
   command.name = "compare";
   command.summary = "measure a cloud against the truth, a mesh or a clean cloud";
@@ -133,7 +133,7 @@ Command compare_command() {
       "some. Points that are not finite are left out.";
   collect(*options, command.options);
   polish(command);
-  command.run = [options](const Invocation& typed) { return run(*options, typed); };
+  command.run = [options](const Invocation& typed) { return run_compare(*options, typed); };
   return command;
 }
 

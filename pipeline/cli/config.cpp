@@ -17,19 +17,19 @@ namespace {
 
 using nlohmann::json;
 
-[[noreturn]] void fail(ErrorCode code, const std::string& message) {
+[[noreturn]] void fail_config(ErrorCode code, const std::string& message) {
   throw Failure({code, message});
 }
 
 json parse_file(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
-  if (!file) fail(ErrorCode::input_unreadable, fmt::format("{}: {}", path, std::strerror(errno)));
+  if (!file) fail_config(ErrorCode::input_unreadable, fmt::format("{}: {}", path, std::strerror(errno)));
   const std::string text((std::istreambuf_iterator<char>(file)), {});
-  if (file.bad()) fail(ErrorCode::input_unreadable, fmt::format("{}: cannot be read", path));
+  if (file.bad()) fail_config(ErrorCode::input_unreadable, fmt::format("{}: cannot be read", path));
   try {
     return json::parse(text);
   } catch (const json::parse_error& error) {
-    fail(ErrorCode::input_unreadable, fmt::format("{}: not JSON at byte {}", path, error.byte));
+    fail_config(ErrorCode::input_unreadable, fmt::format("{}: not JSON at byte {}", path, error.byte));
   }
 }
 
@@ -38,8 +38,8 @@ std::string as_typed(const std::string& path, const std::string& name, const jso
   if (value.is_null()) return "auto";
   if (value.is_string()) return value.get<std::string>();
   if (value.is_number() || value.is_boolean()) return value.dump();
-  fail(ErrorCode::usage,
-       fmt::format("{}: option '{}' must be a number, a word, true, false or null", path, name));
+  fail_config(ErrorCode::usage,
+              fmt::format("{}: option '{}' must be a number, a word, true, false or null", path, name));
 }
 
 std::vector<std::string> names_of(const Command& command) {
@@ -52,24 +52,27 @@ std::vector<std::string> names_of(const Command& command) {
 
 Config read_config(const std::string& path, const Command& command) {
   const json root = parse_file(path);
-  if (!root.is_object()) fail(ErrorCode::usage, fmt::format("{}: a JSON object is needed", path));
+  if (!root.is_object()) fail_config(ErrorCode::usage, fmt::format("{}: a JSON object is needed", path));
   if (root.contains("files"))
-    fail(ErrorCode::usage, fmt::format("{}: a report of several files; run one of them again by giving the "
-                                       "object of its options",
-                                       path));
+    fail_config(ErrorCode::usage,
+                fmt::format("{}: a report of several files; run one of them again by giving the "
+                            "object of its options",
+                            path));
   const bool report = root.contains("options");
   if (report && root.contains("command") && root["command"] != command.name)
-    fail(ErrorCode::usage,
-         fmt::format("{}: is a report of 'rfsmooth {}'", path,
-                     root["command"].is_string() ? root["command"].get<std::string>() : "?"));
+    fail_config(ErrorCode::usage,
+                fmt::format("{}: is a report of 'rfsmooth {}'", path,
+                            root["command"].is_string() ? root["command"].get<std::string>() : "?"));
   const json& options = report ? root["options"] : root;
-  if (!options.is_object()) fail(ErrorCode::usage, fmt::format("{}: 'options' must be an object", path));
+  if (!options.is_object())
+    fail_config(ErrorCode::usage, fmt::format("{}: 'options' must be an object", path));
 
   Config config;
   const std::vector<std::string> names = names_of(command);
   for (const auto& [name, value] : options.items()) {
     if (std::find(names.begin(), names.end(), name) == names.end() || name == "config")
-      fail(ErrorCode::usage, fmt::format("{}: unknown option '{}'{}", path, name, did_you_mean(name, names)));
+      fail_config(ErrorCode::usage,
+                  fmt::format("{}: unknown option '{}'{}", path, name, did_you_mean(name, names)));
     config.options.emplace_back(name, as_typed(path, name, value));
   }
   if (report)

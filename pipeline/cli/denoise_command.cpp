@@ -21,7 +21,7 @@ using nlohmann::ordered_json;
 
 constexpr const char *kDisplacement = "displacement", *kOutlier = "outlier";
 
-struct Options {
+struct DenoiseCommandOptions {
   pipeline::DenoiseOptions denoise;
   std::optional<std::string> strength_field;
   bool write_displacement = false;
@@ -45,8 +45,8 @@ struct Options {
   bool removes() const { return denoise.outliers == "remove"; }
 };
 
-void enter(const pipeline::DenoiseReport& done, const Options& options, ordered_json& entry) {
-  Options used = options;
+void enter(const pipeline::DenoiseReport& done, const DenoiseCommandOptions& options, ordered_json& entry) {
+  DenoiseCommandOptions used = options;
   used.denoise = done.effective;
   entry["options"] = effective_options(used, options.job.files);
   entry["counts"] = {{"points", done.points},       {"finite", done.finite},    {"distinct", done.distinct},
@@ -64,8 +64,8 @@ void enter(const pipeline::DenoiseReport& done, const Options& options, ordered_
   entry["rms_move"] = done.rms_move;
 }
 
-void tell(const pipeline::DenoiseReport& done, const Options& options, const pipeline::io::Cloud& cloud,
-          const Job& job, Console& console) {
+void tell(const pipeline::DenoiseReport& done, const DenoiseCommandOptions& options,
+          const pipeline::io::Cloud& cloud, const Job& job, Console& console) {
   if (done.finite < done.points)
     console.detail(fmt::format("{}: {} points are not finite; they stay as they are", job.input,
                                done.points - done.finite));
@@ -78,7 +78,7 @@ void tell(const pipeline::DenoiseReport& done, const Options& options, const pip
 }
 
 /// Fields that could not be added, told before the work. \throw Failure.
-void check_fields(const Options& options, const pipeline::io::Cloud& cloud) {
+void check_fields(const DenoiseCommandOptions& options, const pipeline::io::Cloud& cloud) {
   if (options.write_displacement)
     pipeline::io::check_field(cloud, kDisplacement, pipeline::io::Scalar::float32);
   if (options.marks()) pipeline::io::check_field(cloud, kOutlier, pipeline::io::Scalar::uint8);
@@ -115,13 +115,13 @@ bool keeps_grid(const pipeline::io::Cloud& cloud) {
 }
 
 /// "; 3 outliers removed", or nothing.
-std::string said_of_outliers(const pipeline::DenoiseReport& done, const Options& options) {
+std::string said_of_outliers(const pipeline::DenoiseReport& done, const DenoiseCommandOptions& options) {
   if (done.outliers == 0) return "";
   const char* what = options.removes() ? "removed" : options.marks() ? "marked" : "left in place";
   return fmt::format("; {} outlier{} {}", done.outliers, done.outliers == 1 ? "" : "s", what);
 }
 
-std::string denoise_cloud(const Options& options, pipeline::io::Cloud& cloud, const Job& job,
+std::string denoise_cloud(const DenoiseCommandOptions& options, pipeline::io::Cloud& cloud, const Job& job,
                           const Context& context, Console& console, std::vector<pipeline::StageTime>& stages,
                           ordered_json& entry) {
   const std::size_t n = cloud.size();
@@ -164,7 +164,7 @@ std::string denoise_cloud(const Options& options, pipeline::io::Cloud& cloud, co
       done.rms_move);
 }
 
-int run(const Options& options, const Invocation& typed) {
+int run_denoise(const DenoiseCommandOptions& options, const Invocation& typed) {
   // Wrong options are told before any file is touched.
   value_or_throw(smoothing::complete(options.denoise.flow));
   if (options.mark_outliers && options.denoise.outliers == "smooth")
@@ -178,7 +178,7 @@ int run(const Options& options, const Invocation& typed) {
 }  // namespace
 
 Command denoise_command() {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<DenoiseCommandOptions>();
   Command command;
   command.name = "denoise";
   command.summary = "take the noise out of point clouds";
@@ -195,7 +195,7 @@ Command denoise_command() {
   collect(*options, command.options);
   collect(options->job, command.options);
   polish(command);
-  command.run = [options](const Invocation& typed) { return run(*options, typed); };
+  command.run = [options](const Invocation& typed) { return run_denoise(*options, typed); };
   return command;
 }
 

@@ -21,7 +21,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-struct Options {
+struct InfoCommandOptions {
   bool json = false;
   TalkOptions talk;
 
@@ -117,7 +117,7 @@ void print_text(const ordered_json& info) {
                  element["count"].get<std::size_t>());
 }
 
-int run(const Options& options, const Invocation& typed) {
+int run_info(const InfoCommandOptions& options, const Invocation& typed) {
   if (typed.arguments.empty()) throw Failure({ErrorCode::usage, "no input given"});
   Console console(options.talk);
   const Context context = console.context(0);
@@ -152,7 +152,7 @@ int run(const Options& options, const Invocation& typed) {
 }  // namespace
 
 Command info_command() {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<InfoCommandOptions>();
   Command command;
   command.name = "info";
   command.summary = "say what a file holds: fields, points, extent, spacing";
@@ -162,7 +162,7 @@ Command info_command() {
       "organised, extent and spacing. - stands for standard input.";
   collect(*options, command.options);
   polish(command);
-  command.run = [options](const Invocation& typed) { return run(*options, typed); };
+  command.run = [options](const Invocation& typed) { return run_info(*options, typed); };
   return command;
 }
 

@@ -29,7 +29,7 @@ struct MeshOptions {
   }
 };
 
-struct Options {
+struct MeshCommandOptions {
   MeshOptions mesh;
   JobOptions job;
 };
@@ -57,7 +57,7 @@ std::vector<rfs_mesh::Edge> renumbered(std::vector<rfs_mesh::Edge> edges, const 
   return edges;
 }
 
-std::string connect_cloud(const Options& options, pipeline::io::Cloud& cloud, const Job& job,
+std::string connect_cloud(const MeshCommandOptions& options, pipeline::io::Cloud& cloud, const Job& job,
                           const Context& context, std::vector<pipeline::StageTime>& stages,
                           ordered_json& entry) {
   if (const auto error = refuse_without_memory(job.input, pipeline::denoise_memory(cloud.size())))
@@ -98,7 +98,7 @@ std::string connect_cloud(const Options& options, pipeline::io::Cloud& cloud, co
                      faces.size());
 }
 
-int run(const Options& options, const Invocation& typed) {
+int run_mesh(const MeshCommandOptions& options, const Invocation& typed) {
   return run_cloud_jobs("mesh", options.job, typed,
                         [&](pipeline::io::Cloud& cloud, const Job& job, const Context& context, Console&,
                             std::vector<pipeline::StageTime>& stages, ordered_json& entry) {
@@ -109,7 +109,7 @@ int run(const Options& options, const Invocation& typed) {
 }  // namespace
 
 Command mesh_command() {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<MeshCommandOptions>();
   Command command;
   command.name = "mesh";
   command.summary = "write the mesh that denoise works on, or the graphs it is made from";
@@ -125,7 +125,7 @@ Command mesh_command() {
   collect(options->mesh, command.options);
   collect(options->job, command.options);
   polish(command);
-  command.run = [options](const Invocation& typed) { return run(*options, typed); };
+  command.run = [options](const Invocation& typed) { return run_mesh(*options, typed); };
   return command;
 }
 

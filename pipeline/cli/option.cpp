@@ -13,7 +13,7 @@ namespace rfsmooth::cli {
 
 namespace {
 
-[[noreturn]] void refuse(const std::string& message) {
+[[noreturn]] void refuse_value(const std::string& message) {
   throw Failure({ErrorCode::usage, message});
 }
 
@@ -32,8 +32,8 @@ constexpr ValueKind kind_of() {
 
 /// "--alpha is 'x'; it must be WHAT", with "or 'auto'" where auto is legal.
 [[noreturn]] void refuse_value(const CommandOption& option, const std::string& text, const char* what) {
-  refuse(fmt::format("--{} is '{}'; it must be {}{}", option.name, text, what,
-                     option.optional ? " or 'auto'" : ""));
+  refuse_value(fmt::format("--{} is '{}'; it must be {}{}", option.name, text, what,
+                           option.optional ? " or 'auto'" : ""));
 }
 
 /// Reads `text` strictly as a T. `info` gives the legal range.
@@ -58,7 +58,8 @@ T parse_as(const CommandOption& option, const OptionInfo& info, const std::strin
     need(rfsmooth::detail::check_range(info, value->value));
     return *value;
   } else {
-    if (option.kind == ValueKind::file && text.empty()) refuse(fmt::format("--{} needs a name", option.name));
+    if (option.kind == ValueKind::file && text.empty())
+      refuse_value(fmt::format("--{} needs a name", option.name));
     return text;
   }
 }
@@ -186,8 +187,8 @@ void assign(const CommandOption& option, const std::string& text) {
   const bool automatic = option.optional && text == "auto";
   if (!automatic && !option.choices.empty() &&
       std::find(option.choices.begin(), option.choices.end(), text) == option.choices.end())
-    refuse(fmt::format("--{} is '{}'; it must be one of: {}{}", option.name, text,
-                       fmt::join(option.choices, ", "), did_you_mean(text, option.choices)));
+    refuse_value(fmt::format("--{} is '{}'; it must be one of: {}{}", option.name, text,
+                             fmt::join(option.choices, ", "), did_you_mean(text, option.choices)));
   option.set(text);
 }
 

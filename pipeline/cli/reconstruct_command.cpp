@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-struct Options {
+struct ReconstructCommandOptions {
   pipeline::ReconstructOptions reconstruct;
   JobOptions job;
 };
@@ -43,8 +43,9 @@ std::string text_of(const pipeline::Topology& found) {
   return text + (found.manifold() ? "" : "; not a manifold");
 }
 
-void enter(const pipeline::Reconstruction& made, const Options& options, ordered_json& entry) {
-  Options used = options;
+void enter(const pipeline::Reconstruction& made, const ReconstructCommandOptions& options,
+           ordered_json& entry) {
+  ReconstructCommandOptions used = options;
   if (options.reconstruct.denoise) used.reconstruct.denoising = made.report.denoised.effective;
   entry["options"] = effective_options(used.reconstruct, options.job.files);
   const pipeline::Topology& found = made.report.topology;
@@ -65,7 +66,7 @@ void enter(const pipeline::Reconstruction& made, const Options& options, ordered
   if (options.reconstruct.denoise) entry["noise"] = made.report.denoised.noise;
 }
 
-std::string reconstruct_cloud(const Options& options, const pipeline::SurfaceMethod& method,
+std::string reconstruct_cloud(const ReconstructCommandOptions& options, const pipeline::SurfaceMethod& method,
                               pipeline::io::Cloud& cloud, const Job& job, const Context& context,
                               std::vector<pipeline::StageTime>& stages, ordered_json& entry) {
   check_format(job, options.job.files);
@@ -108,7 +109,7 @@ std::vector<std::string> as_typed(const Invocation& typed, const std::vector<Com
   return words;
 }
 
-Command table(const std::shared_ptr<Options>& options) {
+Command table(const std::shared_ptr<ReconstructCommandOptions>& options) {
   Command command;
   command.name = "reconstruct";
   command.summary = "make a surface from a noisy cloud";
@@ -131,7 +132,7 @@ Command table(const std::shared_ptr<Options>& options) {
 }  // namespace
 
 Command reconstruct_command() {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ReconstructCommandOptions>();
   Command command = table(options);
   command.run = [options, known = command.options](const Invocation& typed) {
     value_or_throw(smoothing::complete(options->reconstruct.denoising.flow));
@@ -141,7 +142,7 @@ Command reconstruct_command() {
 }
 
 Command reconstruct_command(std::vector<pipeline::SurfaceMethod> methods) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ReconstructCommandOptions>();
   Command command = table(options);
   command.run = [options, methods = std::move(methods)](const Invocation& typed) {
     value_or_throw(smoothing::complete(options->reconstruct.denoising.flow));

@@ -50,7 +50,7 @@ struct After {
   }
 };
 
-struct Options {
+struct SmoothMeshCommandOptions {
   smoothing::FlowOptions flow;
   ConstraintFields constraints;
   After after;
@@ -95,7 +95,7 @@ void make_agree(rfs_mesh::Mesh& mesh) {
   if (others > 0 && others < turned.size()) mesh.faces = std::move(turned);
 }
 
-std::string smooth_file(const Options& options, pipeline::io::Cloud& cloud, const Job& job,
+std::string smooth_file(const SmoothMeshCommandOptions& options, pipeline::io::Cloud& cloud, const Job& job,
                         const Context& context, Console& console, std::vector<pipeline::StageTime>& stages,
                         ordered_json& entry) {
   Stopwatch watch(stages, "connect");
@@ -144,7 +144,7 @@ std::string smooth_file(const Options& options, pipeline::io::Cloud& cloud, cons
     pipeline::io::set_field(cloud, "ridge", pipeline::io::Scalar::int8, field, context);
   }
 
-  Options used = options;
+  SmoothMeshCommandOptions used = options;
   used.flow = smoothing::complete(options.flow).value();
   entry["options"] = effective_options(used, options.job.files);
   entry["counts"] = {{"points", points},
@@ -160,7 +160,7 @@ std::string smooth_file(const Options& options, pipeline::io::Cloud& cloud, cons
                      done.largest_move);
 }
 
-int run(const Options& options, const Invocation& typed) {
+int run_smooth_mesh(const SmoothMeshCommandOptions& options, const Invocation& typed) {
   value_or_throw(smoothing::complete(options.flow));
   return run_cloud_jobs("smooth-mesh", options.job, typed, [&](auto&&... all) {
     return smooth_file(options, std::forward<decltype(all)>(all)...);
@@ -170,7 +170,7 @@ int run(const Options& options, const Invocation& typed) {
 }  // namespace
 
 Command smooth_mesh_command() {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<SmoothMeshCommandOptions>();
   Command command;
   command.name = "smooth-mesh";
   command.summary = "smooth a triangle mesh from a file with any flow; refine it; find its ridges";
@@ -185,7 +185,7 @@ Command smooth_mesh_command() {
   collect(*options, command.options);
   collect(options->job, command.options);
   polish(command);
-  command.run = [options](const Invocation& typed) { return run(*options, typed); };
+  command.run = [options](const Invocation& typed) { return run_smooth_mesh(*options, typed); };
   return command;
 }
 

@@ -13,14 +13,14 @@
 namespace rfsmooth::pipeline::io {
 namespace {
 
-constexpr std::size_t kRowsPerBlock = 16384;
+constexpr std::size_t kColumnRowsPerBlock = 16384;
 
 // binary_compressed holds field after field, each for all points; we hold point after point.
 enum class Direction { to_rows, to_columns };
 
 void transpose(const Table& table, Direction direction, const char* in, char* out, const Context& context) {
   const std::size_t row = table.row_size();
-  for_blocks(context, table.count, kRowsPerBlock, [&](std::size_t begin, std::size_t end) {
+  for_blocks(context, table.count, kColumnRowsPerBlock, [&](std::size_t begin, std::size_t end) {
     std::size_t offset = 0;
     for (const Field& f : table.fields) {
       const std::size_t size = f.count * size_of(f.type);

@@ -9,7 +9,7 @@
 namespace rfsmooth::pipeline::io {
 namespace {
 
-constexpr std::size_t kRowsPerBlock = 8192;
+constexpr std::size_t kBinaryRowsPerBlock = 8192;
 
 void swap_value(char* p, std::size_t size) {
   std::reverse(p, p + size);
@@ -23,7 +23,7 @@ void swap_values(char* p, std::size_t size, std::size_t n) {
 // Reverses the bytes of every value in rows of fixed size.
 void swap_fixed(const std::vector<Field>& fields, std::size_t row_size, char* data, std::size_t count,
                 const Context& context) {
-  for_blocks(context, count, kRowsPerBlock, [&](std::size_t begin, std::size_t end) {
+  for_blocks(context, count, kBinaryRowsPerBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       char* p = data + i * row_size;
       for (const Field& f : fields) {
@@ -73,7 +73,7 @@ void read_lists(Table& table, BinaryCursor& cursor, const Context& context) {
   table.start.resize(table.count + 1);
   table.start[0] = 0;
   for (std::size_t i = 0; i < table.count; ++i) {
-    if (i % kRowsPerBlock == 0) context.check_stop();
+    if (i % kBinaryRowsPerBlock == 0) context.check_stop();
     for (const Field& f : table.fields) {
       std::size_t n = f.count;
       if (f.is_list()) {

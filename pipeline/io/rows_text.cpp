@@ -10,7 +10,7 @@
 namespace rfsmooth::pipeline::io {
 namespace {
 
-constexpr std::size_t kRowsPerBlock = 4096;
+constexpr std::size_t kTextRowsPerBlock = 4096;
 
 // Empty if the row is what its fields ask for; else what was expected and found.
 std::string problem(const Table& table, std::string_view row) {
@@ -105,7 +105,7 @@ void read_text_rows(Table& table, TextCursor& cursor, const Context& context) {
   table.data.reserve(left);
   std::size_t rows = 0;
   while (rows < table.count) {
-    if (rows % kRowsPerBlock == 0) context.check_stop();
+    if (rows % kTextRowsPerBlock == 0) context.check_stop();
     if (p == end)
       cursor.source.fail(fmt::format(
           "line {}: expected row {} of {} of element '{}', found the end of the file",
@@ -138,7 +138,7 @@ void read_text_rows(Table& table, TextCursor& cursor, const Context& context) {
           if (!problem(table, table.row(i)).empty()) return i;
         return table.count;
       },
-      [](std::size_t a, std::size_t b) { return std::min(a, b); }, kRowsPerBlock);
+      [](std::size_t a, std::size_t b) { return std::min(a, b); }, kTextRowsPerBlock);
   if (bad == table.count) return;
   std::size_t line = lines_before + bad + 1;
   for (const Interlude& note : table.interludes)

@@ -13,7 +13,7 @@ namespace rfsmooth::pipeline::io {
 namespace {
 
 // Between polls for a cancel; large enough that the calls cost nothing.
-constexpr std::size_t kChunk = std::size_t{16} << 20;
+constexpr std::size_t kReadChunk = std::size_t{16} << 20;
 
 std::size_t read_some(int file, char* out, std::size_t n, const Context& context) {
   for (;;) {
@@ -73,7 +73,7 @@ void Source::read(std::uint64_t offset, char* out, std::size_t n, const Context&
   }
   while (n > 0) {
     context.check_stop();
-    const ssize_t got = ::pread(file_, out, std::min(n, kChunk), off_t(offset));
+    const ssize_t got = ::pread(file_, out, std::min(n, kReadChunk), off_t(offset));
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) fail(fmt::format("byte {}: {}", offset, std::strerror(errno)));
     if (got == 0) fail(fmt::format("byte {}: the file became shorter while it was read", offset));

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
-std::vector<std::string_view> words_of(std::string_view line) {
+std::vector<std::string_view> columns_of(std::string_view line) {
   std::vector<std::string_view> words;
   const char* p = line.data();
   const char* end = p + line.size();
@@ -72,7 +72,7 @@ Beginning read_beginning(TextCursor& cursor, Cloud& cloud) {
     if (cursor.lines == 0 && line.size() > 1 && line[line.size() - 2] == '\r') cloud.newline = "\r\n";
     const std::string_view content = without_line_end(line);
     const std::string_view prefix = prefix_of(content);
-    const auto words = words_of(content.substr(prefix.size()));
+    const auto words = columns_of(content.substr(prefix.size()));
     const bool comment = is_blank_or_comment(line);
     if (names_coordinates(words) && !cloud.xyz_style.names) {
       beginning.names.assign(words.begin(), words.end());
@@ -105,7 +105,7 @@ Cloud read_xyz(const Source& source, const Context& context) {
   const std::string_view first = peek_line(cursor);
   if (first.empty())
     source.fail(fmt::format("line {}: expected points, found the end of the file", cursor.lines + 1));
-  const auto words = words_of(first);
+  const auto words = columns_of(first);
   if (words.size() < 3)
     source.fail(fmt::format("line {}: expected at least 3 columns, found {} in {}", cursor.lines + 1,
                             words.size(), in_quotes(without_line_end(first))));

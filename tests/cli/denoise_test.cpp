@@ -7,6 +7,7 @@
 
 #include "cli/folder.h"
 #include "cli/small_clouds.h"
+#include "support/sanitized.h"
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -158,7 +159,7 @@ TEST_F(DenoiseCommand, ReportOfTheAutomaticFlowSaysEverythingItChose) {
 }
 
 TEST_F(DenoiseCommand, ThreadsBindsEveryThreadOfTheProgram) {
-  put("in.ply", noisy_plane(150).bytes());
+  put("in.ply", noisy_plane(kSanitized ? 80 : 150).bytes());
   for (const std::size_t threads : {1u, 2u, 3u}) {
     const Ran ran = run({"denoise", "--force", "--threads", std::to_string(threads), "in.ply", "out.ply"});
     ASSERT_EQ(ran.code, 0) << ran.err;

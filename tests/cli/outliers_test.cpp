@@ -61,7 +61,7 @@ class OutliersOption : public InFolder {
   std::string said_;
 };
 
-std::vector<double> values(const io::Cloud& cloud, const std::string& name) {
+std::vector<double> values_of(const io::Cloud& cloud, const std::string& name) {
   return io::field_values(cloud, io::find_field(cloud, name).value());
 }
 
@@ -87,7 +87,7 @@ TEST_F(OutliersOption, MarkAddsAField) {
       const io::Field& field = out.points().fields.back();
       EXPECT_EQ(field.name, "outlier");
       EXPECT_EQ(field.type, io::Scalar::uint8);
-      const std::vector<double> flags = values(out, "outlier");
+      const std::vector<double> flags = values_of(out, "outlier");
       for (std::size_t i = 0; i < flags.size(); ++i)
         EXPECT_EQ(flags[i], std::count(std::begin(kStrays), std::end(kStrays), i)) << i;
     }
@@ -99,7 +99,7 @@ TEST_F(OutliersOption, RemoveLeavesThemOutAndKeepsTheOrder) {
   EXPECT_THAT(said_, HasSubstr("3 outliers removed"));
   EXPECT_EQ(report()["counts"]["removed"], 3);
   ASSERT_EQ(out.size(), kept.size() - 3);
-  const std::vector<double> rows = values(out, "row");
+  const std::vector<double> rows = values_of(out, "row");
   const auto all = io::positions(kept), left = io::positions(out);
   std::size_t next = 0;
   for (std::size_t i = 0; i < kept.size(); ++i) {
@@ -120,7 +120,7 @@ TEST_F(OutliersOption, RemoveKeepsTheGridOfAnOrganisedCloud) {
     const bool stray = std::count(std::begin(kStrays), std::end(kStrays), i) != 0;
     for (std::size_t axis = 0; axis < 3; ++axis) EXPECT_EQ(std::isnan(xyz[3 * i + axis]), stray) << i;
   }
-  for (const double moved : values(out, "displacement")) EXPECT_TRUE(moved >= 0 && moved < 2);
+  for (const double moved : values_of(out, "displacement")) EXPECT_TRUE(moved >= 0 && moved < 2);
 }
 
 TEST_F(OutliersOption, SmoothLooksForNone) {

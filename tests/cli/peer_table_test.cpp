@@ -18,7 +18,7 @@ using ::testing::Not;
 namespace rfsmooth::test {
 namespace {
 
-constexpr std::size_t kPoints = 2000;
+constexpr std::size_t kTablePoints = 2000;
 
 class PeerTable : public InFolder, public ::testing::WithParamInterface<bool> {
  protected:
@@ -56,11 +56,11 @@ class PeerTable : public InFolder, public ::testing::WithParamInterface<bool> {
 };
 
 TEST_P(PeerTable, ExtraFieldsStayBitForBitAndPointsMove) {
-  const RichCloud cloud = bumpy(kPoints, pcd());
+  const RichCloud cloud = bumpy(kTablePoints, pcd());
   const std::string before = cloud.bytes(), after = denoised(cloud);
   std::size_t moved = 0;
-  for (std::size_t i = 0; i < kPoints; ++i) moved += cloud.row(after, i) != cloud.row(before, i);
-  EXPECT_GT(moved, kPoints / 2);
+  for (std::size_t i = 0; i < kTablePoints; ++i) moved += cloud.row(after, i) != cloud.row(before, i);
+  EXPECT_GT(moved, kTablePoints / 2);
 }
 
 /// Rows with these coordinates stay bit for bit; all others come out as if those rows were not in the file.
@@ -82,21 +82,21 @@ void expect_harmless(const RichCloud& all, const std::string& after_all, const R
 }
 
 TEST_P(PeerTable, HundredNanPointsOfTwoThousandStayAndAreHarmless) {
-  RichCloud all = bumpy(kPoints, pcd()), good = all;
+  RichCloud all = bumpy(kTablePoints, pcd()), good = all;
   good.xyz.clear();
-  for (std::size_t i = 0; i < kPoints; ++i) {
+  for (std::size_t i = 0; i < kTablePoints; ++i) {
     if (i % 20 == 3)
       for (std::size_t axis = 0; axis < 3; ++axis) all.xyz[3 * i + (axis + i) % 3] = std::nan("");
     else
       good.xyz.insert(good.xyz.end(), &all.xyz[3 * i], &all.xyz[3 * i] + 3);
   }
-  ASSERT_EQ(good.size(), kPoints - 100);
+  ASSERT_EQ(good.size(), kTablePoints - 100);
   const std::string after = denoised(all);
   expect_harmless(all, after, good, denoised(good));
 }
 
 TEST_P(PeerTable, ThreeInfinitePointsStayAndAreHarmless) {
-  RichCloud all = bumpy(kPoints, pcd()), good = all;
+  RichCloud all = bumpy(kTablePoints, pcd()), good = all;
   all.xyz.insert(all.xyz.begin(), {INFINITY, 1, 2});
   all.xyz.insert(all.xyz.begin() + 300, {1, -INFINITY, 2});
   all.xyz.insert(all.xyz.end(), {1, 2, INFINITY});
@@ -105,7 +105,7 @@ TEST_P(PeerTable, ThreeInfinitePointsStayAndAreHarmless) {
 }
 
 TEST_P(PeerTable, UtmCoordinatesInDoubleAreSmoothedAsNearTheOrigin) {
-  RichCloud near = bumpy(kPoints, pcd(), true);
+  RichCloud near = bumpy(kTablePoints, pcd(), true);
   const double utm[] = {500000, 4649776, 130};
   RichCloud far = near;
   for (std::size_t i = 0; i < far.xyz.size(); ++i) {
@@ -114,7 +114,7 @@ TEST_P(PeerTable, UtmCoordinatesInDoubleAreSmoothedAsNearTheOrigin) {
   }
   const std::string after_near = denoised(near), after_far = denoised(far);
   double moved = 0;
-  for (std::size_t i = 0; i < kPoints; ++i)
+  for (std::size_t i = 0; i < kTablePoints; ++i)
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double is = far.coordinate(after_far, i, axis) - utm[axis];
       EXPECT_NEAR(is, near.coordinate(after_near, i, axis), 1e-7) << "row " << i;

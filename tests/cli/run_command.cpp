@@ -109,7 +109,7 @@ Ran run_program(const std::string& program, const std::vector<std::string>& argu
       if ((watched[k].revents & (POLLIN | POLLHUP)) == 0) continue;
       char buffer[65536];
       int& from = k == 0 ? out.read_end : err.read_end;
-      const ssize_t got = read(from, buffer, sizeof buffer);
+      const ssize_t got = ::read(from, buffer, sizeof buffer);
       if (got > 0)
         (k == 0 ? ran.out : ran.err).append(buffer, std::size_t(got));
       else if (got == 0 || errno != EINTR)

@@ -1,11 +1,12 @@
 /// Real scans through the real command: everything but the coordinates of finite points comes back bit for
 /// bit.
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <limits>
 
-#include <Eigen/SVD>
+#include <Eigen/Eigenvalues>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -239,7 +240,8 @@ INSTANTIATE_TEST_SUITE_P(Files, CgalData, ::testing::Values("building.ply", "b9_
 double off_plane(const std::vector<double>& xyz) {
   const Eigen::Map<const Eigen::Matrix3Xd> points(xyz.data(), 3, Eigen::Index(xyz.size() / 3));
   const Eigen::Matrix3Xd d = points.colwise() - points.rowwise().mean();
-  return Eigen::JacobiSVD<Eigen::Matrix3Xd>(d).singularValues()[2] / std::sqrt(double(points.cols()));
+  const Eigen::Matrix3d spread = d * d.transpose() / double(points.cols());
+  return std::sqrt(std::max(0.0, Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvalues()[0]));
 }
 
 TEST_F(Scans, ThePlaneOfAnRgbdScanComesOutFlatter) {

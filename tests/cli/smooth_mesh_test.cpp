@@ -13,24 +13,24 @@ using ::testing::HasSubstr;
 namespace rfsmooth::test {
 namespace {
 
-constexpr int kSide = 9;
+constexpr int kMeshSide = 9;
 
 /// A grid with a bump in the middle, as text: x y z and the given columns of every vertex; two triangles a
 /// cell.
 std::string bumpy_grid(
     const std::string& properties,
     const std::function<std::string(int, int)>& columns = [](int, int) { return ""; }) {
-  std::string text = "ply\nformat ascii 1.0\nelement vertex " + std::to_string(kSide * kSide) +
+  std::string text = "ply\nformat ascii 1.0\nelement vertex " + std::to_string(kMeshSide * kMeshSide) +
                      "\nproperty double x\nproperty double y\nproperty double z\n" + properties +
-                     "element face " + std::to_string(2 * (kSide - 1) * (kSide - 1)) +
+                     "element face " + std::to_string(2 * (kMeshSide - 1) * (kMeshSide - 1)) +
                      "\nproperty list uchar int vertex_indices\nend_header\n";
-  for (int i = 0; i < kSide; ++i)
-    for (int j = 0; j < kSide; ++j)
+  for (int i = 0; i < kMeshSide; ++i)
+    for (int j = 0; j < kMeshSide; ++j)
       text += std::to_string(i) + " " + std::to_string(j) + " " +
               std::to_string(std::exp(-0.3 * ((i - 4) * (i - 4) + (j - 4) * (j - 4)))) + columns(i, j) + "\n";
-  for (int i = 0; i + 1 < kSide; ++i)
-    for (int j = 0; j + 1 < kSide; ++j) {
-      const int a = i * kSide + j, b = a + 1, c = a + kSide, d = c + 1;
+  for (int i = 0; i + 1 < kMeshSide; ++i)
+    for (int j = 0; j + 1 < kMeshSide; ++j) {
+      const int a = i * kMeshSide + j, b = a + 1, c = a + kMeshSide, d = c + 1;
       for (const auto& f : {std::array{a, c, b}, std::array{b, c, d}})
         text += "3 " + std::to_string(f[0]) + " " + std::to_string(f[1]) + " " + std::to_string(f[2]) + "\n";
     }
@@ -54,7 +54,7 @@ std::vector<std::vector<double>> rows_of(const std::string& ply, std::size_t n) 
 class SmoothMesh : public InFolder {
  protected:
   std::vector<std::vector<double>> smoothed(const std::string& in, std::vector<std::string> options,
-                                            std::size_t rows = kSide * kSide) {
+                                            std::size_t rows = kMeshSide * kMeshSide) {
     put("in.ply", in);
     options.insert(options.begin(), {"smooth-mesh", "in.ply", "out.ply", "--force"});
     const Ran ran = run(options);
@@ -64,7 +64,7 @@ class SmoothMesh : public InFolder {
 };
 
 TEST_F(SmoothMesh, StrengthFieldHoldsBackAndFixedFieldFixes) {
-  const auto before = rows_of(bumpy_grid(""), kSide * kSide);
+  const auto before = rows_of(bumpy_grid(""), kMeshSide * kMeshSide);
   const auto half = smoothed(
       bumpy_grid("property float s\n", [](int i, int) { return i < 4    ? " 0"
                                                                : i == 4 ? " 0.5"
@@ -72,7 +72,7 @@ TEST_F(SmoothMesh, StrengthFieldHoldsBackAndFixedFieldFixes) {
       {"--flow", "laplacian", "--iterations", "1", "--strength-field", "s"});
   const auto whole = smoothed(bumpy_grid(""), {"--flow", "laplacian", "--iterations", "1"});
   for (std::size_t v = 0; v < before.size(); ++v) {
-    const double s = v / kSide < 4 ? 0 : v / kSide == 4 ? 0.5 : 1;
+    const double s = v / kMeshSide < 4 ? 0 : v / kMeshSide == 4 ? 0.5 : 1;
     for (std::size_t c = 0; c < 3; ++c)
       EXPECT_NEAR(half[v][c], before[v][c] + s * (whole[v][c] - before[v][c]), 1e-6) << v;
   }
@@ -80,11 +80,11 @@ TEST_F(SmoothMesh, StrengthFieldHoldsBackAndFixedFieldFixes) {
       smoothed(bumpy_grid("property uchar keep\n", [](int i, int j) { return i == j ? " 1" : " 0"; }),
                {"--flow", "implicit", "--fixed-field", "keep"});
   for (std::size_t v = 0; v < before.size(); ++v) {
-    if (v / kSide == v % kSide) {
+    if (v / kMeshSide == v % kMeshSide) {
       EXPECT_EQ(fixed[v][2], before[v][2]) << v;
     }
   }
-  EXPECT_NE(fixed[3 * kSide + 4][2], before[3 * kSide + 4][2]);
+  EXPECT_NE(fixed[3 * kMeshSide + 4][2], before[3 * kMeshSide + 4][2]);
 }
 
 TEST_F(SmoothMesh, DenoiseTakesStrengthsFromAFieldToo) {
@@ -93,10 +93,11 @@ TEST_F(SmoothMesh, DenoiseTakesStrengthsFromAFieldToo) {
   for (const char* flow : {"hc", "implicit"}) {
     const Ran ran = run({"denoise", "in.ply", "out.ply", "--force", "--flow", flow, "--strength-field", "s"});
     ASSERT_EQ(ran.code, 0) << ran.err;
-    const auto before = rows_of(in, kSide * kSide), after = rows_of(take("out.ply"), kSide * kSide);
+    const auto before = rows_of(in, kMeshSide * kMeshSide),
+               after = rows_of(take("out.ply"), kMeshSide * kMeshSide);
     double moved = 0;
     for (std::size_t v = 0; v < before.size(); ++v) {
-      if (v / kSide < 4) {
+      if (v / kMeshSide < 4) {
         EXPECT_EQ(after[v], before[v]) << v;
       }
       moved = std::max(moved, std::abs(after[v][2] - before[v][2]));
@@ -107,18 +108,18 @@ TEST_F(SmoothMesh, DenoiseTakesStrengthsFromAFieldToo) {
 }
 
 TEST_F(SmoothMesh, AxisAndPlaneFieldsLetVerticesSlide) {
-  const auto before = rows_of(bumpy_grid(""), kSide * kSide);
+  const auto before = rows_of(bumpy_grid(""), kMeshSide * kMeshSide);
   const std::string in = bumpy_grid("property int a\nproperty int p\n", [](int i, int) {
     return std::string(i < 4 ? " 1" : " 0") + (i > 4 ? " 1" : " 0");
   });
   const auto after = smoothed(in, {"--flow", "laplacian", "--iterations", "3", "--axis-field", "a",
                                    "--plane-field", "p", "--slide-direction", "0,0,2"});
   for (std::size_t v = 0; v < before.size(); ++v) {
-    if (v / kSide < 4) {
+    if (v / kMeshSide < 4) {
       EXPECT_EQ(after[v][0], before[v][0]) << v;
       EXPECT_EQ(after[v][1], before[v][1]) << v;
     }
-    if (v / kSide > 4) {
+    if (v / kMeshSide > 4) {
       EXPECT_EQ(after[v][2], before[v][2]) << v;
     }
   }
@@ -139,13 +140,13 @@ TEST_F(SmoothMesh, WrongFieldsAreToldBeforeAnythingIsWritten) {
 }
 
 TEST_F(SmoothMesh, RefineQuadruplesTheFacesThroughTheGivenVertices) {
-  const auto before = rows_of(bumpy_grid(""), kSide * kSide);
+  const auto before = rows_of(bumpy_grid(""), kMeshSide * kMeshSide);
   put("in.ply", bumpy_grid(""));
   const Ran ran =
       run({"smooth-mesh", "in.ply", "fine.ply", "--iterations", "0", "--refine", "1", "--encoding", "ascii"});
   ASSERT_EQ(ran.code, 0) << ran.err;
   const nlohmann::json in = nlohmann::json::parse(run({"info", "--json", "fine.ply"}).out);
-  EXPECT_EQ(in["points"], (2 * kSide - 1) * (2 * kSide - 1));
+  EXPECT_EQ(in["points"], (2 * kMeshSide - 1) * (2 * kMeshSide - 1));
   const auto after = rows_of(take("fine.ply"), before.size());
   for (std::size_t v = 0; v < before.size(); ++v) EXPECT_EQ(after[v], before[v]) << v;
 }
@@ -158,7 +159,7 @@ TEST_F(SmoothMesh, RidgesAreWrittenAsAField) {
   for (const auto& row : after) marked += row[3] != 0;
   EXPECT_GT(marked, 0);
   EXPECT_EQ(after[0][3], 0);
-  EXPECT_EQ(after[4 * kSide + 4][3], 1);
+  EXPECT_EQ(after[4 * kMeshSide + 4][3], 1);
 
   // The same with a third of the faces turned over.
   std::string mixed = bumpy_grid("");
@@ -168,7 +169,8 @@ TEST_F(SmoothMesh, RidgesAreWrittenAsAField) {
     std::istringstream words(line);
     std::string n, a, b, c;
     words >> n >> a >> b >> c;
-    text += row >= kSide * kSide && row % 3 == 0 ? n + " " + a + " " + c + " " + b + "\n" : line + "\n";
+    text +=
+        row >= kMeshSide * kMeshSide && row % 3 == 0 ? n + " " + a + " " + c + " " + b + "\n" : line + "\n";
   }
   const auto again = smoothed(text, {"--iterations", "0", "--ridges", "--ridge-curvature", "0.3"});
   bool same = true, opposite = true;  // an open sheet has no outside

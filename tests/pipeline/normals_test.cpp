@@ -20,7 +20,7 @@ namespace {
 using Eigen::Vector3d;
 using Flat = std::vector<double>;
 
-Flat flat(const Positions& points) {
+Flat row_major(const Positions& points) {
   Flat xyz;
   for (const auto& p : points) xyz.insert(xyz.end(), p.data(), p.data() + 3);
   return xyz;
@@ -34,7 +34,7 @@ Flat normals_of(const Flat& xyz, const NormalsOptions& options = {}, const Conte
 }
 
 Positions normals_of(const Positions& points, const NormalsOptions& options = {}) {
-  const Flat normals = normals_of(flat(points), options);
+  const Flat normals = normals_of(row_major(points), options);
   Positions rows;
   for (std::size_t i = 0; i < normals.size(); i += 3)
     rows.emplace_back(normals[i], normals[i + 1], normals[i + 2]);
@@ -230,7 +230,7 @@ TEST(Normals, DoNotDependOnTheOrderOfTheRows) {
 
 TEST(Normals, RowsThatAreNotFiniteGetNaN) {
   const double nan = std::nan("");
-  Flat xyz = flat(test::poisson_points(test::unit_sphere(), 500, 1));
+  Flat xyz = row_major(test::poisson_points(test::unit_sphere(), 500, 1));
   const Flat alone = normals_of(xyz);
   xyz.insert(xyz.begin(), {nan, 0, 0});
   const Flat normals = normals_of(xyz);
@@ -259,7 +259,7 @@ TEST(Normals, FewPointsAndPointsInALineGetSomeUnitVector) {
 TEST(Normals, AreTheSameBytesForAnyNumberOfThreads) {
   Positions points = clouds::sample(*clouds::make_plate(0.06), 5000, 1);
   clouds::add_noise(points, 0.015, 2);
-  const Flat xyz = flat(points);
+  const Flat xyz = row_major(points);
   Context one, four;
   one.threads = 1;
   four.threads = 4;
@@ -270,7 +270,7 @@ TEST(Normals, AreTheSameBytesForAnyNumberOfThreads) {
 }
 
 TEST(Normals, CancellingLeavesTheArrayAlone) {
-  const Flat xyz = flat(test::poisson_points(test::unit_sphere(), 2000, 1));
+  const Flat xyz = row_major(test::poisson_points(test::unit_sphere(), 2000, 1));
   Flat normals(xyz.size(), 7);
   Context context;
   context.progress = [](std::string_view stage, double) { return stage != "normals"; };

@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kUnit = 0.02;  // spacing of 2,500 points on the unit square
 constexpr double kSigma = 0.5 * kUnit, kGap = 6 * kSigma;
-constexpr int kNear = 24;
+constexpr int kAround = 24;
 
 /// Points with a shadow and a normal each, as the quadrics would give them.
 struct Scene {
@@ -48,7 +48,7 @@ struct Scene {
     std::vector<char> between;
     in_arena(context, [&] {
       between =
-          part_sheets(points, index, index.nearest(kNear, {}), kSigma, SheetsOptions{}, surfaces, context);
+          part_sheets(points, index, index.nearest(kAround, {}), kSigma, SheetsOptions{}, surfaces, context);
     });
     return between;
   }

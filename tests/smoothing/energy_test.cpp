@@ -41,7 +41,7 @@ FlowOptions flow(const char* name) {
   return o;
 }
 
-double thin_plate(const Mesh& mesh) {
+double thin_plate_of(const Mesh& mesh) {
   return thin_plate_energy(mesh.one_ring, umbrella(mesh, {}), mesh.positions, {});
 }
 
@@ -57,8 +57,8 @@ TEST(Energy, LaplacianLowersTheMembraneEnergy) {
 }
 
 TEST(Energy, BilaplacianAndHcLowerTheThinPlateEnergy) {
-  falls(flow("bilaplacian"), 10, thin_plate);
-  falls(flow("hc"), 10, thin_plate);
+  falls(flow("bilaplacian"), 10, thin_plate_of);
+  falls(flow("hc"), 10, thin_plate_of);
 }
 
 TEST(Energy, CurvatureFlowsLowerTheArea) {
@@ -80,7 +80,7 @@ TEST(Energy, ImplicitFairingLowersTheEnergyOfItsOrder) {
     o.order = 1;
     falls(o, 4, membrane);
     o.order = 2;
-    falls(o, 4, thin_plate);
+    falls(o, 4, thin_plate_of);
   }
 }
 

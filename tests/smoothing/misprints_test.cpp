@@ -19,12 +19,12 @@ using rfs_mesh::Mesh;
 
 namespace {
 
-Mesh run(Mesh mesh, const FlowOptions& options) {
+Mesh after(Mesh mesh, const FlowOptions& options) {
   EXPECT_TRUE(smooth(mesh, options, {}).ok());
   return mesh;
 }
 
-Mesh noisy_sphere() {
+Mesh noisy_unit_sphere() {
   Mesh mesh = support::icosphere(3);
   support::add_noise(mesh, 0.3 * support::mean_edge(mesh), 11);
   return mesh;
@@ -38,7 +38,7 @@ Positions umbrella_of(const Mesh& mesh, const Positions& x) {
 }
 
 TEST(Bilaplacian, ThePrintedPlusAmplifiesOursDamps) {
-  const Mesh noisy = noisy_sphere();
+  const Mesh noisy = noisy_unit_sphere();
   const auto energy = [&](const Positions& x) {
     return thin_plate_energy(noisy.one_ring, umbrella(noisy, {}), x, {});
   };
@@ -49,11 +49,11 @@ TEST(Bilaplacian, ThePrintedPlusAmplifiesOursDamps) {
   FlowOptions o;
   o.flow = "bilaplacian";
   o.iterations = 1;
-  EXPECT_LT(energy(run(noisy, o).positions), 0.5 * energy(noisy.positions));
+  EXPECT_LT(energy(after(noisy, o).positions), 0.5 * energy(noisy.positions));
 }
 
 TEST(Bilaplacian, IsHcWithoutTheOriginalPoint) {
-  const Mesh noisy = noisy_sphere();
+  const Mesh noisy = noisy_unit_sphere();
   FlowOptions bilaplacian, hc;
   bilaplacian.flow = "bilaplacian";
   bilaplacian.lambda = 0.3;
@@ -61,12 +61,12 @@ TEST(Bilaplacian, IsHcWithoutTheOriginalPoint) {
   hc.alpha = 0;
   hc.beta = 0.7;
   bilaplacian.iterations = hc.iterations = 5;
-  EXPECT_LT(support::rms_distance(run(noisy, bilaplacian).positions, run(noisy, hc).positions), 1e-14);
+  EXPECT_LT(support::rms_distance(after(noisy, bilaplacian).positions, after(noisy, hc).positions), 1e-14);
 }
 
 TEST(Taubin, IsOhtakesSixNotDesbrunsSign) {
   // q - (mu - lambda) U q - mu lambda U^2 q with U = -L; Desbrun 2.1 has the last sign turned for its mu < 0.
-  const Mesh noisy = noisy_sphere();
+  const Mesh noisy = noisy_unit_sphere();
   const double lambda = 0.6307, mu = 0.6732;
   const Positions first = umbrella_of(noisy, noisy.positions), second = umbrella_of(noisy, first);
   Positions six = noisy.positions, turned = noisy.positions;
@@ -77,7 +77,7 @@ TEST(Taubin, IsOhtakesSixNotDesbrunsSign) {
   FlowOptions o;
   o.flow = "taubin";
   o.iterations = 1;
-  const Mesh ours = run(noisy, o);
+  const Mesh ours = after(noisy, o);
   EXPECT_LT(support::rms_distance(ours.positions, six), 1e-14);
   const auto energy = [&](const Positions& x) {
     return thin_plate_energy(noisy.one_ring, umbrella(noisy, {}), x, {});
@@ -94,7 +94,7 @@ TEST(ModifiedCurvature, ThePrintedBracketIsNotTangentialOursIs) {
   with.iterations = without.iterations = 1;
   with.tangential = 1;
   without.tangential = 0;
-  const Positions a = run(sphere, with).positions, b = run(sphere, without).positions;
+  const Positions a = after(sphere, with).positions, b = after(sphere, without).positions;
   const rfs_mesh::Adjacency around = vertex_faces(sphere, {});
   double ours = 0, printed = 0;
   for (Index i = 0; i < a.size(); ++i) {

@@ -10,7 +10,7 @@ using rfs_mesh::Mesh;
 
 namespace {
 
-Mesh noisy_sphere() {
+Mesh rough_sphere() {
   Mesh mesh = support::icosphere(3);
   support::add_noise(mesh, 0.2 * support::mean_edge(mesh), 5);
   return mesh;
@@ -18,7 +18,7 @@ Mesh noisy_sphere() {
 
 TEST(Threshold, StopsByItself) {
   for (const char* name : {"laplacian", "curvature", "median-direction"}) {
-    Mesh mesh = noisy_sphere();
+    Mesh mesh = rough_sphere();
     FlowOptions o;
     o.flow = name;
     o.threshold = "constant";
@@ -29,7 +29,7 @@ TEST(Threshold, StopsByItself) {
     const Positions settled = mesh.positions;
     for (int step = 0; step < 50; ++step) flow.value()->step(mesh, {});
     EXPECT_LT(support::rms_distance(settled, mesh.positions), 1e-3 * support::mean_edge(mesh)) << name;
-    Mesh free = noisy_sphere();
+    Mesh free = rough_sphere();
     o.threshold = "none";
     o.iterations = 300;
     ASSERT_TRUE(smooth(free, o, {}).ok());
@@ -53,7 +53,7 @@ TEST(Threshold, RingMeansLeaveAnEvenSphereNearlyStill) {
 }
 
 TEST(Threshold, MovesByTheExcess) {
-  Mesh mesh = noisy_sphere(), free = mesh;
+  Mesh mesh = rough_sphere(), free = mesh;
   const Positions before = mesh.positions;
   FlowOptions o;
   o.flow = "laplacian";

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-std::string slurp(const fs::path& path) {
+std::string file_bytes(const fs::path& path) {
   std::ifstream in(path, std::ios::binary);
   std::ostringstream out;
   out << in.rdbuf();
@@ -53,7 +53,7 @@ TEST_F(Folder, WrittenCompleteAndNotReplacedWithoutForce) {
   std::ofstream(path) << "mine";
   EXPECT_EQ(write(path).error().code, ErrorCode::cannot_write);
   EXPECT_EQ(check_output(path, {}).error().code, ErrorCode::cannot_write);
-  EXPECT_EQ(slurp(path), "mine");
+  EXPECT_EQ(file_bytes(path), "mine");
   fs::permissions(path, fs::perms(0640));
   ASSERT_TRUE(write(path, true).ok());
   EXPECT_EQ(fs::status(path).permissions(), fs::perms(0640));
@@ -115,7 +115,7 @@ std::string as(const Cloud& cloud, Format format, bool drop = false) {
   return text.ok() ? text.value() : "refused: " + text.error().message;
 }
 
-Cloud parsed(const std::string& text) {
+Cloud parsed_text(const std::string& text) {
   return parse_cloud(text, "in", {}, {}).value();
 }
 
@@ -124,7 +124,7 @@ TEST(Xyz, SeparatorsCommentsNamesAndCountsComeBack) {
        {"1 2 3\n4 5 6\n", "# made by me\n\n1\t2\t3\n// between\n4\t5\t6", "1,2,3\r\n4,5,6\r\n",
         "1; 2; 3\n4; 5; 6\n\n# end\n", "2\n1 2 3 9\n4 5 6 8\n", "//X Y Z R\n1 2 3 9\n4 5 6 8\n",
         "\xEF\xBB\xBFi,x,y,z\n9,1,2,3\n8,4,5,6\n", "x y z\n1 2 3\n4 5 6\n", "+1 2e0 3.\n4 5 6\n"}) {
-    Cloud cloud = parsed(text);
+    Cloud cloud = parsed_text(text);
     EXPECT_EQ(cloud.format, Format::xyz) << text;
     EXPECT_EQ(positions(cloud), (std::vector<double>{1, 2, 3, 4, 5, 6})) << text;
     EXPECT_EQ(as(cloud, Format::xyz), text);
@@ -134,12 +134,12 @@ TEST(Xyz, SeparatorsCommentsNamesAndCountsComeBack) {
     expected.replace(expected.rfind('5'), 1, "5.5");
     EXPECT_EQ(as(cloud, Format::xyz), expected);
   }
-  EXPECT_EQ(parsed("//X Y Z R\n1 2 3 9\n").points().fields[3].name, "R");
-  EXPECT_EQ(parsed("1 2 3 9\n").points().fields[3].name, "column_4");
+  EXPECT_EQ(parsed_text("//X Y Z R\n1 2 3 9\n").points().fields[3].name, "R");
+  EXPECT_EQ(parsed_text("1 2 3 9\n").points().fields[3].name, "column_4");
 }
 
 TEST(Xyz, RowsTakenOutChangeTheCountAndKeepComments) {
-  Cloud cloud = parsed("3\n1 2 3\n# about the second\n4 5 6\n7 8 9");
+  Cloud cloud = parsed_text("3\n1 2 3\n# about the second\n4 5 6\n7 8 9");
   select_points(cloud, {0, 2});
   EXPECT_EQ(as(cloud, Format::xyz), "2\n1 2 3\n# about the second\n7 8 9");
 }
@@ -158,11 +158,11 @@ TEST(Off, VariantsComeBackAndMeshesAreRead) {
     EXPECT_EQ(as(mesh.cloud, Format::off), text);
     const std::string ply = as(mesh.cloud, Format::ply, true);
     EXPECT_EQ(parse_mesh(ply, "ply", {}, {}).value().faces, mesh.faces) << ply;
-    const Cloud back = parsed(as(parsed(ply), Format::off));
+    const Cloud back = parsed_text(as(parsed_text(ply), Format::off));
     EXPECT_EQ(positions(back), positions(mesh.cloud));
     EXPECT_EQ(back.points().fields.size(), mesh.cloud.points().fields.size());
   }
-  EXPECT_NE(as(parsed("OFF\n3 1 0\n0 0 0\n1 0 0\n1 1 0\n3 0 1 2 255 0 0\n"), Format::ply)
+  EXPECT_NE(as(parsed_text("OFF\n3 1 0\n0 0 0\n1 0 0\n1 1 0\n3 0 1 2 255 0 0\n"), Format::ply)
                 .find("colours of the faces"),
             std::string::npos);
 }
@@ -174,16 +174,16 @@ TEST(Convert, WhatCannotBeCarriedIsNamed) {
       "property float z\nproperty list uchar int tags\nelement face 1\nproperty list uchar int "
       "vertex_indices\nend_header\n"
       "7 1 2 3 1 5\n8 4 5 6 0\n3 0 1 0\n";
-  const std::string refused = as(parsed(ply), Format::pcd);
+  const std::string refused = as(parsed_text(ply), Format::pcd);
   EXPECT_NE(refused.find("field 'tags'"), std::string::npos) << refused;
   EXPECT_NE(refused.find("element 'face'"), std::string::npos) << refused;
-  EXPECT_EQ(as(parsed(ply), Format::pcd, true),
+  EXPECT_EQ(as(parsed_text(ply), Format::pcd, true),
             "# .PCD v0.7 - Point Cloud Data file format\n# hello\nVERSION 0.7\nFIELDS intensity x y z\nSIZE "
             "4 4 4 4\n"
             "TYPE F F F F\nCOUNT 1 1 1 1\nWIDTH 2\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 2\nDATA "
             "ascii\n7 1 2 3\n8 4 5 6\n");
-  EXPECT_EQ(as(parsed(ply), Format::xyz, true), "# hello\n# x y z intensity\n1 2 3 7\n4 5 6 8\n");
-  EXPECT_EQ(as(parsed(ply), Format::off, true), "OFF\n# hello\n2 1 0\n1 2 3\n4 5 6\n3 0 1 0\n");
+  EXPECT_EQ(as(parsed_text(ply), Format::xyz, true), "# hello\n# x y z intensity\n1 2 3 7\n4 5 6 8\n");
+  EXPECT_EQ(as(parsed_text(ply), Format::off, true), "OFF\n# hello\n2 1 0\n1 2 3\n4 5 6\n3 0 1 0\n");
 }
 
 TEST(Convert, GridAndViewpointTravelThroughPly) {
@@ -191,10 +191,10 @@ TEST(Convert, GridAndViewpointTravelThroughPly) {
       "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT "
       "1 1 1\nWIDTH 2\n"
       "HEIGHT 2\nVIEWPOINT 1.50 0 0 1 0 0 0\nPOINTS 4\nDATA ascii\n1 2 3\nnan nan nan\n4 5 6\n7 8 9\n";
-  const std::string ply = as(parsed(pcd), Format::ply);
+  const std::string ply = as(parsed_text(pcd), Format::ply);
   EXPECT_NE(ply.find("obj_info num_cols 2\n"), std::string::npos) << ply;
-  EXPECT_EQ(as(parsed(ply), Format::pcd), pcd);
-  EXPECT_NE(as(parsed(pcd), Format::xyz).find("grid of 2 x 2"), std::string::npos);
+  EXPECT_EQ(as(parsed_text(ply), Format::pcd), pcd);
+  EXPECT_NE(as(parsed_text(pcd), Format::xyz).find("grid of 2 x 2"), std::string::npos);
 }
 
 TEST(Convert, DigitsBeyondFloatAreNotLostSilently) {
@@ -202,7 +202,7 @@ TEST(Convert, DigitsBeyondFloatAreNotLostSilently) {
       "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float "
       "z\nend_header\n"
       "512345.123456 0.1 0.100000001\n";
-  Cloud cloud = parsed(ply);
+  Cloud cloud = parsed_text(ply);
   WriteOptions binary;
   binary.encoding = Encoding::binary_little_endian;
   const auto refused = serialize_cloud(cloud, binary, {});
@@ -232,15 +232,15 @@ TEST(Coordinates, UpperCaseDuplicatesAndWholeNumbers) {
 
 TEST(Convert, CoordinatesAreNeverLeftOut) {
   const std::string pcd = "FIELDS x y z\nSIZE 4 8 4\nTYPE F I F\nPOINTS 1\nDATA ascii\n1 2 3\n";
-  EXPECT_NE(as(parsed(pcd), Format::ply).find("field 'y'"), std::string::npos);
-  const Cloud ply = parsed(as(parsed(pcd), Format::ply, true));
+  EXPECT_NE(as(parsed_text(pcd), Format::ply).find("field 'y'"), std::string::npos);
+  const Cloud ply = parsed_text(as(parsed_text(pcd), Format::ply, true));
   EXPECT_EQ(ply.points().fields[1].type, Scalar::float64);
   EXPECT_EQ(positions(ply), (std::vector<double>{1, 2, 3}));
 }
 
 TEST(Mesh, EdgesAndFacesAreWrittenAndRead) {
   const Positions points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-  const Cloud cloud = parsed(as(make_mesh_file(points, {{0, 1, 2}}, {{0, 1}, {1, 2}}), Format::ply));
+  const Cloud cloud = parsed_text(as(make_mesh_file(points, {{0, 1, 2}}, {{0, 1}, {1, 2}}), Format::ply));
   EXPECT_EQ(faces_of(cloud), (std::vector<rfs_mesh::Face>{{0, 1, 2}}));
   EXPECT_EQ(edges_of(cloud), (std::vector<rfs_mesh::Edge>{{0, 1}, {1, 2}}));
 }

@@ -28,7 +28,7 @@ std::string written(const Cloud& cloud, std::optional<Encoding> encoding = {}) {
   return serialize_cloud(cloud, options, {}).value();
 }
 
-Cloud parsed(const std::string& bytes) {
+Cloud parsed_bytes(const std::string& bytes) {
   return parse_cloud(bytes, "test", {}, {}).value();
 }
 
@@ -54,7 +54,7 @@ TEST(Scans, ComeBackBitForBit) {
     ++seen;
     const Cloud cloud = read_cloud(entry.path(), {}, {}).value();
     const std::string ours = written(cloud);
-    const Cloud again = parsed(ours);
+    const Cloud again = parsed_bytes(ours);
     EXPECT_EQ(again.points().data, cloud.points().data) << entry.path();
     EXPECT_EQ(written(again), ours) << entry.path();
     if (cloud.encoding != Encoding::binary_compressed) {
@@ -74,7 +74,7 @@ TEST(Ply, HeaderAndOtherElementsSurvive) {
       "comment mid\r\nelement vertex 2\r\nproperty float x\r\nproperty list uchar int tags\r\ncomment in\r\n"
       "property float y\r\nproperty double z\r\nelement face 1\r\nproperty list uchar int vertex_indices\r\n"
       "end_header\r\n1.50\r\n1 2 7 8 2.0 3\r\n4 0 5.25  6\r\n2 0 1\r\n";
-  Cloud cloud = parsed(file);
+  Cloud cloud = parsed_bytes(file);
   EXPECT_EQ(written(cloud), file);
   EXPECT_EQ(positions(cloud), (std::vector<double>{1, 2, 3, 4, 5.25, 6}));
   const double moved[] = {1, 2, 3.5, 4, 5.25, 6};
@@ -82,7 +82,7 @@ TEST(Ply, HeaderAndOtherElementsSurvive) {
   std::string expected = file;
   expected.replace(expected.find("2.0 3\r"), 5, "2.0 3.5");
   EXPECT_EQ(written(cloud), expected);
-  const Cloud binary = parsed(written(cloud, Encoding::binary_big_endian));
+  const Cloud binary = parsed_bytes(written(cloud, Encoding::binary_big_endian));
   EXPECT_EQ(positions(binary), (std::vector<double>(moved, moved + 6)));
   EXPECT_EQ(written(binary, Encoding::binary_little_endian), written(cloud, Encoding::binary_little_endian));
 }

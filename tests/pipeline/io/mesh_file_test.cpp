@@ -15,7 +15,7 @@ const Positions kPoints = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0.1}, {5, 5, 
 const std::vector<Face> kFaces = {{0, 1, 2}, {0, 2, 3}};
 const std::vector<Edge> kEdges = {{2, 4}, {3, 4}};
 
-Cloud parsed(const std::string& text) {
+Cloud parsed_mesh_file(const std::string& text) {
   return parse_cloud(text, "test", {}, {}).value();
 }
 
@@ -25,7 +25,7 @@ TEST(MeshFile, WhatIsWrittenReadsBackInEveryEncoding) {
        {Encoding::ascii, Encoding::binary_little_endian, Encoding::binary_big_endian}) {
     WriteOptions options;
     options.encoding = encoding;
-    const Cloud back = parsed(serialize_cloud(cloud, options, {}).value());
+    const Cloud back = parsed_mesh_file(serialize_cloud(cloud, options, {}).value());
     const std::vector<double> xyz = positions(back);
     ASSERT_EQ(xyz.size(), 3 * kPoints.size());
     for (std::size_t i = 0; i < xyz.size(); ++i) EXPECT_EQ(xyz[i], kPoints[i / 3][Eigen::Index(i % 3)]);
@@ -35,7 +35,7 @@ TEST(MeshFile, WhatIsWrittenReadsBackInEveryEncoding) {
 }
 
 TEST(MeshFile, PolygonsBecomeFansAndOtherPropertiesAreSkipped) {
-  const Cloud cloud = parsed(
+  const Cloud cloud = parsed_mesh_file(
       "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\n"
       "element face 3\nproperty uchar red\nproperty list uchar int vertex_indices\nproperty float "
       "area\nend_header\n"
@@ -53,7 +53,7 @@ TEST(MeshFile, ACloudHasNeither) {
 
 TEST(MeshFile, MissingCornersAreNamed) {
   for (const char* bad : {"3 0 1 3", "3 0 -1 2"}) {
-    const Cloud cloud = parsed(
+    const Cloud cloud = parsed_mesh_file(
         std::string(
             "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
             "element face 1\nproperty list uchar int vertex_index\nend_header\n0 0 0\n1 0 0\n1 1 0\n") +
