@@ -13,15 +13,15 @@ namespace {
 
 // From the development shapes at 10,000 and 50,000 points, noise of 1 to 3 %, also along the ray and with
 // strays: where walls are hidden (rotor) the evidence is 8.4 to 180, elsewhere at most 4.2.
-constexpr double kEvidence = 7;         // nats
-constexpr float kLouder = 1.3F;         // v / c from which a place counts
-constexpr float kLoudest = 4;           // v: beyond, one sees two sheets
-constexpr double kLeastShare = 0.05;    // of the cloud
-constexpr float kMostOwn = 0.25F;       // points that were hardly smoothed say nothing
-constexpr double kPrior = 0.15;         // standard deviation of ln c
-constexpr int kRounds = 4, kAgain = 4;  // local means in all 16, over some 500 points
-constexpr float kNone = 1e9F;           // in lanes without a point: its values count as too large
-constexpr double kFar = 4;              // sigma: residuals beyond belong to strays
+constexpr double kEvidence = 7;              // nats
+constexpr float kLouder = 1.3F;              // v / c from which a place counts
+constexpr float kLoudest = 4;                // v: beyond, one sees two sheets
+constexpr double kLeastSheetShare = 0.05;    // of the cloud
+constexpr float kMostOwn = 0.25F;            // points that were hardly smoothed say nothing
+constexpr double kPrior = 0.15;              // standard deviation of ln c
+constexpr int kSheetRounds = 4, kAgain = 4;  // local means in all 16, over some 500 points
+constexpr float kNone = 1e9F;                // in lanes without a point: its values count as too large
+constexpr double kFar = 4;                   // sigma: residuals beyond belong to strays
 
 /// So many points are weighed side by side.
 using Lanes = Eigen::Array<float, 16, 1>;
@@ -74,7 +74,7 @@ HiddenSheets best_evidence(const std::vector<float>& residual, const std::vector
         },
         [](Sum a, const Sum& b) { return a += b; });
     const double unlikely = std::log(c) / kPrior, evidence = sum.evidence - unlikely * unlikely / 2;
-    if (double(sum.points) < kLeastShare * double(n) || evidence <= best.evidence) continue;
+    if (double(sum.points) < kLeastSheetShare * double(n) || evidence <= best.evidence) continue;
     best.evidence = evidence;
     best.variance = c;
   }
@@ -94,7 +94,7 @@ HiddenSheets split_hidden_sheets(const HeightField& field, double sigma, std::ve
   // A mean over few points follows its own points and makes any noise look like two sheets: where it does not
   // even then, one over more would not either.
   HiddenSheets found;
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kSheetRounds; ++round) {
     for (int again = 0; again < kAgain; ++again) v = field.local_mean(v, context);
     found = best_evidence(residual, own, v, context);
     if (found.evidence < kEvidence) return found;
