@@ -84,7 +84,7 @@ HiddenSheets best_evidence(const std::vector<float>& residual, const std::vector
 }  // namespace
 
 HiddenSheets split_hidden_sheets(const HeightField& field, double sigma, std::vector<float>& height,
-                                 std::vector<float>& own, const Context& context) {
+                                 const std::vector<float>& own, const Context& context) {
   const std::size_t n = field.size();
   std::vector<float> residual(n), v(n);
   for_each_index(context, n, [&](std::size_t i) {
@@ -101,11 +101,9 @@ HiddenSheets split_hidden_sheets(const HeightField& field, double sigma, std::ve
   }
   const double c = found.variance;
   found.split = sum_over(context, n, std::size_t(0), [&](std::size_t i) {
-    const double mean = double(v[i]), share = double(own[i]);
+    const double mean = double(v[i]);
     if (mean < double(kLouder) * c) return std::size_t(0);
-    const double d = std::sqrt(mean - c), side = std::tanh(d * double(residual[i]) / c);
-    height[i] = float(double(height[i]) + sigma * d * side);
-    own[i] = float(share + (1 - share) * d * d / c * (1 - side * side));
+    height[i] += float(std::copysign(sigma * std::sqrt(mean - c), double(residual[i])));
     return std::size_t(1);
   });
   return found;

@@ -2,10 +2,11 @@
 ///
 /// Below about two sigma between them, the points of both scatter about the surface half-way like those of
 /// one, only wider: with variance v > c where the rest of the cloud has c. What pulls every point to the
-/// middle would then make a film of the wall. With the sheets at +-d of the middle, d^2 = v - c, and noise
-/// of variance c the best guess of where a point with the residual e belongs is
-///
-///     E[sheet | e] = d tanh(d e / c).
+/// middle would then make a film of the wall. The sheets are at +-d of the middle, d^2 = v - c with noise of
+/// variance c, and a point goes to the nearer one. Its own sheet is the other one for up to a third of them,
+/// and the best guess in the mean square would be d tanh(d e / c) for the residual e; but half-way between
+/// the sheets there is no surface: on rotor (10,000 points, noise of 2 %) the mean squared distance to it is
+/// 0.13 instead of 0.17 of sigma^2, and 96 % of the normals point outward instead of 87 %.
 ///
 /// Noise that is louder in some places has a larger v as well, and no neighbourhood has the points to tell
 /// (one nat takes some 500 of them); the cloud as a whole does. Both explanations are laid beside each other
@@ -18,7 +19,7 @@
 /// (ln c)^2 / 2 (0.15)^2 for a noise that was measured wrongly, is the evidence for two sheets at the c where
 /// it is largest. Walls make the measured noise too high themselves, so c must be found.
 ///
-/// Source: the posterior mean of a symmetric two-point prior; a likelihood ratio of two simple hypotheses.
+/// Source: a likelihood ratio of two simple hypotheses.
 /// Residuals in steps (depths of a sensor) look a little like two sheets: fewer than a twentieth of the cloud
 /// says nothing.
 #pragma once
@@ -37,9 +38,9 @@ struct HiddenSheets {
 };
 
 /// Moves `height` (n: the smoothed heights over the field, world units) of points on hidden double sheets to
-/// the nearer one, and their `own` share along (n, automatic.h). \param sigma the noise, world units, > 0.
+/// the nearer one. \param sigma the noise, world units, > 0.
 /// O(n); parallel, the same bits for any number of threads.
 HiddenSheets split_hidden_sheets(const HeightField& field, double sigma, std::vector<float>& height,
-                                 std::vector<float>& own, const Context& context);
+                                 const std::vector<float>& own, const Context& context);
 
 }  // namespace rfsmooth::smoothing

@@ -1,8 +1,10 @@
 #include "rfsmooth/rfs_mesh/wall_sides.h"
 
+#include <cmath>
 #include <random>
 #include <stdexcept>
 
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include "support/shapes.h"
@@ -67,7 +69,7 @@ TEST(WallSides, WhatIsRightStays) {
     EXPECT_EQ(turn_to_own_sheet(sheets.points, near_of(sheets.points), normals, {}), 0u);
     EXPECT_EQ(normals, sheets.normals);
   }
-  Positions sphere = test::poisson_points(test::sphere(), 5000, 1), normals = sphere;
+  Positions sphere = test::poisson_points(test::unit_sphere(), 5000, 1), normals = sphere;
   for (auto& n : normals) n.normalize();
   const Positions before = normals;
   EXPECT_EQ(turn_to_own_sheet(sphere, near_of(sphere), normals, {}), 0u);
