@@ -73,7 +73,7 @@ NormalsReport run(const double* xyz, std::size_t n, const NormalsOptions& option
       orient(connection.mesh, connection.emst, connection.bridges, viewpoint, side, context, &calm);
   settle(calm, index, connection.mesh, side, context);
   if (!viewpoint) rfs_mesh::turn_out_of_thin_parts(index, side, context);
-  rfs_mesh::turn_to_own_sheet(calm, near, side, context);
+  rfs_mesh::turn_to_own_sheet(cloud.points, near, side, context);
   context.check_stop();
   for (std::size_t i = 0; i < n; ++i) {
     const Index p = cloud.of_input[i];

@@ -1,5 +1,6 @@
 #include "rfsmooth/rfs_mesh/wall_sides.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <vector>
@@ -34,7 +35,8 @@ bool on_other_sheet(const Positions& points, const Positions& normals, std::size
                     const Adjacency::Row& row) {
   const Eigen::Vector3d& normal = normals[i];
   const TangentPlane plane(normal);
-  const double square = 1.05 * (points[row[row.size() - 1]] - points[i]).squaredNorm();
+  double square = 0;
+  for (const Index j : row) square = std::max(square, 1.05 * (points[j] - points[i]).squaredNorm());
   if (!(square > 0)) return false;
   const double in_radii = 1 / std::sqrt(square);
   Eigen::Matrix4d a = Eigen::Matrix4d::Zero();
@@ -63,7 +65,7 @@ bool on_other_sheet(const Positions& points, const Positions& normals, std::size
 
 std::size_t turn_to_own_sheet(const Positions& points, const NeighborTable& near, Positions& normals,
                               const Context& context) {
-  if (near.size() != points.size() || normals.size() != points.size())
+  if (normals.size() != points.size() || (near.k > 0 && near.size() != points.size()))
     throw std::invalid_argument("turn_to_own_sheet: points, neighbours and normals differ in number");
   std::size_t turned = 0;
   if (near.k == 0) return turned;

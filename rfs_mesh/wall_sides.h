@@ -20,7 +20,9 @@
 namespace rfsmooth::rfs_mesh {
 
 /// Turns those of the oriented `normals` (n x 3, unit) of `points` (n x 3) whose points lie on the other
-/// sheet, in place; returns how often it turned one. `near`: at least 64 neighbours make two sheets of 30.
+/// sheet, in place; returns how often it turned one. `near`: at least 64
+/// neighbours make two sheets of 30; they may be those of places near the points, as where a first look put
+/// them.
 /// Points that see less than a seventh of their neighbours with opposite normals are left alone. O(n k),
 /// little where no two sheets are near; parallel, the same bytes for any number of threads.
 /// \throw std::invalid_argument if the sizes differ.

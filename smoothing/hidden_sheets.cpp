@@ -17,6 +17,7 @@ constexpr double kEvidence = 7;              // nats
 constexpr float kLouder = 1.3F;              // v / c from which a place counts
 constexpr float kLoudest = 4;                // v: beyond, one sees two sheets
 constexpr double kLeastSheetShare = 0.05;    // of the cloud
+constexpr double kMostSheetShare = 0.75;     // more is another kind of noise; rotor's walls are at most 0.62
 constexpr float kMostOwn = 0.25F;            // points that were hardly smoothed say nothing
 constexpr double kPrior = 0.15;              // standard deviation of ln c
 constexpr int kSheetRounds = 4, kAgain = 4;  // local means in all 16, over some 500 points
@@ -50,6 +51,7 @@ HiddenSheets best_evidence(const std::vector<float>& residual, const std::vector
                            const std::vector<float>& v, const Context& context) {
   const std::size_t n = v.size();
   HiddenSheets best;
+  std::size_t points = 0;  // at the best c
   for (double c = 1.1; c > 0.55; c *= 0.9) {
     const Sum sum = reduce_blocks(
         context, n, Sum(),
@@ -64,11 +66,11 @@ HiddenSheets best_evidence(const std::vector<float>& residual, const std::vector
             };
             const Lanes mean = lanes(v), share = lanes(own);
             const auto counts = share <= kMostOwn && mean >= kLouder * float(c) && mean <= kLoudest;
-            const auto points = std::size_t(counts.count());
-            if (points == 0) continue;
+            const auto counted = std::size_t(counts.count());
+            if (counted == 0) continue;
             const Lanes evidence = for_sheets(lanes(residual), mean - float(c), float(c) * (1 - 2 * share));
             part.evidence += double(counts.select(evidence, 0).sum());
-            part.points += points;
+            part.points += counted;
           }
           return part;
         },
@@ -77,7 +79,9 @@ HiddenSheets best_evidence(const std::vector<float>& residual, const std::vector
     if (double(sum.points) < kLeastSheetShare * double(n) || evidence <= best.evidence) continue;
     best.evidence = evidence;
     best.variance = c;
+    points = sum.points;
   }
+  if (double(points) > kMostSheetShare * double(n)) best.evidence = 0;
   return best;
 }
 

@@ -15,12 +15,18 @@ namespace {
 
 constexpr int kSide = 120;
 
+enum class Noise { gaussian, uniform };
+
 /// Noisy heights over a flat guide, smoothed to zero, where points of the left half truly are at +-`wall` and
 /// those of the right half have `louder` times the noise of 1. `truth`: where they are without noise.
 struct Sheet {
-  Sheet(double wall, double louder) {
+  Sheet(double wall, double louder, Noise kind = Noise::gaussian) {
     std::mt19937 random(7);
-    std::normal_distribution<double> noise;
+    std::normal_distribution<double> gauss;
+    std::uniform_real_distribution<double> even(-std::sqrt(3.0), std::sqrt(3.0));
+    const auto noise = [&](std::mt19937& engine) {
+      return kind == Noise::uniform ? even(engine) : gauss(engine);
+    };
     Positions guide, data;
     for (int i = 0; i < kSide; ++i)
       for (int j = 0; j < kSide; ++j) {
@@ -70,6 +76,14 @@ TEST(HiddenSheets, LouderNoiseIsNotTakenForThem) {
     EXPECT_EQ(found.split, 0u);
     EXPECT_EQ(sheet.height, before);
   }
+}
+
+// It is flatter than Gaussian noise, as that of two sheets is.
+TEST(HiddenSheets, UniformNoiseIsNotTakenForThem) {
+  Sheet sheet(0, 1, Noise::uniform);
+  const std::vector<float> before = sheet.height;
+  EXPECT_EQ(split_hidden_sheets(*sheet.field, 1, sheet.height, sheet.own, {}).split, 0u);
+  EXPECT_EQ(sheet.height, before);
 }
 
 }  // namespace
