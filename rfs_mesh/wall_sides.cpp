@@ -17,11 +17,11 @@ namespace {
 
 // From rotor, armadillo and femur at 50,000 points after noise of 1 %: what is right there at the end hardly
 // depends on them.
-constexpr int kRounds = 2;            // a side that was put right helps others
+constexpr int kWallRounds = 2;        // a side that was put right helps others
 constexpr double kParallel = 0.5;     // cosine
 constexpr double kOtherSheet = 0.15;  // least share of its neighbours
 constexpr std::size_t kGlance = 4;    // at every so many neighbours first: one on another sheet is no wall
-constexpr double kRidge = 1e-9;
+constexpr double kWallRidge = 1e-9;
 
 bool faces_another(const Positions& normals, std::size_t i, const Adjacency::Row& row) {
   std::size_t opposite = 0;
@@ -55,7 +55,7 @@ bool on_other_sheet(const Positions& points, const Positions& normals, std::size
     opposite += cosine < 0 ? weight : 0;
   }
   if (!(opposite > kOtherSheet * all)) return false;
-  a.diagonal().array() += kRidge * all;
+  a.diagonal().array() += kWallRidge * all;
   const Eigen::Vector4d x = a.ldlt().solve(right);
   const double middle = x[0], apart = x[3];
   return middle > 0 && middle < 2 * apart;
@@ -70,7 +70,7 @@ std::size_t turn_to_own_sheet(const Positions& points, const NeighborTable& near
   std::size_t turned = 0;
   if (near.k == 0) return turned;
   std::vector<char> other(points.size());
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kWallRounds; ++round) {
     for_each_index(context, points.size(), [&](std::size_t i) {
       const Adjacency::Row row = near[i];
       other[i] = faces_another(normals, i, row) && on_other_sheet(points, normals, i, row) ? 1 : 0;

@@ -15,7 +15,7 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 using Vector9 = Eigen::Matrix<double, 9, 1>;
 using Matrix9 = Eigen::Matrix<double, 9, 9>;
 
-constexpr int kRounds = 12;
+constexpr int kLayerRounds = 12;
 constexpr double kRidge = 1e-6;          // of the normal equations, beside the weights
 constexpr double kLeastWeights = 30;     // nine unknowns, and
 constexpr double kUnknowns = 13;         // what they take of the variance: the weights are not all one
@@ -87,7 +87,7 @@ void TwoLayers::fit_one(std::vector<LayerPoint>& points) {
 }
 
 void TwoLayers::fit_two(std::vector<LayerPoint>& points) {
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kLayerRounds; ++round) {
     Matrix9 a = Matrix9::Zero();
     Vector9 right = Vector9::Zero();
     for (const LayerPoint& p : points) {
