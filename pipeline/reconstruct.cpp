@@ -53,7 +53,7 @@ Positions working_normals(const std::vector<double>& xyz, const rfs_mesh::Workin
 /// What the methods leave undone.
 void clean_up(rfs_mesh::Mesh& mesh, const SurfaceInput& input, const ReconstructOptions& options,
               bool closes_all, ReconstructReport& report, const Context& context) {
-  constexpr std::size_t kSpeck = 100;
+  constexpr std::size_t kSpeck = 200;  // faces: a closed piece of a hundred points
   report.raw_faces = mesh.faces.size();
   const double trim = options.trim.resolve(input.spacing),
                longest = options.fill_holes.resolve(input.spacing);

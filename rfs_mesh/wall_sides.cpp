@@ -21,6 +21,7 @@ constexpr int kWallRounds = 2;        // a side that was put right helps others
 constexpr double kParallel = 0.5;     // cosine
 constexpr double kOtherSheet = 0.15;  // least share of its neighbours
 constexpr std::size_t kGlance = 4;    // at every so many neighbours first: one on another sheet is no wall
+constexpr double kFlatness = 0.5;     // mean square about the sheets, beside that of their distance
 constexpr double kWallRidge = 1e-9;
 
 bool faces_another(const Positions& normals, std::size_t i, const Adjacency::Row& row) {
@@ -41,7 +42,7 @@ bool on_other_sheet(const Positions& points, const Positions& normals, std::size
   const double in_radii = 1 / std::sqrt(square);
   Eigen::Matrix4d a = Eigen::Matrix4d::Zero();
   Eigen::Vector4d right = Eigen::Vector4d::Zero();
-  double all = 0, opposite = 0;
+  double all = 0, opposite = 0, squares = 0;
   for (const Index j : row) {
     const double cosine = normal.dot(normals[j]);
     if (std::abs(cosine) < kParallel) continue;
@@ -50,7 +51,9 @@ bool on_other_sheet(const Positions& points, const Positions& normals, std::size
     const Eigen::Vector2d at = plane.project(r);
     const Eigen::Vector4d f(1, at.x(), at.y(), cosine < 0 ? -1 : 1);
     a.noalias() += weight * f * f.transpose();
-    right += weight * normal.dot(r) * f;
+    const double height = normal.dot(r);
+    right += weight * height * f;
+    squares += weight * height * height;
     all += weight;
     opposite += cosine < 0 ? weight : 0;
   }
@@ -58,7 +61,8 @@ bool on_other_sheet(const Positions& points, const Positions& normals, std::size
   a.diagonal().array() += kWallRidge * all;
   const Eigen::Vector4d x = a.ldlt().solve(right);
   const double middle = x[0], apart = x[3];
-  return middle > 0 && middle < 2 * apart;
+  const double left = (squares - x.dot(right)) / all;  // about the two planes, mean square
+  return middle > 0 && middle < 2 * apart && left < kFlatness * apart * apart;
 }
 
 }  // namespace

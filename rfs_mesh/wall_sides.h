@@ -8,7 +8,8 @@
 ///
 /// is fitted by weighted least squares: two parallel planes with a middle, m above the point. In a wall
 /// (d > 0) a point below the middle (m > 0) belongs to the sheet whose normal is -a, unless it is farther
-/// from the middle than the sheets are from each other: then it is on neither.
+/// from the middle than the sheets are from each other: then it is on neither. The two planes must be plain
+/// to see: the points about them by less than half as much, root mean square, as they are from the middle.
 #pragma once
 
 #include <cstddef>
