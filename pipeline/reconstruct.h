@@ -80,9 +80,9 @@ struct Reconstruction {
 };
 
 /// Makes a surface from n x 3 row-major coordinates (world units; rows that are not finite, and outliers that
-/// denoising found, are left out). Pieces of fewer than 100 faces are dropped as specks unless all are so
-/// small. Errors: as `denoise`, and what the method says; no_usable_points if there is no surface. The same
-/// bytes for any number of threads if the method's are.
+/// denoising found, are left out). Pieces of fewer than 200 faces (100 of a method that closes all) are
+/// dropped as specks unless all are so small. Errors: as `denoise`, and what the method says;
+/// no_usable_points if there is no surface. The same bytes for any number of threads if the method's are.
 Result<Reconstruction> reconstruct(std::vector<double> xyz, const ReconstructOptions& options,
                                    const SurfaceMethod& method, const Context& context);
 

@@ -23,7 +23,8 @@ constexpr double kPrior = 0.15;              // standard deviation of ln c
 constexpr int kSheetRounds = 4, kAgain = 4;  // local means in all 16, over some 500 points
 constexpr float kNone = 1e9F;                // in lanes without a point: its values count as too large
 constexpr double kFar = 4;                   // sigma: residuals beyond belong to strays
-constexpr double kSharper = 4;               // than the posterior mean (hidden_sheets.h)
+constexpr double kSharper = 4;               // than the posterior mean, where
+constexpr double kSharpFrom = 0.5;           // d^2 / c is above this (hidden_sheets.h)
 
 /// So many points are weighed side by side.
 using Lanes = Eigen::Array<float, 16, 1>;
@@ -109,7 +110,8 @@ HiddenSheets split_hidden_sheets(const HeightField& field, double sigma, std::ve
     const double mean = double(v[i]);
     if (mean < double(kLouder) * c) return std::size_t(0);
     const double d = std::sqrt(mean - c);
-    height[i] += float(sigma * d * std::tanh(kSharper * d * double(residual[i]) / c));
+    const double sharper = d * d > kSharpFrom * c ? kSharper : 1;
+    height[i] += float(sigma * d * std::tanh(sharper * d * double(residual[i]) / c));
     return std::size_t(1);
   });
   return found;
