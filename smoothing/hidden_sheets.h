@@ -45,9 +45,9 @@ struct HiddenSheets {
 };
 
 /// Moves `height` (n: the smoothed heights over the field, world units) of points on hidden double sheets to
-/// the nearer one,
-/// or almost. \param sigma the noise, world units, > 0.
-/// O(n); parallel, the same bits for any number of threads.
+/// the nearer one, or almost. `own` (n, automatic.h) is read only: how much more of its own height such a
+/// point then has is not in it. \param sigma the noise, world units, > 0. O(n); parallel, the same bits for
+/// any number of threads.
 HiddenSheets split_hidden_sheets(const HeightField& field, double sigma, std::vector<float>& height,
                                  const std::vector<float>& own, const Context& context);
 
