@@ -1,5 +1,3 @@
-#include "rfsmooth/pipeline/compare.h"
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -9,10 +7,14 @@
 
 #include <Eigen/Geometry>
 
-#include "rfsmooth/pipeline/true_surface.h"
-#include "rfsmooth/rfs_mesh/parallel.h"
+#include <rfsmooth/compare.h>
 
-namespace rfsmooth::pipeline {
+#include "base/parallel.h"
+#include "pipeline/true_surface.h"
+
+namespace rfsmooth {
+
+using namespace pipeline;
 
 using Eigen::Vector3d;
 
@@ -71,7 +73,7 @@ TrueSurface true_surface(const MeshView& mesh, const Vector3d& origin) {
   Positions vertices(mesh.n);
   for (std::size_t v = 0; v < mesh.n; ++v)
     vertices[v] = Eigen::Map<const Vector3d>(mesh.xyz + 3 * v) - origin;
-  std::vector<rfs_mesh::Face> faces(mesh.faces, mesh.faces + mesh.m);
+  std::vector<Face> faces(mesh.faces, mesh.faces + mesh.m);
   for (std::size_t f = 0; f < faces.size(); ++f)
     for (const Index v : faces[f])
       if (v >= mesh.n || !vertices[v].allFinite())
@@ -232,4 +234,4 @@ Result<CompareReport> compare(const CloudView& cloud, const Truth& truth, const 
   });
 }
 
-}  // namespace rfsmooth::pipeline
+}  // namespace rfsmooth

@@ -1,5 +1,3 @@
-#include "rfsmooth/pipeline/denoise.h"
-
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -7,19 +5,25 @@
 
 #include <fmt/format.h>
 
-#include "rfsmooth/pipeline/outliers.h"
-#include "rfsmooth/rfs_mesh/median.h"
-#include "rfsmooth/rfs_mesh/parallel.h"
-#include "rfsmooth/rfs_mesh/points.h"
-#include "rfsmooth/rfs_mesh/stage_times.h"
+#include <rfsmooth/denoise.h>
 
-namespace rfsmooth::pipeline {
+#include "base/median.h"
+#include "base/parallel.h"
+#include "base/stopwatch.h"
+#include "pipeline/outliers.h"
+#include "rfs_mesh/connect/connect.h"
+#include "rfs_mesh/connect/edge_swap.h"
+#include "rfs_mesh/points.h"
+
+namespace rfsmooth {
+
+using namespace pipeline;
 
 namespace {
 
 /// Smooths the mesh, alternating steps and swaps.
-void alternate(smoothing::Flow& flow, rfs_mesh::Mesh& mesh, const DenoiseOptions& options,
-               DenoiseReport& report, const Context& context) {
+void alternate(Flow& flow, Mesh& mesh, const DenoiseOptions& options, DenoiseReport& report,
+               const Context& context) {
   const int steps = *options.flow.iterations;
   // The positions after the last step are the result: connectivity no longer matters.
   const bool swap = options.swap && steps > 1;
@@ -50,7 +54,7 @@ void alternate(smoothing::Flow& flow, rfs_mesh::Mesh& mesh, const DenoiseOptions
 /// The median edge length around each vertex: as far as it may move. A noisy point is at least as far from
 /// its neighbours as from the surface, so this does not stop a flow from taking noise away; it stops a vertex
 /// beside a hole or a stray, whose ring is lopsided, from being dragged out of its neighbourhood.
-std::vector<double> reaches(const rfs_mesh::Mesh& mesh, const Context& context) {
+std::vector<double> reaches(const Mesh& mesh, const Context& context) {
   std::vector<double> reach(mesh.positions.size(), 0);
   for_blocks(context, reach.size(), 4096, [&](std::size_t begin, std::size_t end) {
     std::vector<double> lengths;
@@ -58,7 +62,7 @@ std::vector<double> reaches(const rfs_mesh::Mesh& mesh, const Context& context) 
       lengths.clear();
       for (const Index j : mesh.one_ring[i])
         lengths.push_back((mesh.positions[i] - mesh.positions[j]).norm());
-      reach[i] = rfs_mesh::median(lengths);
+      reach[i] = rfsmooth::median(lengths);
     }
   });
   return reach;
@@ -147,7 +151,7 @@ DenoiseReport run(double* xyz, std::size_t n, const DenoiseOptions& options, con
     report.distinct = cloud.points.size();
     std::vector<Index>().swap(cloud.multiplicity);  // nobody asks
   }
-  rfs_mesh::ConnectOptions connect = options.connect;
+  ConnectOptions connect = options.connect;
   connect.tree_of_points = false;
   // Points that no face reaches have no surface to be smoothed onto: as in the paper their edges go, and
   // without neighbours they stay. Kept, such an edge would carry a stray over its whole length, and HC's
@@ -182,14 +186,14 @@ DenoiseReport run(double* xyz, std::size_t n, const DenoiseOptions& options, con
   report.sdg_edges = connection.sdg.size();
   report.bridges = connection.bridges.size();
   report.faceless = connection.faceless;
-  rfs_mesh::Mesh mesh = std::move(connection.mesh);
+  Mesh mesh = std::move(connection.mesh);
   connection = {};                 // the tree, the graph and the surfaces are not needed while smoothing
   Positions().swap(cloud.points);  // nor these: the mesh has them, and the caller
   report.faces = mesh.faces.size();
   report.edges = mesh.edge_count();
 
   report.noise_left = report.noise;
-  const auto flow = value_or_throw(smoothing::make_flow(
+  const auto flow = value_or_throw(rfsmooth::make_flow(
       mesh, options.flow, context, {{}, working_strengths(strength, cloud, mesh.positions.size())}));
   const std::vector<double> reach = flow->limits_moves() ? std::vector<double>() : reaches(mesh, context);
   alternate(*flow, mesh, options, report, context);
@@ -210,7 +214,7 @@ Result<DenoiseReport> denoise(double* xyz, std::size_t n, const DenoiseOptions& 
   return guarded([&] {
     value_or_throw(validate(options));
     DenoiseOptions effective = options;
-    effective.flow = value_or_throw(smoothing::complete(options.flow));
+    effective.flow = value_or_throw(rfsmooth::complete(options.flow));
     DenoiseReport report;
     in_arena(context, [&] { report = run(xyz, n, effective, context, strength); });
     return report;
@@ -224,4 +228,4 @@ std::size_t denoise_memory(std::size_t n) {
   return kFixed + n * kBytesPerPoint;
 }
 
-}  // namespace rfsmooth::pipeline
+}  // namespace rfsmooth

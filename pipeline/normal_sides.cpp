@@ -1,4 +1,4 @@
-#include "rfsmooth/pipeline/normal_sides.h"
+#include "pipeline/normal_sides.h"
 
 #include <cmath>
 #include <utility>
@@ -6,9 +6,9 @@
 
 #include <Eigen/Core>
 
-#include "rfsmooth/rfs_mesh/neighbors.h"
-#include "rfsmooth/rfs_mesh/parallel.h"
-#include "rfsmooth/rfs_mesh/points.h"
+#include "base/parallel.h"
+#include "rfs_mesh/points.h"
+#include "rfs_mesh/search/neighbors.h"
 
 namespace rfsmooth::pipeline {
 

@@ -2,14 +2,14 @@
 ///
 ///     v_i = sum of a_j over i and its 24 nearest,    a_j = normal_j . before_j
 ///
-/// With `normals` on one side throughout (pipeline/normals.h), a_j has one sign on each part of the surface
+/// With `normals` on one side throughout (rfsmooth/normals.h), a_j has one sign on each part of the surface
 /// if the normals before had sides at all, on the two faces of a thin sheet too, and v_i says which, in spite
 /// of some that noise threw over.
 #pragma once
 
 #include <cstddef>
 
-#include "rfsmooth/rfs_mesh/context.h"
+#include <rfsmooth/context.h>
 
 namespace rfsmooth::pipeline {
 

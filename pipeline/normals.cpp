@@ -1,18 +1,20 @@
-#include "rfsmooth/pipeline/normals.h"
-
 #include <algorithm>
 #include <limits>
 #include <vector>
 
-#include "rfsmooth/rfs_mesh/bilateral_normals.h"
-#include "rfsmooth/rfs_mesh/neighbors.h"
-#include "rfsmooth/rfs_mesh/orient.h"
-#include "rfsmooth/rfs_mesh/parallel.h"
-#include "rfsmooth/rfs_mesh/rfs_mesh.h"
-#include "rfsmooth/rfs_mesh/thin_parts.h"
-#include "rfsmooth/rfs_mesh/wall_sides.h"
+#include <rfsmooth/connect.h>
+#include <rfsmooth/normals.h>
 
-namespace rfsmooth::pipeline {
+#include "base/parallel.h"
+#include "rfs_mesh/normals/bilateral_normals.h"
+#include "rfs_mesh/normals/orient.h"
+#include "rfs_mesh/search/neighbors.h"
+#include "rfs_mesh/sheets/thin_parts.h"
+#include "rfs_mesh/sheets/wall_sides.h"
+
+namespace rfsmooth {
+
+using namespace rfs_mesh;
 
 namespace {
 
@@ -21,7 +23,7 @@ constexpr int kFiltered = 128;  // neighbours over which normals are made calm
 /// A normal more than 60 degrees off the mean of the 32 nearest takes that mean, unless those disagree among
 /// themselves, as across a thin wall or at the tip of a wedge. Needed by few, most of them in creases, where
 /// the filter has taken the side of one flank too many.
-void settle(const Positions& points, const rfs_mesh::SpatialIndex& index, const rfs_mesh::Mesh& mesh,
+void settle(const Positions& points, const rfs_mesh::SpatialIndex& index, const Mesh& mesh,
             Positions& normals, const Context& context) {
   constexpr int kAsked = 32;
   constexpr double kOff = 0.5, kAgreed = 0.4;  // cosine; length of a mean of unit vectors
@@ -55,7 +57,7 @@ NormalsReport run(const double* xyz, std::size_t n, const NormalsOptions& option
   report.points = n;
   const rfs_mesh::WorkingCloud cloud = value_or_throw(rfs_mesh::make_working_cloud(xyz, n, context));
   report.finite = cloud.finite();
-  const rfs_mesh::Connection connection = value_or_throw(rfs_mesh::connect(cloud.points, {}, context));
+  const Connection connection = value_or_throw(rfsmooth::connect(cloud.points, {}, context));
   context.report("normals", 0);
   Positions calm = cloud.points, side(calm.size());
   std::vector<double> scatter(calm.size());
@@ -96,4 +98,4 @@ Result<NormalsReport> estimate_normals(const double* xyz, std::size_t n, const N
   });
 }
 
-}  // namespace rfsmooth::pipeline
+}  // namespace rfsmooth

@@ -1,4 +1,4 @@
-#include "rfsmooth/pipeline/outliers.h"
+#include "pipeline/outliers.h"
 
 #include <algorithm>
 #include <array>
@@ -8,10 +8,10 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "rfsmooth/rfs_mesh/local_surface.h"
-#include "rfsmooth/rfs_mesh/median.h"
-#include "rfsmooth/rfs_mesh/neighbors.h"
-#include "rfsmooth/rfs_mesh/parallel.h"
+#include "base/median.h"
+#include "base/parallel.h"
+#include "rfs_mesh/fit/local_surface.h"
+#include "rfs_mesh/search/neighbors.h"
 
 namespace rfsmooth::pipeline {
 
@@ -74,7 +74,7 @@ class Search {
         noise_(rfs_mesh::noise_scale(index_, context)) {
     for_each_index(context, points_.size(), [&](std::size_t i) { measure_reach(i); });
     std::vector<double> all = reach_;
-    median_reach_ = rfs_mesh::median(all);
+    median_reach_ = rfsmooth::median(all);
   }
 
   std::vector<char> run() {

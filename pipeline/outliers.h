@@ -24,8 +24,9 @@
 
 #include <vector>
 
-#include "rfsmooth/rfs_mesh/context.h"
-#include "rfsmooth/rfs_mesh/neighbors.h"
+#include <rfsmooth/context.h>
+
+#include "rfs_mesh/search/neighbors.h"
 
 namespace rfsmooth::pipeline {
 

@@ -1,18 +1,21 @@
-#include "rfsmooth/pipeline/reconstruct.h"
-
 #include <limits>
 
-#include "rfsmooth/pipeline/hole_filling.h"
-#include "rfsmooth/pipeline/normals.h"
-#include "rfsmooth/pipeline/pinches.h"
-#include "rfsmooth/pipeline/surface_cleanup.h"
-#include "rfsmooth/rfs_mesh/local_surface.h"
-#include "rfsmooth/rfs_mesh/neighbors.h"
-#include "rfsmooth/rfs_mesh/parallel.h"
-#include "rfsmooth/rfs_mesh/points.h"
-#include "rfsmooth/rfs_mesh/stage_times.h"
+#include <rfsmooth/normals.h>
+#include <rfsmooth/reconstruct.h>
 
-namespace rfsmooth::pipeline {
+#include "base/parallel.h"
+#include "base/stopwatch.h"
+#include "pipeline/surface/hole_filling.h"
+#include "pipeline/surface/pinches.h"
+#include "pipeline/surface/surface_cleanup.h"
+#include "pipeline/surface/topology.h"
+#include "rfs_mesh/fit/local_surface.h"
+#include "rfs_mesh/points.h"
+#include "rfs_mesh/search/neighbors.h"
+
+namespace rfsmooth {
+
+using namespace pipeline;
 
 namespace {
 
@@ -51,8 +54,8 @@ Positions working_normals(const std::vector<double>& xyz, const rfs_mesh::Workin
 }
 
 /// What the methods leave undone.
-void clean_up(rfs_mesh::Mesh& mesh, const SurfaceInput& input, const ReconstructOptions& options,
-              bool closes_all, ReconstructReport& report, const Context& context) {
+void clean_up(Mesh& mesh, const SurfaceInput& input, const ReconstructOptions& options, bool closes_all,
+              ReconstructReport& report, const Context& context) {
   // A closed piece of a hundred points, two faces a point; a method that closes gaps makes larger ones.
   const std::size_t speck = closes_all ? 100 : 200;
   report.raw_faces = mesh.faces.size();
@@ -109,4 +112,4 @@ Result<Reconstruction> reconstruct(std::vector<double> xyz, const ReconstructOpt
   return guarded([&] { return run(std::move(xyz), options, method, context); });
 }
 
-}  // namespace rfsmooth::pipeline
+}  // namespace rfsmooth

@@ -1,4 +1,4 @@
-#include "rfsmooth/pipeline/true_surface.h"
+#include "pipeline/true_surface.h"
 
 #include <algorithm>
 #include <cmath>
@@ -130,10 +130,10 @@ TrianglePoint nearest_on_triangle(const Vector3d& q, const Triangle& t) {
   return nearest_on_rim(q, t);
 }
 
-TrueSurface::TrueSurface(Positions vertices, std::vector<rfs_mesh::Face> faces)
+TrueSurface::TrueSurface(Positions vertices, std::vector<Face> faces)
     : vertices_(std::move(vertices)), faces_(std::move(faces)) {
   if (faces_.empty()) throw std::invalid_argument("a true surface needs at least one face");
-  for (const rfs_mesh::Face& face : faces_)
+  for (const Face& face : faces_)
     for (const Index v : face)
       if (v >= vertices_.size()) throw std::invalid_argument("a face names a vertex that does not exist");
   weld();
@@ -170,7 +170,7 @@ void TrueSurface::weld() {
   for (std::size_t k = 0; k < order.size(); ++k)
     first[order[k]] =
         k > 0 && vertices_[order[k]] == vertices_[order[k - 1]] ? first[order[k - 1]] : order[k];
-  for (rfs_mesh::Face& face : faces_)
+  for (Face& face : faces_)
     for (Index& v : face) v = first[v];
 }
 

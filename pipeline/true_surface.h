@@ -13,8 +13,9 @@
 
 #include <Eigen/Core>
 
-#include "rfsmooth/rfs_mesh/mesh.h"
-#include "rfsmooth/rfs_mesh/points.h"
+#include <rfsmooth/mesh.h>
+
+#include "rfs_mesh/points.h"
 
 namespace rfsmooth::pipeline {
 
@@ -93,7 +94,7 @@ class TrueSurface {
   };
 
   /// \throw std::invalid_argument if a face names a vertex that does not exist or there is no face.
-  TrueSurface(Positions vertices, std::vector<rfs_mesh::Face> faces);
+  TrueSurface(Positions vertices, std::vector<Face> faces);
 
   Hit nearest(const Eigen::Vector3d& query) const;
 
@@ -119,7 +120,7 @@ class TrueSurface {
   void weld();
   void make_pseudo_normals();
   Positions vertices_;
-  std::vector<rfs_mesh::Face> faces_;
+  std::vector<Face> faces_;
   std::vector<Eigen::Vector3d> vertex_normals_;
   std::vector<std::array<Eigen::Vector3d, 3>> edge_normals_;  ///< per face: of the edge opposite of corner k
   BoxTree tree_;

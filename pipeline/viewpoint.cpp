@@ -1,12 +1,12 @@
-#include "rfsmooth/pipeline/viewpoint.h"
+#include "pipeline/viewpoint.h"
 
 #include <array>
 #include <cmath>
 
 #include <Eigen/Geometry>
 
-#include "rfsmooth/pipeline/io/text.h"
-#include "rfsmooth/rfs_mesh/parallel.h"
+#include "base/parallel.h"
+#include "pipeline/io/table/text.h"
 
 namespace rfsmooth::pipeline {
 

@@ -12,8 +12,9 @@
 
 #include <Eigen/Core>
 
-#include "rfsmooth/pipeline/io/cloud.h"
-#include "rfsmooth/rfs_mesh/context.h"
+#include <rfsmooth/context.h>
+
+#include "pipeline/io/table/cloud.h"
 
 namespace rfsmooth::pipeline {
 

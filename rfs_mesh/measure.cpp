@@ -1,10 +1,10 @@
-#include "rfsmooth/rfs_mesh/measure.h"
+#include "rfs_mesh/measure.h"
 
 #include <cmath>
 
 #include <Eigen/Geometry>
 
-#include "rfsmooth/rfs_mesh/parallel.h"
+#include "base/parallel.h"
 
 namespace rfsmooth::rfs_mesh {
 

@@ -10,8 +10,8 @@
 
 #include <Eigen/Core>
 
-#include "rfsmooth/rfs_mesh/context.h"
-#include "rfsmooth/rfs_mesh/mesh.h"
+#include <rfsmooth/context.h>
+#include <rfsmooth/mesh.h>
 
 namespace rfsmooth::rfs_mesh {
 

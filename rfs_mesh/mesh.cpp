@@ -1,14 +1,14 @@
-#include "rfsmooth/rfs_mesh/mesh.h"
-
 #include <algorithm>
 #include <memory>
 
 #include <fmt/format.h>
 
-#include "rfsmooth/rfs_mesh/collect.h"
-#include "rfsmooth/rfs_mesh/parallel.h"
+#include <rfsmooth/mesh.h>
 
-namespace rfsmooth::rfs_mesh {
+#include "base/collect.h"
+#include "base/parallel.h"
+
+namespace rfsmooth {
 
 namespace {
 
@@ -239,4 +239,4 @@ std::vector<std::string> check(const Mesh& mesh) {
   return wrong;
 }
 
-}  // namespace rfsmooth::rfs_mesh
+}  // namespace rfsmooth

@@ -1,11 +1,11 @@
-#include "rfsmooth/rfs_mesh/points.h"
+#include "rfs_mesh/points.h"
 
 #include <cmath>
 
 #include <fmt/format.h>
 
-#include "rfsmooth/rfs_mesh/morton.h"
-#include "rfsmooth/rfs_mesh/parallel.h"
+#include "base/morton.h"
+#include "base/parallel.h"
 
 namespace rfsmooth::rfs_mesh {
 

@@ -7,26 +7,12 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
-#include <limits>
 #include <vector>
 
 #include <Eigen/Core>
 
-#include "rfsmooth/rfs_mesh/context.h"
-#include "rfsmooth/rfs_mesh/result.h"
-
-namespace rfsmooth {
-
-/// Index of a point, vertex or face. At most 2^32 - 2 of them.
-using Index = std::uint32_t;
-/// No point.
-inline constexpr Index kNone = std::numeric_limits<Index>::max();
-
-/// n x 3, row i = point i; contiguous doubles.
-using Positions = std::vector<Eigen::Vector3d>;
-
-}  // namespace rfsmooth
+#include <rfsmooth/mesh.h>
+#include <rfsmooth/result.h>
 
 namespace rfsmooth::rfs_mesh {
 

@@ -7,7 +7,7 @@
 #include <tuple>
 #include <vector>
 
-#include "rfsmooth/rfs_mesh/mesh.h"
+#include <rfsmooth/mesh.h>
 
 namespace rfsmooth::rfs_mesh {
 

@@ -1,28 +1,32 @@
-#include "rfsmooth/smoothing/flow.h"
-
 #include <algorithm>
 #include <numeric>
 
 #include <fmt/format.h>
 
-#include "rfsmooth/rfs_mesh/parallel.h"
-#include "rfsmooth/smoothing/boundary.h"
-#include "rfsmooth/smoothing/constraint.h"
-#include "rfsmooth/smoothing/preserve.h"
-#include "rfsmooth/smoothing/pushback.h"
-#include "rfsmooth/smoothing/reorder.h"
-#include "rfsmooth/smoothing/threshold.h"
+#include <rfsmooth/flow.h>
+
+#include "base/parallel.h"
+#include "smoothing/modifiers/boundary.h"
+#include "smoothing/modifiers/constraint.h"
+#include "smoothing/modifiers/preserve.h"
+#include "smoothing/modifiers/pushback.h"
+#include "smoothing/modifiers/threshold.h"
+#include "smoothing/remesh/reorder.h"
 
 namespace rfsmooth::smoothing {
-
 #define RFSMOOTH_FLOW(name) FlowEntry flow_##name();
-#include "rfsmooth/smoothing/flows.inc"
+#include "smoothing/flows/flows.inc"
 #undef RFSMOOTH_FLOW
+}  // namespace rfsmooth::smoothing
+
+namespace rfsmooth {
+
+using namespace smoothing;
 
 const std::vector<FlowEntry>& flows() {
   static const std::vector<FlowEntry> all = {
 #define RFSMOOTH_FLOW(name) flow_##name(),
-#include "rfsmooth/smoothing/flows.inc"
+#include "smoothing/flows/flows.inc"
 #undef RFSMOOTH_FLOW
   };
   return all;
@@ -90,7 +94,7 @@ FlowOptions modifier_defaults() {
 }
 
 /// The flow with its modifiers, innermost first: push-back, constraints, threshold, invariant.
-std::unique_ptr<Flow> compose(const FlowEntry& entry, const rfs_mesh::Mesh& mesh, const FlowOptions& o,
+std::unique_ptr<Flow> compose(const FlowEntry& entry, const Mesh& mesh, const FlowOptions& o,
                               const Constraints& constraints, const Context& context) {
   AllowedMoves allowed(constraints, mesh.positions.size());
   std::unique_ptr<Flow> flow = entry.make(mesh, o, constraints, context);
@@ -150,20 +154,20 @@ Result<FlowOptions> complete(const FlowOptions& options) {
   });
 }
 
-Result<std::unique_ptr<Flow>> make_flow(const rfs_mesh::Mesh& mesh, const FlowOptions& options,
-                                        const Context& context, const Constraints& constraints) {
+Result<std::unique_ptr<Flow>> make_flow(const Mesh& mesh, const FlowOptions& options, const Context& context,
+                                        const Constraints& constraints) {
   return guarded([&] {
     const FlowOptions o = value_or_throw(complete(options));
     const FlowEntry& entry = *find_flow(o.flow).value();
     return with_boundary_rule(
         *o.boundary, mesh, constraints, context,
-        [&](const rfs_mesh::Mesh& on, const Constraints& c) { return compose(entry, on, o, c, context); });
+        [&](const Mesh& on, const Constraints& c) { return compose(entry, on, o, c, context); });
   });
 }
 
 namespace {
 
-FlowReport run(rfs_mesh::Mesh& mesh, const FlowOptions& options, const Context& context,
+FlowReport run(Mesh& mesh, const FlowOptions& options, const Context& context,
                const Constraints& constraints) {
   FlowReport report;
   const auto flow = value_or_throw(make_flow(mesh, options, context, constraints));
@@ -177,7 +181,7 @@ FlowReport run(rfs_mesh::Mesh& mesh, const FlowOptions& options, const Context& 
 }
 
 /// The same on the mesh in an order that suits the cache; mesh.positions come back in the caller's.
-FlowReport run_reordered(rfs_mesh::Mesh& mesh, const FlowOptions& options, const Context& context,
+FlowReport run_reordered(Mesh& mesh, const FlowOptions& options, const Context& context,
                          const Constraints& constraints) {
   Reordered near = reorder(mesh, context);
   FlowReport report;
@@ -194,7 +198,7 @@ FlowReport run_reordered(rfs_mesh::Mesh& mesh, const FlowOptions& options, const
 
 }  // namespace
 
-Result<FlowReport> smooth(rfs_mesh::Mesh& mesh, const FlowOptions& options, const Context& context,
+Result<FlowReport> smooth(Mesh& mesh, const FlowOptions& options, const Context& context,
                           const Constraints& constraints) {
   Positions original;
   auto result = guarded([&] {
@@ -223,4 +227,4 @@ Result<FlowReport> smooth(rfs_mesh::Mesh& mesh, const FlowOptions& options, cons
   return result;
 }
 
-}  // namespace rfsmooth::smoothing
+}  // namespace rfsmooth

@@ -23,8 +23,8 @@ tidy() { # BUILD FILE...
 tidy $units "${read[@]}"
 if git grep -n '^#include .*\.cpp"' -- '*.h' '*.cpp'; then exit 1; fi  # which bugprone-suspicious-include would have found
 # Our sources that no such target has (rfsmooth-reconstruct's main), by themselves: with the dev build's flags.
-mapfile -t alone < <(git ls-files 'rfs_mesh/*.cpp' 'smoothing/*.cpp' 'pipeline/*.cpp' 'clouds/*.cpp' \
-    ':!pipeline/pcl/*' ':!pipeline/open3d/*' ':!pipeline/cgal/*' |
+mapfile -t alone < <(git ls-files 'base/*.cpp' 'rfs_mesh/*.cpp' 'smoothing/*.cpp' 'pipeline/*.cpp' 'clouds/*.cpp' \
+    ':!pipeline/adapters/*' |
   grep -v -x -F -f <(sed -n "s|^#include \"$PWD/\(.*\)\"|\1|p" "${read[@]}"))
 [ ${#alone[@]} -eq 0 ] || tidy build/dev "${alone[@]}"
 echo "clang-tidy: clean"

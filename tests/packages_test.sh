@@ -31,9 +31,10 @@ in_clean_system() {
   echo "== $1 in a clean system"
   local log=build/package/$1.log
   mmdebstrap --quiet --variant=apt --format=null "${apt[@]}" \
-    --customize-hook="mkdir -p \"\$1/tmp/debs\" \"\$1/tmp/tests/consumer\"" \
+    --customize-hook="mkdir -p \"\$1/tmp/debs\" \"\$1/tmp/tests/consumer\" \"\$1/tmp/examples\"" \
     --customize-hook="copy-in clouds/sphere_scan.ply /tmp" \
     --customize-hook="sync-in $debs /tmp/debs" \
+    --customize-hook="sync-in examples /tmp/examples" \
     --customize-hook="sync-in tests/consumer /tmp/tests/consumer" \
     --customize-hook="chroot \"\$1\" sh -ec 'cd /tmp/debs; apt-get install -y --no-install-recommends $2 > /dev/null'" \
     --customize-hook="chroot \"\$1\" bash -euc '$3'" \

@@ -1,4 +1,4 @@
-#include "rfsmooth/clouds/render/camera.h"
+#include "clouds/render/camera.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-#include "rfsmooth/rfs_mesh/points.h"
+#include "rfs_mesh/points.h"
 
 namespace rfsmooth::render {
 

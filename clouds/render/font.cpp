@@ -1,6 +1,6 @@
 #include <array>
 
-#include "rfsmooth/clouds/render/image.h"
+#include "clouds/render/image.h"
 
 namespace rfsmooth::render {
 

@@ -1,4 +1,4 @@
-#include "rfsmooth/clouds/render/image.h"
+#include "clouds/render/image.h"
 
 #include <algorithm>
 #include <cmath>

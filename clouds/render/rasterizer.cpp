@@ -1,4 +1,4 @@
-#include "rfsmooth/clouds/render/rasterizer.h"
+#include "clouds/render/rasterizer.h"
 
 #include <algorithm>
 #include <array>

@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-#include "rfsmooth/clouds/render/image.h"
+#include "clouds/render/image.h"
 
 namespace rfsmooth::render {
 

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "rfsmooth/clouds/arguments.h"
-#include "rfsmooth/clouds/render/scene.h"
-#include "rfsmooth/pipeline/io/io.h"
+#include "clouds/render/scene.h"
+#include "clouds/scanner/arguments.h"
+#include "pipeline/io/io.h"
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include "rfsmooth/clouds/render/scene.h"
+#include "clouds/render/scene.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,11 +7,11 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
-#include "rfsmooth/clouds/render/rasterizer.h"
-#include "rfsmooth/pipeline/io/mesh_file.h"
-#include "rfsmooth/rfs_mesh/median.h"
-#include "rfsmooth/rfs_mesh/neighbors.h"
-#include "rfsmooth/rfs_mesh/parallel.h"
+#include "base/median.h"
+#include "base/parallel.h"
+#include "clouds/render/rasterizer.h"
+#include "pipeline/io/mesh_file.h"
+#include "rfs_mesh/search/neighbors.h"
 
 namespace rfsmooth::render {
 
@@ -36,10 +36,10 @@ Scene make_scene(const io::Cloud& cloud, const Vector3d& origin, const Context& 
     scene.row.push_back(Index(i));
   }
   if (scene.points.empty()) throw Failure({ErrorCode::no_usable_points, "there is no finite point to draw"});
-  for (const rfs_mesh::Face& f : io::faces_of(cloud, context))
+  for (const Face& f : io::faces_of(cloud, context))
     if (index[f[0]] != kNone && index[f[1]] != kNone && index[f[2]] != kNone)
       scene.faces.push_back({index[f[0]], index[f[1]], index[f[2]]});
-  for (const rfs_mesh::Edge& e : io::edges_of(cloud, context))
+  for (const Edge& e : io::edges_of(cloud, context))
     if (index[e[0]] != kNone && index[e[1]] != kNone) scene.edges.push_back({index[e[0]], index[e[1]]});
   scene.colors.assign(scene.points.size(), kClay);
   return scene;
@@ -69,7 +69,7 @@ void estimate_surfels(Scene& scene, int neighbors, const Context& context) {
     scene.reach[i] = 0.8 * (scene.points[row[sixth]] - scene.points[i]).norm();
   });
   std::vector<double> sorted = scene.reach;
-  const double median = rfs_mesh::median(sorted);
+  const double median = rfsmooth::median(sorted);
   for (double& r : scene.reach) r = r > 3 * median ? median : r;
 }
 
@@ -125,7 +125,7 @@ Image draw(const Scene& scene, const Camera& camera, int width, int height, cons
   const auto segment = [&](Index a, Index b, const Color& color) {
     raster.line(at[a], at[b], kSuper * options.thickness, color);
   };
-  for (const rfs_mesh::Face& f : scene.faces) {
+  for (const Face& f : scene.faces) {
     const Vector3d normal =
         (scene.points[f[1]] - scene.points[f[0]]).cross(scene.points[f[2]] - scene.points[f[0]]);
     if (normal.squaredNorm() == 0) continue;
@@ -134,7 +134,7 @@ Image draw(const Scene& scene, const Camera& camera, int width, int height, cons
     if (!options.edges) continue;
     for (std::size_t k = 0; k < 3; ++k) segment(f[k], f[(k + 1) % 3], kLine);
   }
-  for (const rfs_mesh::Edge& e : scene.edges) segment(e[0], e[1], kLine);
+  for (const Edge& e : scene.edges) segment(e[0], e[1], kLine);
   for (std::size_t i = 0; i < scene.normals.size(); ++i) {
     const Vector3d normal = camera.turn(scene.normals[i]);
     raster.splat(at[i], normal, kSuper * camera.scale() * scene.reach[i] * options.splat_scale,

@@ -4,19 +4,20 @@
 #include <string>
 #include <vector>
 
-#include "rfsmooth/clouds/render/camera.h"
-#include "rfsmooth/clouds/render/image.h"
-#include "rfsmooth/pipeline/io/cloud.h"
-#include "rfsmooth/rfs_mesh/context.h"
-#include "rfsmooth/rfs_mesh/mesh.h"
+#include <rfsmooth/context.h>
+#include <rfsmooth/mesh.h>
+
+#include "clouds/render/camera.h"
+#include "clouds/render/image.h"
+#include "pipeline/io/table/cloud.h"
 
 namespace rfsmooth::render {
 
 struct Scene {
   Positions points;        ///< the finite points around `origin`
   std::vector<Index> row;  ///< of each point in the file
-  std::vector<rfs_mesh::Face> faces;
-  std::vector<rfs_mesh::Edge> edges;
+  std::vector<Face> faces;
+  std::vector<Edge> edges;
   Positions normals;  ///< per point: of the plane through its nearest neighbours; empty where faces are drawn
   std::vector<double> reach;  ///< per point: radius of its splat, world units
   std::vector<Color> colors;  ///< per point

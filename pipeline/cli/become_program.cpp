@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "rfsmooth/pipeline/cli/reconstruct_command.h"
+#include "pipeline/cli/commands/reconstruct_command.h"
 
 namespace rfsmooth::cli {
 

@@ -1,4 +1,4 @@
-#include "rfsmooth/pipeline/cli/console.h"
+#include "pipeline/cli/console.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "rfsmooth/pipeline/cli/stop.h"
+#include "pipeline/cli/stop.h"
 
 namespace rfsmooth::cli {
 

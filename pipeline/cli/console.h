@@ -7,9 +7,10 @@
 #include <string>
 #include <string_view>
 
-#include "rfsmooth/rfs_mesh/context.h"
-#include "rfsmooth/rfs_mesh/options.h"
-#include "rfsmooth/rfs_mesh/thread_limit.h"
+#include <rfsmooth/context.h>
+#include <rfsmooth/options.h>
+
+#include "base/thread_limit.h"
 
 namespace rfsmooth::cli {
 

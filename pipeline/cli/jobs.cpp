@@ -1,4 +1,4 @@
-#include "rfsmooth/pipeline/cli/jobs.h"
+#include "pipeline/cli/jobs.h"
 
 #include <algorithm>
 #include <filesystem>

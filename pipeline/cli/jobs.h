@@ -6,8 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "rfsmooth/pipeline/cli/console.h"
-#include "rfsmooth/rfs_mesh/result.h"
+#include <rfsmooth/result.h>
+
+#include "pipeline/cli/console.h"
 
 namespace rfsmooth::cli {
 

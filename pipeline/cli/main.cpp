@@ -1,6 +1,6 @@
 /// The rfsmooth command.
-#include "rfsmooth/pipeline/cli/memory.h"
-#include "rfsmooth/pipeline/cli/program.h"
+#include "pipeline/cli/files/memory.h"
+#include "pipeline/cli/program.h"
 
 int main(int argc, char** argv) {
   rfsmooth::cli::give_memory_back();

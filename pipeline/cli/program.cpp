@@ -1,4 +1,4 @@
-#include "rfsmooth/pipeline/cli/program.h"
+#include "pipeline/cli/program.h"
 
 #include <cstdio>
 #include <exception>
@@ -6,11 +6,13 @@
 
 #include <fmt/format.h>
 
-#include "rfsmooth/pipeline/cli/config.h"
-#include "rfsmooth/pipeline/cli/console.h"
-#include "rfsmooth/pipeline/cli/help.h"
-#include "rfsmooth/pipeline/cli/parse.h"
-#include "rfsmooth/pipeline/cli/stop.h"
+#include <rfsmooth/version.h>
+
+#include "pipeline/cli/console.h"
+#include "pipeline/cli/options/config.h"
+#include "pipeline/cli/options/help.h"
+#include "pipeline/cli/options/parse.h"
+#include "pipeline/cli/stop.h"
 
 namespace rfsmooth::cli {
 
@@ -51,7 +53,7 @@ int run(int argc, const char* const* argv, const std::vector<Command>& commands)
   const Parsed parsed = parse(argc, argv, commands);
   const Invocation& typed = parsed.invocation;
   if (parsed.command == nullptr) {
-    if (typed.version) return print("rfsmooth " RFSMOOTH_VERSION "\n");
+    if (typed.version) return print(std::string("rfsmooth ") + kVersion + "\n");
     if (typed.short_help || typed.long_help) return print(overview(commands, typed.long_help));
     fmt::print(stderr, "{}", overview(commands, false));
     return int(ErrorCode::usage);

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "rfsmooth/pipeline/cli/command.h"
+#include "pipeline/cli/commands/command.h"
 
 namespace rfsmooth::cli {
 

@@ -1,8 +1,10 @@
-#include "rfsmooth/pipeline/cli/report.h"
+#include "pipeline/cli/report.h"
 
 #include <fmt/format.h>
 
-#include "rfsmooth/pipeline/io/io.h"
+#include <rfsmooth/version.h>
+
+#include "pipeline/io/io.h"
 
 namespace rfsmooth::cli {
 
@@ -17,7 +19,7 @@ Report::Report(std::string command, const std::optional<std::string>& path, bool
 
 void Report::write() const {
   if (!wanted()) return;
-  nlohmann::ordered_json all = {{"rfsmooth", RFSMOOTH_VERSION}, {"command", command_}};
+  nlohmann::ordered_json all = {{"rfsmooth", kVersion}, {"command", command_}};
   if (files_.size() == 1)
     all.update(files_[0]);
   else
@@ -29,7 +31,7 @@ void Report::write() const {
     value_or_throw(pipeline::io::write_bytes(text, path_, force_, {}));
 }
 
-nlohmann::ordered_json json_of(const std::vector<pipeline::StageTime>& stages) {
+nlohmann::ordered_json json_of(const std::vector<StageTime>& stages) {
   auto object = nlohmann::ordered_json::object();
   for (const auto& stage : stages) object[stage.name] = stage.seconds;
   return object;

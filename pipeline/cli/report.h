@@ -5,8 +5,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "rfsmooth/pipeline/cli/jobs.h"
-#include "rfsmooth/pipeline/denoise.h"
+#include <rfsmooth/denoise.h>
+
+#include "pipeline/cli/jobs.h"
 
 namespace rfsmooth::cli {
 
@@ -29,6 +30,6 @@ class Report {
   nlohmann::ordered_json files_ = nlohmann::ordered_json::array();
 };
 
-nlohmann::ordered_json json_of(const std::vector<pipeline::StageTime>& stages);
+nlohmann::ordered_json json_of(const std::vector<StageTime>& stages);
 
 }  // namespace rfsmooth::cli

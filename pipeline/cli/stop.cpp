@@ -1,4 +1,4 @@
-#include "rfsmooth/pipeline/cli/stop.h"
+#include "pipeline/cli/stop.h"
 
 #include <csignal>
 

@@ -1,4 +1,4 @@
-#include "rfsmooth/pipeline/io/atomic_file.h"
+#include "pipeline/io/atomic_file.h"
 
 #include <algorithm>
 #include <cerrno>

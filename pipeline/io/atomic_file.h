@@ -4,9 +4,10 @@
 #include <filesystem>
 #include <string>
 
-#include "rfsmooth/pipeline/io/sink.h"
-#include "rfsmooth/rfs_mesh/context.h"
-#include "rfsmooth/rfs_mesh/result.h"
+#include <rfsmooth/context.h>
+#include <rfsmooth/result.h>
+
+#include "pipeline/io/sink.h"
 
 namespace rfsmooth::pipeline::io {
 

@@ -1,13 +1,13 @@
-#include "rfsmooth/pipeline/io/convert.h"
+#include "pipeline/io/convert.h"
 
 #include <algorithm>
 #include <charconv>
 
 #include <fmt/format.h>
 
-#include "rfsmooth/pipeline/io/header_lines.h"
-#include "rfsmooth/pipeline/io/off.h"
-#include "rfsmooth/rfs_mesh/parallel.h"
+#include "base/parallel.h"
+#include "pipeline/io/formats/header_lines.h"
+#include "pipeline/io/formats/off.h"
 
 namespace rfsmooth::pipeline::io {
 namespace {

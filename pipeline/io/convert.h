@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "rfsmooth/pipeline/io/cloud.h"
+#include "pipeline/io/table/cloud.h"
 
 namespace rfsmooth::pipeline::io {
 

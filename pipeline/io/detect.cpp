@@ -1,12 +1,12 @@
-#include "rfsmooth/pipeline/io/detect.h"
+#include "pipeline/io/detect.h"
 
 #include <algorithm>
 
 #include <fmt/format.h>
 
-#include "rfsmooth/pipeline/io/header_lines.h"
-#include "rfsmooth/pipeline/io/off.h"
-#include "rfsmooth/pipeline/io/text.h"
+#include "pipeline/io/formats/header_lines.h"
+#include "pipeline/io/formats/off.h"
+#include "pipeline/io/table/text.h"
 
 namespace rfsmooth::pipeline::io {
 namespace {

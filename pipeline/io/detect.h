@@ -1,8 +1,8 @@
 /// Which format a file is in, by its first lines.
 #pragma once
 
-#include "rfsmooth/pipeline/io/cloud.h"
-#include "rfsmooth/pipeline/io/source.h"
+#include "pipeline/io/source.h"
+#include "pipeline/io/table/cloud.h"
 
 namespace rfsmooth::pipeline::io {
 

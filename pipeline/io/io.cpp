@@ -1,17 +1,17 @@
-#include "rfsmooth/pipeline/io/io.h"
+#include "pipeline/io/io.h"
 
 #include <algorithm>
 #include <cctype>
 
 #include <fmt/format.h>
 
-#include "rfsmooth/pipeline/io/atomic_file.h"
-#include "rfsmooth/pipeline/io/convert.h"
-#include "rfsmooth/pipeline/io/detect.h"
-#include "rfsmooth/pipeline/io/off.h"
-#include "rfsmooth/pipeline/io/pcd.h"
-#include "rfsmooth/pipeline/io/ply.h"
-#include "rfsmooth/pipeline/io/xyz.h"
+#include "pipeline/io/atomic_file.h"
+#include "pipeline/io/convert.h"
+#include "pipeline/io/detect.h"
+#include "pipeline/io/formats/off.h"
+#include "pipeline/io/formats/pcd.h"
+#include "pipeline/io/formats/ply.h"
+#include "pipeline/io/formats/xyz.h"
 
 namespace rfsmooth::pipeline::io {
 namespace {

@@ -16,24 +16,14 @@
 #include <string>
 #include <string_view>
 
-#include "rfsmooth/pipeline/io/cloud.h"
-#include "rfsmooth/rfs_mesh/result.h"
+#include <rfsmooth/result.h>
+
+#include "pipeline/io/table/cloud.h"
 
 namespace rfsmooth::pipeline::io {
 
-/// How to read.
-struct ReadOptions {
-  std::optional<Format> format;  ///< empty: told by the content
-};
-
-/// How to write.
-struct WriteOptions {
-  std::optional<Format> format;      ///< empty: told by the extension of the path, else the cloud's own
-  std::optional<Encoding> encoding;  ///< empty: the cloud's own, or the target format's nearest to it
-  bool force = false;                ///< replace an existing file
-  bool drop_unsupported = false;     ///< leave out what the target format cannot carry, instead of refusing
-  bool sync = true;                  ///< wait until the file is safe on the disk
-};
+using rfsmooth::ReadOptions;
+using rfsmooth::WriteOptions;
 
 /// Reads a file. Pipes and devices ("/dev/stdin") are read to their end.
 Result<Cloud> read_cloud(const std::filesystem::path& path, const ReadOptions& options,

@@ -1,4 +1,4 @@
-#include "rfsmooth/pipeline/io/mesh_file.h"
+#include "pipeline/io/mesh_file.h"
 
 #include <algorithm>
 #include <new>
@@ -8,8 +8,8 @@
 namespace rfsmooth::pipeline::io {
 namespace {
 
-using rfs_mesh::Edge;
-using rfs_mesh::Face;
+using rfsmooth::Edge;
+using rfsmooth::Face;
 
 std::optional<std::size_t> polygon_field(const Table& table) {
   for (std::size_t f = 0; f < table.fields.size(); ++f)

@@ -3,15 +3,16 @@
 /// write.
 #pragma once
 
-#include "rfsmooth/pipeline/io/io.h"
-#include "rfsmooth/rfs_mesh/mesh.h"
+#include <rfsmooth/mesh.h>
+
+#include "pipeline/io/io.h"
 
 namespace rfsmooth::pipeline::io {
 
 /// A mesh and the file it came from.
 struct MeshFile {
-  Cloud cloud;                        ///< the file; write it with write_cloud after set_positions
-  std::vector<rfs_mesh::Face> faces;  ///< m x 3: its polygons split into fans; no repeated corners
+  Cloud cloud;              ///< the file; write it with write_cloud after set_positions
+  std::vector<Face> faces;  ///< m x 3: its polygons split into fans; no repeated corners
 };
 
 /// Reads a mesh. Errors: as read_cloud; input_unreadable if it has no faces or one names a vertex that is not
@@ -27,21 +28,20 @@ Result<MeshFile> parse_mesh(std::string_view bytes, const std::string& name, con
 /// The triangles of a PLY or OFF file, rows of the points as corners; polygons and degenerate faces as above.
 /// Empty if the file has no faces. \throw Failure (input_unreadable) naming the face that asks for a point
 /// that does not exist.
-std::vector<rfs_mesh::Face> faces_of(const Cloud& cloud, const Context& context = {});
+std::vector<Face> faces_of(const Cloud& cloud, const Context& context = {});
 
 /// The edges of a PLY file (element edge with vertex1 and vertex2), smaller index first; a == b is left out.
 /// \throw Failure as above.
-std::vector<rfs_mesh::Edge> edges_of(const Cloud& cloud, const Context& context = {});
+std::vector<Edge> edges_of(const Cloud& cloud, const Context& context = {});
 
 /// Puts triangles into the cloud as element 'face' (list uchar int vertex_indices), edges as element 'edge'
 /// (int vertex1, int vertex2); replaces what was there under that name. Rows are binary. Only PLY and OFF can
 /// carry faces, only PLY edges: set cloud.format or write with that format.
-void set_faces(Cloud& cloud, const std::vector<rfs_mesh::Face>& faces);
+void set_faces(Cloud& cloud, const std::vector<Face>& faces);
 /// See `set_faces`.
-void set_edges(Cloud& cloud, const std::vector<rfs_mesh::Edge>& edges);
+void set_edges(Cloud& cloud, const std::vector<Edge>& edges);
 
 /// A binary PLY of points (float64), triangles and edges; elements without rows are left out.
-Cloud make_mesh_file(const Positions& points, const std::vector<rfs_mesh::Face>& faces,
-                     const std::vector<rfs_mesh::Edge>& edges);
+Cloud make_mesh_file(const Positions& points, const std::vector<Face>& faces, const std::vector<Edge>& edges);
 
 }  // namespace rfsmooth::pipeline::io

@@ -1,4 +1,4 @@
-#include "rfsmooth/pipeline/io/source.h"
+#include "pipeline/io/source.h"
 
 #include <algorithm>
 #include <cerrno>

@@ -6,9 +6,10 @@
 #include <string>
 #include <string_view>
 
-#include "rfsmooth/pipeline/io/bytes.h"
-#include "rfsmooth/rfs_mesh/context.h"
-#include "rfsmooth/rfs_mesh/result.h"
+#include <rfsmooth/context.h>
+#include <rfsmooth/result.h>
+
+#include "pipeline/io/table/bytes.h"
 
 namespace rfsmooth::pipeline::io {
 

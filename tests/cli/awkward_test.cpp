@@ -8,9 +8,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "cli/folder.h"
-#include "cli/small_clouds.h"
-#include "support/sanitized.h"
+#include "tests/cli/support/folder.h"
+#include "tests/cli/support/small_clouds.h"
+#include "tests/support/sanitized.h"
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;

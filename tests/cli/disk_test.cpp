@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "cli/folder.h"
-#include "cli/small_clouds.h"
+#include "tests/cli/support/folder.h"
+#include "tests/cli/support/small_clouds.h"
 
 using ::testing::AllOf;
 using ::testing::ElementsAre;

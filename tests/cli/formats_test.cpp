@@ -7,10 +7,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "rfsmooth/pipeline/io/io.h"
-
-#include "cli/folder.h"
-#include "cli/rich_cloud.h"
+#include "pipeline/io/io.h"
+#include "tests/cli/support/folder.h"
+#include "tests/cli/support/rich_cloud.h"
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;

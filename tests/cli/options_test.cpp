@@ -9,8 +9,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "cli/folder.h"
-#include "cli/small_clouds.h"
+#include "tests/cli/support/folder.h"
+#include "tests/cli/support/small_clouds.h"
 
 using ::testing::HasSubstr;
 

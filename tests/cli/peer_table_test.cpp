@@ -6,9 +6,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "cli/folder.h"
-#include "cli/rich_cloud.h"
-#include "support/sanitized.h"
+#include "tests/cli/support/folder.h"
+#include "tests/cli/support/rich_cloud.h"
+#include "tests/support/sanitized.h"
 
 using ::testing::AllOf;
 using ::testing::ElementsAre;

@@ -10,8 +10,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "cli/run_command.h"
-#include "support/sanitized.h"
+#include "tests/cli/support/run_command.h"
+#include "tests/support/sanitized.h"
 
 using ::testing::HasSubstr;
 

@@ -10,12 +10,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "rfsmooth/rfs_mesh/noise.h"
-#include "rfsmooth/rfs_mesh/points.h"
-
-#include "cli/cloud_file.h"
-#include "cli/folder.h"
-#include "support/sanitized.h"
+#include "rfs_mesh/noise/noise.h"
+#include "rfs_mesh/points.h"
+#include "tests/cli/support/cloud_file.h"
+#include "tests/cli/support/folder.h"
+#include "tests/support/sanitized.h"
 
 namespace rfsmooth::test {
 namespace {

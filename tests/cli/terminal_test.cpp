@@ -4,9 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "cli/folder.h"
-#include "cli/small_clouds.h"
-#include "support/sanitized.h"
+#include "tests/cli/support/folder.h"
+#include "tests/cli/support/small_clouds.h"
+#include "tests/support/sanitized.h"
 
 using ::testing::AnyOf;
 using ::testing::ElementsAre;

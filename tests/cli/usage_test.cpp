@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "cli/run_command.h"
+#include "tests/cli/support/run_command.h"
 
 using ::testing::HasSubstr;
 

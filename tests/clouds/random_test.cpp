@@ -1,4 +1,4 @@
-#include "rfsmooth/clouds/random.h"
+#include "clouds/scanner/random.h"
 
 #include <cmath>
 

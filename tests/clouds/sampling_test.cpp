@@ -1,4 +1,4 @@
-#include "rfsmooth/clouds/sampling.h"
+#include "clouds/scanner/sampling.h"
 
 #include <cmath>
 
@@ -48,7 +48,7 @@ TEST(Sampling, DensityIsHonoured) {
 
 TEST(Sampling, MeshAndShapeAgree) {
   const auto cube = make_cube();
-  const rfs_mesh::Mesh mesh = cube->mesh(0.5);
+  const Mesh mesh = cube->mesh(0.5);
   const Positions points = sample(mesh, 3000, 1);
   ASSERT_EQ(points.size(), 3000u);
   for (const auto& p : points) EXPECT_NEAR(cube->signed_distance(p), 0, 1e-12);

@@ -1,4 +1,4 @@
-#include "rfsmooth/clouds/shapes.h"
+#include "clouds/scanner/shapes.h"
 
 #include <cmath>
 #include <string>
@@ -6,7 +6,7 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-#include "rfsmooth/pipeline/true_surface.h"
+#include "pipeline/true_surface.h"
 
 using namespace rfsmooth;
 using namespace rfsmooth::clouds;
@@ -26,8 +26,8 @@ constexpr double kEdge =
 constexpr double kMeshError = 5e-4;
 
 TEST_P(EveryShape, MeshLiesOnTheSurfaceAndIsSound) {
-  const rfs_mesh::Mesh mesh = shape_->mesh(kEdge);
-  EXPECT_TRUE(rfs_mesh::check(mesh).empty());
+  const Mesh mesh = shape_->mesh(kEdge);
+  EXPECT_TRUE(rfsmooth::check(mesh).empty());
   for (const Vector3d& v : mesh.positions) EXPECT_NEAR(shape_->signed_distance(v), 0, 1e-9);
   const pipeline::TrueSurface surface(mesh.positions, mesh.faces);
   EXPECT_EQ(surface.closed(), shape_->volume().has_value());
@@ -38,7 +38,7 @@ TEST_P(EveryShape, MeshLiesOnTheSurfaceAndIsSound) {
 }
 
 TEST_P(EveryShape, DistanceAndNormalAgreeWithTheMesh) {
-  const rfs_mesh::Mesh mesh = shape_->mesh(kEdge);
+  const Mesh mesh = shape_->mesh(kEdge);
   const pipeline::TrueSurface surface(mesh.positions, mesh.faces);
   Random random(1);
   const double reach = 1.3 * shape_->radius();
@@ -69,10 +69,10 @@ TEST_P(EveryShape, SurfacePointsLieOnTheSurfaceWithItsNormal) {
 
 TEST_P(EveryShape, SurfacePointsAreAsDenseAsTheySay) {
   // Mean position of the points, weighted by 1 / density, is the surface's centroid; compare with the mesh's.
-  const rfs_mesh::Mesh mesh = shape_->mesh(kEdge);
+  const Mesh mesh = shape_->mesh(kEdge);
   Vector3d centroid = Vector3d::Zero();
   double area = 0;
-  for (const rfs_mesh::Face& face : mesh.faces) {
+  for (const Face& face : mesh.faces) {
     const Vector3d &a = mesh.positions[face[0]], &b = mesh.positions[face[1]], &c = mesh.positions[face[2]];
     const double face_area = 0.5 * (b - a).cross(c - a).norm();
     centroid += face_area * (a + b + c) / 3;

@@ -45,14 +45,14 @@ written_in() {
   awk -v mark="<!-- $2 -->" '$0 == mark { on = 1; next } on && /^ *$/ { print ""; next } on && !/^    / { exit } on { print substr($0, 5) }' "$1"
 }
 
-examples="$source/tests/consumer"
+examples="$source/examples"
 case "$way" in
   installed)
     build "$examples/core"
     "$work/build/example" ;;
   subdirectory)
     # Less optimised than a user's, and several sources as one: the whole library is compiled again here.
-    build "$examples/subdirectory" -DCMAKE_CXX_FLAGS_RELEASE="-O0 -DNDEBUG" -DCMAKE_UNITY_BUILD=ON -DRFSMOOTH_SOURCE_DIR="$source" -DRFSMOOTH_BUILD_CLI=OFF -DRFSMOOTH_WITH_CGAL=OFF
+    build "$source/tests/consumer/subdirectory" -DCMAKE_CXX_FLAGS_RELEASE="-O0 -DNDEBUG" -DCMAKE_UNITY_BUILD=ON -DRFSMOOTH_SOURCE_DIR="$source" -DRFSMOOTH_BUILD_CLI=OFF -DRFSMOOTH_WITH_CGAL=OFF
     "$work/build/example"
     scan "$work/scan.pcd"
     if [ -x "$work/build/pcl_example" ]; then

@@ -8,11 +8,11 @@
 #include <open3d/geometry/PointCloud.h>
 #include <pcl/point_types.h>
 
-#include "rfsmooth/open3d/denoise.h"
-#include "rfsmooth/pcl/denoise.h"
-#include "rfsmooth/pipeline/io/io.h"
+#include <rfsmooth/open3d/denoise.h>
+#include <rfsmooth/pcl/denoise.h>
 
-#include "cli/folder.h"
+#include "pipeline/io/io.h"
+#include "tests/cli/support/folder.h"
 
 namespace rfsmooth::test {
 namespace {

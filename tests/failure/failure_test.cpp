@@ -17,13 +17,13 @@
 #include <sched.h>
 #include <unistd.h>
 
-#include "rfsmooth/pipeline/denoise.h"
-#include "rfsmooth/pipeline/io/io.h"
-#include "rfsmooth/rfs_mesh/parallel.h"
-#include "rfsmooth/smoothing/flow.h"
+#include <rfsmooth/denoise.h>
+#include <rfsmooth/flow.h>
 
-#include "support/awkward_clouds.h"
-#include "support/sanitized.h"
+#include "base/parallel.h"
+#include "pipeline/io/io.h"
+#include "tests/support/awkward_clouds.h"
+#include "tests/support/sanitized.h"
 
 // With the sanitizers, GCC inlines half of a pair of new and delete and takes the other half for a stranger.
 #pragma GCC diagnostic ignored "-Wmismatched-new-delete"
@@ -159,12 +159,12 @@ class DenoiseFailure : public ::testing::TestWithParam<const char*> {};
 TEST_P(DenoiseFailure, LeavesTheCloudAsItWas) {
   const std::vector<double> original = noisy(120);
   std::vector<double> xyz;
-  pipeline::DenoiseOptions options;
+  DenoiseOptions options;
   options.flow.flow = GetParam();
   if (options.flow.flow != "auto") options.flow.iterations = 2;
   expect_all_or_nothing(
       [&](const Context& context) {
-        return error_of(pipeline::denoise(xyz.data(), xyz.size() / 3, options, context));
+        return error_of(rfsmooth::denoise(xyz.data(), xyz.size() / 3, options, context));
       },
       [&] { xyz = original; }, [&] { return xyz == original; });
 }
@@ -174,20 +174,20 @@ TEST_P(DenoiseFailure, OfAFlowLeavesTheMeshAsItWas) {
   Context one;  // a worker of TBB that only now starts could meet the failure where nobody can catch it
   one.threads = 1;
   const auto cloud = rfs_mesh::make_working_cloud(xyz.data(), xyz.size() / 3, one);
-  const rfs_mesh::Mesh original = rfs_mesh::connect(cloud.value().points, {}, one).value().mesh;
-  rfs_mesh::Mesh mesh;
-  smoothing::FlowOptions options;
+  const Mesh original = rfsmooth::connect(cloud.value().points, {}, one).value().mesh;
+  Mesh mesh;
+  FlowOptions options;
   options.flow = GetParam();
   if (options.flow != "auto") options.iterations = 2;
   expect_all_or_nothing(
-      [&](const Context& context) { return error_of(smoothing::smooth(mesh, options, context)); },
+      [&](const Context& context) { return error_of(rfsmooth::smooth(mesh, options, context)); },
       [&] { mesh = original; },
       [&] { return mesh.positions == original.positions && mesh.faces == original.faces; });
 }
 
 std::vector<const char*> all_flows() {
   std::vector<const char*> names;
-  for (const auto& flow : smoothing::flows()) names.push_back(flow.name.data());  // literals
+  for (const auto& flow : rfsmooth::flows()) names.push_back(flow.name.data());  // literals
   return names;
 }
 
@@ -236,7 +236,7 @@ TEST(Failure, OfThreadsLeavesTheCloudAsItWas) {
     countdown = k;
     std::optional<Error> error;
     try {
-      error = error_of(pipeline::denoise(xyz.data(), xyz.size() / 3, {}, context));
+      error = error_of(rfsmooth::denoise(xyz.data(), xyz.size() / 3, {}, context));
     } catch (const std::exception& e) {
       countdown = -1;
       FAIL() << "an exception left the front door: " << e.what();

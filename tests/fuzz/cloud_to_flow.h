@@ -14,8 +14,10 @@
 #include <string>
 #include <vector>
 
-#include "rfsmooth/pipeline/denoise.h"
-#include "rfsmooth/rfs_mesh/mesh.h"
+#include <rfsmooth/denoise.h>
+#include <rfsmooth/mesh.h>
+
+#include "rfs_mesh/points.h"
 
 namespace rfsmooth::fuzz {
 
@@ -45,7 +47,7 @@ class Reader {
 /// Visits a `describe` table and sets what the bytes say.
 class SetOptions {
  public:
-  SetOptions(Reader& reader, const smoothing::FlowEntry& flow) : reader_(reader), flow_(flow) {}
+  SetOptions(Reader& reader, const FlowEntry& flow) : reader_(reader), flow_(flow) {}
 
   template <class T>
   void operator()(const OptionInfo& info, T& value) {
@@ -62,7 +64,7 @@ class SetOptions {
     const auto has = [&](const auto& names) {
       return std::find(names.begin(), names.end(), name) != names.end();
     };
-    return has(flow_.parameters) || has(smoothing::modifiers());
+    return has(flow_.parameters) || has(rfsmooth::modifiers());
   }
   /// A share of the legal range; of wide ones evenly by magnitude.
   static double between(double low, double high, double share) {
@@ -98,7 +100,7 @@ class SetOptions {
   }
 
   Reader& reader_;
-  const smoothing::FlowEntry& flow_;
+  const FlowEntry& flow_;
 };
 
 inline std::vector<double> read_points(Reader& reader, std::uint8_t kind) {
@@ -166,10 +168,10 @@ inline void check_result(const std::vector<double>& before, const std::vector<do
 inline void cloud_to_flow(const std::uint8_t* data, std::size_t size) {
   Reader reader(data, size);
   const std::uint8_t kind = reader.byte();
-  const smoothing::FlowEntry& flow = smoothing::flows()[reader.byte() % smoothing::flows().size()];
-  pipeline::DenoiseOptions options;
+  const FlowEntry& flow = rfsmooth::flows()[reader.byte() % rfsmooth::flows().size()];
+  DenoiseOptions options;
   options.flow.flow = std::string(flow.name);
-  pipeline::DenoiseOptions::describe(options, SetOptions(reader, flow));
+  DenoiseOptions::describe(options, SetOptions(reader, flow));
   if (!options.flow.iterations && *flow.defaults.iterations > 4) options.flow.iterations = 4;
   const std::vector<double> before = read_points(reader, kind);
   const std::size_t n = before.size() / 3;
@@ -177,28 +179,28 @@ inline void cloud_to_flow(const std::uint8_t* data, std::size_t size) {
   one.threads = 1;
 
   std::vector<double> after = before;
-  const auto done = pipeline::denoise(after.data(), n, options, one);
+  const auto done = rfsmooth::denoise(after.data(), n, options, one);
   if (!done.ok()) return check_failure(done.error(), before, after);
   check_result(before, after);
   // What the report says was done gives the same bytes, with another number of threads too.
   Context two;
   two.threads = 2;
   std::vector<double> again = before;
-  const auto repeated = pipeline::denoise(again.data(), n, done.value().effective, two);
+  const auto repeated = rfsmooth::denoise(again.data(), n, done.value().effective, two);
   if (!repeated.ok()) found("the effective options are refused: " + repeated.error().message);
   if (!same_bits(after, again)) found("the effective options give other bytes");
 
   // The stages on their own.
   const auto cloud = rfs_mesh::make_working_cloud(before.data(), n, one);
   if (!cloud.ok()) found("no working cloud: " + cloud.error().message);
-  auto connection = rfs_mesh::connect(cloud.value().points, options.connect, one);
+  auto connection = rfsmooth::connect(cloud.value().points, options.connect, one);
   if (!connection.ok()) found("not connected: " + connection.error().message);
-  rfs_mesh::Mesh& mesh = connection.value().mesh;
-  for (const std::string& line : rfs_mesh::check(mesh)) found("the mesh: " + line);
+  Mesh& mesh = connection.value().mesh;
+  for (const std::string& line : rfsmooth::check(mesh)) found("the mesh: " + line);
   const Positions start = mesh.positions;
-  const auto smoothed = smoothing::smooth(mesh, options.flow, one);
+  const auto smoothed = rfsmooth::smooth(mesh, options.flow, one);
   if (!smoothed.ok() && mesh.positions != start) found("a failed flow moved the mesh");
-  for (const std::string& line : rfs_mesh::check(mesh)) found("the smoothed mesh: " + line);
+  for (const std::string& line : rfsmooth::check(mesh)) found("the smoothed mesh: " + line);
 }
 
 }  // namespace rfsmooth::fuzz

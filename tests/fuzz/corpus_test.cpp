@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "fuzz/cloud_to_flow.h"
+#include "tests/fuzz/cloud_to_flow.h"
 
 namespace rfsmooth::fuzz {
 namespace {

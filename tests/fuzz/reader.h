@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <cstdlib>
 
-#include "rfsmooth/pipeline/io/mesh_file.h"
+#include "pipeline/io/mesh_file.h"
 
 namespace rfsmooth::fuzz {
 

@@ -1,13 +1,12 @@
-#include "rfsmooth/pipeline/compare.h"
-
 #include <cmath>
 #include <random>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include <rfsmooth/compare.h>
+
 using namespace rfsmooth;
-using namespace rfsmooth::pipeline;
 
 namespace {
 
@@ -15,7 +14,7 @@ namespace {
 /// within 0.2 %.
 struct SphereMesh {
   std::vector<double> xyz;
-  std::vector<rfs_mesh::Face> faces;
+  std::vector<Face> faces;
   SphereMesh() {
     const double pi = std::acos(-1.0);
     const Index rows = 80, columns = 160;
@@ -129,7 +128,7 @@ TEST(Compare, ChamferAndEvennessEqualBruteForce) {
 
 TEST(Compare, P2mOfOnePointAndOneTriangle) {
   const std::vector<double> vertices = {0, 0, 0, 3, 0, 0, 0, 3, 0, 9, 9, 9, 9, 9, 9, 9, 9, 9};
-  const std::vector<rfs_mesh::Face> faces = {{0, 1, 2}, {3, 4, 5}};  // the second one is a point
+  const std::vector<Face> faces = {{0, 1, 2}, {3, 4, 5}};  // the second one is a point
   Truth truth;
   truth.mesh = MeshView{vertices.data(), 6, faces.data(), 2};
   const std::vector<double> point = {1, 1, 2};

@@ -2,11 +2,11 @@
 // sees).
 #include <gtest/gtest.h>
 
-#include "rfsmooth/clouds/sampling.h"
-#include "rfsmooth/clouds/shapes.h"
-#include "rfsmooth/pipeline/denoise.h"
+#include <rfsmooth/denoise.h>
 
-#include "support/sanitized.h"
+#include "clouds/scanner/sampling.h"
+#include "clouds/scanner/shapes.h"
+#include "tests/support/sanitized.h"
 
 using namespace rfsmooth;
 
@@ -40,10 +40,10 @@ class DenoiseQuality : public ::testing::TestWithParam<const char*> {
   }
   Errors after(const std::string& flow) const {
     std::vector<double> xyz = noisy();
-    pipeline::DenoiseOptions options;
+    DenoiseOptions options;
     options.flow.flow = flow;
     if (flow != "auto") options.flow.iterations = 10;
-    const auto report = pipeline::denoise(xyz.data(), xyz.size() / 3, options, {});
+    const auto report = rfsmooth::denoise(xyz.data(), xyz.size() / 3, options, {});
     EXPECT_TRUE(report.ok());
     return errors(*shape_, xyz);
   }
@@ -80,7 +80,7 @@ TEST(DenoiseQuality, TheSheetsOfAThinWallStayApart) {
     ASSERT_NEAR(thickness / spacing, 3.5, 0.5);
     Positions points = clean;
     clouds::add_noise(points, share * spacing, 2);
-    ASSERT_TRUE(pipeline::denoise(points[0].data(), points.size(), {}, {}).ok());
+    ASSERT_TRUE(rfsmooth::denoise(points[0].data(), points.size(), {}, {}).ok());
     double height[2] = {0, 0}, count[2] = {0, 0}, squares = 0;
     for (std::size_t i = 0; i < clean.size(); ++i) {
       if (std::abs(clean[i].x()) > 1 - 4 * spacing || std::abs(clean[i].y()) > 0.8 - 4 * spacing) continue;
@@ -106,7 +106,7 @@ TEST(DenoiseQuality, AWallOfLessThanFourSigmaKeepsTwoFlatSheets) {
     points.emplace_back(p + Eigen::Vector3d(4, 0, 0));
   clouds::add_noise(points, sigma, 2);
   const Positions noisy = points;
-  ASSERT_TRUE(pipeline::denoise(points[0].data(), points.size(), {}, {}).ok());
+  ASSERT_TRUE(rfsmooth::denoise(points[0].data(), points.size(), {}, {}).ok());
   double squares = 0, between = 0, count = 0;
   for (std::size_t i = 0; i < kOfWall; ++i) {
     if (std::abs(noisy[i].x()) > inside || std::abs(noisy[i].y()) > 0.8 * inside) continue;
@@ -125,7 +125,7 @@ TEST(DenoiseQuality, TheRimOfAnOpenSheetStaysWithinAThirdOfASpacing) {
   for (const double share : {0.5, 1.0}) {
     Positions points = clean;
     clouds::add_noise(points, share * spacing, 2);
-    ASSERT_TRUE(pipeline::denoise(points[0].data(), points.size(), {}, {}).ok());
+    ASSERT_TRUE(rfsmooth::denoise(points[0].data(), points.size(), {}, {}).ok());
     double inward = 0, count = 0;
     for (std::size_t i = 0; i < clean.size(); ++i) {
       for (int axis = 0; axis < 2; ++axis) {

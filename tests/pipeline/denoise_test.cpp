@@ -1,5 +1,3 @@
-#include "rfsmooth/pipeline/denoise.h"
-
 #include <atomic>
 #include <cmath>
 #include <cstring>
@@ -8,7 +6,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "support/awkward_clouds.h"
+#include <rfsmooth/denoise.h>
+
+#include "tests/support/awkward_clouds.h"
 
 namespace rfsmooth::pipeline {
 namespace {

@@ -8,9 +8,9 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-#include "rfsmooth/pipeline/io/io.h"
-#include "rfsmooth/rfs_mesh/local_surface.h"
-#include "rfsmooth/rfs_mesh/noise.h"
+#include "pipeline/io/io.h"
+#include "rfs_mesh/fit/local_surface.h"
+#include "rfs_mesh/noise/noise.h"
 
 namespace rfsmooth::test {
 namespace {

@@ -1,11 +1,11 @@
-#include "rfsmooth/pipeline/normal_sides.h"
+#include "pipeline/normal_sides.h"
 
 #include <limits>
 #include <random>
 
 #include <gtest/gtest.h>
 
-#include "rfsmooth/rfs_mesh/points.h"
+#include "rfs_mesh/points.h"
 
 namespace rfsmooth::pipeline {
 namespace {

@@ -1,5 +1,3 @@
-#include "rfsmooth/pipeline/normals.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -9,10 +7,11 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-#include "rfsmooth/clouds/sampling.h"
-#include "rfsmooth/clouds/shapes.h"
+#include <rfsmooth/normals.h>
 
-#include "support/shapes.h"
+#include "clouds/scanner/sampling.h"
+#include "clouds/scanner/shapes.h"
+#include "tests/support/shapes.h"
 
 namespace rfsmooth::pipeline {
 namespace {

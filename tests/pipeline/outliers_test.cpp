@@ -1,5 +1,5 @@
 /// Strays are found; nothing of a clean or a merely noisy cloud is called one.
-#include "rfsmooth/pipeline/outliers.h"
+#include "pipeline/outliers.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,10 +8,10 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-#include "rfsmooth/clouds/sampling.h"
-#include "rfsmooth/clouds/scanner.h"
-#include "rfsmooth/clouds/shapes.h"
-#include "rfsmooth/rfs_mesh/points.h"
+#include "clouds/scanner/sampling.h"
+#include "clouds/scanner/scanner.h"
+#include "clouds/scanner/shapes.h"
+#include "rfs_mesh/points.h"
 
 namespace rfsmooth::pipeline {
 namespace {

@@ -1,9 +1,9 @@
-#include "rfsmooth/pipeline/reconstruct.h"
-
 #include <cmath>
 #include <limits>
 
 #include <gtest/gtest.h>
+
+#include <rfsmooth/reconstruct.h>
 
 using namespace rfsmooth;
 using namespace rfsmooth::pipeline;
@@ -22,8 +22,8 @@ std::vector<double> grid_rows(int side) {
 }
 
 /// Joins every point to its right and upper neighbour, and those to theirs but at the last corner.
-Result<rfs_mesh::Mesh> join_grid(const SurfaceInput& input, const Context& context) {
-  rfs_mesh::Mesh mesh;
+Result<Mesh> join_grid(const SurfaceInput& input, const Context& context) {
+  Mesh mesh;
   mesh.positions = input.points;
   const auto at = [&](const Eigen::Vector3d& p) {
     for (Index i = 0; i < input.points.size(); ++i)
@@ -75,11 +75,11 @@ TEST(Reconstruct, NoiseIsTakenOutFirst) {
     const auto made = reconstruct(rows, options,
                                   {"all", false,
                                    [](const SurfaceInput& input, const Context&) {
-                                     rfs_mesh::Mesh mesh;
+                                     Mesh mesh;
                                      mesh.positions = input.points;
                                      for (Index i = 0; i + 2 < input.points.size(); ++i)
                                        mesh.faces.push_back({i, i + 1, i + 2});
-                                     return Result<rfs_mesh::Mesh>(mesh);
+                                     return Result<Mesh>(mesh);
                                    }},
                                   {});
     for (const auto& p : made.value().mesh.positions) sum += p.z() * p.z();
@@ -91,15 +91,13 @@ TEST(Reconstruct, NoiseIsTakenOutFirst) {
 }
 
 TEST(Reconstruct, ErrorsOfTheMethodAndTheCloudComeThrough) {
-  const auto fails = [](const SurfaceInput&, const Context&) -> Result<rfs_mesh::Mesh> {
+  const auto fails = [](const SurfaceInput&, const Context&) -> Result<Mesh> {
     return Error{ErrorCode::no_usable_points, "no surface here"};
   };
   const auto failed = reconstruct(grid_rows(3), without_denoising(), {"fails", false, fails}, {});
   ASSERT_FALSE(failed.ok());
   EXPECT_EQ(failed.error().message, "no surface here");
-  const auto empty = [](const SurfaceInput&, const Context&) -> Result<rfs_mesh::Mesh> {
-    return rfs_mesh::Mesh{};
-  };
+  const auto empty = [](const SurfaceInput&, const Context&) -> Result<Mesh> { return Mesh{}; };
   EXPECT_EQ(reconstruct(grid_rows(3), without_denoising(), {"empty", false, empty}, {}).error().code,
             ErrorCode::no_usable_points);
   const double nan = std::nan("");

@@ -12,12 +12,12 @@
 
 #include <gtest/gtest.h>
 
-#include "rfsmooth/pipeline/denoise.h"
+#include <rfsmooth/denoise.h>
 
-#include "support/awkward_clouds.h"
-#include "support/connection.h"
-#include "support/kruskal.h"
-#include "support/sanitized.h"
+#include "tests/support/awkward_clouds.h"
+#include "tests/support/connection.h"
+#include "tests/support/kruskal.h"
+#include "tests/support/sanitized.h"
 
 namespace rfsmooth::pipeline {
 namespace {
@@ -183,9 +183,9 @@ TEST_P(Robustness, Connects) {
   Positions points;
   for (const Vector3d& p : GetParam().make().rows)
     if (p.allFinite()) points.push_back(p);
-  const auto made = timed("connect", [&] { return rfs_mesh::connect(points, {}, {}); });
+  const auto made = timed("connect", [&] { return rfsmooth::connect(points, {}, {}); });
   ASSERT_TRUE(made.ok()) << made.error().message;
-  const rfs_mesh::Connection& c = made.value();
+  const Connection& c = made.value();
   test::expect_sound(c, points.size());
   EXPECT_TRUE(test::joins_all(points.size(), c.emst));
   EXPECT_TRUE(test::joins_all(points.size(), c.sdg, c.bridges));

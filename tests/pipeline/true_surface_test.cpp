@@ -1,4 +1,4 @@
-#include "rfsmooth/pipeline/true_surface.h"
+#include "pipeline/true_surface.h"
 
 #include <cmath>
 #include <limits>
@@ -28,9 +28,8 @@ class Random {
 /// The unit cube [0, 1]^3 with outward faces.
 const Positions kCubeCorners = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
                                 {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
-const std::vector<rfs_mesh::Face> kCubeFaces = {{0, 2, 1}, {0, 3, 2}, {4, 5, 6}, {4, 6, 7},
-                                                {0, 1, 5}, {0, 5, 4}, {1, 2, 6}, {1, 6, 5},
-                                                {2, 3, 7}, {2, 7, 6}, {3, 0, 4}, {3, 4, 7}};
+const std::vector<Face> kCubeFaces = {{0, 2, 1}, {0, 3, 2}, {4, 5, 6}, {4, 6, 7}, {0, 1, 5}, {0, 5, 4},
+                                      {1, 2, 6}, {1, 6, 5}, {2, 3, 7}, {2, 7, 6}, {3, 0, 4}, {3, 4, 7}};
 
 /// Signed distance to the unit cube, from its definition.
 double cube_distance(const Vector3d& p) {
@@ -125,7 +124,7 @@ TEST(PointTree, EmptyAndSinglePoint) {
 TEST(TrueSurface, NearestEqualsBruteForceOnASoup) {
   Random random(4);
   Positions vertices;
-  std::vector<rfs_mesh::Face> faces;
+  std::vector<Face> faces;
   for (Index f = 0; f < 200; ++f) {
     const Vector3d centre = random.in_cube(1);
     for (int k = 0; k < 3; ++k) vertices.push_back(centre + random.in_cube(0.2));
@@ -144,10 +143,10 @@ TEST(TrueSurface, NearestEqualsBruteForceOnASoup) {
 
 TEST(TrueSurface, SignedDistanceToACubeIsItsDefinition) {
   Random random(5);
-  std::vector<rfs_mesh::Face> inward = kCubeFaces;
+  std::vector<Face> inward = kCubeFaces;
   for (auto& face : inward) std::swap(face[0], face[1]);
   Positions soup;  // every face with its own corners, as from an STL file
-  std::vector<rfs_mesh::Face> soup_faces;
+  std::vector<Face> soup_faces;
   for (const auto& face : kCubeFaces) {
     const Index first = Index(soup.size());
     for (const Index v : face) soup.push_back(kCubeCorners[v]);
@@ -166,10 +165,10 @@ TEST(TrueSurface, SignedDistanceToACubeIsItsDefinition) {
 }
 
 TEST(TrueSurface, AMissingFaceMeansOpen) {
-  std::vector<rfs_mesh::Face> open = kCubeFaces;
+  std::vector<Face> open = kCubeFaces;
   open.pop_back();
   EXPECT_FALSE(TrueSurface(kCubeCorners, open).closed());
-  std::vector<rfs_mesh::Face> turned = kCubeFaces;
+  std::vector<Face> turned = kCubeFaces;
   std::swap(turned[3][0], turned[3][1]);
   EXPECT_FALSE(TrueSurface(kCubeCorners, turned).closed());
 }

@@ -1,4 +1,4 @@
-#include "rfsmooth/pipeline/viewpoint.h"
+#include "pipeline/viewpoint.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "rfsmooth/rfs_mesh/measure.h"
+#include "rfs_mesh/measure.h"
 
 #include <cmath>
 

@@ -1,6 +1,6 @@
-#include "rfsmooth/rfs_mesh/mesh.h"
-
 #include <gtest/gtest.h>
+
+#include <rfsmooth/mesh.h>
 
 using namespace rfsmooth;
 using namespace rfsmooth::rfs_mesh;

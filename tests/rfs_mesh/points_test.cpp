@@ -1,4 +1,4 @@
-#include "rfsmooth/rfs_mesh/points.h"
+#include "rfs_mesh/points.h"
 
 #include <cmath>
 #include <random>

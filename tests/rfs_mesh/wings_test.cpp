@@ -1,4 +1,4 @@
-#include "rfsmooth/rfs_mesh/wings.h"
+#include "rfs_mesh/wings.h"
 
 #include <map>
 #include <random>

@@ -2,16 +2,16 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-#include "rfsmooth/smoothing/divided_difference.h"
-#include "rfsmooth/smoothing/flow.h"
-#include "rfsmooth/smoothing/operator.h"
+#include <rfsmooth/flow.h>
 
-#include "support/meshes.h"
+#include "smoothing/operators/divided_difference.h"
+#include "smoothing/operators/operator.h"
+#include "tests/support/meshes.h"
 
 using namespace rfsmooth;
 using namespace rfsmooth::smoothing;
 using Eigen::Vector3d;
-using rfs_mesh::Mesh;
+using rfsmooth::Mesh;
 
 namespace {
 

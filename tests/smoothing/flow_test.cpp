@@ -1,15 +1,15 @@
-#include "rfsmooth/smoothing/flow.h"
-
 #include <algorithm>
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-#include "support/meshes.h"
+#include <rfsmooth/flow.h>
+
+#include "tests/support/meshes.h"
 
 using namespace rfsmooth;
 using namespace rfsmooth::smoothing;
-using rfs_mesh::Mesh;
+using rfsmooth::Mesh;
 
 namespace {
 

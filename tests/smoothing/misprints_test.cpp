@@ -5,17 +5,17 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-#include "rfsmooth/rfs_mesh/measure.h"
-#include "rfsmooth/smoothing/flow.h"
-#include "rfsmooth/smoothing/operator.h"
-#include "rfsmooth/smoothing/surface.h"
+#include <rfsmooth/flow.h>
 
-#include "support/meshes.h"
+#include "rfs_mesh/measure.h"
+#include "smoothing/operators/operator.h"
+#include "smoothing/operators/surface.h"
+#include "tests/support/meshes.h"
 
 using namespace rfsmooth;
 using namespace rfsmooth::smoothing;
 using Eigen::Vector3d;
-using rfs_mesh::Mesh;
+using rfsmooth::Mesh;
 
 namespace {
 
@@ -95,7 +95,7 @@ TEST(ModifiedCurvature, ThePrintedBracketIsNotTangentialOursIs) {
   with.tangential = 1;
   without.tangential = 0;
   const Positions a = after(sphere, with).positions, b = after(sphere, without).positions;
-  const rfs_mesh::Adjacency around = vertex_faces(sphere, {});
+  const Adjacency around = vertex_faces(sphere, {});
   double ours = 0, printed = 0;
   for (Index i = 0; i < a.size(); ++i) {
     const Vector3d n = unsigned_normal(sphere, around, i), U = -first[i];

@@ -5,14 +5,14 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-#include "rfsmooth/smoothing/flow.h"
+#include <rfsmooth/flow.h>
 
-#include "support/meshes.h"
+#include "tests/support/meshes.h"
 
 using namespace rfsmooth;
 using namespace rfsmooth::smoothing;
 using Eigen::Vector3d;
-using rfs_mesh::Mesh;
+using rfsmooth::Mesh;
 
 namespace {
 

@@ -3,17 +3,17 @@
 
 #include <gtest/gtest.h>
 
-#include "rfsmooth/smoothing/explicit.h"
-#include "rfsmooth/smoothing/flow.h"
-#include "rfsmooth/smoothing/operator.h"
-#include "rfsmooth/smoothing/umbrella_speed.h"
+#include <rfsmooth/flow.h>
 
-#include "support/meshes.h"
+#include "smoothing/integrators/explicit.h"
+#include "smoothing/integrators/umbrella_speed.h"
+#include "smoothing/operators/operator.h"
+#include "tests/support/meshes.h"
 
 using namespace rfsmooth;
 using namespace rfsmooth::smoothing;
 using Eigen::Vector3d;
-using rfs_mesh::Mesh;
+using rfsmooth::Mesh;
 
 namespace {
 

@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include "rfsmooth/rfs_mesh/points.h"
+#include "rfs_mesh/points.h"
 
 namespace rfsmooth::test {
 

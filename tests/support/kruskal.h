@@ -11,7 +11,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "rfsmooth/rfs_mesh/points.h"
+#include "rfs_mesh/points.h"
 
 namespace rfsmooth::test {
 

@@ -1,4 +1,4 @@
-#include "support/meshes.h"
+#include "tests/support/meshes.h"
 
 #include <cmath>
 #include <map>
@@ -9,8 +9,8 @@
 namespace rfsmooth::support {
 
 using Eigen::Vector3d;
-using rfs_mesh::Face;
-using rfs_mesh::Mesh;
+using rfsmooth::Face;
+using rfsmooth::Mesh;
 
 namespace {
 
@@ -165,7 +165,7 @@ Mesh permuted(const Mesh& mesh, const std::vector<Index>& place) {
   Mesh out;
   out.positions.resize(mesh.positions.size());
   for (Index i = 0; i < place.size(); ++i) out.positions[place[i]] = mesh.positions[i];
-  for (const rfs_mesh::Face& f : mesh.faces) out.faces.push_back({place[f[0]], place[f[1]], place[f[2]]});
+  for (const Face& f : mesh.faces) out.faces.push_back({place[f[0]], place[f[1]], place[f[2]]});
   rebuild_adjacency(out, {});
   return out;
 }

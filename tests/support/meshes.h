@@ -3,49 +3,49 @@
 
 #include <vector>
 
-#include "rfsmooth/rfs_mesh/mesh.h"
+#include <rfsmooth/mesh.h>
 
 namespace rfsmooth::support {
 
 /// Subdivided icosahedron of radius 1: 10 * 4^levels + 2 vertices, outward faces.
-rfs_mesh::Mesh icosphere(int levels);
+Mesh icosphere(int levels);
 
 /// Torus around z: major 1, minor radius `minor`; around x along vertices. Outward faces.
-rfs_mesh::Mesh torus(int around, int along, double minor);
+Mesh torus(int around, int along, double minor);
 
 /// columns x rows vertices at spacing 1 in the plane z = 0, one diagonal per cell; `equilateral` shears it
 /// into equilateral triangles.
-rfs_mesh::Mesh grid(int columns, int rows, bool equilateral = false);
+Mesh grid(int columns, int rows, bool equilateral = false);
 
 /// Open cylinder around z of radius 1 with `around` vertices per ring and `rings` rings `step` apart.
-rfs_mesh::Mesh cylinder(int around, int rings, double step);
+Mesh cylinder(int around, int rings, double step);
 
 /// A sphere of radius 1 whose lower half is sampled twice as finely (longitude circles, closed by poles).
-rfs_mesh::Mesh two_density_sphere(int around);
+Mesh two_density_sphere(int around);
 
 /// Three pages of two triangles each on one common edge, and a bow tie of two triangles at a vertex.
-rfs_mesh::Mesh non_manifold_fan();
+Mesh non_manifold_fan();
 
 /// A flat patch with a zero-area face, a needle, coincident vertices, a loose edge and an isolated vertex.
-rfs_mesh::Mesh degenerate_triangles();
+Mesh degenerate_triangles();
 
 /// Every fixture above, small.
-std::vector<rfs_mesh::Mesh> all_small();
+std::vector<Mesh> all_small();
 
 /// Adds Gaussian noise of standard deviation sigma per coordinate, the same for the same seed.
-void add_noise(rfs_mesh::Mesh& mesh, double sigma, unsigned seed);
+void add_noise(Mesh& mesh, double sigma, unsigned seed);
 
 /// The mesh with vertex i at place[i].
-rfs_mesh::Mesh permuted(const rfs_mesh::Mesh& mesh, const std::vector<Index>& place);
+Mesh permuted(const Mesh& mesh, const std::vector<Index>& place);
 
 /// Sum of the triangles' areas.
-double area(const rfs_mesh::Mesh& mesh);
+double area(const Mesh& mesh);
 
 /// Enclosed volume of a closed, oriented mesh (divergence theorem).
-double enclosed_volume(const rfs_mesh::Mesh& mesh);
+double enclosed_volume(const Mesh& mesh);
 
 /// Mean length of the edges.
-double mean_edge(const rfs_mesh::Mesh& mesh);
+double mean_edge(const Mesh& mesh);
 
 /// Root mean square of |x_i - y_i|.
 double rms_distance(const Positions& x, const Positions& y);

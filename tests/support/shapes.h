@@ -13,7 +13,7 @@
 
 #include <Eigen/Core>
 
-#include "rfsmooth/rfs_mesh/points.h"
+#include "rfs_mesh/points.h"
 
 namespace rfsmooth::test {
 

@@ -6,13 +6,13 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include "rfsmooth/pipeline/cli/program.h"
-#include "rfsmooth/pipeline/cli/reconstruct_command.h"
+#include "pipeline/cli/commands/reconstruct_command.h"
+#include "pipeline/cli/program.h"
 #ifdef RFSMOOTH_HAVE_CGAL
-#include "rfsmooth/cgal/advancing_front.h"
+#include <rfsmooth/cgal/advancing_front.h>
 #endif
 #ifdef RFSMOOTH_HAVE_OPEN3D
-#include "rfsmooth/open3d/surface.h"
+#include <rfsmooth/open3d/surface.h>
 #endif
 
 namespace {
@@ -56,7 +56,7 @@ class InsideLibrary {
   struct sigaction interrupt_ = {}, terminate_ = {};
 };
 
-rfsmooth::pipeline::SurfaceMethod guarded(rfsmooth::pipeline::SurfaceMethod method) {
+rfsmooth::SurfaceMethod guarded(rfsmooth::SurfaceMethod method) {
   method.run = [run = std::move(method.run)](const auto& input, const auto& context) {
     context.check_stop();
     const InsideLibrary inside;
@@ -65,8 +65,8 @@ rfsmooth::pipeline::SurfaceMethod guarded(rfsmooth::pipeline::SurfaceMethod meth
   return method;
 }
 
-std::vector<rfsmooth::pipeline::SurfaceMethod> methods() {
-  std::vector<rfsmooth::pipeline::SurfaceMethod> all;
+std::vector<rfsmooth::SurfaceMethod> methods() {
+  std::vector<rfsmooth::SurfaceMethod> all;
 #ifdef RFSMOOTH_HAVE_CGAL
   all.push_back(guarded(rfsmooth::cgal::advancing_front_method()));
 #endif

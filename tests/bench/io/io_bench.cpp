@@ -18,7 +18,7 @@
 #include <pcl/point_types.h>
 #include <unistd.h>
 
-#include "rfsmooth/pipeline/io/io.h"
+#include "pipeline/io/io.h"
 
 namespace {
 

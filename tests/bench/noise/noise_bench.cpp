@@ -9,13 +9,12 @@
 #include <CLI/CLI.hpp>
 #include <Eigen/Geometry>
 
-#include "rfsmooth/rfs_mesh/noise.h"
-#include "rfsmooth/rfs_mesh/parallel.h"
-
-#include "closest.h"
-#include "dataset.h"
-#include "support/main.h"
-#include "support/median.h"
+#include "base/parallel.h"
+#include "rfs_mesh/noise/noise.h"
+#include "tests/bench/quality/data/closest.h"
+#include "tests/bench/quality/data/dataset.h"
+#include "tests/bench/support/main.h"
+#include "tests/bench/support/median.h"
 
 namespace {
 
@@ -33,7 +32,7 @@ struct Places {
 };
 
 /// Distance from p along the line of direction d, either way, to the next triangle that is not p's own.
-double next_sheet(const rfs_mesh::Mesh& mesh, const Vector3d& p, const Vector3d& d) {
+double next_sheet(const Mesh& mesh, const Vector3d& p, const Vector3d& d) {
   double nearest = std::numeric_limits<double>::infinity();
   for (const auto& f : mesh.faces) {
     const Vector3d a = mesh.positions[f[0]] - p;

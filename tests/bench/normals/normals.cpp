@@ -3,8 +3,6 @@
 ///
 /// rfsmooth denoises and then estimates; the peers get the noisy cloud. What an error is measured against and
 /// how the peers come by their number of neighbours is not a matter of course: every reading is printed.
-#include "rfsmooth/pipeline/normals.h"
-
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -17,17 +15,18 @@
 #include <CLI/CLI.hpp>
 #include <Eigen/Geometry>
 
-#include "rfsmooth/clouds/sampling.h"
-#include "rfsmooth/rfs_mesh/measure.h"
-#include "rfsmooth/rfs_mesh/neighbors.h"
-#include "rfsmooth/rfs_mesh/parallel.h"
+#include <rfsmooth/normals.h>
 
-#include "peers.h"
-#include "quality/closest.h"
-#include "quality/dataset.h"
-#include "quality/ours.h"
-#include "support/main.h"
-#include "support/median.h"
+#include "base/parallel.h"
+#include "clouds/scanner/sampling.h"
+#include "rfs_mesh/measure.h"
+#include "rfs_mesh/search/neighbors.h"
+#include "tests/bench/peers/peers.h"
+#include "tests/bench/quality/data/closest.h"
+#include "tests/bench/quality/data/dataset.h"
+#include "tests/bench/quality/ours.h"
+#include "tests/bench/support/main.h"
+#include "tests/bench/support/median.h"
 
 namespace {
 
@@ -165,8 +164,8 @@ Normals ours(const Positions& points, int threads) {
   Normals normals(points.size());
   Context context;
   context.threads = threads;
-  const auto done = rfsmooth::pipeline::estimate_normals(points.data()->data(), points.size(), {}, context,
-                                                         normals.data()->data());
+  const auto done =
+      rfsmooth::estimate_normals(points.data()->data(), points.size(), {}, context, normals.data()->data());
   if (!done) throw std::runtime_error(done.error().message);
   return normals;
 }

@@ -13,12 +13,12 @@
 #include <pcl/search/kdtree.h>
 #include <pcl/surface/mls.h>
 
-#include "rfsmooth/pcl/denoise.h"
+#include <rfsmooth/pcl/denoise.h>
 
-#include "quality/dataset.h"
-#include "quality/measure.h"
-#include "support/apart.h"
-#include "support/main.h"
+#include "tests/bench/quality/data/dataset.h"
+#include "tests/bench/quality/data/measure.h"
+#include "tests/bench/support/apart.h"
+#include "tests/bench/support/main.h"
 
 namespace {
 

@@ -13,7 +13,7 @@
 #include <CGAL/wlop_simplify_and_regularize_point_set.h>
 #include <tbb/global_control.h>
 
-#include "peers.h"
+#include "tests/bench/peers/peers.h"
 
 namespace rfsmooth::bench::peers {
 namespace {

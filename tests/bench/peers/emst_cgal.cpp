@@ -1,4 +1,4 @@
-#include "peers/emst_cgal.h"
+#include "tests/bench/peers/emst_cgal.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "peers/hull_cgal.h"
+#include "tests/bench/peers/hull_cgal.h"
 
 #include <algorithm>
 #include <map>

@@ -2,7 +2,7 @@
 
 #include <nanoflann.hpp>
 
-#include "peers/index_peers.h"
+#include "tests/bench/peers/index_peers.h"
 
 namespace rfsmooth::bench::peers {
 

@@ -4,7 +4,7 @@
 #include <CGAL/Simple_cartesian.h>
 #include <CGAL/Surface_mesh.h>
 
-#include "peers/mesh_smoothing.h"
+#include "tests/bench/peers/mesh_smoothing.h"
 
 namespace rfsmooth::bench::peers {
 

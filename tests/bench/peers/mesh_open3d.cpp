@@ -2,7 +2,7 @@
 
 #include <open3d/geometry/TriangleMesh.h>
 
-#include "peers/mesh_smoothing.h"
+#include "tests/bench/peers/mesh_smoothing.h"
 
 namespace rfsmooth::bench::peers {
 

@@ -7,7 +7,7 @@
 #include <pcl/search/kdtree.h>
 #include <pcl/surface/mls.h>
 
-#include "peers.h"
+#include "tests/bench/peers/peers.h"
 
 namespace rfsmooth::bench::peers {
 namespace {

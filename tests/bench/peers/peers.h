@@ -4,7 +4,7 @@
 /// smoothed points with the input row each came from. Peers see what their users give them: positions only.
 #pragma once
 
-#include "rfsmooth/rfs_mesh/points.h"
+#include "rfs_mesh/points.h"
 
 namespace rfsmooth::bench::peers {
 

@@ -17,11 +17,11 @@
 #include <CLI/CLI.hpp>
 #include <Eigen/Geometry>
 
-#include "peers.h"
-#include "quality/ours.h"
-#include "support/apart.h"
-#include "support/main.h"
-#include "support/median.h"
+#include "tests/bench/peers/peers.h"
+#include "tests/bench/quality/ours.h"
+#include "tests/bench/support/apart.h"
+#include "tests/bench/support/main.h"
+#include "tests/bench/support/median.h"
 
 namespace {
 

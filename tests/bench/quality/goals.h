@@ -1,8 +1,8 @@
 /// The project's goals for quality, each measured and printed with its limit.
 #pragma once
 
-#include "ours.h"
-#include "tables.h"
+#include "tests/bench/quality/ours.h"
+#include "tests/bench/quality/tables.h"
 
 namespace rfsmooth::bench {
 

@@ -1,4 +1,4 @@
-#include "ours.h"
+#include "tests/bench/quality/ours.h"
 
 #include <chrono>
 #include <cmath>
@@ -35,8 +35,8 @@ struct Setter {
 
 }  // namespace
 
-pipeline::DenoiseOptions make_options(const std::vector<std::string>& words) {
-  pipeline::DenoiseOptions options;
+DenoiseOptions make_options(const std::vector<std::string>& words) {
+  DenoiseOptions options;
   for (const auto& word : words) {
     const auto equals = word.find('=');
     const bool off = word.rfind("no-", 0) == 0;
@@ -44,7 +44,7 @@ pipeline::DenoiseOptions make_options(const std::vector<std::string>& words) {
         word.substr(off ? 3 : 0, equals == std::string::npos ? equals : equals - (off ? 3 : 0));
     const std::string text = off ? "false" : equals == std::string::npos ? "" : word.substr(equals + 1);
     Setter setter{name, text};
-    pipeline::DenoiseOptions::describe(options, setter);
+    DenoiseOptions::describe(options, setter);
     if (!setter.found) throw std::invalid_argument("denoise has no option \"" + name + "\"");
   }
   return options;
@@ -57,7 +57,7 @@ OurResult run_ours(const Positions& noisy, const Variant& variant, int threads) 
   result.points = noisy;
   const auto options = make_options(variant.options);
   const auto start = std::chrono::steady_clock::now();
-  auto report = pipeline::denoise(result.points.data()->data(), result.points.size(), options, context);
+  auto report = rfsmooth::denoise(result.points.data()->data(), result.points.size(), options, context);
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (!report) throw std::runtime_error(report.error().message);
   result.report = std::move(report).value();

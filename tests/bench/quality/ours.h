@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "rfsmooth/pipeline/denoise.h"
+#include <rfsmooth/denoise.h>
 
-#include "runs.h"
+#include "tests/bench/quality/runs.h"
 
 namespace rfsmooth::bench {
 
@@ -18,11 +18,11 @@ struct Variant {
 
 /// Sets options by their names in DenoiseOptions' table. \throw std::invalid_argument for a name or value
 /// that it does not have.
-pipeline::DenoiseOptions make_options(const std::vector<std::string>& words);
+DenoiseOptions make_options(const std::vector<std::string>& words);
 
 struct OurResult {
   Positions points;
-  pipeline::DenoiseReport report;
+  DenoiseReport report;
   double seconds = 0;
 };
 

@@ -3,8 +3,8 @@
 
 #include <CLI/CLI.hpp>
 
-#include "goals.h"
-#include "support/main.h"
+#include "tests/bench/quality/goals.h"
+#include "tests/bench/support/main.h"
 
 namespace {
 

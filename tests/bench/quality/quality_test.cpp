@@ -3,17 +3,16 @@
 
 #include <gtest/gtest.h>
 
-#include "rfsmooth/clouds/random.h"
-#include "rfsmooth/clouds/shapes.h"
-
-#include "closest.h"
-#include "dataset.h"
-#include "measure.h"
+#include "clouds/scanner/random.h"
+#include "clouds/scanner/shapes.h"
+#include "tests/bench/quality/data/closest.h"
+#include "tests/bench/quality/data/dataset.h"
+#include "tests/bench/quality/data/measure.h"
 
 namespace rfsmooth::bench {
 namespace {
 
-double squared_to_mesh(const rfs_mesh::Mesh& mesh, const Eigen::Vector3d& p) {
+double squared_to_mesh(const Mesh& mesh, const Eigen::Vector3d& p) {
   double best = std::numeric_limits<double>::infinity();
   for (const auto& f : mesh.faces)
     best = std::min(
@@ -22,8 +21,8 @@ double squared_to_mesh(const rfs_mesh::Mesh& mesh, const Eigen::Vector3d& p) {
   return best;
 }
 
-rfs_mesh::Mesh unit_square() {
-  rfs_mesh::Mesh mesh;
+Mesh unit_square() {
+  Mesh mesh;
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
   mesh.faces = {{0, 1, 2}, {0, 2, 3}};
   return mesh;

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "goals.h"
+#include "tests/bench/quality/goals.h"
 
 namespace rfsmooth::bench {
 namespace {

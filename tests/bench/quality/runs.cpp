@@ -1,4 +1,4 @@
-#include "runs.h"
+#include "tests/bench/quality/runs.h"
 
 #include <chrono>
 #include <cstdio>

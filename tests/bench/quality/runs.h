@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "settings.h"
-#include "store.h"
+#include "tests/bench/quality/data/settings.h"
+#include "tests/bench/quality/data/store.h"
 
 namespace rfsmooth::bench {
 

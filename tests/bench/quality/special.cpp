@@ -3,10 +3,9 @@
 #include <cstdio>
 #include <cstring>
 
-#include "rfsmooth/clouds/sampling.h"
-#include "rfsmooth/clouds/shapes.h"
-
-#include "goals.h"
+#include "clouds/scanner/sampling.h"
+#include "clouds/scanner/shapes.h"
+#include "tests/bench/quality/goals.h"
 
 namespace rfsmooth::bench {
 namespace {

@@ -3,11 +3,10 @@
 #include <cmath>
 #include <cstdio>
 
-#include "rfsmooth/pipeline/outliers.h"
-#include "rfsmooth/rfs_mesh/parallel.h"
-#include "rfsmooth/rfs_mesh/points.h"
-
-#include "goals.h"
+#include "base/parallel.h"
+#include "pipeline/outliers.h"
+#include "rfs_mesh/points.h"
+#include "tests/bench/quality/goals.h"
 
 namespace rfsmooth::bench {
 namespace {

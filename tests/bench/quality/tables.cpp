@@ -1,4 +1,4 @@
-#include "tables.h"
+#include "tests/bench/quality/tables.h"
 
 #include <algorithm>
 #include <cstdio>

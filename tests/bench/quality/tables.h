@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "runs.h"
+#include "tests/bench/quality/runs.h"
 
 namespace rfsmooth::bench {
 

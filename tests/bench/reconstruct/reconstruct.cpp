@@ -1,20 +1,19 @@
 /// The reconstruction benchmark: meshes from the raw cloud, from the cloud after the best peer and from ours,
 /// by the same methods with the same normals and the same cleaning up (../README.md).
-#include "rfsmooth/pipeline/reconstruct.h"
-
 #include <algorithm>
 #include <cstdio>
 #include <map>
 
 #include <CLI/CLI.hpp>
 
-#include "rfsmooth/cgal/advancing_front.h"
-#include "rfsmooth/open3d/surface.h"
+#include <rfsmooth/cgal/advancing_front.h>
+#include <rfsmooth/open3d/surface.h>
+#include <rfsmooth/reconstruct.h>
 
-#include "ours.h"
-#include "runs.h"
-#include "support/main.h"
-#include "surface_error.h"
+#include "tests/bench/quality/ours.h"
+#include "tests/bench/quality/runs.h"
+#include "tests/bench/reconstruct/surface_error.h"
+#include "tests/bench/support/main.h"
 
 namespace {
 
@@ -27,13 +26,13 @@ struct Cloud {
 };
 
 struct Made {
-  pipeline::Topology topology;
+  Topology topology;
   SurfaceError error;
 };
 
 /// CGAL's front as CGAL gives it.
-pipeline::SurfaceMethod bare_front() {
-  return {"front as it comes", false, [](const pipeline::SurfaceInput& input, const Context& context) {
+SurfaceMethod bare_front() {
+  return {"front as it comes", false, [](const SurfaceInput& input, const Context& context) {
             return cgal::advancing_front(input.points, {}, 0, context);
           }};
 }
@@ -70,19 +69,19 @@ std::string best_of_shape(const Cell& cell, const std::string& shape) {
   return best;
 }
 
-Made make(const Cloud& cloud, const pipeline::SurfaceMethod& method, bool bare, const rfs_mesh::Mesh& truth,
+Made make(const Cloud& cloud, const SurfaceMethod& method, bool bare, const Mesh& truth,
           const Context& context) {
-  pipeline::ReconstructOptions options;
+  ReconstructOptions options;
   options.denoise = false;
   if (bare) options.fill_holes.value = 0;
   const auto* xyz = cloud.points.data()->data();
-  auto made = pipeline::reconstruct({xyz, xyz + 3 * cloud.points.size()}, options, method, context);
+  auto made = rfsmooth::reconstruct({xyz, xyz + 3 * cloud.points.size()}, options, method, context);
   if (!made.ok()) throw std::runtime_error(made.error().message);
   return {made.value().report.topology, surface_error(made.value().mesh, truth, 100000, context)};
 }
 
 void print(const std::string& cloud, const Made& made) {
-  const pipeline::Topology& t = made.topology;
+  const Topology& t = made.topology;
   std::printf("    %-24s %7.3f %7.3f %6zu %6zu %6zu %6zu %6ld %s\n", cloud.c_str(), 1e4 * made.error.to_truth,
               1e4 * made.error.from_truth, t.components, t.boundary_edges, t.boundary_loops,
               t.crowded_edges + t.pinched_vertices + t.disagreeing_edges, t.genus,
@@ -116,7 +115,7 @@ int run(int argc, char** argv) {
 
   Context context;
   context.threads = plan.threads;
-  std::vector<pipeline::SurfaceMethod> methods = open3d::surface_methods();
+  std::vector<SurfaceMethod> methods = open3d::surface_methods();
   methods.push_back(bare_front());
   methods.push_back(cgal::advancing_front_method());
   if (!only.empty())
@@ -136,7 +135,7 @@ int run(int argc, char** argv) {
       const Case one = cases.make(shape, size, noise);
       const auto input = hash_points(one.noisy);
       const std::string of_shape = best_of_shape(cell, shape);
-      const rfs_mesh::Mesh& truth = one.truth->mesh;
+      const Mesh& truth = one.truth->mesh;
       const std::vector<Cloud> clouds = {
           {"raw", one.noisy},
           {of_cell, store.cloud(input, of_cell).value().points},

@@ -1,15 +1,13 @@
-#include "surface_error.h"
+#include "tests/bench/reconstruct/surface_error.h"
 
-#include "rfsmooth/clouds/sampling.h"
-#include "rfsmooth/rfs_mesh/parallel.h"
-
-#include "closest.h"
+#include "base/parallel.h"
+#include "clouds/scanner/sampling.h"
+#include "tests/bench/quality/data/closest.h"
 
 namespace rfsmooth::bench {
 namespace {
 
-double one_way(const rfs_mesh::Mesh& from, const rfs_mesh::Mesh& to, std::size_t samples,
-               const Context& context) {
+double one_way(const Mesh& from, const Mesh& to, std::size_t samples, const Context& context) {
   const Positions points = clouds::sample(from, samples, 7, clouds::Sampling::uniform);
   const ClosestTree tree(to);
   std::vector<double> squared(points.size());
@@ -24,8 +22,7 @@ double one_way(const rfs_mesh::Mesh& from, const rfs_mesh::Mesh& to, std::size_t
 
 }  // namespace
 
-SurfaceError surface_error(const rfs_mesh::Mesh& mesh, const rfs_mesh::Mesh& truth, std::size_t samples,
-                           const Context& context) {
+SurfaceError surface_error(const Mesh& mesh, const Mesh& truth, std::size_t samples, const Context& context) {
   return {one_way(mesh, truth, samples, context), one_way(truth, mesh, samples, context)};
 }
 

@@ -1,8 +1,8 @@
 /// How far two surfaces are from each other, both ways.
 #pragma once
 
-#include "rfsmooth/rfs_mesh/context.h"
-#include "rfsmooth/rfs_mesh/mesh.h"
+#include <rfsmooth/context.h>
+#include <rfsmooth/mesh.h>
 
 namespace rfsmooth::bench {
 
@@ -15,7 +15,6 @@ struct SurfaceError {
 
 /// Measured at `samples` points of each surface, drawn uniformly by area with a fixed seed. Exact closest
 /// points.
-SurfaceError surface_error(const rfs_mesh::Mesh& mesh, const rfs_mesh::Mesh& truth, std::size_t samples,
-                           const Context& context);
+SurfaceError surface_error(const Mesh& mesh, const Mesh& truth, std::size_t samples, const Context& context);
 
 }  // namespace rfsmooth::bench

@@ -27,16 +27,16 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "rfsmooth/rfs_mesh/edge_swap.h"
-#include "rfsmooth/rfs_mesh/morton.h"
-#include "rfsmooth/rfs_mesh/parallel.h"
-#include "rfsmooth/rfs_mesh/rfs_mesh.h"
+#include <rfsmooth/connect.h>
 
-#include "../../support/shapes.h"
-#include "connect_quality.h"
-#include "support/median.h"
+#include "base/morton.h"
+#include "base/parallel.h"
+#include "rfs_mesh/connect/edge_swap.h"
+#include "tests/bench/rfs_mesh/connect_quality.h"
+#include "tests/bench/support/median.h"
+#include "tests/support/shapes.h"
 #ifdef RFSMOOTH_BENCH_CGAL
-#include "peers/emst_cgal.h"
+#include "tests/bench/peers/emst_cgal.h"
 #endif
 
 using namespace rfsmooth;

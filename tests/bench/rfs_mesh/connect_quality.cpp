@@ -1,4 +1,4 @@
-#include "connect_quality.h"
+#include "tests/bench/rfs_mesh/connect_quality.h"
 
 #include <algorithm>
 #include <array>
@@ -8,14 +8,14 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
-#include "rfsmooth/rfs_mesh/measure.h"
-#include "rfsmooth/rfs_mesh/rfs_mesh.h"
+#include <rfsmooth/connect.h>
 
-#include "../../support/shapes.h"
-#include "closest.h"
-#include "dataset.h"
+#include "rfs_mesh/measure.h"
+#include "tests/bench/quality/data/closest.h"
+#include "tests/bench/quality/data/dataset.h"
+#include "tests/support/shapes.h"
 #ifdef RFSMOOTH_BENCH_CGAL
-#include "peers/hull_cgal.h"
+#include "tests/bench/peers/hull_cgal.h"
 #endif
 
 namespace rfsmooth::bench {

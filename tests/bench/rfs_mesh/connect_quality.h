@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "rfsmooth/rfs_mesh/points.h"
+#include "rfs_mesh/points.h"
 
 namespace rfsmooth::bench {
 

@@ -20,13 +20,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "rfsmooth/rfs_mesh/emst.h"
-#include "rfsmooth/rfs_mesh/parallel.h"
-
-#include "peers/index_peers.h"
-#include "support/median.h"
+#include "base/parallel.h"
+#include "rfs_mesh/connect/emst.h"
+#include "tests/bench/peers/index_peers.h"
+#include "tests/bench/support/median.h"
 #ifdef RFSMOOTH_BENCH_CGAL
-#include "peers/emst_cgal.h"
+#include "tests/bench/peers/emst_cgal.h"
 #endif
 
 using rfsmooth::Context;

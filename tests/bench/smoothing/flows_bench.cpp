@@ -21,19 +21,19 @@
 
 #include <fmt/format.h>
 
-#include "rfsmooth/rfs_mesh/parallel.h"
-#include "rfsmooth/rfs_mesh/points.h"
-#include "rfsmooth/smoothing/flow.h"
-#include "rfsmooth/smoothing/operator.h"
-#include "rfsmooth/smoothing/solver.h"
+#include <rfsmooth/flow.h>
 
-#include "peers/mesh_smoothing.h"
-#include "support/meshes.h"
+#include "base/parallel.h"
+#include "rfs_mesh/points.h"
+#include "smoothing/integrators/solver.h"
+#include "smoothing/operators/operator.h"
+#include "tests/bench/peers/mesh_smoothing.h"
+#include "tests/support/meshes.h"
 
 using namespace rfsmooth;
 using namespace rfsmooth::smoothing;
 using Eigen::Vector3d;
-using rfs_mesh::Mesh;
+using rfsmooth::Mesh;
 
 namespace {
 
@@ -74,7 +74,7 @@ Mesh noisy(Mesh mesh) {
 
 void steps() {
   const Mesh mesh = noisy(support::torus(1250, 800, 0.4));
-  const rfs_mesh::Adjacency& rows = mesh.one_ring;
+  const Adjacency& rows = mesh.one_ring;
   const Context context;
   Positions out(mesh.positions.size());
   const auto gather = [&] {

@@ -1,4 +1,4 @@
-#include "support/apart.h"
+#include "tests/bench/support/apart.h"
 
 #include <chrono>
 #include <cstdio>

@@ -6,9 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include "rfsmooth/pipeline/io/mesh_file.h"
-
-#include "pipeline/io/random_cloud.h"
+#include "pipeline/io/mesh_file.h"
+#include "tests/pipeline/io/random_cloud.h"
 
 using namespace rfsmooth;                // NOLINT(google-build-using-namespace)
 using namespace rfsmooth::pipeline::io;  // NOLINT(google-build-using-namespace)

@@ -7,9 +7,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "rfsmooth/pipeline/io/io.h"
-#include "rfsmooth/pipeline/io/lzf.h"
-#include "rfsmooth/pipeline/io/mesh_file.h"
+#include "pipeline/io/formats/lzf.h"
+#include "pipeline/io/io.h"
+#include "pipeline/io/mesh_file.h"
 
 using namespace rfsmooth;                // NOLINT(google-build-using-namespace)
 using namespace rfsmooth::pipeline::io;  // NOLINT(google-build-using-namespace)
@@ -154,7 +154,7 @@ TEST(Off, VariantsComeBackAndMeshesAreRead) {
         "STCNOFF\n4 1 0\n0 0 0 0 0 1 9 9 9 0 0\n1 0 0 0 0 1 9 9 9 0 0\n1 1 0 0 0 1 9 9 9 0 0\n0 1 0 0 0 1 9 "
         "9 9 0 0\n4 0 1 2 3\n"}) {
     const MeshFile mesh = parse_mesh(text, "in", {}, {}).value();
-    EXPECT_EQ(mesh.faces, (std::vector<rfs_mesh::Face>{{0, 1, 2}, {0, 2, 3}}));
+    EXPECT_EQ(mesh.faces, (std::vector<Face>{{0, 1, 2}, {0, 2, 3}}));
     EXPECT_EQ(as(mesh.cloud, Format::off), text);
     const std::string ply = as(mesh.cloud, Format::ply, true);
     EXPECT_EQ(parse_mesh(ply, "ply", {}, {}).value().faces, mesh.faces) << ply;
@@ -241,8 +241,8 @@ TEST(Convert, CoordinatesAreNeverLeftOut) {
 TEST(Mesh, EdgesAndFacesAreWrittenAndRead) {
   const Positions points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   const Cloud cloud = parsed_text(as(make_mesh_file(points, {{0, 1, 2}}, {{0, 1}, {1, 2}}), Format::ply));
-  EXPECT_EQ(faces_of(cloud), (std::vector<rfs_mesh::Face>{{0, 1, 2}}));
-  EXPECT_EQ(edges_of(cloud), (std::vector<rfs_mesh::Edge>{{0, 1}, {1, 2}}));
+  EXPECT_EQ(faces_of(cloud), (std::vector<Face>{{0, 1, 2}}));
+  EXPECT_EQ(edges_of(cloud), (std::vector<Edge>{{0, 1}, {1, 2}}));
 }
 
 TEST(Lzf, UnpacksWhatItPacked) {

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "rfsmooth/pipeline/io/io.h"
+#include "pipeline/io/io.h"
 
 using namespace rfsmooth;                // NOLINT(google-build-using-namespace)
 using namespace rfsmooth::pipeline::io;  // NOLINT(google-build-using-namespace)

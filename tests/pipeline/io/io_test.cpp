@@ -1,4 +1,4 @@
-#include "rfsmooth/pipeline/io/io.h"
+#include "pipeline/io/io.h"
 
 #include <cmath>
 #include <cstring>
@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "rfsmooth/pipeline/io/text.h"
+#include "pipeline/io/table/text.h"
 
 using namespace rfsmooth;                // NOLINT(google-build-using-namespace)
 using namespace rfsmooth::pipeline::io;  // NOLINT(google-build-using-namespace)

@@ -1,13 +1,13 @@
-#include "rfsmooth/pipeline/io/mesh_file.h"
+#include "pipeline/io/mesh_file.h"
 
 #include <gtest/gtest.h>
 
-#include "rfsmooth/pipeline/io/io.h"
+#include "pipeline/io/io.h"
 
 using namespace rfsmooth;
 using namespace rfsmooth::pipeline::io;
-using rfs_mesh::Edge;
-using rfs_mesh::Face;
+using rfsmooth::Edge;
+using rfsmooth::Face;
 
 namespace {
 

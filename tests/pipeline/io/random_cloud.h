@@ -4,7 +4,7 @@
 
 #include <random>
 
-#include "rfsmooth/pipeline/io/io.h"
+#include "pipeline/io/io.h"
 
 namespace rfsmooth::pipeline::io {
 

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "pipeline/io/random_cloud.h"
+#include "tests/pipeline/io/random_cloud.h"
 
 using namespace rfsmooth;                // NOLINT(google-build-using-namespace)
 using namespace rfsmooth::pipeline::io;  // NOLINT(google-build-using-namespace)

@@ -1,0 +1,47 @@
+/// The median: of an even number of values the upper of the two in the middle, so that it is always one of
+/// them; 0 of none. The values change places. O(n).
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace rfsmooth {
+
+/// The median of [first, last).
+template <class Iterator>
+double median(Iterator first, Iterator last) {
+  if (first == last) return 0;
+  const Iterator middle = first + (last - first) / 2;
+  std::nth_element(first, middle, last);
+  return *middle;
+}
+
+/// The median of `values`.
+inline double median(std::vector<double>& values) {
+  return median(values.begin(), values.end());
+}
+
+/// The nth of the first `count` (from 0, nth < count), which must be finite; the others are overwritten.
+/// Every value is compared with every other: for a few that takes less time than branches that cannot be
+/// foreseen.
+template <std::size_t kMost>
+float nth_of_few(std::array<float, kMost>& values, std::size_t count, std::size_t nth) {
+  static_assert(kMost % 4 == 0);
+  const std::size_t padded = (count + 3) / 4 * 4;
+  for (std::size_t i = count; i < padded; ++i) values[i] = std::numeric_limits<float>::infinity();
+  for (std::size_t i = 0; i < count; ++i) {
+    const float value = values[i];
+    std::uint32_t less = 0, same = 0;
+    for (std::size_t j = 0; j < padded; ++j) {
+      less += std::uint32_t(values[j] < value);
+      same += std::uint32_t(values[j] == value);
+    }
+    if (less <= nth && nth < std::size_t(less) + same) return value;
+  }
+  return values[0];
+}
+
+}  // namespace rfsmooth

@@ -1,0 +1,76 @@
+/// The one parallel header: loops and reductions whose result does not depend on the number of threads.
+///
+/// Rules that make it so: write by index, gather over neighbours (never scatter), reduce in blocks of a fixed
+/// size combined in index order, sort by a total order. TBB stays in parallel.cpp.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+#include <rfsmooth/context.h>
+
+namespace rfsmooth {
+
+/// Runs `body` with parallel loops limited to `context.threads`; use it once, at a front door. Rethrows.
+void in_arena(const Context& context, const std::function<void()>& body);
+
+/// Calls `body(begin, end)` over [0, n) in blocks of `grain` (the same blocks for any number of threads), in
+/// parallel on at most `context.threads` threads. \throw Failure if `context.stop` is set; whatever `body`
+/// throws.
+void for_blocks(const Context& context, std::size_t n, std::size_t grain,
+                const std::function<void(std::size_t begin, std::size_t end)>& body);
+
+/// Calls `body(i)` for every i in [0, n), in parallel.
+template <class Body>
+void for_each_index(const Context& context, std::size_t n, Body&& body, std::size_t grain = 1024) {
+  for_blocks(context, n, grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) body(i);
+  });
+}
+
+/// Combines `map(begin, end)` of fixed blocks in index order: the same bits for any number of threads.
+template <class T, class Map, class Combine>
+T reduce_blocks(const Context& context, std::size_t n, T identity, Map&& map, Combine&& combine,
+                std::size_t grain = 4096) {
+  std::vector<T> partial((n + grain - 1) / grain, identity);
+  for_blocks(context, n, grain,
+             [&](std::size_t begin, std::size_t end) { partial[begin / grain] = map(begin, end); });
+  T total = std::move(identity);
+  for (T& p : partial) total = combine(std::move(total), std::move(p));
+  return total;
+}
+
+/// The sum of `term(i)` over [0, n); T needs `T()` = zero and +=, or pass the zero.
+template <class T, class Term>
+T sum_over(const Context& context, std::size_t n, T zero, Term&& term) {
+  return reduce_blocks(
+      context, n, zero,
+      [&](std::size_t begin, std::size_t end) {
+        T s = zero;
+        for (std::size_t i = begin; i < end; ++i) s += term(i);
+        return s;
+      },
+      [](T a, const T& b) { return T(a += b); });
+}
+
+/// Sorts by a strict total order (no two elements equivalent unless equal), in parallel: blocks, then merges.
+template <class T, class Less>
+void parallel_sort(const Context& context, std::vector<T>& v, Less less) {
+  constexpr std::size_t kBlock = std::size_t{1} << 15;
+  for_blocks(context, v.size(), kBlock, [&](std::size_t b, std::size_t e) {
+    std::sort(v.begin() + std::ptrdiff_t(b), v.begin() + std::ptrdiff_t(e), less);
+  });
+  std::vector<T> other(v.size() > kBlock ? v.size() : 0);
+  for (std::size_t width = kBlock; width < v.size(); width *= 2) {
+    for_blocks(context, v.size(), 2 * width, [&](std::size_t b, std::size_t e) {
+      const auto first = v.begin() + std::ptrdiff_t(b), last = v.begin() + std::ptrdiff_t(e);
+      const auto middle = v.begin() + std::ptrdiff_t(std::min(b + width, e));
+      std::merge(first, middle, middle, last, other.begin() + std::ptrdiff_t(b), less);
+    });
+    v.swap(other);
+  }
+}
+
+}  // namespace rfsmooth

@@ -1,0 +1,37 @@
+/// An allocator whose vectors do not fill new elements: large tables are first touched by the threads that
+/// write them, side by side, and files are read straight into their place.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <new>
+#include <utility>
+
+namespace rfsmooth {
+
+/// For numbers: after resize() new elements hold anything.
+template <class T>
+class Unfilled {
+ public:
+  using value_type = T;
+  Unfilled() = default;
+  template <class Other>
+  Unfilled(const Unfilled<Other>&) noexcept {}
+
+  T* allocate(std::size_t size) { return std::allocator<T>().allocate(size); }
+  void deallocate(T* at, std::size_t size) noexcept { std::allocator<T>().deallocate(at, size); }
+
+  template <class U>
+  void construct(U* at) noexcept {
+    ::new (static_cast<void*>(at)) U;
+  }
+  template <class U, class... From>
+  void construct(U* at, From&&... from) {
+    ::new (static_cast<void*>(at)) U(std::forward<From>(from)...);
+  }
+
+  friend bool operator==(const Unfilled&, const Unfilled&) { return true; }
+  friend bool operator!=(const Unfilled&, const Unfilled&) { return false; }
+};
+
+}  // namespace rfsmooth

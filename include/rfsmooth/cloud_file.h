@@ -1,0 +1,111 @@
+/// Files of clouds and meshes, PLY, PCD, XYZ and OFF, read and written without losing anything.
+///
+///     auto file = CloudFile::read("scan.ply");            // Result: the format is told by the content
+///     std::vector<double> xyz = file.value().positions(); // n x 3
+///     denoise(xyz.data(), xyz.size() / 3, {}, {});
+///     file.value().set_positions(xyz.data());             // only what moved changes
+///     file.value().write("clean.ply");                    // by extension; complete or not at all
+///
+/// Only coordinates, and fields that you add, change. Everything else - field order, types and names, rows
+/// with NaN, other PLY elements, comments, width x height, viewpoint - comes back byte for byte.
+///
+/// Distinct objects are independent; one object may be read by several threads, but not written.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <rfsmooth/context.h>
+#include <rfsmooth/mesh.h>
+#include <rfsmooth/result.h>
+
+namespace rfsmooth {
+
+/// The kind of file.
+enum class Format { ply, pcd, xyz, off };
+/// How its numbers are written.
+enum class Encoding { ascii, binary_little_endian, binary_big_endian, binary_compressed };
+
+/// How to read.
+struct ReadOptions {
+  std::optional<Format> format;  ///< empty: told by the content
+};
+
+/// How to write.
+struct WriteOptions {
+  std::optional<Format> format;      ///< empty: told by the extension of the path, else the cloud's own
+  std::optional<Encoding> encoding;  ///< empty: the cloud's own, or the target format's nearest to it
+  bool force = false;                ///< replace an existing file
+  bool drop_unsupported = false;     ///< leave out what the target format cannot carry, instead of refusing
+  bool sync = true;                  ///< wait until the file is safe on the disk
+};
+
+/// A file in memory: n points and all that stands beside them.
+class CloudFile {
+ public:
+  /// Reads a file; pipes and devices to their end. Errors: input_unreadable with the line or byte, what was
+  /// expected and what was found. Needs memory for one copy of the file.
+  static Result<CloudFile> read(const std::filesystem::path& path, const ReadOptions& options = {},
+                                const Context& context = {});
+  /// Reads a buffer; `name` is what errors call it.
+  static Result<CloudFile> parse(std::string_view bytes, const std::string& name,
+                                 const ReadOptions& options = {}, const Context& context = {});
+  /// n x 3 row-major coordinates as float64, and nothing else.
+  static CloudFile of_points(const double* xyz, std::size_t n);
+
+  CloudFile(const CloudFile& other);
+  CloudFile& operator=(const CloudFile& other);
+  CloudFile(CloudFile&& other) noexcept;
+  CloudFile& operator=(CloudFile&& other) noexcept;
+  ~CloudFile();
+
+  /// Writes to a temporary name beside it, synced, renamed: complete or not at all. Errors: cannot_write (an
+  /// existing file without `force` too); usage for a target that cannot carry what the cloud has.
+  Result<Done> write(const std::filesystem::path& path, const WriteOptions& options = {},
+                     const Context& context = {}) const;
+  /// Writes to a buffer.
+  Result<std::string> serialize(const WriteOptions& options = {}, const Context& context = {}) const;
+
+  Format format() const;
+  Encoding encoding() const;
+  std::size_t size() const;                   ///< n
+  std::array<std::size_t, 2> extent() const;  ///< width x height = n; height 1: not organised
+
+  /// n x 3 row-major, as doubles whatever the file's type.
+  std::vector<double> positions(const Context& context = {}) const;
+  /// Writes n x 3 coordinates back, each in its own type, rounded to nearest. What equals the present one
+  /// keeps its bytes or text.
+  void set_positions(const double* xyz, const Context& context = {});
+
+  /// Names of the points' fields, in file order; names may repeat.
+  std::vector<std::string> field_names() const;
+  /// One double per point; none if there is no such field, or it is a list.
+  std::optional<std::vector<double>> field(std::string_view name, const Context& context = {}) const;
+  /// Writes a field of the points, one value each: appended as float32 behind the last one, or, if there is
+  /// one of that name, in place in its own type. Errors: usage if that one cannot take the values. \throw
+  /// std::invalid_argument for another number of values.
+  Result<Done> set_field(const std::string& name, const std::vector<double>& values,
+                         const Context& context = {});
+
+  /// Keeps the points `rows`, in that order; not organised afterwards unless all are kept in order.
+  void select(const std::vector<std::size_t>& rows, const Context& context = {});
+
+  /// Its polygons as triangles (fans); empty without faces. Errors: input_unreadable if one names a vertex
+  /// that is not there.
+  Result<std::vector<Face>> faces(const Context& context = {}) const;
+  /// Puts triangles in place of its faces; only PLY and OFF can carry them.
+  void set_faces(const std::vector<Face>& faces);
+
+ private:
+  struct Contents;
+  explicit CloudFile(std::unique_ptr<Contents> contents);
+  std::unique_ptr<Contents> contents_;
+};
+
+}  // namespace rfsmooth

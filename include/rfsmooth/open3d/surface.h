@@ -1,0 +1,30 @@
+/// Surface reconstruction by Open3D: screened Poisson (Kazhdan and Hoppe 2013) and ball pivoting (Bernardini
+/// et al. 1999), with their scale parameters taken from the measured spacing. Open3D's headers stay in
+/// surface.cpp.
+#pragma once
+
+#include <rfsmooth/context.h>
+#include <rfsmooth/mesh.h>
+#include <rfsmooth/reconstruct.h>
+#include <rfsmooth/result.h>
+
+namespace rfsmooth::open3d {
+
+/// Closes the surface over every gap: `points` and `normals` are n x 3 in the same frame, normals unit length
+/// and consistently oriented (outward gives outward faces); `spacing` > 0 in world units sets the finest
+/// octree cell, so the depth is about log2(extent / spacing), between 4 and 12. Faces far from the points are
+/// invented: see trim_far_faces in pipeline/surface/surface_cleanup.h. Errors: no_usable_points if Poisson
+/// makes no surface. \throw std::invalid_argument if the sizes differ or spacing <= 0. The result depends on
+/// Open3D's solver, not on `context.threads`, up to its rounding.
+Result<Mesh> poisson(const Positions& points, const Positions& normals, double spacing,
+                     const Context& context);
+
+/// Rolls balls of 1, 2 and 4 times `spacing` over the points; the vertices are the points, in order. Leaves
+/// holes where no ball rests on three points. Arguments and errors as for `poisson`.
+Result<Mesh> ball_pivoting(const Positions& points, const Positions& normals, double spacing,
+                           const Context& context);
+
+/// Both as methods of rfsmooth/reconstruct.h: "poisson" and "ball-pivoting".
+std::vector<SurfaceMethod> surface_methods();
+
+}  // namespace rfsmooth::open3d

@@ -1,0 +1,47 @@
+/// A sub-command of rfsmooth: what help says of it, its options, and what it does. One file per sub-command.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "pipeline/cli/options/option.h"
+
+namespace rfsmooth::cli {
+
+/// What was typed, taken apart but not yet believed.
+struct Invocation {
+  std::vector<std::string> arguments;                        ///< positional ones, in order
+  std::vector<std::pair<std::string, std::string>> options;  ///< name and text, in order
+  bool short_help = false, long_help = false, version = false;
+};
+
+struct Command {
+  std::string name;
+  std::string summary;             ///< one line
+  std::vector<std::string> usage;  ///< what follows the name, one per form: "[options] IN OUT"
+  std::string description;         ///< paragraphs for --help and the man page
+  std::vector<CommandOption> options;
+  /// \return the exit code. \throw Failure. `invocation.options` are already assigned when it is called.
+  std::function<int(const Invocation&)> run;
+  bool listed = true;  ///< shown in the overview of `rfsmooth --help`
+};
+
+Command denoise_command();
+Command mesh_command();
+Command smooth_mesh_command();
+Command info_command();
+Command compare_command();
+Command flows_command();
+Command man_command();
+Command completion_command();
+
+/// Gives options their one-letter names and --flow its words, and marks the tuning of the connecting stages
+/// as advanced.
+void polish(Command& command);
+
+/// All of them, in the order of the overview.
+std::vector<Command> all_commands();
+
+}  // namespace rfsmooth::cli

@@ -1,0 +1,132 @@
+/// rfsmooth completion: completion scripts for bash and zsh, from the commands' own tables. The build runs it
+/// and installs the scripts.
+#include <cstdio>
+
+#include <fmt/format.h>
+
+#include "pipeline/cli/commands/command.h"
+
+namespace rfsmooth::cli {
+
+namespace {
+
+std::vector<std::string> words_of(const Command& command) {
+  std::vector<std::string> words = {"-h", "--help"};
+  for (const CommandOption& o : command.options) {
+    if (o.short_name) words.push_back(fmt::format("-{}", o.short_name));
+    for (const std::string& name : typed_names(o)) words.push_back(name);
+  }
+  return words;
+}
+
+std::string bash_script(const std::vector<Command>& commands) {
+  std::string names, options, values;
+  for (const Command& c : commands) {
+    names += (names.empty() ? "" : " ") + c.name;
+    options += fmt::format("    {}) words=\"{}\" ;;\n", c.name, fmt::join(words_of(c), " "));
+    for (const CommandOption& o : c.options) {
+      if (o.kind == ValueKind::flag || o.kind == ValueKind::file) continue;
+      std::string choices = fmt::format("{}", fmt::join(o.choices, " "));
+      if (o.optional) choices += choices.empty() ? "auto" : " auto";
+      values += fmt::format("    {}:--{}) COMPREPLY=($(compgen -W \"{}\" -- \"$cur\")); return ;;\n", c.name,
+                            o.name, choices);
+    }
+  }
+  return fmt::format(R"(# bash completion for rfsmooth; made by: rfsmooth completion bash
+_rfsmooth() {{
+  local cur="${{COMP_WORDS[COMP_CWORD]}}" prev="${{COMP_WORDS[COMP_CWORD-1]}}" command="${{COMP_WORDS[1]}}" words=""
+  if [ "$COMP_CWORD" -eq 1 ]; then
+    COMPREPLY=($(compgen -W "{} --help --version" -- "$cur"))
+    return
+  fi
+  case "$command:$prev" in
+{}  esac
+  case "$command" in
+{}  esac
+  case "$cur" in
+    -*) COMPREPLY=($(compgen -W "$words" -- "$cur")) ;;
+    *) COMPREPLY=($(compgen -f -- "$cur")) ;;
+  esac
+}}
+complete -o filenames -F _rfsmooth rfsmooth
+)",
+                     names, values, options);
+}
+
+/// Text inside _arguments '...[text]'.
+std::string zsh_escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '\'') {
+      out += "'\\''";
+      continue;
+    }
+    if (c == '[' || c == ']' || c == ':') out += '\\';
+    out += c;
+  }
+  return out;
+}
+
+std::string zsh_option(const CommandOption& o) {
+  std::string value;
+  if (o.kind == ValueKind::file)
+    value = ":file:_files";
+  else if (!o.choices.empty())
+    value = fmt::format(":{}:({}{})", value_name(o), fmt::join(o.choices, " "), o.optional ? " auto" : "");
+  else if (o.kind != ValueKind::flag)
+    value = fmt::format(":{}:({})", value_name(o), o.optional ? "auto" : "");
+  std::string lines;
+  for (const std::string& name : typed_names(o))
+    lines += fmt::format("        '{}[{}]{}' \\\n", name, zsh_escaped(o.help), value);
+  return lines;
+}
+
+std::string zsh_script(const std::vector<Command>& commands) {
+  std::string names, cases;
+  for (const Command& c : commands) {
+    names += fmt::format("    '{}:{}'\n", c.name, zsh_escaped(c.summary));
+    cases += fmt::format("    {})\n      _arguments \\\n", c.name);
+    for (const CommandOption& o : c.options) cases += zsh_option(o);
+    cases += "        '--help[everything about the command]' '*:file:_files' ;;\n";
+  }
+  return fmt::format(R"(#compdef rfsmooth
+# zsh completion for rfsmooth; made by: rfsmooth completion zsh
+_rfsmooth() {{
+  local -a commands=(
+{}  )
+  if (( CURRENT == 2 )); then
+    _describe command commands
+    return
+  fi
+  local command=$words[2]
+  shift words
+  (( CURRENT-- ))
+  case $command in
+{}  esac
+}}
+_rfsmooth "$@"
+)",
+                     names, cases);
+}
+
+}  // namespace
+
+Command completion_command() {
+  Command command;
+  command.name = "completion";
+  command.summary = "print a completion script for bash or zsh";
+  command.usage = {"bash|zsh"};
+  command.description =
+      "Prints the script on standard output; source it, or put it where the shell looks for it.";
+  command.listed = false;
+  command.run = [](const Invocation& typed) {
+    const std::string shell = typed.arguments.size() == 1 ? typed.arguments[0] : "";
+    if (shell != "bash" && shell != "zsh")
+      throw Failure({ErrorCode::usage, "rfsmooth completion takes one argument: bash or zsh"});
+    fmt::print("{}", shell == "bash" ? bash_script(all_commands()) : zsh_script(all_commands()));
+    return 0;
+  };
+  return command;
+}
+
+}  // namespace rfsmooth::cli

@@ -1,0 +1,203 @@
+/// rfsmooth denoise: a cloud in, the same cloud without the noise out.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include <rfsmooth/denoise.h>
+
+#include "pipeline/cli/commands/command.h"
+#include "pipeline/cli/files/cloud_jobs.h"
+#include "pipeline/cli/files/cloud_normals.h"
+#include "pipeline/cli/files/constraint_fields.h"
+#include "pipeline/cli/files/memory.h"
+
+namespace rfsmooth::cli {
+
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr const char *kDisplacement = "displacement", *kOutlier = "outlier";
+
+struct DenoiseCommandOptions {
+  DenoiseOptions denoise;
+  std::optional<std::string> strength_field;
+  bool write_displacement = false;
+  bool mark_outliers = false;
+  NormalsFields normals;
+  JobOptions job;
+
+  template <class Self, class Visit>
+  static void describe(Self& self, Visit&& visit) {
+    DenoiseOptions::describe(self.denoise, visit);
+    visit(OptionInfo{"strength-field", "field in [0, 1] of the input: 0 stays, 1 is smoothed fully", ""},
+          self.strength_field);
+    visit(OptionInfo{"write-displacement", "add a field 'displacement': how far each point moved", ""},
+          self.write_displacement);
+    visit(OptionInfo{"mark-outliers", "add a field 'outlier': 1 for points with no surface near, else 0", ""},
+          self.mark_outliers);
+    NormalsFields::describe(self.normals, visit);
+  }
+
+  bool marks() const { return mark_outliers || denoise.outliers == "mark"; }
+  bool removes() const { return denoise.outliers == "remove"; }
+};
+
+void enter(const DenoiseReport& done, const DenoiseCommandOptions& options, ordered_json& entry) {
+  DenoiseCommandOptions used = options;
+  used.denoise = done.effective;
+  entry["options"] = effective_options(used, options.job.files);
+  entry["counts"] = {{"points", done.points},       {"finite", done.finite},    {"distinct", done.distinct},
+                     {"moved", done.moved},         {"faces", done.faces},      {"edges", done.edges},
+                     {"sdg_edges", done.sdg_edges}, {"bridges", done.bridges},  {"faceless", done.faceless},
+                     {"swaps", done.swaps},         {"stranded", done.stranded}};
+  entry["counts"]["outliers"] = done.outliers;
+  entry["counts"]["removed"] = options.removes() ? done.outliers : 0;
+  entry["spacing"] = done.spacing;
+  entry["noise"] = done.noise;
+  entry["noise_left"] = done.noise_left;
+  entry["guide_strength"] = done.guide_strength;
+  entry["equalized"] = {{"rms", done.equalized_rms}, {"largest", done.equalized_largest}};
+  entry["largest_move"] = done.largest_move;
+  entry["rms_move"] = done.rms_move;
+}
+
+void tell(const DenoiseReport& done, const DenoiseCommandOptions& options, const pipeline::io::Cloud& cloud,
+          const Job& job, Console& console) {
+  if (done.finite < done.points)
+    console.detail(fmt::format("{}: {} points are not finite; they stay as they are", job.input,
+                               done.points - done.finite));
+  if (done.moved > 0 && has_normals(cloud) && !options.normals.normals)
+    console.warn(fmt::format(
+        "{}: the normals are kept and stale: they describe the old positions (--normals makes new ones)",
+        job.input));
+  console.detail(fmt::format("{} faces, {} edges, {} bridges, {} points without a face, {} swaps", done.faces,
+                             done.edges, done.bridges, done.faceless, done.swaps));
+}
+
+/// Fields that could not be added, told before the work. \throw Failure.
+void check_fields(const DenoiseCommandOptions& options, const pipeline::io::Cloud& cloud) {
+  if (options.write_displacement)
+    pipeline::io::check_field(cloud, kDisplacement, pipeline::io::Scalar::float32);
+  if (options.marks()) pipeline::io::check_field(cloud, kOutlier, pipeline::io::Scalar::uint8);
+  check_normals(options.normals, cloud);
+}
+
+/// How far each point is from `before`, as the file now has it: rounded to the coordinates' own type. 0 for
+/// points that are not finite.
+void write_displacement(pipeline::io::Cloud& cloud, const std::vector<double>& before,
+                        const Context& context) {
+  const std::vector<double> after = pipeline::io::positions(cloud, context);
+  std::vector<double> distance(cloud.size(), 0);
+  for (std::size_t i = 0; i < distance.size(); ++i) {
+    const double moved = std::hypot(after[3 * i] - before[3 * i], after[3 * i + 1] - before[3 * i + 1],
+                                    after[3 * i + 2] - before[3 * i + 2]);
+    if (std::isfinite(moved)) distance[i] = moved;
+  }
+  pipeline::io::set_field(cloud, kDisplacement, pipeline::io::Scalar::float32, distance, context);
+}
+
+/// Drops the outliers, the others in their order. An organised cloud keeps its grid: there they become NaN,
+/// as a sensor writes where it saw nothing (before `set_positions`, in `xyz`).
+void remove_outliers(pipeline::io::Cloud& cloud, const std::vector<char>& outlier, const Context& context) {
+  std::vector<std::size_t> rows;
+  for (std::size_t i = 0; i < outlier.size(); ++i)
+    if (outlier[i] == 0) rows.push_back(i);
+  pipeline::io::select_points(cloud, rows, context);
+}
+
+bool keeps_grid(const pipeline::io::Cloud& cloud) {
+  bool has_nan = cloud.organised();
+  for (const std::size_t f : cloud.xyz) has_nan = has_nan && is_float(cloud.points().fields[f].type);
+  return has_nan;
+}
+
+/// "; 3 outliers removed", or nothing.
+std::string said_of_outliers(const DenoiseReport& done, const DenoiseCommandOptions& options) {
+  if (done.outliers == 0) return "";
+  const char* what = options.removes() ? "removed" : options.marks() ? "marked" : "left in place";
+  return fmt::format("; {} outlier{} {}", done.outliers, done.outliers == 1 ? "" : "s", what);
+}
+
+std::string denoise_cloud(const DenoiseCommandOptions& options, pipeline::io::Cloud& cloud, const Job& job,
+                          const Context& context, Console& console, std::vector<StageTime>& stages,
+                          ordered_json& entry) {
+  const std::size_t n = cloud.size();
+  check_fields(options, cloud);
+  if (const auto error = refuse_without_memory(job.input, rfsmooth::denoise_memory(n))) throw Failure(*error);
+  std::vector<double> xyz = pipeline::io::positions(cloud, context);
+  const std::vector<double> before = options.write_displacement ? xyz : std::vector<double>{};
+  const std::vector<double> strength =
+      options.strength_field ? strengths(cloud, *options.strength_field, context) : std::vector<double>{};
+  const DenoiseReport done =
+      value_or_fail(rfsmooth::denoise(xyz.data(), n, options.denoise, context, strength), job.input);
+  const bool some_removed = options.removes() && done.outliers > 0,
+             as_nan = some_removed && keeps_grid(cloud);
+  const auto blank_outliers = [&] {
+    for (std::size_t i = 0; i < n; ++i)
+      if (done.outlier[i] != 0) std::fill_n(&xyz[3 * i], 3, std::numeric_limits<double>::quiet_NaN());
+  };
+  if (as_nan) blank_outliers();
+  pipeline::io::set_positions(cloud, xyz.data(), context);
+  if (options.write_displacement) write_displacement(cloud, before, context);
+  if (options.marks()) {
+    std::vector<double> flags(done.outlier.begin(), done.outlier.end());
+    flags.resize(n, 0);
+    pipeline::io::set_field(cloud, kOutlier, pipeline::io::Scalar::uint8, flags, context);
+  }
+  stages.insert(stages.end(), done.seconds.begin(), done.seconds.end());
+  tell(done, options, cloud, job, console);
+  enter(done, options, entry);
+  if (some_removed) blank_outliers();  // normals are of the points that stay
+  write_normals(options.normals, cloud, xyz.data(), job.output, options.job.files, context, stages, entry);
+  if (some_removed && !as_nan) remove_outliers(cloud, done.outlier, context);
+  const bool clean = done.effective.flow.flow == "auto" && done.guide_strength == 0;
+  const std::string left = clean ? ", too little to smooth"
+                           : done.noise_left < done.noise
+                               ? fmt::format(", about {:.3g} left", done.noise_left)
+                               : "";
+  return fmt::format(
+      "{} points, {} finite{}; spacing {:.4g}, noise {:.3g}{}; largest move {:.4g}, rms {:.4g}", done.points,
+      done.finite, said_of_outliers(done, options), done.spacing, done.noise, left, done.largest_move,
+      done.rms_move);
+}
+
+int run_denoise(const DenoiseCommandOptions& options, const Invocation& typed) {
+  // Wrong options are told before any file is touched.
+  value_or_throw(rfsmooth::complete(options.denoise.flow));
+  if (options.mark_outliers && options.denoise.outliers == "smooth")
+    throw Failure({ErrorCode::usage, "--mark-outliers has nothing to mark with --outliers smooth"});
+  check(options.normals);
+  return run_cloud_jobs("denoise", options.job, typed, [&](auto&&... all) {
+    return denoise_cloud(options, std::forward<decltype(all)>(all)...);
+  });
+}
+
+}  // namespace
+
+Command denoise_command() {
+  auto options = std::make_shared<DenoiseCommandOptions>();
+  Command command;
+  command.name = "denoise";
+  command.summary = "take the noise out of point clouds";
+  command.usage = {"[options] IN OUT", "[options] IN... -o FOLDER/"};
+  command.description =
+      "Reads a cloud (PLY, PCD, XYZ; the format is found by content), connects its points to a rough mesh "
+      "(EMST, SDG, RFS-mesh), smooths the mesh, and writes the same cloud with x, y, z replaced: every "
+      "other field, the order and the number of points stay. Points that are not finite stay as they are. "
+      "Fields that are asked for (--write-displacement, --mark-outliers, --normals) come behind the "
+      "points' other fields, or take the place of the one of that name.\n\n"
+      "- stands for standard input or output; --format names the format where there is no extension. "
+      "Without -o exactly two names are taken, IN and OUT; with -o every name is an input. Existing files "
+      "are replaced only with --force. Ctrl-C stops within a second and leaves no file.";
+  collect(*options, command.options);
+  collect(options->job, command.options);
+  polish(command);
+  command.run = [options](const Invocation& typed) { return run_denoise(*options, typed); };
+  return command;
+}
+
+}  // namespace rfsmooth::cli

@@ -1,0 +1,85 @@
+/// rfsmooth flows: every way of smoothing, from the library's registry.
+#include <cstdio>
+#include <memory>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <rfsmooth/flow.h>
+
+#include "pipeline/cli/commands/command.h"
+#include "pipeline/cli/options/json_values.h"
+
+namespace rfsmooth::cli {
+
+namespace {
+
+struct FlowsOptions {
+  bool json = false;
+  bool markdown = false;
+
+  template <class Self, class Visit>
+  static void describe(Self& self, Visit&& visit) {
+    visit(OptionInfo{"json", "print JSON", ""}, self.json);
+    visit(OptionInfo{"markdown", "print the table of the README", ""}, self.markdown);
+  }
+};
+
+/// The flow's own values, by option name, as they would be typed.
+std::vector<std::pair<std::string, std::string>> defaults_of(const FlowEntry& flow) {
+  FlowOptions values = flow.defaults;
+  std::vector<CommandOption> options;
+  collect(values, options);
+  std::vector<std::pair<std::string, std::string>> defaults;
+  for (const auto parameter : flow.parameters)
+    if (const CommandOption* option = find_option(options, std::string(parameter)))
+      defaults.emplace_back(option->name, option->get().value_or("auto"));
+  return defaults;
+}
+
+void print_table() {
+  for (const FlowEntry& flow : rfsmooth::flows()) {
+    fmt::print("{:<18} {} ({})\n{:18}", flow.name, flow.summary, flow.source, "");
+    for (const auto& [name, value] : defaults_of(flow)) fmt::print(" --{} {}", name, value);
+    fmt::print("\n");
+  }
+}
+
+void print_markdown() {
+  fmt::print("| flow | what it does | source |\n|---|---|---|\n");
+  for (const FlowEntry& flow : rfsmooth::flows())
+    fmt::print("| `{}` | {} | {} |\n", flow.name, flow.summary, flow.source);
+}
+
+void print_json() {
+  auto list = nlohmann::ordered_json::array();
+  for (const FlowEntry& flow : rfsmooth::flows()) {
+    auto defaults = nlohmann::ordered_json::object();
+    for (const auto& [name, value] : defaults_of(flow)) defaults[name] = json_value(value);
+    list.push_back(
+        {{"name", flow.name}, {"summary", flow.summary}, {"source", flow.source}, {"options", defaults}});
+  }
+  fmt::print("{}\n", list.dump(2));
+}
+
+}  // namespace
+
+Command flows_command() {
+  auto options = std::make_shared<FlowsOptions>();
+  Command command;
+  command.name = "flows";
+  command.summary = "list the ways of smoothing that --flow takes";
+  command.usage = {"[--json|--markdown]"};
+  command.description = "Prints every flow with its source and the options it uses.";
+  collect(*options, command.options);
+  command.run = [options](const Invocation& typed) {
+    if (!typed.arguments.empty()) throw Failure({ErrorCode::usage, "rfsmooth flows takes no arguments"});
+    if (options->json && options->markdown)
+      throw Failure({ErrorCode::usage, "--json and --markdown exclude each other"});
+    options->json ? print_json() : options->markdown ? print_markdown() : print_table();
+    return 0;
+  };
+  return command;
+}
+
+}  // namespace rfsmooth::cli

@@ -1,0 +1,169 @@
+/// rfsmooth info: what a file holds.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "base/parallel.h"
+#include "pipeline/cli/commands/command.h"
+#include "pipeline/cli/console.h"
+#include "pipeline/cli/files/cloud_files.h"
+#include "rfs_mesh/fit/local_surface.h"
+#include "rfs_mesh/noise/noise.h"
+#include "rfs_mesh/points.h"
+#include "rfs_mesh/search/neighbors.h"
+
+namespace rfsmooth::cli {
+
+namespace {
+
+using nlohmann::ordered_json;
+
+struct InfoCommandOptions {
+  bool json = false;
+  TalkOptions talk;
+
+  template <class Self, class Visit>
+  static void describe(Self& self, Visit&& visit) {
+    visit(OptionInfo{"json", "print JSON", ""}, self.json);
+    TalkOptions::describe(self.talk, visit);
+  }
+};
+
+/// First, fifth and ninth tenth of a field over the cloud.
+ordered_json tenths(std::vector<double> field) {
+  std::sort(field.begin(), field.end());
+  auto json = ordered_json::array();
+  for (const std::size_t tenth : {1, 5, 9}) json.push_back(field[tenth * (field.size() - 1) / 10]);
+  return json;
+}
+
+/// Finite and distinct points, bounding box, mean distance to the nearest other point.
+ordered_json measure(const pipeline::io::Cloud& cloud, const Context& context) {
+  const std::vector<double> xyz = pipeline::io::positions(cloud, context);
+  ordered_json json = {{"finite", 0},      {"distinct", 0},         {"low", nullptr},
+                       {"high", nullptr},  {"spacing", nullptr},    {"spacing_field", nullptr},
+                       {"noise", nullptr}, {"noise_field", nullptr}};
+  const auto working = rfs_mesh::make_working_cloud(xyz.data(), cloud.size(), context);
+  if (!working.ok()) {
+    if (working.error().code == ErrorCode::no_usable_points) return json;
+    throw Failure(working.error());
+  }
+  Eigen::Array3d low = Eigen::Array3d::Constant(std::numeric_limits<double>::infinity()), high = -low;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Eigen::Map<const Eigen::Array3d> p(&xyz[3 * i]);
+    if (!p.allFinite()) continue;
+    low = low.min(p);
+    high = high.max(p);
+  }
+  const Positions& points = working.value().points;
+  json["finite"] = working.value().finite();
+  json["distinct"] = points.size();
+  json["low"] = {low[0], low[1], low[2]};
+  json["high"] = {high[0], high[1], high[2]};
+  if (points.size() < 2) return json;
+  in_arena(context, [&] {
+    const rfs_mesh::SpatialIndex index(points, context);
+    json["spacing"] = rfs_mesh::mean_spacing(points, index.nearest(1, context), context);
+    json["spacing_field"] = tenths(rfs_mesh::measure_spacing(index, context));
+    rfs_mesh::NoiseField noise = rfs_mesh::measure_noise(index, context);
+    json["noise"] = noise.sigma;
+    json["noise_field"] = tenths(std::move(noise.local));
+  });
+  return json;
+}
+
+std::string vector_text(const ordered_json& v, int digits = 9) {
+  return fmt::format("{:.{}g} {:.{}g} {:.{}g}", v[0].get<double>(), digits, v[1].get<double>(), digits,
+                     v[2].get<double>(), digits);
+}
+
+void print_text(const ordered_json& info) {
+  const auto text = [&](const char* key) { return info[key].get<std::string>(); };
+  const auto count = [&](const char* key) { return info[key].get<std::size_t>(); };
+  fmt::print("{}: {} {}\n", text("path"), text("format"), text("encoding"));
+  fmt::print("  points    {} ({} finite, {} distinct)\n", count("points"), count("finite"),
+             count("distinct"));
+  if (info["organised"].get<bool>())
+    fmt::print("  organised {} x {}\n", count("width"), count("height"));
+  else
+    fmt::print("  organised no\n");
+  if (!info["low"].is_null()) {
+    fmt::print("  low       {}\n  high      {}\n", vector_text(info["low"]), vector_text(info["high"]));
+    std::vector<double> size;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      size.push_back(info["high"][axis].get<double>() - info["low"][axis].get<double>());
+    fmt::print("  extent    {:.6g}\n", fmt::join(size, " "));
+  }
+  if (!info["spacing"].is_null())
+    fmt::print("  spacing   {:.6g} (mean distance to the nearest other point; {} from dense to sparse)\n",
+               info["spacing"].get<double>(), vector_text(info["spacing_field"], 6));
+  if (!info["noise"].is_null())
+    fmt::print(
+        "  noise     {:.6g} (standard deviation along the normal; over the cloud {} from calm to loud)\n",
+        info["noise"].get<double>(), vector_text(info["noise_field"], 6));
+  fmt::print("  fields   ");
+  for (const auto& field : info["fields"]) {
+    fmt::print(" {}:{}", field["name"].get<std::string>(), field["type"].get<std::string>());
+    if (field.contains("count")) fmt::print("[{}]", field["count"].get<std::size_t>());
+    if (field.contains("list")) fmt::print("[]");
+  }
+  fmt::print("\n");
+  if (info.contains("elements"))
+    for (const auto& element : info["elements"])
+      fmt::print("  element   {} x {}\n", element["name"].get<std::string>(),
+                 element["count"].get<std::size_t>());
+}
+
+int run_info(const InfoCommandOptions& options, const Invocation& typed) {
+  if (typed.arguments.empty()) throw Failure({ErrorCode::usage, "no input given"});
+  Console console(options.talk);
+  const Context context = console.context(0);
+  auto all = ordered_json::array();
+  std::vector<Job> jobs;
+  for (const std::string& input : typed.arguments) jobs.push_back({input, ""});
+  const int code = run_jobs(jobs, console, [&](const Job& job) {
+    JobOutcome outcome;
+    const auto done = guarded([&] {
+      std::vector<StageTime> unused;
+      const pipeline::io::Cloud cloud = load_cloud(job.input, context, unused);
+      ordered_json info = {{"path", job.input}};
+      info.update(describe(cloud));
+      info.update(measure(cloud, context));
+      return info;
+    });
+    if (!done.ok()) {
+      outcome.error = done.error();
+      return outcome;
+    }
+    if (!options.json) print_text(done.value());
+    all.push_back(done.value());
+    outcome.summary = fmt::format("{} points", done.value()["points"].get<std::size_t>());
+    return outcome;
+  });
+  if (options.json && !all.empty())
+    fmt::print("{}\n",
+               (jobs.size() == 1 ? all[0] : all).dump(2, ' ', false, ordered_json::error_handler_t::replace));
+  return code;
+}
+
+}  // namespace
+
+Command info_command() {
+  auto options = std::make_shared<InfoCommandOptions>();
+  Command command;
+  command.name = "info";
+  command.summary = "say what a file holds: fields, points, extent, spacing";
+  command.usage = {"[options] IN..."};
+  command.description =
+      "Prints format, fields with their types, points (finite, distinct), whether they are "
+      "organised, extent and spacing. - stands for standard input.";
+  collect(*options, command.options);
+  polish(command);
+  command.run = [options](const Invocation& typed) { return run_info(*options, typed); };
+  return command;
+}
+
+}  // namespace rfsmooth::cli

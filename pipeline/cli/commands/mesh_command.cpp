@@ -1,0 +1,133 @@
+/// rfsmooth mesh: the connectivity that denoise works on, as a PLY to look at, stage by stage.
+#include <memory>
+
+#include <fmt/format.h>
+
+#include <rfsmooth/connect.h>
+
+#include "base/parallel.h"
+#include "pipeline/cli/commands/command.h"
+#include "pipeline/cli/files/cloud_jobs.h"
+#include "pipeline/cli/files/memory.h"
+#include "pipeline/io/mesh_file.h"
+#include "rfs_mesh/points.h"
+
+namespace rfsmooth::cli {
+
+namespace {
+
+using nlohmann::ordered_json;
+
+struct MeshOptions {
+  std::string stage = "rfs";
+  ConnectOptions connect;
+
+  template <class Self, class Visit>
+  static void describe(Self& self, Visit&& visit) {
+    OptionInfo stage{"stage", "what to write: the tree, the surface description graph, the RFS-mesh", ""};
+    stage.choices = {"emst", "sdg", "rfs"};
+    visit(stage, self.stage);
+    ConnectOptions::describe(self.connect, visit);
+  }
+};
+
+struct MeshCommandOptions {
+  MeshOptions mesh;
+  JobOptions job;
+};
+
+/// The working points in the order in which they first come in the file, at the file's own coordinates.
+struct FileOrder {
+  Positions points;
+  std::vector<Index> rank;  ///< of each working point
+};
+
+FileOrder file_order(const rfs_mesh::WorkingCloud& cloud, const std::vector<double>& xyz) {
+  FileOrder order;
+  order.rank.assign(cloud.points.size(), kNone);
+  for (std::size_t i = 0; i < cloud.of_input.size(); ++i) {
+    const Index p = cloud.of_input[i];
+    if (p == kNone || order.rank[p] != kNone) continue;
+    order.rank[p] = Index(order.points.size());
+    order.points.emplace_back(xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]);
+  }
+  return order;
+}
+
+std::vector<Edge> renumbered(std::vector<Edge> edges, const std::vector<Index>& rank) {
+  for (auto& e : edges) e = {std::min(rank[e[0]], rank[e[1]]), std::max(rank[e[0]], rank[e[1]])};
+  return edges;
+}
+
+std::string connect_cloud(const MeshCommandOptions& options, pipeline::io::Cloud& cloud, const Job& job,
+                          const Context& context, std::vector<StageTime>& stages, ordered_json& entry) {
+  if (const auto error = refuse_without_memory(job.input, rfsmooth::denoise_memory(cloud.size())))
+    throw Failure(*error);
+  const std::vector<double> xyz = pipeline::io::positions(cloud, context);
+  const rfs_mesh::WorkingCloud working =
+      value_or_fail(rfs_mesh::make_working_cloud(xyz.data(), cloud.size(), context), job.input);
+  Connection connection;
+  in_arena(context, [&] {
+    connection = value_or_throw(rfsmooth::connect(working.points, options.mesh.connect, context));
+  });
+  stages.insert(stages.end(), connection.seconds.begin(), connection.seconds.end());
+
+  const FileOrder order = file_order(working, xyz);
+  const std::string& stage = options.mesh.stage;
+  const auto edges = renumbered(stage == "emst"  ? connection.emst
+                                : stage == "sdg" ? connection.sdg
+                                                 : connection.mesh.loose_edges,
+                                order.rank);
+  std::vector<Face> faces;
+  if (stage == "rfs") faces = connection.mesh.faces;
+  for (auto& face : faces)
+    for (Index& corner : face) corner = order.rank[corner];
+  cloud = pipeline::io::make_mesh_file(order.points, faces, edges);
+
+  entry["options"] = effective_options(options.mesh, options.job.files);
+  entry["counts"] = {{"points", xyz.size() / 3},
+                     {"vertices", order.points.size()},
+                     {"emst_edges", connection.emst.size()},
+                     {"sdg_edges", connection.sdg.size()},
+                     {"bridges", connection.bridges.size()},
+                     {"edges", connection.mesh.edge_count()},
+                     {"faces", connection.mesh.faces.size()},
+                     {"faceless", connection.faceless}};
+  entry["spacing"] = connection.noise.spacing;
+  entry["noise"] = connection.noise.sigma;
+  return fmt::format("{}: {} vertices, {} edges, {} faces", stage, order.points.size(), edges.size(),
+                     faces.size());
+}
+
+int run_mesh(const MeshCommandOptions& options, const Invocation& typed) {
+  return run_cloud_jobs("mesh", options.job, typed,
+                        [&](pipeline::io::Cloud& cloud, const Job& job, const Context& context, Console&,
+                            std::vector<StageTime>& stages, ordered_json& entry) {
+                          return connect_cloud(options, cloud, job, context, stages, entry);
+                        });
+}
+
+}  // namespace
+
+Command mesh_command() {
+  auto options = std::make_shared<MeshCommandOptions>();
+  Command command;
+  command.name = "mesh";
+  command.summary = "write the mesh that denoise works on, or the graphs it is made from";
+  command.usage = {"[options] IN OUT", "[options] IN... -o FOLDER/"};
+  command.description =
+      "Connects the points of a cloud and writes a PLY that MeshLab or CloudCompare opens: edges for the "
+      "Euclidean "
+      "minimum spanning tree (emst) and the surface description graph (sdg), faces for the RFS-mesh (rfs; "
+      "edges of "
+      "points without a face are kept as edges). Points that are not finite are left out, coincident ones "
+      "become "
+      "one vertex.";
+  collect(options->mesh, command.options);
+  collect(options->job, command.options);
+  polish(command);
+  command.run = [options](const Invocation& typed) { return run_mesh(*options, typed); };
+  return command;
+}
+
+}  // namespace rfsmooth::cli

@@ -1,0 +1,157 @@
+#include "pipeline/cli/commands/reconstruct_command.h"
+
+#include <filesystem>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "pipeline/cli/files/cloud_jobs.h"
+#include "pipeline/cli/files/memory.h"
+#include "pipeline/cli/files/surface_file.h"
+
+namespace rfsmooth::cli {
+
+namespace {
+
+using nlohmann::ordered_json;
+
+struct ReconstructCommandOptions {
+  ReconstructOptions reconstruct;
+  JobOptions job;
+};
+
+/// Told before the work: the output must be able to hold faces.
+void check_format(const Job& job, const FileOptions& options) {
+  std::optional<pipeline::io::Format> format;
+  if (options.format)
+    format = pipeline::io::format_by_name(*options.format);
+  else if (job.output != "-")
+    format = pipeline::io::format_of_extension(job.output);
+  using pipeline::io::Format;
+  if (format && *format != Format::ply && *format != Format::off)
+    throw Failure({ErrorCode::usage, fmt::format("{}: {} cannot hold a surface; use PLY or OFF", job.output,
+                                                 pipeline::io::name_of(*format))});
+}
+
+std::string text_of(const Topology& found) {
+  std::string text = fmt::format("{} vertices, {} faces, {} {}", found.vertices, found.faces,
+                                 found.components, found.components == 1 ? "piece" : "pieces");
+  if (found.closed_manifold()) return fmt::format("{}; closed, genus {}", text, found.genus);
+  if (found.boundary_loops > 0)
+    text +=
+        fmt::format("; {} {}", found.boundary_loops, found.boundary_loops == 1 ? "rim" : "rims and holes");
+  return text + (found.manifold() ? "" : "; not a manifold");
+}
+
+void enter(const Reconstruction& made, const ReconstructCommandOptions& options, ordered_json& entry) {
+  ReconstructCommandOptions used = options;
+  if (options.reconstruct.denoise) used.reconstruct.denoising = made.report.denoised.effective;
+  entry["options"] = effective_options(used.reconstruct, options.job.files);
+  const Topology& found = made.report.topology;
+  entry["counts"] = {{"points", entry["input"]["points"]},
+                     {"vertices", found.vertices},
+                     {"faces", found.faces},
+                     {"raw_faces", made.report.raw_faces},
+                     {"filled_holes", made.report.filled},
+                     {"components", found.components},
+                     {"boundary_edges", found.boundary_edges},
+                     {"boundary_loops", found.boundary_loops},
+                     {"crowded_edges", found.crowded_edges},
+                     {"disagreeing_edges", found.disagreeing_edges},
+                     {"pinched_vertices", found.pinched_vertices}};
+  entry["closed_manifold"] = found.closed_manifold();
+  entry["genus"] = found.manifold() ? ordered_json(found.genus) : ordered_json(nullptr);
+  entry["spacing"] = made.report.spacing;
+  if (options.reconstruct.denoise) entry["noise"] = made.report.denoised.noise;
+}
+
+std::string reconstruct_cloud(const ReconstructCommandOptions& options, const SurfaceMethod& method,
+                              pipeline::io::Cloud& cloud, const Job& job, const Context& context,
+                              std::vector<StageTime>& stages, ordered_json& entry) {
+  check_format(job, options.job.files);
+  if (const auto error = refuse_without_memory(job.input, rfsmooth::denoise_memory(cloud.size())))
+    throw Failure(*error);
+  const Reconstruction made = value_or_fail(
+      rfsmooth::reconstruct(pipeline::io::positions(cloud, context), options.reconstruct, method, context),
+      job.input);
+  cloud = surface_file(std::move(cloud), made, context);
+  stages.insert(stages.end(), made.report.seconds.begin(), made.report.seconds.end());
+  enter(made, options, entry);
+  return text_of(made.report.topology);
+}
+
+const SurfaceMethod& find_method(const std::vector<SurfaceMethod>& methods, const std::string& name) {
+  std::vector<std::string> names;
+  for (const auto& method : methods) {
+    if (method.name == name) return method;
+    names.push_back(method.name);
+  }
+  throw Failure(
+      {ErrorCode::not_installed,
+       fmt::format("--method {} is not in this rfsmooth-reconstruct, which was built without {}; it has {}",
+                   name, name == "advancing-front" ? "CGAL" : "Open3D", fmt::join(names, ", "))});
+}
+
+/// The arguments that say the same again.
+std::vector<std::string> as_typed(const Invocation& typed, const std::vector<CommandOption>& options) {
+  std::vector<std::string> words;
+  for (const auto& [name, text] : typed.options) {
+    bool flag = false;
+    for (const CommandOption& o : options) flag = flag || (o.name == name && o.kind == ValueKind::flag);
+    std::string word = flag && text != "true" ? "--no-" : "--";
+    word += name;
+    if (!flag) word.append("=").append(text);
+    words.push_back(std::move(word));
+  }
+  words.insert(words.end(), typed.arguments.begin(), typed.arguments.end());
+  return words;
+}
+
+Command table(const std::shared_ptr<ReconstructCommandOptions>& options) {
+  Command command;
+  command.name = "reconstruct";
+  command.summary = "make a surface from a noisy cloud";
+  command.usage = {"[options] IN OUT.ply"};
+  command.description =
+      "Takes the noise out of a cloud, as rfsmooth denoise does, gives the points normals on one side, and "
+      "makes a triangle mesh of them. poisson (Open3D's screened Poisson) makes a smooth surface near the "
+      "points and closes gaps; what it invents far from every point is trimmed. advancing-front (CGAL) and "
+      "ball-pivoting (Open3D) put triangles between the points themselves: specks are dropped, slits filled, "
+      "and where an advancing front all but bounds a solid, it is closed. All scales come from the measured "
+      "spacing. Outliers are left out. Colours and other fields of the points go to the vertices.\n\n"
+      "The work is done by the program rfsmooth-reconstruct, which links those libraries and may be "
+      "installed or not; without it, or without the library that a method needs, the exit code is 127.";
+  collect(options->reconstruct, command.options);
+  collect(options->job, command.options);
+  polish(command);
+  return command;
+}
+
+}  // namespace
+
+Command reconstruct_command() {
+  const auto options = std::make_shared<ReconstructCommandOptions>();
+  Command command = table(options);
+  command.run = [options, known = command.options](const Invocation& typed) {
+    value_or_throw(rfsmooth::complete(options->reconstruct.denoising.flow));
+    return become_program("rfsmooth-reconstruct", as_typed(typed, known));
+  };
+  return command;
+}
+
+Command reconstruct_command(std::vector<SurfaceMethod> methods) {
+  const auto options = std::make_shared<ReconstructCommandOptions>();
+  Command command = table(options);
+  command.run = [options, methods = std::move(methods)](const Invocation& typed) {
+    value_or_throw(rfsmooth::complete(options->reconstruct.denoising.flow));
+    const SurfaceMethod& method = find_method(methods, options->reconstruct.method);
+    return run_cloud_jobs("reconstruct", options->job, typed,
+                          [&](pipeline::io::Cloud& cloud, const Job& job, const Context& context, Console&,
+                              std::vector<StageTime>& stages, ordered_json& entry) {
+                            return reconstruct_cloud(*options, method, cloud, job, context, stages, entry);
+                          });
+  };
+  return command;
+}
+
+}  // namespace rfsmooth::cli

@@ -1,0 +1,190 @@
+/// rfsmooth smooth-mesh: any flow on a mesh from a file; then, if asked for, a finer mesh through its
+/// vertices, and its ridges and ravines as a field.
+#include <cmath>
+#include <memory>
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+
+#include "base/stopwatch.h"
+#include "pipeline/cli/commands/command.h"
+#include "pipeline/cli/files/cloud_jobs.h"
+#include "pipeline/cli/files/constraint_fields.h"
+#include "pipeline/cli/files/file_mesh.h"
+#include "rfs_mesh/measure.h"
+#include "smoothing/operators/surface.h"
+#include "smoothing/remesh/refine.h"
+#include "smoothing/remesh/ridges.h"
+
+namespace rfsmooth::cli {
+
+namespace {
+
+using nlohmann::ordered_json;
+
+/// What may follow the flow.
+struct After {
+  smoothing::RefineOptions refine{0, "mixed", 0, 1e-4};
+  std::optional<double> sharp_angle;
+  bool ridges = false;
+  double ridge_curvature = 0.1;  // a turn of six degrees from edge to edge
+
+  template <class Self, class Visit>
+  static void describe(Self& self, Visit&& visit) {
+    visit(OptionInfo{"refine", "levels of refinement after the flow; each multiplies the faces by four", "",
+                     0, 10},
+          self.refine.levels);
+    OptionInfo chart{"refine-chart", "refinement: how neighbours get their parameters", ""};
+    chart.choices = {"tangent", "exponential", "mixed"};
+    visit(chart, self.refine.chart);
+    visit(OptionInfo{"refine-pimple", "refinement: how far given vertices may move at the end", "x mean edge",
+                     0, 10},
+          self.refine.pimple);
+    visit(OptionInfo{"sharp-angle",
+                     "refinement: edges where the normals turn by more stay sharp curves; auto: none",
+                     "degrees", 0, 180},
+          self.sharp_angle);
+    visit(OptionInfo{"ridges", "write the field ridge: 1 on ridges, -1 on ravines, else 0", ""}, self.ridges);
+    visit(OptionInfo{"ridge-curvature", "least curvature of a ridge or ravine", "1 / mean edge", 0, 1e6},
+          self.ridge_curvature);
+  }
+};
+
+struct SmoothMeshCommandOptions {
+  FlowOptions flow;
+  ConstraintFields constraints;
+  After after;
+  JobOptions job;
+
+  template <class Self, class Visit>
+  static void describe(Self& self, Visit&& visit) {
+    FlowOptions::describe(self.flow, visit);
+    ConstraintFields::describe(self.constraints, visit);
+    After::describe(self.after, visit);
+  }
+};
+
+/// The edges between two faces whose normals turn by more than `degrees`.
+std::vector<Edge> sharp_edges(const Mesh& mesh, double degrees, const Context& context) {
+  const Adjacency around = vertex_faces(mesh, context);
+  const double least = std::cos(degrees * M_PI / 180);
+  std::vector<Edge> sharp;
+  for (Index a = 0; a < mesh.positions.size(); ++a)
+    for (const Index b : mesh.one_ring[a]) {
+      if (b < a) continue;
+      std::vector<Eigen::Vector3d> normals;
+      for (const Index f : around[a]) {
+        const Face& face = mesh.faces[f];
+        if (face[0] != b && face[1] != b && face[2] != b) continue;
+        const bool along = (face[0] == a && face[1] == b) || (face[1] == a && face[2] == b) ||
+                           (face[2] == a && face[0] == b);
+        normals.push_back((along ? 1 : -1) * rfs_mesh::face_cross(mesh.positions, face).normalized());
+      }
+      // Turned to run along the edge alike, the normals of a flat pair are opposite.
+      if (normals.size() == 2 && -normals[0].dot(normals[1]) < least) sharp.push_back({a, b});
+    }
+  return sharp;
+}
+
+/// Turns faces that do not agree with their neighbours, so that ridges and ravines are told apart. Where all
+/// agree, the side that the file chose stays.
+void make_agree(Mesh& mesh) {
+  std::vector<Face> turned = smoothing::oriented_as_far_as_possible(mesh);
+  std::size_t others = 0;
+  for (std::size_t f = 0; f < turned.size(); ++f) others += turned[f] != mesh.faces[f];
+  if (others > 0 && others < turned.size()) mesh.faces = std::move(turned);
+}
+
+std::string smooth_file(const SmoothMeshCommandOptions& options, pipeline::io::Cloud& cloud, const Job& job,
+                        const Context& context, Console& console, std::vector<StageTime>& stages,
+                        ordered_json& entry) {
+  Stopwatch watch(stages, "connect");
+  FileMesh file = file_mesh(cloud, job.input, context);
+  const auto constraints = value_or_fail(guarded([&] {
+                                           return constraints_of(options.constraints, cloud, file.of_row,
+                                                                 file.before.size(), context);
+                                         }),
+                                         job.input);
+  watch.next("smooth");
+  const auto done = value_or_fail(rfsmooth::smooth(file.mesh, options.flow, context, constraints), job.input);
+  bool moved = false;
+  const std::vector<double> rows = file.moved_rows(moved);
+  const bool stale_normals = moved && has_normals(cloud) && options.after.refine.levels == 0;
+  const std::size_t points = cloud.size(), faces = file.mesh.faces.size();
+  if (options.after.refine.levels > 0) {
+    watch.next("refine");
+    const auto sharp = options.after.sharp_angle ? sharp_edges(file.mesh, *options.after.sharp_angle, context)
+                                                 : std::vector<Edge>{};
+    Mesh fine = value_or_fail(smoothing::refine(file.mesh, options.after.refine, context, sharp), job.input);
+    const bool more = cloud.points().fields.size() > 3;
+    put_refined(cloud, file, rows, fine);
+    file.mesh = std::move(fine);
+    if (more)
+      console.warn(job.input + ": a refined mesh has new points; only x, y, z and triangles are written");
+  } else {
+    pipeline::io::set_positions(cloud, rows.data(), context);
+  }
+  if (stale_normals)
+    console.warn(fmt::format("{}: the normals are kept; they now describe the old positions", job.input));
+  if (options.after.ridges) {
+    watch.next("ridges");
+    if (cloud.format == pipeline::io::Format::off)
+      throw Failure({ErrorCode::usage, job.input + ": OFF cannot hold the field of --ridges; use PLY"});
+    make_agree(file.mesh);
+    const std::vector<int> kind =
+        smoothing::ridges_and_ravines(file.mesh, options.after.ridge_curvature, context);
+    std::vector<double> field(cloud.size(), 0);
+    for (std::size_t i = 0; i < field.size(); ++i) {
+      // Rows behind the given ones are the refined vertices, in their order.
+      const std::size_t v = i < file.of_row.size() ? file.of_row[i] : file.before.size() + i - points;
+      if (v != kNone) field[i] = kind[v];
+    }
+    pipeline::io::set_field(cloud, "ridge", pipeline::io::Scalar::int8, field, context);
+  }
+
+  SmoothMeshCommandOptions used = options;
+  used.flow = rfsmooth::complete(options.flow).value();
+  entry["options"] = effective_options(used, options.job.files);
+  entry["counts"] = {{"points", points},
+                     {"finite", file.before.size()},
+                     {"faces", faces},
+                     {"constrained", constraints.hard.size()},
+                     {"written_points", cloud.size()},
+                     {"written_faces", file.mesh.faces.size()},
+                     {"steps", done.steps},
+                     {"solver_iterations", done.solver_iterations}};
+  entry["largest_move"] = done.largest_move;
+  return fmt::format("{} vertices, {} faces; {} steps; largest move {:.4g}", points, faces, done.steps,
+                     done.largest_move);
+}
+
+int run_smooth_mesh(const SmoothMeshCommandOptions& options, const Invocation& typed) {
+  value_or_throw(rfsmooth::complete(options.flow));
+  return run_cloud_jobs("smooth-mesh", options.job, typed, [&](auto&&... all) {
+    return smooth_file(options, std::forward<decltype(all)>(all)...);
+  });
+}
+
+}  // namespace
+
+Command smooth_mesh_command() {
+  auto options = std::make_shared<SmoothMeshCommandOptions>();
+  Command command;
+  command.name = "smooth-mesh";
+  command.summary = "smooth a triangle mesh from a file with any flow; refine it; find its ridges";
+  command.usage = {"[options] IN OUT", "[options] IN... -o FOLDER/"};
+  command.description =
+      "Reads a mesh (PLY with faces, OFF), moves its vertices by a flow and writes the same file with x, y, "
+      "z replaced. Faces, fields and order stay; polygons count as fans of triangles. Vertices that are not "
+      "finite stay as they are.\n\n"
+      "Fields of the file can hold vertices back (--strength-field), fix them (--fixed-field) or let them "
+      "slide (--axis-field, --plane-field). --refine puts a finer, fair mesh through the vertices "
+      "(--iterations 0 refines without smoothing); --ridges marks ridges and ravines.";
+  collect(*options, command.options);
+  collect(options->job, command.options);
+  polish(command);
+  command.run = [options](const Invocation& typed) { return run_smooth_mesh(*options, typed); };
+  return command;
+}
+
+}  // namespace rfsmooth::cli

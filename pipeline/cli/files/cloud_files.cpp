@@ -1,0 +1,107 @@
+#include "pipeline/cli/files/cloud_files.h"
+
+#include <cstdio>
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "base/stopwatch.h"
+#include "pipeline/cli/files/memory.h"
+
+namespace rfsmooth::cli {
+
+namespace io = pipeline::io;
+using nlohmann::ordered_json;
+
+namespace {
+
+io::WriteOptions write_options(const FileOptions& options) {
+  io::WriteOptions out;
+  if (options.format) out.format = io::format_by_name(*options.format);
+  if (options.encoding) out.encoding = io::encoding_by_name(*options.encoding);
+  out.force = options.force;
+  out.drop_unsupported = options.drop_unsupported;
+  return out;
+}
+
+}  // namespace
+
+void check_target(const std::string& output, const FileOptions& options) {
+  if (output == "-") {
+    if (!options.format)
+      throw Failure(
+          {ErrorCode::usage, "standard output (-) has no extension: --format must name the format"});
+    return;
+  }
+  value_or_throw(io::check_output(output, write_options(options)));
+}
+
+void need_free_stdout(const std::vector<Job>& jobs, const RunOptions& options) {
+  std::size_t uses = options.report == "-" ? 1 : 0;
+  for (const Job& job : jobs) uses += job.output == "-";
+  if (uses > 1)
+    throw Failure({ErrorCode::usage, "standard output (-) can take the cloud or the report, not both"});
+}
+
+io::Cloud load_cloud(const std::string& input, const Context& context, std::vector<StageTime>& stages) {
+  const Stopwatch watch(stages, "read");
+  context.report("read", 0);
+  const std::string path = input == "-" ? "/dev/stdin" : input;
+  std::error_code unknown;
+  // The file's own size is the least that reading it takes.
+  if (const auto bytes = std::filesystem::file_size(path, unknown); !unknown)
+    if (const auto error = refuse_without_memory(input, bytes)) throw Failure(*error);
+  return value_or_throw(io::read_cloud(path, {}, context));
+}
+
+void store_cloud(const io::Cloud& cloud, const std::string& output, const FileOptions& options,
+                 const Context& context, std::vector<StageTime>& stages) {
+  const Stopwatch watch(stages, "write");
+  context.report("write", 0);
+  if (output == "-") {
+    const std::string bytes = value_or_throw(io::serialize_cloud(cloud, write_options(options), context));
+    if (std::fwrite(bytes.data(), 1, bytes.size(), stdout) != bytes.size() || std::fflush(stdout) != 0)
+      throw Failure({ErrorCode::cannot_write, "cannot write to standard output"});
+  } else {
+    value_or_throw(io::write_cloud(cloud, output, write_options(options), context));
+  }
+}
+
+bool has_normals(const io::Cloud& cloud) {
+  return io::find_field(cloud, "nx") || io::find_field(cloud, "normal_x");
+}
+
+ordered_json describe(const io::Cloud& cloud) {
+  ordered_json json = {{"format", io::name_of(cloud.format)},
+                       {"encoding", io::name_of(cloud.encoding)},
+                       {"points", cloud.size()},
+                       {"organised", cloud.organised()}};
+  if (cloud.organised()) {
+    json["width"] = cloud.width;
+    json["height"] = cloud.height;
+  }
+  auto fields = ordered_json::array();
+  for (const io::Field& field : cloud.points().fields) {
+    ordered_json entry = {{"name", field.name}, {"type", io::name_of(field.type)}};
+    if (field.count != 1) entry["count"] = field.count;
+    if (field.is_list()) entry["list"] = true;
+    fields.push_back(entry);
+  }
+  json["fields"] = fields;
+  auto others = ordered_json::array();
+  for (std::size_t e = 0; e < cloud.elements.size(); ++e)
+    if (e != cloud.vertex)
+      others.push_back({{"name", cloud.elements[e].name}, {"count", cloud.elements[e].count}});
+  if (!others.empty()) json["elements"] = others;
+  return json;
+}
+
+ordered_json bytes_options(const FileOptions& options) {
+  ordered_json json;
+  json["format"] = options.format ? ordered_json(*options.format) : ordered_json(nullptr);
+  json["encoding"] = options.encoding ? ordered_json(*options.encoding) : ordered_json(nullptr);
+  json["drop-unsupported"] = options.drop_unsupported;
+  return json;
+}
+
+}  // namespace rfsmooth::cli

@@ -1,0 +1,53 @@
+/// What the sub-commands that turn a cloud into a file share: options, jobs, report.
+#pragma once
+
+#include <functional>
+
+#include "pipeline/cli/commands/command.h"
+#include "pipeline/cli/console.h"
+#include "pipeline/cli/files/cloud_files.h"
+#include "pipeline/cli/options/json_values.h"
+
+namespace rfsmooth::cli {
+
+struct JobOptions {
+  FileOptions files;
+  RunOptions run;
+  TalkOptions talk;
+
+  template <class Self, class Visit>
+  static void describe(Self& self, Visit&& visit) {
+    FileOptions::describe(self.files, visit);
+    RunOptions::describe(self.run, visit);
+    TalkOptions::describe(self.talk, visit);
+  }
+};
+
+/// What a sub-command does with one cloud: changes it (or puts another in its place), adds to the report's
+/// entry ("options", "counts", ...) and to the stages, and returns one line for the table. \throw Failure.
+using CloudWork = std::function<std::string(pipeline::io::Cloud& cloud, const Job& job,
+                                            const Context& context, Console& console,
+                                            std::vector<StageTime>& stages, nlohmann::ordered_json& entry)>;
+
+/// Plans the jobs, then for each: reads, works, writes, reports. \return the exit code.
+int run_cloud_jobs(const std::string& command, const JobOptions& options, const Invocation& typed,
+                   const CloudWork& work);
+
+/// The value of a result. \throw Failure with its error, which `name` (the file's) comes before.
+template <class T>
+T value_or_fail(Result<T> result, const std::string& name) {
+  if (!result.ok()) throw Failure({result.error().code, name + ": " + result.error().message});
+  return std::move(result).value();
+}
+
+/// The options that were used, as the report shows them; --config takes them back.
+template <class Options>
+nlohmann::ordered_json effective_options(Options used, const FileOptions& files) {
+  std::vector<CommandOption> options;
+  collect(used, options);
+  nlohmann::ordered_json object = json_object(options);
+  object.update(bytes_options(files));
+  return object;
+}
+
+}  // namespace rfsmooth::cli

@@ -1,0 +1,80 @@
+#include "pipeline/cli/files/file_mesh.h"
+
+#include "pipeline/io/mesh_file.h"
+
+namespace rfsmooth::cli {
+
+namespace io = pipeline::io;
+using Eigen::Vector3d;
+using rfsmooth::Face;
+
+FileMesh file_mesh(const io::Cloud& cloud, const std::string& name, const Context& context) {
+  const std::vector<Face> faces = io::faces_of(cloud, context);
+  if (faces.empty())
+    throw Failure({ErrorCode::input_unreadable,
+                   name + ": has no faces; expected a mesh (for clouds use: rfsmooth denoise)"});
+  FileMesh out;
+  out.xyz = io::positions(cloud, context);
+  out.of_row.assign(cloud.size(), kNone);
+  Positions& points = out.mesh.positions;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Vector3d p(out.xyz[3 * i], out.xyz[3 * i + 1], out.xyz[3 * i + 2]);
+    if (!p.allFinite()) continue;
+    out.of_row[i] = Index(points.size());
+    points.push_back(p);
+  }
+  if (points.empty()) throw Failure({ErrorCode::no_usable_points, name + ": no vertex is finite"});
+  const Vector3d origin = points.front();
+  for (Vector3d& p : points) p -= origin;
+  for (const Face& face : faces) {
+    const Face f = {out.of_row[face[0]], out.of_row[face[1]], out.of_row[face[2]]};
+    const bool whole = f[0] != kNone && f[1] != kNone && f[2] != kNone;
+    if (whole && f[0] != f[1] && f[1] != f[2] && f[2] != f[0]) out.mesh.faces.push_back(f);
+  }
+  out.before = points;
+  rfsmooth::rebuild_adjacency(out.mesh, context);
+  return out;
+}
+
+std::vector<double> FileMesh::moved_rows(bool& any) const {
+  std::vector<double> rows = xyz;
+  any = false;
+  for (std::size_t i = 0; i < of_row.size(); ++i) {
+    if (of_row[i] == kNone) continue;
+    const Vector3d move = mesh.positions[of_row[i]] - before[of_row[i]];
+    for (int axis = 0; axis < 3; ++axis)
+      if (move[axis] != 0) {
+        rows[3 * i + std::size_t(axis)] += move[axis];
+        any = true;
+      }
+  }
+  return rows;
+}
+
+void put_refined(io::Cloud& cloud, const FileMesh& file, const std::vector<double>& rows, const Mesh& fine) {
+  const std::size_t given = file.before.size(), n = file.of_row.size();
+  std::vector<std::size_t> row(fine.positions.size());
+  Vector3d origin = Vector3d::Zero();
+  for (std::size_t i = n; i-- > 0;)
+    if (file.of_row[i] != kNone) {
+      row[file.of_row[i]] = i;
+      origin = Vector3d(file.xyz[3 * i], file.xyz[3 * i + 1], file.xyz[3 * i + 2]);  // of the first at last
+    }
+  std::vector<double> all = rows;
+  for (std::size_t v = 0; v < given; ++v)  // taking off pimples moves given vertices too
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      all[3 * row[v] + axis] +=
+          fine.positions[v][Eigen::Index(axis)] - file.mesh.positions[v][Eigen::Index(axis)];
+  for (std::size_t v = given; v < fine.positions.size(); ++v) {
+    row[v] = all.size() / 3;
+    for (const double c : Vector3d(fine.positions[v] + origin)) all.push_back(c);
+  }
+  std::vector<Face> faces = fine.faces;
+  for (Face& face : faces)
+    for (Index& v : face) v = Index(row[v]);
+  io::Cloud refined = io::make_cloud(all.data(), all.size() / 3, cloud.points().fields[cloud.xyz[0]].type);
+  io::set_faces(refined, faces);
+  cloud = std::move(refined);
+}
+
+}  // namespace rfsmooth::cli

@@ -1,0 +1,79 @@
+#include "pipeline/cli/files/surface_file.h"
+
+#include <cstring>
+
+#include "pipeline/io/mesh_file.h"
+#include "rfs_mesh/measure.h"
+
+namespace rfsmooth::cli {
+
+namespace io = pipeline::io;
+
+namespace {
+
+/// The four bytes of a field in each row, as one number: 0xAARRGGBB.
+std::vector<std::uint32_t> packed_values(io::Table& points, std::size_t field, const Context& context) {
+  io::make_binary(points, context);
+  std::size_t offset = 0;
+  for (std::size_t f = 0; f < field; ++f) offset += size_of(points.fields[f].type) * points.fields[f].count;
+  std::vector<std::uint32_t> values(points.count);
+  for (std::size_t i = 0; i < points.count; ++i)
+    std::memcpy(&values[i], points.row(i).data() + offset, sizeof values[i]);
+  return values;
+}
+
+void unpack_colours(io::Cloud& cloud, const Context& context) {
+  if (io::find_field(cloud, "red") || cloud.points().has_lists()) return;
+  for (const char* name : {"rgb", "rgba"}) {
+    const auto field = io::find_field(cloud, name);
+    if (!field || !cloud.points().fields[*field].is_plain() ||
+        io::size_of(cloud.points().fields[*field].type) != 4)
+      continue;
+    const std::vector<std::uint32_t> packed = packed_values(cloud.points(), *field, context);
+    std::vector<double> part(packed.size());
+    const auto add = [&](const char* colour, int shift) {
+      for (std::size_t i = 0; i < part.size(); ++i) part[i] = (packed[i] >> shift) & 255;
+      io::set_field(cloud, colour, io::Scalar::uint8, part, context);
+    };
+    add("red", 16);
+    add("green", 8);
+    add("blue", 0);
+    if (std::string_view(name) == "rgba") add("alpha", 24);
+    return;
+  }
+}
+
+void set_normals(io::Cloud& cloud, const Mesh& mesh, const Context& context) {
+  const bool ply = io::find_field(cloud, "nx").has_value();
+  if (!ply && !io::find_field(cloud, "normal_x")) return;
+  const Positions normals = rfs_mesh::vertex_normals(mesh, context);
+  std::vector<double> part(normals.size());
+  for (int axis = 0; axis < 3; ++axis) {
+    for (std::size_t i = 0; i < part.size(); ++i) part[i] = normals[i][axis];
+    io::set_field(cloud, (ply ? "n" : "normal_") + std::string(1, "xyz"[axis]), io::Scalar::float32, part,
+                  context);
+  }
+}
+
+}  // namespace
+
+io::Cloud surface_file(io::Cloud cloud, const Reconstruction& made, const Context& context) {
+  io::Cloud out;
+  out.encoding =
+      cloud.encoding == io::Encoding::binary_compressed ? io::Encoding::binary_little_endian : cloud.encoding;
+  out.elements.push_back(std::move(cloud.points()));
+  out.points().name = "vertex";
+  out.xyz = cloud.xyz;
+  out.width = out.points().count;
+  io::select_points(out, made.row, context);
+  std::vector<double> xyz;
+  xyz.reserve(3 * made.mesh.positions.size());
+  for (const Eigen::Vector3d& p : made.mesh.positions) xyz.insert(xyz.end(), p.data(), p.data() + 3);
+  io::set_positions(out, xyz.data(), context);
+  unpack_colours(out, context);
+  set_normals(out, made.mesh, context);
+  io::set_faces(out, made.mesh.faces);
+  return out;
+}
+
+}  // namespace rfsmooth::cli

@@ -1,0 +1,86 @@
+#include "pipeline/cli/options/config.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "pipeline/cli/options/suggest.h"
+
+namespace rfsmooth::cli {
+
+namespace {
+
+using nlohmann::json;
+
+[[noreturn]] void fail_config(ErrorCode code, const std::string& message) {
+  throw Failure({code, message});
+}
+
+json parse_file(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) fail_config(ErrorCode::input_unreadable, fmt::format("{}: {}", path, std::strerror(errno)));
+  const std::string text((std::istreambuf_iterator<char>(file)), {});
+  if (file.bad()) fail_config(ErrorCode::input_unreadable, fmt::format("{}: cannot be read", path));
+  try {
+    return json::parse(text);
+  } catch (const json::parse_error& error) {
+    fail_config(ErrorCode::input_unreadable, fmt::format("{}: not JSON at byte {}", path, error.byte));
+  }
+}
+
+/// The value as it would be typed after the option.
+std::string as_typed(const std::string& path, const std::string& name, const json& value) {
+  if (value.is_null()) return "auto";
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_number() || value.is_boolean()) return value.dump();
+  fail_config(ErrorCode::usage,
+              fmt::format("{}: option '{}' must be a number, a word, true, false or null", path, name));
+}
+
+std::vector<std::string> names_of(const Command& command) {
+  std::vector<std::string> names;
+  for (const CommandOption& o : command.options) names.push_back(o.name);
+  return names;
+}
+
+}  // namespace
+
+Config read_config(const std::string& path, const Command& command) {
+  const json root = parse_file(path);
+  if (!root.is_object()) fail_config(ErrorCode::usage, fmt::format("{}: a JSON object is needed", path));
+  if (root.contains("files"))
+    fail_config(ErrorCode::usage,
+                fmt::format("{}: a report of several files; run one of them again by giving the "
+                            "object of its options",
+                            path));
+  const bool report = root.contains("options");
+  if (report && root.contains("command") && root["command"] != command.name)
+    fail_config(ErrorCode::usage,
+                fmt::format("{}: is a report of 'rfsmooth {}'", path,
+                            root["command"].is_string() ? root["command"].get<std::string>() : "?"));
+  const json& options = report ? root["options"] : root;
+  if (!options.is_object())
+    fail_config(ErrorCode::usage, fmt::format("{}: 'options' must be an object", path));
+
+  Config config;
+  const std::vector<std::string> names = names_of(command);
+  for (const auto& [name, value] : options.items()) {
+    if (std::find(names.begin(), names.end(), name) == names.end() || name == "config")
+      fail_config(ErrorCode::usage,
+                  fmt::format("{}: unknown option '{}'{}", path, name, did_you_mean(name, names)));
+    config.options.emplace_back(name, as_typed(path, name, value));
+  }
+  if (report)
+    for (const char* key : {"input", "output"})
+      if (const auto it = root.find(key);
+          it != root.end() && it->is_object() && it->contains("path") && (*it)["path"].is_string())
+        config.arguments.push_back((*it)["path"].get<std::string>());
+  return config;
+}
+
+}  // namespace rfsmooth::cli

@@ -1,0 +1,127 @@
+#include "pipeline/cli/options/help.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace rfsmooth::cli {
+
+namespace {
+
+constexpr std::size_t kWidth = 100, kColumn = 26;
+
+/// `text` broken at spaces so that no line is wider than kWidth, continued lines indented.
+std::string wrapped(const std::string& text, std::size_t indent) {
+  std::string out;
+  std::size_t column = indent;
+  for (std::size_t begin = 0; begin < text.size();) {
+    if (text[begin] == '\n') {
+      out += '\n' + std::string(indent, ' ');
+      column = indent;
+      ++begin;
+      continue;
+    }
+    const std::size_t end = std::min(text.find_first_of(" \n", begin), text.size());
+    const std::string word = text.substr(begin, end - begin);
+    if (column > indent && column + 1 + word.size() > kWidth) {
+      out += '\n' + std::string(indent, ' ');
+      column = indent;
+    }
+    if (column > indent) {
+      out += ' ';
+      ++column;
+    }
+    out += word;
+    column += word.size();
+    begin = end + (end < text.size() && text[end] == ' ' ? 1 : 0);
+  }
+  return out;
+}
+
+std::string entry(const std::string& heading, const std::string& text) {
+  std::string line = "  " + heading;
+  if (line.size() + 2 > kColumn)
+    line += '\n' + std::string(kColumn, ' ');
+  else
+    line += std::string(kColumn - line.size(), ' ');
+  return line + wrapped(text, kColumn) + '\n';
+}
+
+}  // namespace
+
+const std::vector<ExitCode>& exit_codes() {
+  static const std::vector<ExitCode> codes = {
+      {0, "done"},
+      {1, "internal error, or (with several inputs) some of them failed for different reasons"},
+      {2, "wrong usage: an unknown option, a value outside its range"},
+      {3, "input cannot be read, or is not what it says it is"},
+      {4, "no usable points in the input"},
+      {5, "output cannot be written, or exists and --force was not given"},
+      {6, "not enough memory (estimated before starting, or met on the way)"},
+      {127, "reconstruct needs a program or a library that is not installed"},
+      {130, "cancelled (Ctrl-C); no file is left behind"}};
+  return codes;
+}
+
+std::string option_heading(const CommandOption& option) {
+  std::string heading = option.short_name ? fmt::format("-{}, ", option.short_name) : "    ";
+  heading += fmt::format("{}", fmt::join(typed_names(option), ", "));
+  const std::string value = value_name(option);
+  return value.empty() ? heading : heading + ' ' + value;
+}
+
+std::string option_limits(const CommandOption& option) {
+  std::string text;
+  const auto add = [&](const std::string& part) {
+    if (!part.empty()) text += (text.empty() ? "" : "; ") + part;
+  };
+  if (!option.choices.empty()) add(fmt::format("one of {}", fmt::join(option.choices, ", ")));
+  add(option.unit);
+  add(option.range);
+  if (option.kind != ValueKind::flag && !option.default_text.empty()) add("default " + option.default_text);
+  return text;
+}
+
+std::string overview(const std::vector<Command>& commands, bool complete) {
+  std::string out =
+      "rfsmooth takes a noisy 3-D scan and gives back the same cloud with the noise gone.\n\n"
+      "usage: rfsmooth COMMAND [options] ...\n\ncommands:\n";
+  for (const Command& c : commands)
+    if (c.listed || complete) out += entry(c.name, c.summary);
+  out += "\noptions:\n";
+  out += entry("-h", "this page; after a command: its options in short");
+  out += entry("--help", "after a command: everything about it, with defaults and ranges");
+  out += entry("--version", "print the version");
+  if (complete) {
+    out += "\nexit codes:\n";
+    for (const ExitCode& e : exit_codes()) out += entry(std::to_string(e.code), e.meaning);
+  }
+  out += "\nFor one command: rfsmooth COMMAND --help\n";
+  return out;
+}
+
+std::string help_of(const Command& command, bool complete) {
+  std::string out = fmt::format("rfsmooth {}: {}\n\n", command.name, command.summary);
+  const char* lead = "usage: ";
+  for (const std::string& form : command.usage) {
+    out += fmt::format("{}rfsmooth {} {}\n", lead, command.name, form);
+    lead = "       ";
+  }
+  if (complete) out += '\n' + wrapped(command.description, 0) + '\n';
+  out += "\noptions:\n";
+  for (const CommandOption& o : command.options) {
+    if (o.advanced && !complete) continue;
+    const std::string limits = complete ? option_limits(o) : "";
+    std::string help = o.on_by_default ? "do not " + o.help : o.help;
+    if (!limits.empty()) help += " (" + limits + ")";
+    out += entry(option_heading(o), help);
+  }
+  out += entry("-h", "the options in short");
+  out += entry("    --help", "everything, with defaults and ranges");
+  if (!complete) return out;
+  out += "\nexit codes:\n";
+  for (const ExitCode& e : exit_codes()) out += entry(std::to_string(e.code), e.meaning);
+  return out;
+}
+
+}  // namespace rfsmooth::cli

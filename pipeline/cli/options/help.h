@@ -1,0 +1,29 @@
+/// Help as text, made from the commands' own tables.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pipeline/cli/commands/command.h"
+
+namespace rfsmooth::cli {
+
+/// Every command in one screen.
+std::string overview(const std::vector<Command>& commands, bool complete);
+
+/// One command: usage and options; `complete` adds the description, ranges, defaults and exit codes.
+std::string help_of(const Command& command, bool complete);
+
+/// "-o, --output FILE".
+std::string option_heading(const CommandOption& option);
+
+/// "0 to 1, default auto" and the like; "" if there is nothing to say.
+std::string option_limits(const CommandOption& option);
+
+struct ExitCode {
+  int code;
+  const char* meaning;
+};
+const std::vector<ExitCode>& exit_codes();
+
+}  // namespace rfsmooth::cli

@@ -1,0 +1,200 @@
+#include "pipeline/cli/options/option.h"
+
+#include <algorithm>
+#include <cmath>
+#include <type_traits>
+
+#include <fmt/format.h>
+
+#include "pipeline/cli/options/suggest.h"
+#include "pipeline/cli/options/text_values.h"
+
+namespace rfsmooth::cli {
+
+namespace {
+
+[[noreturn]] void refuse_value(const std::string& message) {
+  throw Failure({ErrorCode::usage, message});
+}
+
+void need(const std::optional<Error>& error) {
+  if (error) throw Failure(*error);
+}
+
+template <class T>
+constexpr ValueKind kind_of() {
+  if constexpr (std::is_same_v<T, bool>) return ValueKind::flag;
+  if constexpr (std::is_same_v<T, int>) return ValueKind::integer;
+  if constexpr (std::is_same_v<T, double>) return ValueKind::number;
+  if constexpr (std::is_same_v<T, Length>) return ValueKind::length;
+  return ValueKind::word;
+}
+
+/// "--alpha is 'x'; it must be WHAT", with "or 'auto'" where auto is legal.
+[[noreturn]] void refuse_value(const CommandOption& option, const std::string& text, const char* what) {
+  refuse_value(fmt::format("--{} is '{}'; it must be {}{}", option.name, text, what,
+                           option.optional ? " or 'auto'" : ""));
+}
+
+/// Reads `text` strictly as a T. `info` gives the legal range.
+template <class T>
+T parse_as(const CommandOption& option, const OptionInfo& info, const std::string& text) {
+  if constexpr (std::is_same_v<T, bool>) {
+    if (text != "true" && text != "false") refuse_value(option, text, "true or false");
+    return text == "true";
+  } else if constexpr (std::is_same_v<T, int>) {
+    const auto value = read_integer(text);
+    if (!value) refuse_value(option, text, "a whole number");
+    need(rfsmooth::detail::check_range(info, *value));
+    return *value;
+  } else if constexpr (std::is_same_v<T, double>) {
+    const auto value = read_number(text);
+    if (!value) refuse_value(option, text, "a number");
+    need(rfsmooth::detail::check_range(info, *value));
+    return *value;
+  } else if constexpr (std::is_same_v<T, Length>) {
+    const auto value = read_length(text);
+    if (!value) refuse_value(option, text, "a length such as 0.02 (world units) or 2x (times the spacing)");
+    need(rfsmooth::detail::check_range(info, value->value));
+    return *value;
+  } else {
+    if (option.kind == ValueKind::file && text.empty())
+      refuse_value(fmt::format("--{} needs a name", option.name));
+    return text;
+  }
+}
+
+std::string text_of(bool value) {
+  return value ? "true" : "false";
+}
+std::string text_of(int value) {
+  return std::to_string(value);
+}
+std::string text_of(double value) {
+  return to_text(value);
+}
+std::string text_of(const Length& value) {
+  return to_text(value);
+}
+std::string text_of(const std::string& value) {
+  return value;
+}
+
+std::string range_text(const OptionInfo& info) {
+  const bool below = std::isfinite(info.min), above = std::isfinite(info.max);
+  if (below && above) return fmt::format("{} to {}", info.min, info.max);
+  if (below) return fmt::format("at least {}", info.min);
+  if (above) return fmt::format("at most {}", info.max);
+  return "";
+}
+
+template <class T>
+CommandOption describe_option(const OptionInfo& info) {
+  CommandOption o;
+  o.name = info.name;
+  o.help = info.help;
+  o.unit = info.unit;
+  o.kind = info.unit == "file" ? ValueKind::file : kind_of<T>();
+  if (o.kind == ValueKind::file) o.unit.clear();
+  o.range = range_text(info);
+  o.choices.assign(info.choices.begin(), info.choices.end());
+  return o;
+}
+
+template <class T>
+void add(std::vector<CommandOption>& out, const OptionInfo& info, T& field) {
+  CommandOption o = describe_option<T>(info);
+  o.default_text = text_of(field);
+  if constexpr (std::is_same_v<T, bool>) o.on_by_default = field;
+  o.set = [&field, seen = o, info](const std::string& text) { field = parse_as<T>(seen, info, text); };
+  o.get = [&field] { return std::optional<std::string>(text_of(field)); };
+  out.push_back(std::move(o));
+}
+
+}  // namespace
+
+void OptionCollector::operator()(const OptionInfo& info, bool& field) {
+  add(out_, info, field);
+}
+void OptionCollector::operator()(const OptionInfo& info, int& field) {
+  add(out_, info, field);
+}
+void OptionCollector::operator()(const OptionInfo& info, double& field) {
+  add(out_, info, field);
+}
+void OptionCollector::operator()(const OptionInfo& info, Length& field) {
+  add(out_, info, field);
+}
+void OptionCollector::operator()(const OptionInfo& info, std::string& field) {
+  add(out_, info, field);
+}
+
+template <class T>
+void OptionCollector::operator()(const OptionInfo& info, std::optional<T>& field) {
+  CommandOption o = describe_option<T>(info);
+  o.optional = true;
+  const bool file = o.kind == ValueKind::file;
+  o.default_text = field ? text_of(*field) : file ? "" : "auto";
+  o.set = [&field, file, seen = o, info](const std::string& text) {
+    if (text == "auto" && !file)
+      field.reset();
+    else
+      field = parse_as<T>(seen, info, text);
+  };
+  o.get = [&field]() -> std::optional<std::string> {
+    if (!field) return std::nullopt;
+    return text_of(*field);
+  };
+  out_.push_back(std::move(o));
+}
+
+template void OptionCollector::operator()(const OptionInfo&, std::optional<bool>&);
+template void OptionCollector::operator()(const OptionInfo&, std::optional<int>&);
+template void OptionCollector::operator()(const OptionInfo&, std::optional<double>&);
+template void OptionCollector::operator()(const OptionInfo&, std::optional<Length>&);
+template void OptionCollector::operator()(const OptionInfo&, std::optional<std::string>&);
+
+std::string value_name(const CommandOption& option) {
+  switch (option.kind) {
+    case ValueKind::flag:
+      return "";
+    case ValueKind::integer:
+      return "COUNT";
+    case ValueKind::number:
+      return "NUMBER";
+    case ValueKind::word:
+      return "WORD";
+    case ValueKind::length:
+      return "LENGTH";
+    case ValueKind::file:
+      return "FILE";
+  }
+  return "";
+}
+
+bool has_no_form(const CommandOption& option) {
+  return option.kind == ValueKind::flag && (option.on_by_default || option.optional);
+}
+
+std::vector<std::string> typed_names(const CommandOption& option) {
+  std::vector<std::string> names;
+  if (!option.on_by_default) names.push_back("--" + option.name);
+  if (has_no_form(option)) names.push_back("--no-" + option.name);
+  return names;
+}
+
+void assign(const CommandOption& option, const std::string& text) {
+  const bool automatic = option.optional && text == "auto";
+  if (!automatic && !option.choices.empty() &&
+      std::find(option.choices.begin(), option.choices.end(), text) == option.choices.end())
+    refuse_value(fmt::format("--{} is '{}'; it must be one of: {}{}", option.name, text,
+                             fmt::join(option.choices, ", "), did_you_mean(text, option.choices)));
+  option.set(text);
+}
+
+CommandOption* find_option(std::vector<CommandOption>& options, const std::string& name) {
+  const auto it = std::find_if(options.begin(), options.end(), [&](const auto& o) { return o.name == name; });
+  return it == options.end() ? nullptr : &*it;
+}
+
+}  // namespace rfsmooth::cli

@@ -1,0 +1,73 @@
+/// An option of the command, seen as text. Every option of every sub-command comes from a `describe` table
+/// (rfsmooth/options.h); parsing, --help, man pages, completion, --config and the JSON report all work on
+/// this one form of it.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <rfsmooth/options.h>
+
+namespace rfsmooth::cli {
+
+enum class ValueKind { flag, integer, number, word, length, file };
+
+struct CommandOption {
+  std::string name;     ///< long name without the dashes
+  char short_name = 0;  ///< 0 = none
+  std::string help, unit;
+  ValueKind kind = ValueKind::flag;
+  bool optional = false;       ///< takes the word "auto" (files: may be left out)
+  bool advanced = false;       ///< left out of the short help
+  bool on_by_default = false;  ///< a flag written --no-NAME to turn it off
+  std::string default_text;    ///< as it would be typed
+  std::string range;           ///< "0 to 1", "at least 0", ""
+  std::vector<std::string> choices;
+
+  std::function<void(const std::string& text)> set;  ///< use `assign`
+  /// The value as it would be typed; nothing if it is auto or left out.
+  std::function<std::optional<std::string>()> get;
+};
+
+/// Reads `text` strictly and stores it. \throw Failure (usage) naming the option, the text and what is legal.
+void assign(const CommandOption& option, const std::string& text);
+
+/// The word that stands for the value in help: NUMBER, LENGTH, FILE, ...
+std::string value_name(const CommandOption& option);
+
+/// Whether --no-NAME is understood: of flags that are on by default or auto.
+bool has_no_form(const CommandOption& option);
+
+/// The option's name as it is typed: "--alpha"; "--no-swap" of a flag that is on by default; both ways of a
+/// flag that is auto.
+std::vector<std::string> typed_names(const CommandOption& option);
+
+/// Visitor of a `describe` table that appends its options, bound to the fields it visits. The words in the
+/// table must be literals.
+class OptionCollector {
+ public:
+  explicit OptionCollector(std::vector<CommandOption>& out) : out_(out) {}
+  void operator()(const OptionInfo& info, bool& field);
+  void operator()(const OptionInfo& info, int& field);
+  void operator()(const OptionInfo& info, double& field);
+  void operator()(const OptionInfo& info, Length& field);
+  void operator()(const OptionInfo& info, std::string& field);
+  template <class T>
+  void operator()(const OptionInfo& info, std::optional<T>& field);
+
+ private:
+  std::vector<CommandOption>& out_;
+};
+
+/// Appends the options of `fields`, which must outlive them.
+template <class Options>
+void collect(Options& fields, std::vector<CommandOption>& out) {
+  Options::describe(fields, OptionCollector(out));
+}
+
+/// The option called `name`; null if there is none.
+CommandOption* find_option(std::vector<CommandOption>& options, const std::string& name);
+
+}  // namespace rfsmooth::cli

@@ -1,0 +1,118 @@
+#include "pipeline/cli/options/parse.h"
+
+#include <algorithm>
+#include <set>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "pipeline/cli/options/suggest.h"
+
+namespace rfsmooth::cli {
+
+namespace {
+
+void add_help(CLI::App& app, Invocation& into) {
+  app.set_help_flag();  // ours says more
+  app.add_flag("-h", into.short_help);
+  app.add_flag("--help", into.long_help);
+}
+
+void add_option(CLI::App& app, const CommandOption& option, Invocation& into) {
+  const auto note = [&into, name = option.name](const std::string& text) {
+    into.options.emplace_back(name, text);
+  };
+  const std::string prefix = option.short_name ? fmt::format("-{},", option.short_name) : "";
+  if (option.kind == ValueKind::flag) {
+    app.add_flag_callback(prefix + "--" + option.name, [note] { note("true"); })->disable_flag_override();
+    if (has_no_form(option))
+      app.add_flag_callback("--no-" + option.name, [note] { note("false"); })->disable_flag_override();
+  } else {
+    app.add_option_function<std::string>(prefix + "--" + option.name, note);
+  }
+}
+
+std::vector<std::string> option_names(const Command* command) {
+  std::vector<std::string> names = {"--help"};
+  if (command == nullptr) {
+    names.emplace_back("--version");
+    return names;
+  }
+  for (const CommandOption& o : command->options) {
+    names.push_back("--" + o.name);
+    if (has_no_form(o)) names.push_back("--no-" + o.name);
+  }
+  return names;
+}
+
+[[noreturn]] void refuse(const std::string& message) {
+  throw Failure({ErrorCode::usage, message});
+}
+
+std::string in_our_words(const CLI::ParseError& error) {
+  std::string what = error.what();
+  const std::string first = what.substr(0, what.find_first_of(" :"));
+  if (what.find("flag override") != std::string::npos) return fmt::format("--{} takes no value", first);
+  if (what.find("missing") != std::string::npos) return fmt::format("{} needs a value", first);
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr)
+    return fmt::format("{} takes one value and may be given once", first);
+  return what;
+}
+
+[[noreturn]] void refuse_unknown_option(const std::string& typed, const Command* command) {
+  const std::string name = typed.substr(0, typed.find('='));
+  refuse(fmt::format("unknown option {}{}{}", name, command ? " for rfsmooth " + command->name : "",
+                     did_you_mean(name, option_names(command))));
+}
+
+}  // namespace
+
+Parsed parse(int argc, const char* const* argv, const std::vector<Command>& commands) {
+  Parsed parsed;
+  Invocation& into = parsed.invocation;
+  CLI::App app;
+  add_help(app, into);
+  app.add_flag("--version", into.version);
+  app.allow_extras();
+  app.require_subcommand(0, 1);  // a file called like a command is a file
+
+  std::vector<std::vector<std::string>> positional(commands.size());
+  std::vector<CLI::App*> subs;
+  for (std::size_t i = 0; i < commands.size(); ++i) {
+    CLI::App* sub = app.add_subcommand(commands[i].name);
+    add_help(*sub, into);
+    for (const CommandOption& option : commands[i].options) add_option(*sub, option, into);
+    sub->add_option("arguments", positional[i])->type_size(1)->expected(0, 1 << 30)->allow_extra_args();
+    sub->allow_extras();
+    sub->fallthrough(false);
+    subs.push_back(sub);
+  }
+
+  const auto note_command = [&] {
+    for (std::size_t i = 0; i < commands.size(); ++i)
+      if (subs[i]->parsed()) {
+        parsed.command = &commands[i];
+        into.arguments = positional[i];
+        for (const std::string& extra : subs[i]->remaining())
+          if (extra.size() > 1 && extra[0] == '-' && extra != "--")
+            refuse_unknown_option(extra, parsed.command);
+      }
+  };
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    refuse(in_our_words(error));
+  }
+  note_command();
+  if (parsed.command == nullptr)
+    for (const std::string& extra : app.remaining()) {
+      if (extra[0] == '-') refuse_unknown_option(extra, nullptr);
+      std::vector<std::string> names;
+      names.reserve(commands.size());
+      for (const Command& c : commands) names.push_back(c.name);
+      refuse(fmt::format("unknown command '{}'{}", extra, did_you_mean(extra, names)));
+    }
+  return parsed;
+}
+
+}  // namespace rfsmooth::cli

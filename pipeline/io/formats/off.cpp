@@ -1,0 +1,192 @@
+#include "pipeline/io/formats/off.h"
+
+#include <charconv>
+
+#include <fmt/format.h>
+
+#include "pipeline/io/formats/header_lines.h"
+#include "pipeline/io/formats/ply.h"
+#include "pipeline/io/table/rows.h"
+
+namespace rfsmooth::pipeline::io {
+namespace {
+
+struct Kind {
+  bool texture = false, colour = false, normals = false, other_dimension = false;
+};
+
+// Takes the prefixes off `word`, in any order; false if the rest is not OFF.
+bool parse_kind(std::string_view word, Kind& kind) {
+  const auto take = [&](std::string_view prefix, bool& seen) {
+    if (seen || word.substr(0, prefix.size()) != prefix) return false;
+    word.remove_prefix(prefix.size());
+    return seen = true;
+  };
+  bool four = false, any = false;
+  while (take("ST", kind.texture) || take("C", kind.colour) || take("N", kind.normals) || take("4", four) ||
+         take("n", any)) {
+  }
+  kind.other_dimension = four || any;
+  return word == "OFF";
+}
+
+struct Counts {
+  std::size_t vertices = 0, faces = 0;
+};
+
+std::size_t parse_count(std::string_view word, const TextCursor& cursor, const char* what) {
+  std::size_t value = 0;
+  const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (word.empty() || error != std::errc{} || stop != word.data() + word.size())
+    cursor.source.fail(fmt::format("line {}: expected the number of {}, found {}", cursor.lines, what,
+                                   word.empty() ? "the end of the line" : in_quotes(word)));
+  return value;
+}
+
+std::string_view next_content(TextCursor& cursor, const char* expected) {
+  for (;;) {
+    const std::string_view line = peek_line(cursor);
+    if (line.empty())
+      cursor.source.fail(
+          fmt::format("line {}: expected {}, found the end of the file", cursor.lines + 1, expected));
+    skip_line(cursor);
+    if (!is_blank_or_comment(line)) return line.substr(0, line.find('#'));
+  }
+}
+
+Counts read_header(TextCursor& cursor, Kind& kind) {
+  std::string_view line = next_content(cursor, "'OFF'");
+  const char* p = line.data();
+  const char* end = p + line.size();
+  const std::string_view word = next_word(p, end);
+  if (!parse_kind(word, kind))
+    cursor.source.fail(fmt::format("line {}: expected 'OFF', found {}", cursor.lines, in_quotes(word)));
+  if (kind.other_dimension)
+    cursor.source.fail(
+        fmt::format("line {}: expected vertices of 3 coordinates, found {}", cursor.lines, in_quotes(word)));
+  std::string_view first = next_word(p, end);
+  if (first == "BINARY")
+    cursor.source.fail(fmt::format("line {}: expected an ascii OFF file, found BINARY", cursor.lines));
+  if (first.empty()) {
+    line = next_content(cursor, "the numbers of vertices, faces and edges");
+    p = line.data();
+    end = p + line.size();
+    first = next_word(p, end);
+  }
+  Counts counts;
+  counts.vertices = parse_count(first, cursor, "vertices");
+  counts.faces = parse_count(next_word(p, end), cursor, "faces");
+  const std::string_view edges = next_word(p, end);  // often 0, sometimes missing, never used
+  if (!edges.empty()) parse_count(edges, cursor, "edges");
+  return counts;
+}
+
+// The number of values in the first line that has any.
+std::size_t columns_ahead(const TextCursor& cursor) {
+  std::string_view rest = cursor.rest();
+  while (!rest.empty()) {
+    const std::size_t newline = rest.find('\n');
+    const std::string_view line = newline == std::string_view::npos ? rest : rest.substr(0, newline + 1);
+    rest.remove_prefix(line.size());
+    if (is_blank_or_comment(line)) continue;
+    std::size_t n = 0;
+    const char* p = line.data();
+    while (!next_word(p, line.data() + line.size()).empty()) ++n;
+    return n;
+  }
+  return 0;
+}
+
+std::vector<Field> vertex_fields(const Kind& kind, std::size_t columns) {
+  std::vector<std::string> names = {"x", "y", "z"};
+  if (kind.normals) names.insert(names.end(), {"nx", "ny", "nz"});
+  const std::size_t behind = kind.texture ? 2 : 0;
+  const std::size_t extra = columns > names.size() + behind ? columns - names.size() - behind : 0;
+  // Some writers leave the C out; three or four values more are colours.
+  if (kind.colour || extra == 3 || extra == 4) {
+    names.insert(names.end(), {"red", "green", "blue"});
+    if (extra == 4) names.emplace_back("alpha");
+  } else {
+    for (std::size_t k = 0; k < extra; ++k) names.push_back(fmt::format("column_{}", names.size() + 1));
+  }
+  if (kind.texture) names.insert(names.end(), {"s", "t"});
+  std::vector<Field> fields;
+  for (std::string& name : names) fields.push_back({std::move(name), Scalar::float64});
+  return fields;
+}
+
+}  // namespace
+
+bool is_off_word(std::string_view word) {
+  Kind kind;
+  return parse_kind(word, kind);
+}
+
+Cloud read_off(const Source& source, const Context& context) {
+  Cloud cloud;
+  cloud.format = Format::off;
+  cloud.encoding = Encoding::ascii;
+  TextCursor cursor(source, 0, 0, context);
+  Kind kind;
+  const Counts counts = read_header(cursor, kind);
+  cloud.original_header.assign(cursor.all.data(), cursor.at);
+  if (cloud.original_header.find("\r\n") != std::string::npos) cloud.newline = "\r\n";
+
+  Table points;
+  points.name = "vertex";
+  points.fields = vertex_fields(kind, counts.vertices > 0 ? columns_ahead(cursor) : 0);
+  points.count = counts.vertices;
+  read_text_rows(points, cursor, context);
+  Table faces;
+  faces.name = "face";
+  faces.fields.push_back({"vertex_indices", Scalar::int32, 1, Scalar::uint32});
+  faces.count = counts.faces;
+  faces.ragged = true;
+  read_text_rows(faces, cursor, context);
+  cloud.tail = cursor.rest();
+  cloud.elements.push_back(std::move(points));
+  cloud.elements.push_back(std::move(faces));
+  find_coordinates(cloud, source, context);
+  cloud.width = cloud.size();
+  cloud.original_canonical = off_header(cloud);
+  return cloud;
+}
+
+std::vector<std::size_t> off_fields(const Cloud& cloud) {
+  std::vector<std::size_t> fields(cloud.xyz.begin(), cloud.xyz.end());
+  const auto take = [&](std::initializer_list<const char*> names) {
+    std::vector<std::size_t> found;
+    for (const char* name : names)
+      if (const auto f = find_field(cloud, name); f && cloud.points().fields[*f].is_plain())
+        found.push_back(*f);
+    if (found.size() != names.size()) return false;
+    fields.insert(fields.end(), found.begin(), found.end());
+    return true;
+  };
+  take({"nx", "ny", "nz"});
+  if (take({"red", "green", "blue"})) take({"alpha"});
+  take({"s", "t"});
+  return fields;
+}
+
+std::string off_header(const Cloud& cloud) {
+  const auto has = [&](const char* name) { return find_field(cloud, name).has_value(); };
+  std::string out;
+  if (has("s") && has("t")) out += "ST";
+  if (has("red")) out += "C";
+  if (has("nx")) out += "N";
+  out += "OFF" + cloud.newline;
+  for (const Note& note : cloud.notes) out += note.line + cloud.newline;
+  const Table* faces = cloud.element("face");
+  return out + fmt::format("{} {} 0{}", cloud.size(), faces == nullptr ? 0 : faces->count, cloud.newline);
+}
+
+void write_off(const Cloud& cloud, Sink& sink, const Context& context) {
+  const std::string header = off_header(cloud);
+  sink.write(header == cloud.original_canonical ? cloud.original_header : header);
+  write_text_rows(cloud.points(), sink, context);
+  if (const Table* faces = cloud.element("face")) write_text_rows(*faces, sink, context);
+  sink.write(cloud.tail);
+}
+
+}  // namespace rfsmooth::pipeline::io

@@ -1,0 +1,78 @@
+#include "pipeline/io/formats/ply.h"
+
+#include <fmt/format.h>
+
+#include "pipeline/io/table/rows.h"
+
+namespace rfsmooth::pipeline::io {
+
+void find_coordinates(Cloud& cloud, const Source& source, const Context& context) {
+  const std::vector<Field>& fields = cloud.points().fields;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    std::size_t best = fields.size();
+    std::size_t same = 0;
+    for (const char first : {'x', 'X'}) {
+      const std::string name(1, char(first + char(axis)));
+      for (std::size_t f = 0; f < fields.size(); ++f) {
+        if (fields[f].name != name || !fields[f].is_plain()) continue;
+        if (best == fields.size()) best = f;
+        if (fields[best].name == name) ++same;
+      }
+    }
+    if (best == fields.size()) {
+      std::string there;
+      for (const Field& f : fields) there += (there.empty() ? "" : ", ") + in_quotes(f.name);
+      source.fail(fmt::format("expected the coordinate '{}' among the points' fields, found {}",
+                              char('x' + char(axis)), there.empty() ? "none" : there));
+    }
+    if (same > 1)
+      context.warn(fmt::format("{}: {} fields are called '{}'; the first is the coordinate, all are kept",
+                               source.name(), same, fields[best].name));
+    cloud.xyz[axis] = best;
+  }
+}
+
+Cloud read_ply(const Source& source, const Context& context) {
+  HeaderLines lines(source, context);
+  Cloud cloud = read_ply_header(lines);
+  cloud.vertex = cloud.elements.size();
+  for (std::size_t e = cloud.elements.size(); e-- > 0;)
+    if (cloud.elements[e].name == "vertex") cloud.vertex = e;
+  if (cloud.vertex == cloud.elements.size()) {
+    std::string there;
+    for (const Table& t : cloud.elements) there += (there.empty() ? "" : ", ") + in_quotes(t.name);
+    source.fail(fmt::format("expected an element 'vertex', found {}", there.empty() ? "no element" : there));
+  }
+  find_coordinates(cloud, source, context);
+
+  if (cloud.encoding == Encoding::ascii) {
+    TextCursor cursor(source, lines.offset(), lines.line(), context);
+    for (Table& table : cloud.elements) read_text_rows(table, cursor, context);
+    cloud.tail = cursor.rest();
+  } else {
+    BinaryCursor cursor{source, lines.offset(), cloud.encoding == Encoding::binary_big_endian};
+    for (Table& table : cloud.elements) read_binary_rows(table, cursor, context);
+    const Bytes rest = source.read(cursor.offset, std::size_t(source.size() - cursor.offset), context);
+    cloud.tail.assign(rest.data(), rest.size());
+  }
+  if (cloud.tail.find_first_not_of(" \t\r\n") != std::string::npos)
+    context.warn(fmt::format("{}: {} bytes behind the last row are kept as they are", source.name(),
+                             cloud.tail.size()));
+  cloud.width = cloud.size();
+  return cloud;
+}
+
+void write_ply(const Cloud& cloud, Encoding encoding, Sink& sink, const Context& context) {
+  const std::string header = ply_header(cloud, encoding);
+  sink.write(header == cloud.original_canonical ? cloud.original_header : header);
+  for (const Table& table : cloud.elements) {
+    context.check_stop();
+    if (encoding == Encoding::ascii)
+      write_text_rows(table, sink, context);
+    else
+      write_binary_rows(table, encoding == Encoding::binary_big_endian, sink, context);
+  }
+  if (encoding == cloud.encoding) sink.write(cloud.tail);
+}
+
+}  // namespace rfsmooth::pipeline::io

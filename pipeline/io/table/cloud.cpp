@@ -1,0 +1,156 @@
+#include "pipeline/io/table/cloud.h"
+
+#include <algorithm>
+#include <cstring>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+namespace rfsmooth::pipeline::io {
+namespace {
+
+bool names_points(const Table& table) {
+  for (const Field& f : table.fields)
+    if (f.name == "vertex_indices" || f.name == "vertex_index" || f.name == "vertex1" || f.name == "vertex2")
+      return true;
+  return false;
+}
+
+// Notes keep their place when element `gone` leaves.
+void forget_element(Cloud& cloud, std::size_t gone) {
+  cloud.elements.erase(cloud.elements.begin() + std::ptrdiff_t(gone));
+  if (cloud.vertex > gone) --cloud.vertex;
+  for (Note& note : cloud.notes) {
+    if (note.element == Note::kBeforeFormat) continue;
+    if (note.element == gone) note.field = 0;
+    if (note.element > gone) --note.element;
+  }
+}
+
+}  // namespace
+
+std::string_view name_of(Format format) {
+  switch (format) {
+    case Format::ply:
+      return "ply";
+    case Format::pcd:
+      return "pcd";
+    case Format::xyz:
+      return "xyz";
+    case Format::off:
+      return "off";
+  }
+  throw std::invalid_argument("name_of: not a Format");
+}
+
+std::string_view name_of(Encoding encoding) {
+  switch (encoding) {
+    case Encoding::ascii:
+      return "ascii";
+    case Encoding::binary_little_endian:
+      return "binary_little_endian";
+    case Encoding::binary_big_endian:
+      return "binary_big_endian";
+    case Encoding::binary_compressed:
+      return "binary_compressed";
+  }
+  throw std::invalid_argument("name_of: not an Encoding");
+}
+
+const Table* Cloud::element(std::string_view name) const {
+  for (const Table& t : elements)
+    if (t.name == name) return &t;
+  return nullptr;
+}
+
+std::vector<double> positions(const Cloud& cloud, const Context& context) {
+  return gather(cloud.points(), {cloud.xyz.begin(), cloud.xyz.end()}, context);
+}
+
+void set_positions(Cloud& cloud, const double* xyz, const Context& context) {
+  for (const std::size_t f : cloud.xyz)
+    if (!is_float(cloud.points().fields[f].type)) {
+      context.warn("the coordinates are whole numbers (" +
+                   std::string(name_of(cloud.points().fields[f].type)) +
+                   "): new ones are rounded to whole numbers");
+      break;
+    }
+  scatter(cloud.points(), {cloud.xyz.begin(), cloud.xyz.end()}, xyz, context);
+}
+
+std::optional<std::size_t> find_field(const Cloud& cloud, std::string_view name) {
+  const std::vector<Field>& fields = cloud.points().fields;
+  for (std::size_t f = 0; f < fields.size(); ++f)
+    if (fields[f].name == name) return f;
+  return std::nullopt;
+}
+
+std::vector<double> field_values(const Cloud& cloud, std::size_t field, const Context& context) {
+  return gather(cloud.points(), {field}, context);
+}
+
+void set_field(Cloud& cloud, const std::string& name, Scalar type, const std::vector<double>& values,
+               const Context& context) {
+  if (values.size() != cloud.size()) throw std::invalid_argument("set_field: not one value per point");
+  check_field(cloud, name, type);
+  if (const auto present = find_field(cloud, name))
+    scatter(cloud.points(), {*present}, values.data(), context);
+  else
+    append_field(cloud.points(), Field{name, type}, values.data(), context);
+}
+
+void check_field(const Cloud& cloud, const std::string& name, Scalar type) {
+  const auto present = find_field(cloud, name);
+  if (!present) return;
+  const Field& field = cloud.points().fields[*present];
+  if (!field.is_plain())
+    throw Failure(
+        {ErrorCode::usage,
+         fmt::format("the points have a field '{}' already, a {}; it cannot take one value per point", name,
+                     field.is_list() ? "list" : "row of several values")});
+  if (is_float(type) && !is_float(field.type))
+    throw Failure({ErrorCode::usage,
+                   fmt::format("the points have a field '{}' already, of whole numbers ({}); it cannot "
+                               "take values of type {}",
+                               name, name_of(field.type), name_of(type))});
+}
+
+void select_points(Cloud& cloud, const std::vector<std::size_t>& rows, const Context& context) {
+  bool all = rows.size() == cloud.size();
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (rows[i] >= cloud.size()) throw std::invalid_argument("select_points: no such point");
+    all = all && rows[i] == i;
+  }
+  if (all) return;
+  std::vector<std::string> warnings;  // made before anything changes: memory may run out
+  for (std::size_t e = 0; e < cloud.elements.size(); ++e)
+    if (e != cloud.vertex && names_points(cloud.elements[e]))
+      warnings.push_back("element '" + cloud.elements[e].name +
+                         "' names points by index and is left out with the points removed");
+  select(cloud.points(), rows);
+  cloud.width = rows.size();
+  cloud.height = 1;
+  const auto says_grid = [](const Note& note) {
+    return note.line.rfind("obj_info num_cols", 0) == 0 || note.line.rfind("obj_info num_rows", 0) == 0;
+  };
+  cloud.notes.erase(std::remove_if(cloud.notes.begin(), cloud.notes.end(), says_grid), cloud.notes.end());
+  for (std::size_t e = cloud.elements.size(); e-- > 0;)
+    if (e != cloud.vertex && names_points(cloud.elements[e])) forget_element(cloud, e);
+  for (const std::string& warning : warnings) context.warn(warning);
+}
+
+Cloud make_cloud(const double* xyz, std::size_t n, Scalar type) {
+  Cloud cloud;
+  cloud.width = n;
+  cloud.xyz = {0, 1, 2};
+  Table points;
+  points.name = "vertex";
+  points.fields = {{"x", type}, {"y", type}, {"z", type}};
+  points.count = n;
+  points.data.resize(3 * n * size_of(type));
+  for (std::size_t k = 0; k < 3 * n; ++k) store(type, points.data.data() + k * size_of(type), xyz[k]);
+  cloud.elements.push_back(std::move(points));
+  return cloud;
+}
+
+}  // namespace rfsmooth::pipeline::io

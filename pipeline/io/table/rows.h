@@ -1,0 +1,58 @@
+/// Reading and writing the rows of a table, as bytes or as text, in a file of either byte order.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "pipeline/io/sink.h"
+#include "pipeline/io/source.h"
+#include "pipeline/io/table/table.h"
+
+namespace rfsmooth::pipeline::io {
+
+/// Walks the binary body of a file.
+struct BinaryCursor {
+  const Source& source;
+  std::uint64_t offset;  ///< next byte to read
+  bool big_endian = false;
+  Bytes held = {};  ///< the rest of the file from `held_from`, once an element with lists needed it
+  std::uint64_t held_from = 0;
+};
+
+/// Reads table.count rows of table.fields. The size promised is checked against the file before anything is
+/// allocated. \throw Failure naming the byte, what was expected and what was found.
+void read_binary_rows(Table& table, BinaryCursor& cursor, const Context& context);
+
+/// Walks the text body of a file.
+struct TextCursor {
+  TextCursor(const Source& from, std::uint64_t offset, std::size_t lines_before, const Context& context);
+  const Source& source;
+  Bytes all;           ///< the file from the first line of the body on
+  std::size_t at = 0;  ///< next byte of `all`
+  std::size_t lines;   ///< lines of the file before `at`
+  std::string_view rest() const { return {all.data() + at, all.size() - at}; }
+};
+
+/// Whether a line of a text body holds no values: blank, or a comment ('#' or '//').
+bool is_blank_or_comment(std::string_view line);
+
+/// The next line of the body with its line end; does not move on. Empty at the end.
+std::string_view peek_line(const TextCursor& cursor);
+
+/// Moves behind the next line.
+void skip_line(TextCursor& cursor);
+
+/// Sets table.count to the number of lines left that hold values.
+void count_text_rows(Table& table, const TextCursor& cursor);
+
+/// Reads table.count lines and checks that each holds exactly the values its fields ask for. Blank lines and
+/// lines that start with '#' are kept as interludes. \throw Failure naming the line, what was expected and
+/// what was found.
+void read_text_rows(Table& table, TextCursor& cursor, const Context& context);
+
+/// Writes the rows as bytes or as text; a table that is the other kind is converted on the way.
+void write_binary_rows(const Table& table, bool big_endian, Sink& sink, const Context& context);
+/// See `write_binary_rows`.
+void write_text_rows(const Table& table, Sink& sink, const Context& context);
+
+}  // namespace rfsmooth::pipeline::io

@@ -1,0 +1,165 @@
+#include <algorithm>
+#include <cstring>
+
+#include <fmt/format.h>
+
+#include "base/parallel.h"
+#include "pipeline/io/formats/header_lines.h"
+#include "pipeline/io/table/rows.h"
+
+namespace rfsmooth::pipeline::io {
+namespace {
+
+constexpr std::size_t kTextRowsPerBlock = 4096;
+
+// Empty if the row is what its fields ask for; else what was expected and found.
+std::string problem(const Table& table, std::string_view row) {
+  const char* p = row.data();
+  const char* end = p + row.size();
+  std::size_t seen = 0, wanted = 0;
+  const auto take = [&](const Field& f, Scalar type, const char* what) -> std::string {
+    const std::string_view word = next_word(p, end, table.separators);
+    ++wanted;
+    if (word.empty())
+      return fmt::format("expected {} '{}' as value {}, found the end of the line", what, f.name, wanted);
+    ++seen;
+    if (is_value(word, type)) return {};
+    return fmt::format("expected {} '{}' ({}), found {}", what, f.name, name_of(type), in_quotes(word));
+  };
+  for (const Field& f : table.fields) {
+    std::size_t n = f.count;
+    if (f.is_list()) {
+      const char* before = p;
+      if (std::string bad = take(f, *f.list_count, "the length of list"); !bad.empty()) return bad;
+      const std::string_view word = next_word(before, end, table.separators);
+      n = std::size_t(parse_integer(word, *f.list_count).value());
+      if (word.front() == '-' || n > row.size())
+        return fmt::format("expected the length of list '{}', found {}", f.name, in_quotes(word));
+    }
+    for (std::size_t k = 0; k < n; ++k)
+      if (std::string bad = take(f, f.type, "a value of"); !bad.empty()) return bad;
+  }
+  if (table.ragged) return {};
+  const std::string_view word = next_word(p, end, table.separators);
+  if (word.empty()) return {};
+  return fmt::format("expected {} values, found more: {}", seen, in_quotes(word));
+}
+
+std::size_t count_lines(const Bytes& all, std::size_t to) {
+  return std::size_t(std::count(all.begin(), all.begin() + std::ptrdiff_t(to), '\n'));
+}
+
+}  // namespace
+
+TextCursor::TextCursor(const Source& from, std::uint64_t offset, std::size_t lines_before,
+                       const Context& context)
+    : source(from), all(from.read(offset, std::size_t(from.size() - offset), context)), lines(lines_before) {}
+
+bool is_blank_or_comment(std::string_view line) {
+  const char* p = line.data();
+  const std::string_view word = next_word(p, p + line.size());
+  return word.empty() || word.front() == '#' || word.substr(0, 2) == "//";
+}
+
+std::string_view peek_line(const TextCursor& cursor) {
+  const std::string_view rest = cursor.rest();
+  const std::size_t newline = rest.find('\n');
+  return newline == std::string_view::npos ? rest : rest.substr(0, newline + 1);
+}
+
+void skip_line(TextCursor& cursor) {
+  const std::size_t n = peek_line(cursor).size();
+  cursor.at += n;
+  if (n > 0) ++cursor.lines;
+}
+
+void count_text_rows(Table& table, const TextCursor& cursor) {
+  table.count = 0;
+  const char* p = cursor.all.data() + cursor.at;
+  const char* end = cursor.all.data() + cursor.all.size();
+  while (p != end) {
+    const char* newline = static_cast<const char*>(std::memchr(p, '\n', std::size_t(end - p)));
+    const char* next = newline == nullptr ? end : newline + 1;
+    if (!is_blank_or_comment({p, std::size_t(next - p)})) ++table.count;
+    p = next;
+  }
+}
+
+void read_text_rows(Table& table, TextCursor& cursor, const Context& context) {
+  table.text = true;
+  if (table.count == 0) return;
+  // The shortest line holds one character per value, what parts them, and a line end.
+  const std::size_t left = cursor.all.size() - cursor.at;
+  if (table.count > (left + 1) / 2)
+    cursor.source.fail(fmt::format("line {}: expected {} lines of element '{}', found {} bytes",
+                                   cursor.lines + 1, table.count, table.name, left));
+
+  const char* const base = cursor.all.data();
+  const char* const end = base + cursor.all.size();
+  const char* p = base + cursor.at;
+  const char* run = p;  // first byte not yet copied
+  const std::size_t lines_before = cursor.lines;
+  const std::size_t first = cursor.at;
+  table.start.reserve(table.count + 1);
+  table.start.push_back(0);
+  table.data.reserve(left);
+  std::size_t rows = 0;
+  while (rows < table.count) {
+    if (rows % kTextRowsPerBlock == 0) context.check_stop();
+    if (p == end)
+      cursor.source.fail(fmt::format(
+          "line {}: expected row {} of {} of element '{}', found the end of the file",
+          lines_before + count_lines(cursor.all, cursor.all.size()) - count_lines(cursor.all, first) + 1,
+          rows + 1, table.count, table.name));
+    const char* newline = static_cast<const char*>(std::memchr(p, '\n', std::size_t(end - p)));
+    const char* next = newline == nullptr ? end : newline + 1;
+    const std::string_view line(p, std::size_t(next - p));
+    if (is_blank_or_comment(line)) {
+      table.data.insert(table.data.end(), run, p);
+      run = next;
+      if (!table.interludes.empty() && table.interludes.back().row == rows)
+        table.interludes.back().text += line;
+      else
+        table.interludes.push_back({rows, std::string(line)});
+    } else {
+      ++rows;
+      table.start.push_back(table.data.size() + std::size_t(next - run));
+    }
+    p = next;
+  }
+  table.data.insert(table.data.end(), run, p);
+  cursor.at = std::size_t(p - base);
+  cursor.lines = lines_before + std::size_t(std::count(base + first, p, '\n'));
+
+  const auto bad = reduce_blocks(
+      context, table.count, table.count,
+      [&](std::size_t begin, std::size_t stop) {
+        for (std::size_t i = begin; i < stop; ++i)
+          if (!problem(table, table.row(i)).empty()) return i;
+        return table.count;
+      },
+      [](std::size_t a, std::size_t b) { return std::min(a, b); }, kTextRowsPerBlock);
+  if (bad == table.count) return;
+  std::size_t line = lines_before + bad + 1;
+  for (const Interlude& note : table.interludes)
+    if (note.row <= bad) line += std::size_t(std::count(note.text.begin(), note.text.end(), '\n'));
+  cursor.source.fail(fmt::format("line {}: {}", line, problem(table, table.row(bad))));
+}
+
+void write_text_rows(const Table& table, Sink& sink, const Context& context) {
+  if (!table.text) {
+    Table copy = table;
+    make_text(copy, context);
+    return write_text_rows(copy, sink, context);
+  }
+  std::size_t from = 0;
+  for (const Interlude& note : table.interludes) {
+    const std::size_t to = note.row < table.count ? std::size_t(table.start[note.row]) : table.data.size();
+    sink.write({table.data.data() + from, to - from});
+    sink.write(note.text);
+    from = to;
+  }
+  sink.write({table.data.data() + from, table.data.size() - from});
+}
+
+}  // namespace rfsmooth::pipeline::io

@@ -1,0 +1,193 @@
+#include "pipeline/io/table/text.h"
+
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <limits>
+#include <stdexcept>
+
+namespace rfsmooth::pipeline::io {
+namespace {
+
+// What Windows runtimes print for non-finite numbers: 1.#INF, 1.#QNAN, filled up with zeros; from_chars knows
+// "nan", "inf" and "nan(...)".
+std::optional<double> parse_windows(std::string_view word) {
+  const bool negative = !word.empty() && word.front() == '-';
+  if (negative) word.remove_prefix(1);
+  const auto take = [&](std::string_view prefix) {
+    if (word.substr(0, prefix.size()) != prefix) return false;
+    word.remove_prefix(prefix.size());
+    return true;
+  };
+  if (!take("1.#")) return std::nullopt;
+  const bool infinite = take("INF");
+  if (!infinite && !take("QNAN") && !take("SNAN") && !take("IND")) return std::nullopt;
+  if (word.find_first_not_of('0') != std::string_view::npos) return std::nullopt;
+  if (!infinite) return std::numeric_limits<double>::quiet_NaN();
+  return negative ? -HUGE_VAL : HUGE_VAL;
+}
+
+template <class T>
+std::optional<std::uint64_t> integer_as(std::string_view word) {
+  const char* end = word.data() + word.size();
+  T value{};
+  const auto [stop, error] = std::from_chars(word.data(), end, value);
+  if (error == std::errc{} && stop == end) return std::uint64_t(value);
+  if (error == std::errc::result_out_of_range) return std::nullopt;
+  // Some writers print whole numbers as reals.
+  const auto real = parse_real(word);
+  if (!real || *real != std::floor(*real) || std::fabs(*real) > 9007199254740992.0) return std::nullopt;
+  if (*real < double(std::numeric_limits<T>::min()) || *real > double(std::numeric_limits<T>::max()))
+    return std::nullopt;
+  return std::uint64_t(T(*real));
+}
+
+template <class T>
+void append_real(std::string& out, T value) {
+  if (std::isnan(value)) {
+    out += "nan";
+    return;
+  }
+  char buffer[64];
+  const T size = std::fabs(value);
+  // Plain digits where a person would write them; std::to_chars alone prefers 1e+06 to 1000000.
+  const bool plain = size == 0 || (size >= T(1e-5) && size < T(1e16));
+  const auto result = plain ? std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::fixed)
+                            : std::to_chars(buffer, buffer + sizeof buffer, value);
+  out.append(buffer, result.ptr);
+}
+
+template <class T>
+void append_whole(std::string& out, T value) {
+  char buffer[32];
+  out.append(buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr);
+}
+
+template <class T>
+T read_as(const char* p) {
+  T v;
+  std::memcpy(&v, p, sizeof v);
+  return v;
+}
+
+int significant_digits(std::string_view word) {
+  int digits = 0;
+  for (const char c : word) {
+    if (c == 'e' || c == 'E') break;
+    if (c < '0' || c > '9') continue;
+    if (digits > 0 || c != '0') ++digits;
+  }
+  return digits;
+}
+
+}  // namespace
+
+std::optional<double> parse_real(std::string_view word) {
+  if (!word.empty() && word.front() == '+') {
+    word.remove_prefix(1);
+    if (!word.empty() && word.front() == '-') return std::nullopt;
+  }
+  const char* end = word.data() + word.size();
+  double value = 0;
+  const auto [stop, error] = std::from_chars(word.data(), end, value);
+  if (error == std::errc{} && stop == end) return value;
+  if (error == std::errc::result_out_of_range && stop == end) {
+    // from_chars does not say which way: an exponent below zero can only be too small here.
+    const bool negative = word.front() == '-';
+    const std::size_t e = word.find_first_of("eE");
+    const bool small =
+        e != std::string_view::npos ? word.substr(e + 1, 1) == "-" : word.find('.') <= (negative ? 2u : 1u);
+    return std::copysign(small ? 0.0 : HUGE_VAL, negative ? -1.0 : 1.0);
+  }
+  return parse_windows(word);
+}
+
+std::optional<std::uint64_t> parse_integer(std::string_view word, Scalar type) {
+  if (word.size() > 1 && word.front() == '+' && word[1] != '-' && word[1] != '+') word.remove_prefix(1);
+  switch (type) {
+    case Scalar::int8:
+      return integer_as<std::int8_t>(word);
+    case Scalar::uint8:
+      return integer_as<std::uint8_t>(word);
+    case Scalar::int16:
+      return integer_as<std::int16_t>(word);
+    case Scalar::uint16:
+      return integer_as<std::uint16_t>(word);
+    case Scalar::int32:
+      return integer_as<std::int32_t>(word);
+    case Scalar::uint32:
+      return integer_as<std::uint32_t>(word);
+    case Scalar::int64:
+      return integer_as<std::int64_t>(word);
+    case Scalar::uint64:
+      return integer_as<std::uint64_t>(word);
+    case Scalar::float32:
+    case Scalar::float64:
+      break;
+  }
+  throw std::invalid_argument("parse_integer: not an integer type");
+}
+
+bool is_value(std::string_view word, Scalar type) {
+  return is_float(type) ? parse_real(word).has_value() : parse_integer(word, type).has_value();
+}
+
+void store_text(std::string_view word, Scalar type, char* p) {
+  if (is_float(type)) {
+    store(type, p, parse_real(word).value());
+  } else {
+    const std::uint64_t bits = parse_integer(word, type).value();
+    std::memcpy(p, &bits, size_of(type));
+  }
+}
+
+void append_number(std::string& out, double value, Scalar type) {
+  if (type == Scalar::float64) {
+    append_real(out, value);
+  } else {
+    char stored[8];
+    store(type, stored, value);
+    append_stored(out, stored, type);
+  }
+}
+
+void append_stored(std::string& out, const char* p, Scalar type) {
+  switch (type) {
+    case Scalar::int8:
+      return append_whole(out, int{read_as<std::int8_t>(p)});
+    case Scalar::uint8:
+      return append_whole(out, int{read_as<std::uint8_t>(p)});
+    case Scalar::int16:
+      return append_whole(out, read_as<std::int16_t>(p));
+    case Scalar::uint16:
+      return append_whole(out, read_as<std::uint16_t>(p));
+    case Scalar::int32:
+      return append_whole(out, read_as<std::int32_t>(p));
+    case Scalar::uint32:
+      return append_whole(out, read_as<std::uint32_t>(p));
+    case Scalar::int64:
+      return append_whole(out, read_as<std::int64_t>(p));
+    case Scalar::uint64:
+      return append_whole(out, read_as<std::uint64_t>(p));
+    case Scalar::float32:
+      return append_real(out, read_as<float>(p));
+    case Scalar::float64:
+      return append_real(out, read_as<double>(p));
+  }
+}
+
+bool fits_float32(std::string_view word) {
+  const double value = parse_real(word).value();
+  const float nearest = float(value);
+  if (double(nearest) == value || !(value == value)) return true;
+  // "0.1" is a name of a float although no float equals 0.1: that float, at as many digits, reads the same.
+  const int digits = significant_digits(word);
+  char buffer[64];
+  if (!std::isfinite(nearest) || digits == 0 || digits > 40) return false;
+  const auto result = std::to_chars(buffer, buffer + sizeof buffer, double(nearest),
+                                    std::chars_format::scientific, digits - 1);
+  return parse_real({buffer, std::size_t(result.ptr - buffer)}) == value;
+}
+
+}  // namespace rfsmooth::pipeline::io

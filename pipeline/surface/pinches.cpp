@@ -1,0 +1,142 @@
+#include "pipeline/surface/pinches.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "pipeline/surface/face_sides.h"
+
+namespace rfsmooth::pipeline {
+
+using rfsmooth::Edge;
+using rfsmooth::Face;
+using rfsmooth::Mesh;
+
+namespace {
+
+class Parting {
+ public:
+  explicit Parting(const Mesh& mesh) : mesh_(mesh), sides_(face_sides(mesh.faces)) {}
+
+  /// The surface with its corners renamed, vertices from n on being copies of `copied`.
+  std::vector<Face> renamed(std::vector<Index>& copied) {
+    std::vector<Face> faces;
+    // Twice is enough but for edges that depend on each other; what is left then is rare and stays as it is.
+    for (int round = 0; round < 3; ++round) {
+      faces = rename(copied);
+      if (!turn_crowded(faces, copied)) break;
+    }
+    return faces;
+  }
+
+ private:
+  std::vector<Face> rename(std::vector<Index>& copied) const {
+    const std::size_t n = mesh_.positions.size();
+    Groups fans(3 * mesh_.faces.size());
+    for_each_edge(sides_, [&](const FaceSide* first, const FaceSide* last) {
+      for_each_pair(first, last, [&](const FaceSide& s, const FaceSide& t) {
+        for (const Index v : {s.a, s.b})
+          fans.join(corner_of(mesh_.faces, s.face, v), corner_of(mesh_.faces, t.face, v));
+      });
+    });
+    copied.clear();
+    std::vector<char> used(n, 0);
+    std::vector<Face> faces = mesh_.faces;
+    std::vector<Index> name(3 * faces.size());  // of each fan, by its least corner
+    for (Index c = 0; c < name.size(); ++c) {
+      Index& v = faces[c / 3][c % 3];
+      if (fans.of(c) == c) {
+        name[c] = v;
+        if (used[v] != 0) {
+          name[c] = Index(n + copied.size());
+          copied.push_back(v);
+        }
+        used[v] = 1;
+      }
+      v = name[fans.of(c)];
+    }
+    return faces;
+  }
+
+  /// Calls visit(side, side) for the faces that stay together at an edge.
+  template <class Visit>
+  void for_each_pair(const FaceSide* first, const FaceSide* last, Visit&& visit) const {
+    if (last - first < 2) return;
+    if (last - first == 2) {
+      if (first[0].forward != first[1].forward) visit(first[0], first[1]);
+      return;
+    }
+    const bool fronts = std::binary_search(fronts_.begin(), fronts_.end(), Edge{first->a, first->b});
+    std::vector<const FaceSide*> turn = around(first, last), open;
+    // Going round, the inside begins at a face that runs backward and ends at one that runs forward. Twice
+    // round, because it may begin anywhere.
+    const std::size_t count = turn.size();
+    std::vector<char> paired(count, 0);
+    std::vector<std::size_t> begun;
+    for (std::size_t k = 0; k < 2 * count; ++k) {
+      const std::size_t s = k < count ? k : k - count;
+      if (paired[s] != 0) continue;
+      if (turn[s]->forward == fronts) {
+        if (k < count) begun.push_back(s);
+      } else if (!begun.empty()) {
+        paired[s] = paired[begun.back()] = 1;
+        visit(*turn[begun.back()], *turn[s]);
+        begun.pop_back();
+      }
+    }
+  }
+
+  /// The faces at an edge by the angle at which they stand off it.
+  std::vector<const FaceSide*> around(const FaceSide* first, const FaceSide* last) const {
+    const auto& at = mesh_.positions;
+    const Eigen::Vector3d axis = (at[first->b] - at[first->a]).normalized(), x = axis.unitOrthogonal(),
+                          y = axis.cross(x);
+    std::vector<std::pair<double, const FaceSide*>> turn;
+    for (const FaceSide* s = first; s != last; ++s) {
+      const Face& f = mesh_.faces[s->face];
+      const Index c = f[0] != s->a && f[0] != s->b ? f[0] : f[1] != s->a && f[1] != s->b ? f[1] : f[2];
+      const Eigen::Vector3d d = at[c] - at[s->a];
+      turn.emplace_back(std::atan2(d.dot(y), d.dot(x)), s);
+    }
+    std::stable_sort(turn.begin(), turn.end(),
+                     [](const auto& s, const auto& t) { return s.first < t.first; });
+    std::vector<const FaceSide*> out;
+    for (const auto& t : turn) out.push_back(t.second);
+    return out;
+  }
+
+  /// Edges that are crowded still take their faces the other way; whether there were any new ones.
+  bool turn_crowded(const std::vector<Face>& faces, const std::vector<Index>& copied) {
+    const std::size_t n = mesh_.positions.size(), before = fronts_.size();
+    const auto was = [&](Index v) { return v < n ? v : copied[v - n]; };
+    for_each_edge(face_sides(faces), [&](const FaceSide* first, const FaceSide* last) {
+      if (last - first < 3) return;
+      const Index a = was(first->a), b = was(first->b);
+      fronts_.push_back({std::min(a, b), std::max(a, b)});
+    });
+    std::sort(fronts_.begin(), fronts_.end());
+    fronts_.erase(std::unique(fronts_.begin(), fronts_.end()), fronts_.end());
+    return fronts_.size() > before;
+  }
+
+  const Mesh& mesh_;
+  std::vector<FaceSide> sides_;
+  std::vector<Edge> fronts_;  ///< ascending: crowded edges whose faces stay together front to front
+};
+
+}  // namespace
+
+std::size_t part_pinches(Mesh& mesh, const Context& context) {
+  std::vector<Index> copied;
+  std::vector<Face> faces = Parting(mesh).renamed(copied);
+  if (copied.empty()) return 0;
+  for (const Index v : copied) mesh.positions.push_back(mesh.positions[v]);
+  mesh.faces.swap(faces);
+  rebuild_adjacency(mesh, context);
+  return copied.size();
+}
+
+}  // namespace rfsmooth::pipeline

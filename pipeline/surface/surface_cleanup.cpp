@@ -1,0 +1,70 @@
+#include "pipeline/surface/surface_cleanup.h"
+
+#include <algorithm>
+
+#include "base/parallel.h"
+#include "pipeline/surface/face_sides.h"
+#include "rfs_mesh/search/neighbors.h"
+
+namespace rfsmooth::pipeline {
+
+using rfsmooth::Face;
+using rfsmooth::Mesh;
+
+std::vector<Index> nearest_points(const Mesh& mesh, const Positions& points, const Context& context) {
+  const rfs_mesh::SpatialIndex index(points, context);
+  std::vector<Index> nearest(mesh.positions.size());
+  for_blocks(context, nearest.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    std::vector<rfs_mesh::Neighbor> found;
+    for (std::size_t v = begin; v < end; ++v) {
+      index.nearest(mesh.positions[v], 1, found);
+      nearest[v] = found.front().index;
+    }
+  });
+  return nearest;
+}
+
+void drop_specks(Mesh& mesh, std::size_t least, const Context& context) {
+  Groups pieces(mesh.positions.size());
+  for (const Face& f : mesh.faces) {
+    pieces.join(f[0], f[1]);
+    pieces.join(f[1], f[2]);
+  }
+  std::vector<std::size_t> size(mesh.positions.size(), 0);
+  for (const Face& f : mesh.faces) ++size[pieces.of(f[0])];
+  if (mesh.faces.empty() || *std::max_element(size.begin(), size.end()) < least) return;
+  mesh.faces.erase(std::remove_if(mesh.faces.begin(), mesh.faces.end(),
+                                  [&](const Face& f) { return size[pieces.of(f[0])] < least; }),
+                   mesh.faces.end());
+  drop_unused_vertices(mesh, context);
+}
+
+void drop_unused_vertices(Mesh& mesh, const Context& context) {
+  std::vector<Index> renamed(mesh.positions.size(), kNone);
+  for (const Face& f : mesh.faces)
+    for (const Index v : f) renamed[v] = 0;
+  Index kept = 0;
+  for (std::size_t v = 0; v < renamed.size(); ++v) {
+    if (renamed[v] == kNone) continue;
+    mesh.positions[kept] = mesh.positions[v];
+    renamed[v] = kept++;
+  }
+  mesh.positions.resize(kept);
+  for (Face& f : mesh.faces)
+    for (Index& v : f) v = renamed[v];
+  mesh.loose_edges.clear();
+  rebuild_adjacency(mesh, context);
+}
+
+void trim_far_faces(Mesh& mesh, const Positions& points, double length, const Context& context) {
+  const std::vector<Index> nearest = nearest_points(mesh, points, context);
+  std::vector<char> far(nearest.size());
+  for_each_index(context, nearest.size(),
+                 [&](std::size_t v) { far[v] = (mesh.positions[v] - points[nearest[v]]).norm() > length; });
+  mesh.faces.erase(std::remove_if(mesh.faces.begin(), mesh.faces.end(),
+                                  [&](const Face& f) { return far[f[0]] || far[f[1]] || far[f[2]]; }),
+                   mesh.faces.end());
+  drop_unused_vertices(mesh, context);
+}
+
+}  // namespace rfsmooth::pipeline

@@ -1,0 +1,216 @@
+#include "rfs_mesh/connect/connect.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+
+#include "base/collect.h"
+#include "base/parallel.h"
+#include "base/stopwatch.h"
+#include "rfs_mesh/connect/boruvka.h"
+#include "rfs_mesh/connect/emst.h"
+#include "rfs_mesh/connect/flattest_pair.h"
+#include "rfs_mesh/connect/sdg.h"
+#include "rfs_mesh/connect/umbrella.h"
+#include "rfs_mesh/fit/local_surface.h"
+#include "rfs_mesh/search/neighbors.h"
+#include "rfs_mesh/sheets/two_sheets.h"
+
+namespace rfsmooth::rfs_mesh {
+
+namespace {
+
+/// Times the stages and reports them.
+class Stages {
+ public:
+  Stages(std::vector<StageTime>& seconds, const Context& context) : seconds_(seconds), context_(context) {}
+
+  template <class Body>
+  auto run(const char* stage, double fraction, Body&& body) {
+    context_.report(stage, fraction);
+    const Stopwatch watch(seconds_, stage);
+    return body();
+  }
+
+ private:
+  std::vector<StageTime>& seconds_;
+  const Context& context_;
+};
+
+Positions shadows(const std::vector<LocalSurface>& surfaces, const Context& context) {
+  Positions at(surfaces.size());
+  for_each_index(context, at.size(), [&](std::size_t i) { at[i] = surfaces[i].shadow; });
+  return at;
+}
+
+/// What the tests are made on: positions, the surface through each, their own neighbours and tree.
+struct Ground {
+  Positions at;
+  std::vector<LocalSurface> surfaces;
+  NeighborTable near;
+  std::vector<Edge> tree;     // in any order
+  std::vector<char> between;  // two sheets: n flags, or none
+};
+
+/// The ground at smoothed positions that the caller gives.
+Ground ground_at(const Positions& guide, int k, const Context& context) {
+  Ground ground;
+  ground.at = guide;
+  const SpatialIndex index(ground.at, context);
+  ground.near = index.nearest(k, context);
+  ground.tree = boruvka(index, ground.near, context);
+  ground.surfaces = local_surfaces(ground.at, ground.near, context);
+  return ground;
+}
+
+/// A quadric through m points leaves about a third of the noise in the shadow at the m that noise_scale
+/// picks.
+constexpr double kNoiseLeft = 1.0 / 3;
+
+/// The ground at the shadows of the points. Quadrics no wider than the neighbourhoods looked at are fitted a
+/// second time, on the shadows; wider ones have the better normals already.
+Ground shadow_ground(const Positions& points, std::vector<LocalSurface> surfaces, const NoiseScale& scale,
+                     const ConnectOptions& options, const Context& context) {
+  const int k = options.neighbours;
+  Ground ground;
+  ground.surfaces = std::move(surfaces);
+  ground.at = shadows(ground.surfaces, context);
+  const SpatialIndex index(ground.at, context);
+  ground.near = index.nearest(k, context);
+  ground.tree = boruvka(index, ground.near, context);
+  if (scale.neighbours <= std::size_t(k)) {
+    const NoiseScale left = {kNoiseLeft * scale.sigma, scale.neighbours};
+    ground.surfaces = shared_local_surfaces(index, ground.near, left, scale.neighbours, context);
+  }
+  ground.between =
+      part_sheets(points, index, ground.near, scale.sigma, options.sheets, ground.surfaces, context);
+  ground.at = shadows(ground.surfaces, context);
+  return ground;
+}
+
+/// SDG edges of the vertices that no face reaches: those without a ring.
+std::vector<Edge> loose_edges(const Adjacency& ring, const std::vector<Edge>& sdg, const Context& context) {
+  return collect<Edge>(context, sdg.size(), [&](std::size_t e, auto&& emit) {
+    if (ring.degree(sdg[e][0]) == 0 || ring.degree(sdg[e][1]) == 0) emit(sdg[e]);
+  });
+}
+
+/// The cloud and who is near whom in it.
+struct Cloud {
+  SpatialIndex index;
+  NeighborTable near;
+};
+
+Cloud search(const Positions& points, const ConnectOptions& options, const Context& context, Stages& stages) {
+  SpatialIndex index = stages.run("index", 0, [&] { return SpatialIndex(points, context); });
+  NeighborTable near =
+      stages.run("neighbours", 0.05, [&] { return index.nearest(options.neighbours, context); });
+  return {std::move(index), std::move(near)};
+}
+
+/// The first stages, up to the surfaces: what is measured on the points themselves. Fills emst, noise and
+/// on_shadow of `c`; returns what the tests are made on.
+Ground survey(Cloud cloud, const ConnectOptions& options, const Context& context, const Positions* guide,
+              Connection& c, Stages& stages) {
+  const SpatialIndex& index = cloud.index;
+  const NeighborTable& near = cloud.near;
+  const Positions& points = index.points();
+  const std::size_t n = points.size();
+  const NoiseScale scale = stages.run("noise", 0.15, [&] { return noise_scale(index, context); });
+  c.noise.spacing = mean_spacing(points, near, context);
+  c.noise.sigma = scale.sigma;
+  c.on_shadow = guide == nullptr && n > 0 && scale.sigma > options.shadow_from * c.noise.spacing;
+  c.emst = stages.run("emst", 0.2, [&] {
+    return options.tree_of_points || !c.on_shadow ? emst(index, near, context) : std::vector<Edge>();
+  });
+  auto surfaces = stages.run("local surfaces", 0.4, [&] {
+    const auto least = std::min(std::size_t(options.neighbours), scale.neighbours);
+    return c.on_shadow ? shared_local_surfaces(index, near, scale, least, context)
+                       : local_surfaces(points, near, context);
+  });
+  c.noise.field.resize(n);
+  for_each_index(context, n, [&](std::size_t i) { c.noise.field[i] = surfaces[i].residual; });
+  if (guide == nullptr && !c.on_shadow)
+    return {points, std::move(surfaces), std::move(cloud.near), c.emst, {}};
+  cloud.near = NeighborTable();  // neighbours among the noisy points: not needed any more
+  return stages.run(guide != nullptr ? "guide" : "shadow", 0.5, [&] {
+    return guide != nullptr ? ground_at(*guide, options.neighbours, context)
+                            : shadow_ground(points, std::move(surfaces), scale, options, context);
+  });
+}
+
+/// `known`: the caller's search, or none.
+Connection connect_all(const Positions& points, std::optional<Cloud> known, const ConnectOptions& options,
+                       const Context& context, const Positions* guide) {
+  Connection c;
+  Stages stages(c.seconds, context);
+  const std::size_t n = points.size();
+  if (!known) known.emplace(search(points, options, context, stages));
+  Ground ground = survey(std::move(*known), options, context, guide, c, stages);
+  known.reset();
+  const double noise = guide != nullptr ? 0 : c.on_shadow ? kNoiseLeft * c.noise.sigma : c.noise.sigma;
+  const Terrain terrain{ground.at, ground.surfaces, ground.near, noise, ground.between};
+
+  Sdg sdg = stages.run("sdg", 0.6, [&] { return make_sdg(terrain, ground.tree, options.sdg, context); });
+  c.sdg = std::move(sdg.edges);
+  c.bridges = std::move(sdg.bridges);
+  std::vector<Edge>().swap(ground.tree);
+  const ProposedFaces proposed = stages.run("umbrellas", 0.75, [&] {
+    const std::vector<Umbrella> umbrellas = open_umbrellas(terrain, sdg.graph, options.umbrella, context);
+    ground.near = NeighborTable();
+    sdg = {};
+    return proposed_faces(umbrellas, context);
+  });
+  stages.run("rfs-mesh", 0.9, [&] {
+    FlattestPairs kept = keep_flattest_pairs(ground.at, proposed, options.umbrella.same_fold, context);
+    c.mesh.faces = std::move(kept.faces);
+    c.mesh.one_ring = std::move(kept.one_ring);
+    Positions().swap(ground.at);
+    c.mesh.positions = points;
+    for (std::size_t i = 0; i < n; ++i) c.faceless += std::size_t(c.mesh.one_ring.degree(i) == 0);
+    if (options.loose_edges && c.faceless > 0) {
+      c.mesh.loose_edges = loose_edges(c.mesh.one_ring, c.sdg, context);
+      rebuild_adjacency(c.mesh, context);
+    }
+  });
+  c.surfaces = std::move(ground.surfaces);
+  return c;
+}
+
+}  // namespace
+
+Result<Connection> connect(SpatialIndex index, NeighborTable near, const ConnectOptions& options,
+                           const Context& context) {
+  const Positions& points = index.points();
+  const std::size_t width =
+      std::min(std::size_t(options.neighbours), std::max<std::size_t>(points.size(), 1) - 1);
+  if (near.items.size() != points.size() * width)
+    throw std::invalid_argument("connect: near is not the table that the options ask for");
+  return guarded([&] {
+    value_or_throw(validate(options));
+    Connection connection;
+    in_arena(context, [&] {
+      connection = connect_all(points, Cloud{std::move(index), std::move(near)}, options, context, nullptr);
+    });
+    return connection;
+  });
+}
+
+}  // namespace rfsmooth::rfs_mesh
+
+namespace rfsmooth {
+
+Result<Connection> connect(const Positions& points, const ConnectOptions& options, const Context& context,
+                           const Positions* guide) {
+  if (guide != nullptr && guide->size() != points.size())
+    throw std::invalid_argument("connect: guide must hold one position per point");
+  return guarded([&] {
+    value_or_throw(validate(options));
+    Connection connection;
+    in_arena(context, [&] { connection = rfs_mesh::connect_all(points, {}, options, context, guide); });
+    return connection;
+  });
+}
+
+}  // namespace rfsmooth

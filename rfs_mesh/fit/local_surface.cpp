@@ -1,0 +1,144 @@
+#include "rfs_mesh/fit/local_surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/Geometry>
+
+#include "base/median.h"
+#include "base/parallel.h"
+#include "rfs_mesh/fit/quadric.h"
+
+namespace rfsmooth::rfs_mesh {
+
+namespace {
+
+using Eigen::Vector3d;
+
+/// The nearest neighbours of one point without itself, in memory that is kept.
+class NearestOthers {
+ public:
+  const std::vector<Index>& find(const SpatialIndex& index, std::size_t i, std::size_t count) {
+    index.nearest(index.points()[i], int(count) + 1, found_);
+    row_.clear();
+    for (const Neighbor& q : found_)
+      if (q.index != i) row_.push_back(q.index);
+    return row_;
+  }
+
+ private:
+  std::vector<Neighbor> found_;
+  std::vector<Index> row_;
+};
+
+LocalSurface fit_surface(const Positions& points, const Vector3d& p, const Index* neighbours,
+                         std::size_t count, QuadricWorkspace& w, int robust_rounds = kRobustRounds) {
+  return surface_at_centre(fit_quadric(points, p, neighbours, count, w, robust_rounds));
+}
+
+}  // namespace
+
+LocalSurface surface_at_centre(const Quadric& q) {
+  LocalSurface surface{q.n, q.centre};
+  if (q.radius == 0) return surface;
+  surface.normal = q.normal(0, 0);
+  surface.shadow = q.centre + (q.radius * q.c[0] * q.n.dot(surface.normal)) * surface.normal;
+  surface.curvature = q.curvature();
+  surface.residual = q.residual;
+  return surface;
+}
+
+std::vector<LocalSurface> local_surfaces(const Positions& points, const NeighborTable& near,
+                                         const Context& context) {
+  std::vector<LocalSurface> surfaces(points.size());
+  for_blocks(context, points.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    QuadricWorkspace workspace;
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto row = near[i];
+      surfaces[i] = fit_surface(points, points[i], row.begin(), row.size(), workspace);
+    }
+  });
+  return surfaces;
+}
+
+double mean_spacing(const Positions& points, const NeighborTable& near, const Context& context) {
+  if (points.size() < 2) return 0;
+  return sum_over(context, points.size(), 0.0,
+                  [&](std::size_t i) { return (points[near[i][0]] - points[i]).norm(); }) /
+         double(points.size());
+}
+
+double mean_spacing(const SpatialIndex& index, const Context& context) {
+  constexpr std::size_t kSamples = 50000;
+  const std::size_t n = index.points().size(), count = std::min(n, kSamples);
+  if (n < 2) return 0;
+  std::vector<double> nearest(count);
+  for_blocks(context, count, 256, [&](std::size_t begin, std::size_t end) {
+    NearestOthers others;
+    for (std::size_t s = begin; s < end; ++s) {
+      const std::size_t i = s * n / count;
+      nearest[s] = (index.points()[others.find(index, i, 1).front()] - index.points()[i]).norm();
+    }
+  });
+  return sum_over(context, count, 0.0, [&](std::size_t s) { return nearest[s]; }) / double(count);
+}
+
+namespace {
+
+/// The lower quartile of the root of a chi-square variable over its degrees of freedom (Wilson & Hilferty).
+double quartile_of_deviation(double freedom) {
+  const double v = 2 / (9 * freedom);
+  return std::pow(std::max(0.1, 1 - v - 0.6745 * std::sqrt(v)), 1.5);
+}
+
+struct Deviation {
+  double sigma, radius;
+};
+
+/// The flat places' residual and the median radius of neighbourhoods of m.
+Deviation deviation_at(const SpatialIndex& index, std::size_t m, const Context& context) {
+  constexpr std::size_t kSamples = 1000;
+  constexpr double kEffective = 5.0 / 9;  // what the distance weights leave of m samples on a disk
+  const std::size_t n = index.points().size(), samples = std::min(n, kSamples);
+  std::vector<double> residuals(samples), radii(samples);
+  for_blocks(context, samples, 16, [&](std::size_t begin, std::size_t end) {
+    QuadricWorkspace workspace;
+    NearestOthers nearest;
+    for (std::size_t s = begin; s < end; ++s) {
+      const std::size_t i = s * n / samples;
+      const Positions& points = index.points();
+      const auto& row = nearest.find(index, i, m);
+      residuals[s] = fit_surface(points, points[i], row.data(), row.size(), workspace, 0).residual;
+      radii[s] = row.empty() ? 0 : (points[row.back()] - points[i]).norm();
+    }
+  });
+  const auto quartile = residuals.begin() + std::ptrdiff_t(samples / 4);
+  std::nth_element(residuals.begin(), quartile, residuals.end());
+  return {*quartile / quartile_of_deviation(std::max(1.0, kEffective * double(m + 1) - 6)), median(radii)};
+}
+
+}  // namespace
+
+NoiseScale noise_scale(const SpatialIndex& index, const Context& context) {
+  // From the neighbourhoods looked at anyway to a radius of eleven spacings.
+  constexpr std::size_t kNarrowest = 24, kWidest = 384;
+  constexpr double kShareOfRadius = 0.18;  // a radius of 5.5 sigma: the ball holds the slab and is not in it
+  constexpr double kGrowthOfNoise = 1.26;  // cube root of 2: a ball inside a slab; faster growth is shape
+  const std::size_t n = index.points().size();
+  NoiseScale best;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t m = kNarrowest; m <= kWidest && m < n; m *= 2) {
+    const Deviation d = deviation_at(index, m, context);
+    if (best.neighbours > 0 && d.sigma > kGrowthOfNoise * best.sigma) break;
+    const double share = d.radius > 0 ? d.sigma / d.radius : 0;
+    if (share < least) {
+      least = share;
+      best = {d.sigma, m};
+    }
+    if (share <= kShareOfRadius) break;
+  }
+  return best;
+}
+
+}  // namespace rfsmooth::rfs_mesh

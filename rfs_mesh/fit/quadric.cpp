@@ -1,0 +1,250 @@
+#include "rfs_mesh/fit/quadric.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+
+#include "base/median.h"
+#include "base/wide.h"
+#include "rfs_mesh/fit/quadric_moments.h"
+
+namespace rfsmooth::rfs_mesh {
+
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using Vector6d = Eigen::Matrix<double, 6, 1>;
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
+
+constexpr std::size_t kSmallestQuadric = 8;  ///< two more than its six coefficients
+constexpr double kTukey = 4.685;             ///< biweight cut-off in sigmas: 95 % efficient on Gaussian noise
+constexpr double kRidge = 1e-9;  ///< relative; keeps collinear and gridded neighbourhoods solvable
+
+double square(double x) {
+  return x * x;
+}
+
+constexpr std::size_t kSideBySide = 4;
+typedef double Lanes __attribute__((vector_size(kSideBySide * sizeof(double))));
+
+const auto kTotal = [](const Lanes& l) { return (l[0] + l[1]) + (l[2] + l[3]); };
+
+inline void load(const std::vector<double>& from, std::size_t at, Lanes& to) {
+  std::memcpy(&to, from.data() + at, sizeof to);
+}
+inline void store(const Lanes& from, std::size_t at, std::vector<double>& to) {
+  std::memcpy(to.data() + at, &from, sizeof from);
+}
+
+/// Turns x, y, z into units of `radius` and sets the weights by distance; returns the weighted covariance.
+RFSMOOTH_WIDE
+void weigh(QuadricWorkspace& w, double radius, Matrix3d& covariance) {
+  const double scale = 1 / radius;
+  Lanes sum[10] = {};
+  for (std::size_t k = 0; k < w.padded; k += kSideBySide) {
+    Lanes x, y, z;
+    load(w.x, k, x);
+    load(w.y, k, y);
+    load(w.z, k, z);
+    x *= scale;
+    y *= scale;
+    z *= scale;
+    const Lanes inside = 1 - ((x * x + y * y) + z * z);
+    Lanes weight = inside * inside;
+    for (std::size_t lane = w.count; lane < k + kSideBySide; ++lane)
+      if (lane >= k) weight[lane - k] = 0;
+    store(x, k, w.x);
+    store(y, k, w.y);
+    store(z, k, w.z);
+    store(weight, k, w.distance);
+    const Lanes wx = weight * x, wy = weight * y, wz = weight * z;
+    sum[0] += weight;
+    sum[1] += wx;
+    sum[2] += wy;
+    sum[3] += wz;
+    sum[4] += wx * x;
+    sum[5] += wx * y;
+    sum[6] += wx * z;
+    sum[7] += wy * y;
+    sum[8] += wy * z;
+    sum[9] += wz * z;
+  }
+  double s[10];
+  for (int t = 0; t < 10; ++t) s[t] = (sum[t][0] + sum[t][1]) + (sum[t][2] + sum[t][3]);
+  const Vector3d mean = Vector3d(s[1], s[2], s[3]) / s[0];
+  covariance << s[4], s[5], s[6], s[5], s[7], s[8], s[6], s[8], s[9];
+  covariance -= s[0] * mean * mean.transpose();
+}
+
+/// The eigenvectors of a symmetric matrix, smallest eigenvalue first.
+Matrix3d principal_axes(const Matrix3d& covariance) {
+  Eigen::SelfAdjointEigenSolver<Matrix3d> solver;
+  solver.computeDirect(covariance);
+  Matrix3d axes = solver.eigenvectors();
+  if (!axes.allFinite() || std::abs(std::abs(axes.determinant()) - 1) > 1e-6) {
+    solver.compute(covariance);  // the closed form loses accuracy where two eigenvalues nearly meet
+    axes = solver.eigenvectors();
+  }
+  return axes;
+}
+
+/// Offsets in the frame of `q`.
+RFSMOOTH_WIDE
+void turn_into(const Quadric& q, QuadricWorkspace& w) {
+  const double frame[9] = {q.t1[0], q.t1[1], q.t1[2], q.t2[0], q.t2[1], q.t2[2], q.n[0], q.n[1], q.n[2]};
+  for (std::size_t k = 0; k < w.padded; k += kSideBySide) {
+    Lanes x, y, z;
+    load(w.x, k, x);
+    load(w.y, k, y);
+    load(w.z, k, z);
+    store((frame[0] * x + frame[1] * y) + frame[2] * z, k, w.u);
+    store((frame[3] * x + frame[4] * y) + frame[5] * z, k, w.v);
+    store((frame[6] * x + frame[7] * y) + frame[8] * z, k, w.h);
+  }
+}
+
+RFSMOOTH_WIDE
+void sum_up(const QuadricWorkspace& w, QuadricMoments<Lanes>& moments, QuadricHeights<Lanes>& heights) {
+  QuadricMoments<Lanes> m;
+  QuadricHeights<Lanes> h;
+  for (std::size_t k = 0; k < w.padded; k += kSideBySide) {
+    Lanes u, v, z, weight;
+    load(w.u, k, u);
+    load(w.v, k, v);
+    load(w.h, k, z);
+    load(w.weight, k, weight);
+    m.add(u, v, weight);
+    h.add(u, v, weight * z);
+  }
+  moments = m;
+  heights = h;
+}
+
+/// Weighted least squares of z on the first `terms` monomials (3 = plane, 6 = quadric).
+Vector6d fit(const QuadricWorkspace& w, int terms) {
+  QuadricMoments<Lanes> moments;
+  QuadricHeights<Lanes> heights;
+  sum_up(w, moments, heights);
+  Matrix6d a = moments.matrix(kTotal);
+  Vector6d b = heights.vector(kTotal);
+  const double total = a(0, 0);
+  for (int t = terms; t < 6; ++t) {
+    a.row(t).setZero();
+    a.col(t).setZero();
+    a(t, t) = 1;
+    b[t] = 0;
+  }
+  a.diagonal().array() += kRidge * total;
+  return a.llt().solve(b);
+}
+
+/// |z - height| of the samples.
+RFSMOOTH_WIDE
+void find_residuals(QuadricWorkspace& w, const Quadric& q) {
+  const double c[6] = {q.c[0], q.c[1], q.c[2], q.c[3], q.c[4], q.c[5]};
+  for (std::size_t k = 0; k < w.padded; k += kSideBySide) {
+    Lanes u, v, z;
+    load(w.u, k, u);
+    load(w.v, k, v);
+    load(w.h, k, z);
+    const Lanes r = z - (c[0] + u * (c[1] + c[3] * u + c[4] * v) + v * (c[2] + c[5] * v));
+    store(r < 0 ? -r : r, k, w.residual);
+  }
+}
+
+RFSMOOTH_WIDE
+void weigh_by_residual(QuadricWorkspace& w, double cut) {
+  const double inverse = 1 / cut;
+  for (std::size_t k = 0; k < w.padded; k += kSideBySide) {
+    Lanes r, distance;
+    load(w.residual, k, r);
+    load(w.distance, k, distance);
+    r *= inverse;
+    const Lanes inside = 1 - r * r, none = {};
+    store(inside > 0 ? distance * inside * inside : none, k, w.weight);
+  }
+}
+
+/// Tukey's biweight on top of the distance weights; returns false if the residuals leave nothing to do.
+bool reweight(QuadricWorkspace& w, const Quadric& q) {
+  find_residuals(w, q);
+  w.sorted.assign(w.residual.begin(), w.residual.begin() + std::ptrdiff_t(w.count));
+  const double cut = kTukey * 1.4826 * median(w.sorted);
+  if (!(cut > 1e-12)) return false;
+  weigh_by_residual(w, cut);
+  return true;
+}
+
+/// Weighted residual sum over the degrees of freedom the weights leave.
+double residual_deviation(QuadricWorkspace& w, const Quadric& q, int terms) {
+  find_residuals(w, q);
+  double sum = 0, total = 0, squares = 0;
+  for (std::size_t j = 0; j < w.count; ++j) {
+    const double weight = w.weight[j];
+    sum += weight * square(w.residual[j]);
+    total += weight;
+    squares += weight * weight;
+  }
+  if (!(squares > 0)) return 0;
+  const double effective = total * total / squares;
+  return std::sqrt(sum / total * effective / std::max(1.0, effective - terms));
+}
+
+/// Makes room for the centre and `count` neighbours.
+void make_room(QuadricWorkspace& w, std::size_t count) {
+  w.count = count + 1;
+  w.padded = (w.count + kSideBySide - 1) / kSideBySide * kSideBySide;
+  if (w.x.size() >= w.padded) return;
+  for (auto* all : {&w.x, &w.y, &w.z, &w.u, &w.v, &w.h, &w.distance, &w.weight, &w.residual})
+    all->resize(2 * w.padded);
+}
+
+}  // namespace
+
+Quadric fit_quadric(const Positions& points, const Vector3d& p, const Index* neighbours, std::size_t count,
+                    QuadricWorkspace& w, int robust_rounds) {
+  Quadric q;
+  q.centre = p;
+  make_room(w, count);
+  double squared_reach = 0;
+  w.x[0] = w.y[0] = w.z[0] = 0;
+  for (std::size_t j = 0; j < count; ++j) {
+    const Vector3d d = points[neighbours[j]] - p;
+    w.x[j + 1] = d[0];
+    w.y[j + 1] = d[1];
+    w.z[j + 1] = d[2];
+    squared_reach = std::max(squared_reach, d.squaredNorm());
+  }
+  for (auto* all : {&w.x, &w.y, &w.z})
+    std::fill(all->begin() + std::ptrdiff_t(w.count), all->begin() + std::ptrdiff_t(w.padded), 0);
+  if (!(squared_reach > 0)) return q;
+  constexpr double kBeyond = 1.1;  // the farthest neighbour keeps a little weight
+  const double r = kBeyond * std::sqrt(squared_reach);
+  Matrix3d covariance;
+  weigh(w, r, covariance);
+  const Matrix3d axes = principal_axes(covariance);
+  q.n = axes.col(0);
+  q.t1 = axes.col(2);
+  q.t2 = q.n.cross(q.t1);
+  if (count < 3) return q;
+
+  turn_into(q, w);
+  std::copy_n(w.distance.begin(), w.padded, w.weight.begin());
+  const int terms = count >= kSmallestQuadric ? 6 : 3;
+  q.c = fit(w, terms);
+  for (int round = 0; terms == 6 && round < robust_rounds && reweight(w, q); ++round) q.c = fit(w, terms);
+  if (!q.c.allFinite()) {
+    q.c.setZero();
+    return q;
+  }
+  q.radius = r;
+  q.residual = r * residual_deviation(w, q, terms);
+  return q;
+}
+
+}  // namespace rfsmooth::rfs_mesh

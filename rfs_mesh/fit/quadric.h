@@ -1,0 +1,55 @@
+/// A quadric fitted robustly to some points around another: what local surfaces (local_surface.h, where the
+/// formula stands) and shared patches (shared_surface.cpp) are made of; internal to the connection stage.
+#pragma once
+
+#include <cmath>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "rfs_mesh/fit/local_surface.h"
+
+namespace rfsmooth::rfs_mesh {
+
+/// Re-weightings after the first fit; more changes nothing visible.
+inline constexpr int kRobustRounds = 2;
+
+/// z = c0 + c1 u + c2 v + c3 u^2 + c4 u v + c5 v^2 in the frame (t1, t2, n) at `centre`, lengths in units of
+/// `radius`.
+struct Quadric {
+  using Vector3d = Eigen::Vector3d;
+  Vector3d centre = Vector3d::Zero(), n = Vector3d::UnitZ(), t1 = Vector3d::UnitX(), t2 = Vector3d::UnitY();
+  Eigen::Matrix<double, 6, 1> c = Eigen::Matrix<double, 6, 1>::Zero();
+  double radius = 0;    ///< world units; 0: no fit was possible, n is some normal
+  double residual = 0;  ///< sqrt(weighted RSS / degrees of freedom), world units
+
+  double height(double u, double v) const {
+    return c[0] + u * (c[1] + c[3] * u + c[4] * v) + v * (c[2] + c[5] * v);
+  }
+  /// The unit normal of the quadric over (u, v).
+  Vector3d normal(double u, double v) const {
+    return (n - (c[1] + 2 * c[3] * u + c[4] * v) * t1 - (c[2] + c[4] * u + 2 * c[5] * v) * t2).normalized();
+  }
+  /// The larger absolute principal curvature at the centre, 1 / world unit.
+  double curvature() const { return (std::abs(c[3] + c[5]) + std::hypot(c[3] - c[5], c[4])) / radius; }
+};
+
+/// Room for the neighbours of one point, reused along a block so that nothing is allocated per point. By
+/// coordinate, padded to whole vectors with samples of no weight.
+struct QuadricWorkspace {
+  std::vector<double> x, y, z;   ///< offsets from the centre, in units of the radius
+  std::vector<double> u, v, h;   ///< the same along t1, t2, n
+  std::vector<double> distance;  ///< the samples' weights by distance
+  std::vector<double> weight;    ///< and by residual
+  std::vector<double> residual, sorted;
+  std::size_t count = 0, padded = 0;
+};
+
+/// The quadric at `p` from `count` neighbours and p itself. O(count).
+Quadric fit_quadric(const Positions& points, const Eigen::Vector3d& p, const Index* neighbours,
+                    std::size_t count, QuadricWorkspace& workspace, int robust_rounds = kRobustRounds);
+
+/// What the quadric says of the surface at its centre.
+LocalSurface surface_at_centre(const Quadric& quadric);
+
+}  // namespace rfsmooth::rfs_mesh

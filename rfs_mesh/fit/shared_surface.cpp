@@ -1,0 +1,183 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/Geometry>
+
+#include "base/parallel.h"
+#include "rfs_mesh/fit/local_surface.h"
+#include "rfs_mesh/fit/quadric.h"
+#include "rfs_mesh/search/wide_neighbors.h"
+
+namespace rfsmooth::rfs_mesh {
+
+namespace {
+
+using Eigen::Vector3d;
+using Cursor = KdTree::Cursor;
+
+/// A quadric per this share of its points: every point then lies in about five of them. Twice as many found
+/// nothing better on the development shapes.
+constexpr double kPointsPerSeed = 1.0 / 6;
+constexpr double kMisfit = 1.4;  ///< residual over noise: well above what that of pure noise scatters
+/// A quadric has nothing to say about points farther off it than this many residuals: another sheet.
+constexpr double kFarthestOff = 3;
+/// A quadric's tangent plane is surest at its centre, and the quadrics of a point lie on all sides of it: its
+/// normal is the mean of theirs a third of the way. On spheres with noise of 0.5 to 2 spacings that is nearer
+/// the truth than a quadric of the point's own, and than the whole way.
+constexpr double kTurn = 1.0 / 3;
+/// Less weight than that of one quadric near whose rim the point lies: the point is fitted by itself.
+constexpr double kLeastWeight = 0.01;
+
+double squared(double x) {
+  return x * x;
+}
+
+/// Fits quadrics around points of an index.
+class Fitter {
+ public:
+  Fitter(const SpatialIndex& index, const NoiseScale& scale, std::size_t least)
+      : index_(index), scale_(scale), least_(least), near_(index, scale.neighbours + 1) {}
+
+  /// Around point i, with neighbourhoods halved until they are flat enough.
+  Quadric fit(Index i) {
+    const Positions& points = index_.points();
+    near_.find(points[i]);
+    row_.clear();
+    for (std::size_t k = 0; k < near_.size(); ++k)
+      if (near_.index()[k] != i) row_.push_back(near_.index()[k]);
+    std::size_t count = row_.size();
+    Quadric quadric = fit_quadric(points, points[i], row_.data(), count, workspace_);
+    if (quadric.residual > kMisfit * scale_.sigma && count / 2 >= least_) sort(points, points[i]);
+    while (quadric.residual > kMisfit * scale_.sigma && count / 2 >= least_)
+      quadric = fit_quadric(points, points[i], row_.data(), count /= 2, workspace_);
+    return quadric;
+  }
+
+ private:
+  void sort(const Positions& points, const Vector3d& p) {
+    found_.clear();
+    for (const Index j : row_) found_.push_back({j, squared_distance(points[j], p)});
+    std::sort(found_.begin(), found_.end());
+    for (std::size_t k = 0; k < row_.size(); ++k) row_[k] = found_[k].index;
+  }
+
+  const SpatialIndex& index_;
+  NoiseScale scale_;
+  std::size_t least_;
+  QuadricWorkspace workspace_;
+  WideNeighbors near_;
+  std::vector<Neighbor> found_;
+  std::vector<Index> row_;
+};
+
+/// The cloud in compact groups of neighbouring points, a quadric around the point in the middle of each.
+class SharedQuadrics {
+ public:
+  SharedQuadrics(const SpatialIndex& index, const NoiseScale& scale, std::size_t least,
+                 const Context& context)
+      : index_(index), sigma_(scale.sigma), group_(index.points().size()) {
+    const double leaves = double(scale.neighbours) * kPointsPerSeed / KdTree::kLeaf;
+    const std::vector<Cursor> groups = index.tree().subtrees(std::uint32_t(std::max(1.0, leaves)));
+    quadrics_.resize(groups.size());
+    curvature_.resize(groups.size());
+    for_blocks(context, groups.size(), 16, [&](std::size_t begin, std::size_t end) {
+      Fitter fitter(index, scale, least);
+      for (std::size_t g = begin; g < end; ++g) {
+        for_members(groups[g], [&](Index i) { group_[i] = Index(g); });
+        quadrics_[g] = fitter.fit(middle(groups[g]));
+        curvature_[g] = quadrics_[g].radius > 0 ? quadrics_[g].curvature() : 0;
+      }
+    });
+  }
+
+  /// What the quadrics of the groups of point i and of its neighbours agree on. False if they say nothing.
+  bool surface(Index i, Adjacency::Row near, std::vector<Index>& around, LocalSurface& surface) const {
+    around.assign(1, group_[i]);
+    for (const Index j : near)
+      if (std::find(around.begin(), around.end(), group_[j]) == around.end()) around.push_back(group_[j]);
+    const Vector3d& p = index_.points()[i];
+    double total = 0, agreement = 0, residual = 0, curvature = 0;
+    Vector3d normal = Vector3d::Zero(), shift = Vector3d::Zero();
+    for (const Index g : around) {
+      const Quadric& q = quadrics_[g];
+      if (q.radius == 0) continue;
+      const Vector3d d = (p - q.centre) / q.radius;
+      const double inside = 1 - d.squaredNorm();
+      if (inside <= 0) continue;
+      const double u = q.t1.dot(d), v = q.t2.dot(d), above = q.n.dot(d) - q.height(u, v);
+      const double scatter = std::max(q.residual, sigma_), off = squared(above * q.radius / scatter);
+      if (off > squared(kFarthestOff)) continue;
+      const double trust = inside * squared(squared(sigma_ / scatter)) * std::exp(-0.5 * off);
+      const double weight = inside * inside * trust;
+      // The normal over (u, v) is (n - a t1 - b t2) / sqrt(1 + a^2 + b^2), and so is the turned one.
+      const auto slope = [&q](double at_u, double at_v) {
+        return Eigen::Vector2d(q.c[1] + 2 * q.c[3] * at_u + q.c[4] * at_v,
+                               q.c[2] + q.c[4] * at_u + 2 * q.c[5] * at_v);
+      };
+      const Eigen::Vector2d here = slope(u, v), turned = slope(kTurn * u, kTurn * v);
+      const double lift = weight * above * q.radius / (1 + here.squaredNorm());
+      shift -= lift * (q.n - here[0] * q.t1 - here[1] * q.t2);
+      const Vector3d way = q.n - turned[0] * q.t1 - turned[1] * q.t2;
+      const double length = trust / std::sqrt(1 + turned.squaredNorm());
+      normal += (way.dot(normal) < 0 ? -length : length) * way;
+      agreement += trust;
+      total += weight;
+      residual += weight * q.residual;
+      curvature += weight * curvature_[g];
+    }
+    if (total < kLeastWeight || normal.norm() < 0.5 * agreement) return false;
+    surface = {normal.normalized(), p + shift / total, curvature / total, residual / total};
+    return true;
+  }
+
+ private:
+  template <class Visit>
+  void for_members(const Cursor& group, Visit&& visit) const {
+    for (std::uint32_t leaf = group.first; leaf < group.last; ++leaf)
+      for (const Index i : index_.tree().leaf(leaf).id)
+        if (i != kNone) visit(i);
+  }
+
+  /// The point nearest to the mean.
+  Index middle(const Cursor& group) const {
+    const Positions& points = index_.points();
+    Vector3d sum = Vector3d::Zero();
+    double count = 0;
+    for_members(group, [&](Index i) {
+      sum += points[i];
+      ++count;
+    });
+    const Vector3d mean = sum / count;
+    Neighbor nearest = {kNone, std::numeric_limits<double>::infinity()};
+    for_members(group, [&](Index i) {
+      if (const Neighbor here = {i, squared_distance(points[i], mean)}; here < nearest) nearest = here;
+    });
+    return nearest.index;
+  }
+
+  const SpatialIndex& index_;
+  double sigma_;
+  std::vector<Quadric> quadrics_;
+  std::vector<double> curvature_;  // of each quadric
+  std::vector<Index> group_;       // n
+};
+
+}  // namespace
+
+std::vector<LocalSurface> shared_local_surfaces(const SpatialIndex& index, const NeighborTable& near,
+                                                const NoiseScale& scale, std::size_t least,
+                                                const Context& context) {
+  const SharedQuadrics quadrics(index, scale, least, context);
+  std::vector<LocalSurface> surfaces(index.points().size());
+  for_blocks(context, surfaces.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    Fitter fitter(index, scale, least);
+    std::vector<Index> around;
+    for (std::size_t i = begin; i < end; ++i)
+      if (!quadrics.surface(Index(i), near[i], around, surfaces[i]))
+        surfaces[i] = surface_at_centre(fitter.fit(Index(i)));
+  });
+  return surfaces;
+}
+
+}  // namespace rfsmooth::rfs_mesh

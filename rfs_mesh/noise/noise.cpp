@@ -1,0 +1,153 @@
+#include "rfs_mesh/noise/noise.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "rfs_mesh/noise/noise_field.h"
+
+namespace rfsmooth::rfs_mesh {
+
+namespace {
+
+// Chosen on the development shapes with noise of 0.1 to 4 spacings, Gaussian and along the ray
+// (tests/bench/noise).
+constexpr std::size_t kFewestPoints = 25;
+// The quantile of sites that is the figure: at m = 16 noise may be below the detail.
+constexpr double kFigureNarrow = 0.4, kFigureWide = 0.45;
+// Where hardly a site speaks, most of the cloud is rough, and what does speak there is half roughness.
+constexpr double kFewSpeak = 0.1, kFigureOfFew = 0.2;
+constexpr double kLittleShape = 0.25;  // more of it makes places differ that are as noisy
+constexpr std::size_t kBlend = 4;      // sites that a point takes the mean of
+constexpr std::size_t kSpacingSites = 4000, kSpacingPoints = 16;
+
+/// Root mean square of the values within a factor of `typical`; of noise that varies a little over the cloud,
+/// as along a ray, the mean says more than a quantile.
+double mean_of_alike(const std::vector<Weighed>& values, double typical) {
+  constexpr double kAlike = 1.4;
+  double sum = 0, weights = 0;
+  for (const Weighed& v : values) {
+    if (v.value >= kAlike * typical || typical >= kAlike * v.value) continue;
+    sum += v.weight * v.value * v.value;
+    weights += v.weight;
+  }
+  return weights > 0 ? std::sqrt(sum / weights) : typical;
+}
+
+/// The sites nearest to each of a few points that lie together: searched once for all of them.
+class SitesAround {
+ public:
+  explicit SitesAround(const SpatialIndex& sites) : sites_(sites) {}
+
+  /// Finds those that may be among the `kBlend` nearest of any of the points.
+  void prepare(const Eigen::Vector3d* points, std::size_t count) {
+    Eigen::Vector3d low = points[0], high = points[0];
+    for (std::size_t i = 1; i < count; ++i) {
+      low = low.cwiseMin(points[i]);
+      high = high.cwiseMax(points[i]);
+    }
+    const Eigen::Vector3d centre = (low + high) / 2;
+    sites_.nearest(centre, int(kBlend), around_);
+    // A point is at most half a diagonal from the centre, and so much farther from each of its nearest.
+    constexpr double kRounding = 1 + 1e-9;
+    const double reach = std::sqrt(around_.back().squared_distance) + (high - low).norm();
+    sites_.within(centre, kRounding * reach, around_);
+  }
+
+  /// The mean of the values at the sites nearest to one of the points.
+  double mean(const Eigen::Vector3d& p, const std::vector<double>& values) {
+    if (around_.size() > kMost) {
+      sites_.nearest(p, int(kBlend), near_);
+    } else {
+      near_.resize(around_.size());
+      for (std::size_t k = 0; k < around_.size(); ++k)
+        near_[k] = {around_[k].index, squared_distance(p, sites_.points()[around_[k].index])};
+      const std::size_t kept = std::min(kBlend, near_.size());
+      std::partial_sort(near_.begin(), near_.begin() + std::ptrdiff_t(kept), near_.end());
+      near_.resize(kept);
+    }
+    double sum = 0;
+    for (const Neighbor& q : near_) sum += values[q.index];
+    return sum / double(near_.size());
+  }
+
+ private:
+  static constexpr std::size_t kMost = 64;  // more are not worth comparing one by one
+  const SpatialIndex& sites_;
+  std::vector<Neighbor> around_, near_;
+};
+
+/// To every point the mean of the values at the sites nearest to it.
+std::vector<double> blend(const SpatialIndex& sites, const std::vector<double>& values,
+                          const Positions& points, const Context& context) {
+  std::vector<double> local(points.size(), values.front());
+  if (std::all_of(values.begin(), values.end(), [&](double v) { return v == values.front(); })) return local;
+  constexpr std::size_t kTogether = 64;  // along a Morton curve they lie together
+  for_blocks(context, points.size(), 16 * kTogether, [&](std::size_t begin, std::size_t end) {
+    SitesAround around(sites);
+    for (std::size_t i = begin; i < end; ++i) {
+      if ((i - begin) % kTogether == 0) around.prepare(points.data() + i, std::min(kTogether, end - i));
+      local[i] = around.mean(points[i], values);
+    }
+  });
+  return local;
+}
+
+}  // namespace
+
+NoiseField measure_noise(const SpatialIndex& index, const Context& context) {
+  const std::size_t n = index.points().size();
+  NoiseField noise;
+  noise.local.assign(n, 0);
+  if (n < kFewestPoints) return noise;
+  const NoiseStart start = search_noise(index, context);
+  noise.neighbours = start.m;
+  if (!(start.least > 0)) return noise;
+  const NoiseSites sites = listen(index, start, context);
+  std::vector<Weighed> heard, shape;
+  double all = 0, saying = 0;
+  for (std::size_t s = 0; s < sites.at.size(); ++s) {
+    all += sites.area[s];
+    if (!sites.speaks[s]) continue;
+    saying += sites.area[s];
+    heard.push_back({sites.sigma[s], sites.area[s]});
+    if (sites.sigma[s] > start.least) shape.push_back({sites.shape[s], sites.area[s]});
+  }
+  double share = start.m == kNarrowestScatter ? kFigureNarrow : kFigureWide;
+  if (saying < kFewSpeak * all) share = kFigureOfFew;
+  noise.sigma = heard.empty() ? start.sigma : quantile(heard, share);
+  noise.shape = shape.empty() ? 0 : quantile(shape, 0.5);
+  if (start.m > kNarrowestScatter && noise.shape < kLittleShape)
+    noise.sigma = mean_of_alike(heard, noise.sigma);
+  if (noise.sigma <= start.least) noise.sigma = 0;
+  if (!(noise.sigma > 0)) return noise;
+  noise.sigma = std::min(noise.sigma, start.most);  // the windows let a second sheet in nearly everywhere
+  std::vector<double> local = relative_noise(sites, noise.sigma, context);
+  for (double& v : local) v *= noise.sigma;
+  noise.local = blend(SpatialIndex(sites.at, context), local, index.points(), context);
+  return noise;
+}
+
+std::vector<double> measure_spacing(const SpatialIndex& index, const Context& context) {
+  const std::size_t n = index.points().size();
+  if (n < 2) return std::vector<double>(n, 0);
+  const Positions at = pick(index.points(), std::min(n, kSpacingSites));
+  std::vector<double> spacing(at.size());
+  for_blocks(context, at.size(), 32, [&](std::size_t begin, std::size_t end) {
+    std::vector<Neighbor> near, next;
+    for (std::size_t s = begin; s < end; ++s) {
+      index.nearest(at[s], int(kSpacingPoints), near);
+      double sum = 0;
+      for (const Neighbor& q : near) {
+        index.nearest(index.points()[q.index], 2, next);
+        // The point itself is one of the two, at distance zero.
+        sum += std::sqrt(next.back().squared_distance);
+      }
+      spacing[s] = sum / double(near.size());
+    }
+  });
+  const SpatialIndex sites(at, context);
+  return blend(sites, spacing, index.points(), context);
+}
+
+}  // namespace rfsmooth::rfs_mesh

@@ -1,0 +1,177 @@
+#include "rfs_mesh/noise/noise_field.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/parallel.h"
+
+namespace rfsmooth::rfs_mesh {
+
+namespace {
+
+// Chosen on the development shapes with noise of 0.1 to 4 spacings, Gaussian and along the ray
+// (tests/bench/noise), but for the narrow pair: that is for clouds of which one half is louder
+// (noise_test.cpp).
+constexpr double kLeast = 0.2, kMost = 3;  // of the figure
+constexpr double kAlike = 2.5;
+// How far below and above the mean a fit pulls in proportion: logarithm of variance. Edges and second sheets
+// are above, places within one step of the depths below.
+constexpr float kBelow = 2, kAbove = 1.5;
+constexpr float kCloud = 0.5;  // fits that the mean of the cloud counts as
+constexpr int kFieldRounds = 3;
+
+/// How far sites speak for each other: R over the cloud's rms radius, and A.
+struct Reach {
+  double place, direction;
+  double no_say;  ///< logarithm: less is the measurement's own scatter
+};
+constexpr std::array<Reach, 2> kReaches = {{{0.8, 0.55, 0.07}, {0.3, 1, 0.1}}};
+constexpr double kSurely = 0.015;  // gain a fit by which the second must be ahead
+
+/// How much what lies `d` off the mean pulls it.
+template <class T>
+auto pull(const T& d) {
+  return d.max(-kBelow).min(kAbove);
+}
+
+float pull(float d) {
+  return std::clamp(d, -kBelow, kAbove);
+}
+
+/// What it costs to be `d` off: its derivative is the pull.
+float cost(float d) {
+  const float end = std::abs(pull(d));
+  return end * (std::abs(d) - end / 2);
+}
+
+/// What the fits say, by coordinate.
+struct Heard {
+  Eigen::ArrayXf x, y, z, nx, ny, nz, radius;
+  Eigen::ArrayXf value;   ///< logarithm of the variance over the typical one, without bias
+  Eigen::ArrayXf weight;  ///< 0: says nothing
+  float mean = 0;         ///< of the values
+
+  explicit Heard(const NoiseSites& sites) {
+    const auto n = Eigen::Index(sites.at.size());
+    for (Eigen::ArrayXf* a : {&x, &y, &z, &nx, &ny, &nz, &radius, &value, &weight}) a->setZero(n);
+    Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+    for (const auto& p : sites.at) middle += p / double(n);
+    double square = 0;
+    for (const auto& p : sites.at) square += (p - middle).squaredNorm() / double(n);
+    const double extent = std::sqrt(square);
+    if (!(extent > 0)) return;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const Scatter& fit = sites.fits[std::size_t(i)];
+      const Eigen::Vector3f at = ((sites.at[std::size_t(i)] - middle) / extent).cast<float>();
+      const Eigen::Vector3f normal = fit.normal.cast<float>();
+      x[i] = at.x(), y[i] = at.y(), z[i] = at.z();
+      nx[i] = normal.x(), ny[i] = normal.y(), nz[i] = normal.z();
+      radius[i] = float(fit.radius / extent);
+    }
+    hear(sites);
+  }
+
+ private:
+  /// Enters values and weights.
+  void hear(const NoiseSites& sites) {
+    constexpr double kFar = 50;
+    const std::size_t n = sites.at.size();
+    std::vector<double> variance(n, 0), said;
+    for (std::size_t i = 0; i < n; ++i) {
+      variance[i] = std::max(sites.fits[i].variance * (1 - sites.shape[i]), sites.floor[i] * sites.floor[i]);
+      if (speaks(sites, i)) said.push_back(variance[i]);
+    }
+    const double typical = said.empty() ? 0 : quantile(said, 0.5);
+    if (!(typical > 0)) return;
+    std::vector<Weighed> all;
+    for (std::size_t i = 0; i < n; ++i) {
+      if (!speaks(sites, i)) continue;
+      const auto k = Eigen::Index(i);
+      double f = sites.fits[i].freedom;
+      value[k] = float(std::log(std::clamp(variance[i] / typical, 1 / kFar, kFar)));
+      if (!says(sites.fits[i]))
+        f = 1;  // of a floor alone
+      else if (variance[i] > sites.floor[i] * sites.floor[i])
+        value[k] += float(1 / f + 1 / (3 * f * f));  // E log(chi-square / f), but for the sign
+      weight[k] = float(sites.area[i] * f / (f + 2));
+      all.push_back({value[k], weight[k]});
+    }
+    mean = float(quantile(all, 0.5));
+    for (int round = 0; round < kFieldRounds; ++round)
+      mean += (weight * pull(value - mean)).sum() / weight.sum();
+  }
+
+  static bool speaks(const NoiseSites& sites, std::size_t i) {
+    return sites.speaks[i] && (says(sites.fits[i]) || sites.floor[i] > 0);
+  }
+};
+
+/// The mean around each site, and how well it predicts those that it does not overlap with.
+struct Means {
+  Eigen::ArrayXf value;  ///< as of the fits
+  double gain = 0;       ///< a fit, of cost against that of one figure for all
+  double no_say = 0;     ///< as of the reach
+};
+
+Means around(const Heard& heard, const Reach& reach, const Context& context) {
+  const Eigen::Index n = heard.x.size();
+  Means means;
+  means.value.resize(n);
+  Eigen::ArrayXd gain = Eigen::ArrayXd::Zero(n);
+  const auto near = float(1 / (reach.place * reach.place)),
+             alike = float(1 / (reach.direction * reach.direction));
+  for_blocks(context, std::size_t(n), 64, [&](std::size_t begin, std::size_t end) {
+    Eigen::ArrayXf squared(n), w(n), off(n);
+    for (auto i = Eigen::Index(begin); i < Eigen::Index(end); ++i) {
+      squared =
+          (heard.x - heard.x[i]).square() + (heard.y - heard.y[i]).square() + (heard.z - heard.z[i]).square();
+      w = (heard.nx * heard.nx[i] + heard.ny * heard.ny[i] + heard.nz * heard.nz[i]).square();
+      w = (1 - near * squared - alike * (1 - w)).max(0.0F).square() * heard.weight;
+      const float weights = w.sum() + kCloud;
+      float mean = ((w * heard.value).sum() + kCloud * heard.mean) / weights;
+      for (int round = 0; round < kFieldRounds; ++round) {
+        off = w * pull(heard.value - mean);
+        mean += (off.sum() + kCloud * pull(heard.mean - mean)) / weights;
+      }
+      means.value[i] = mean;
+      if (!(heard.weight[i] > 0)) continue;
+      w = (squared > (heard.radius + heard.radius[i]).square()).select(w, 0);
+      off = w * pull(heard.value - mean);
+      const float predicted = mean + (off.sum() + kCloud * pull(heard.mean - mean)) / (w.sum() + kCloud);
+      gain[i] =
+          double(heard.weight[i] * (cost(heard.value[i] - heard.mean) - cost(heard.value[i] - predicted)));
+    }
+  });
+  means.gain = gain.sum() / double(heard.weight.sum());
+  means.no_say = reach.no_say;
+  return means;
+}
+
+}  // namespace
+
+std::vector<double> relative_noise(const NoiseSites& sites, double figure, const Context& context) {
+  std::vector<double> relative(sites.at.size(), 1);
+  const Heard heard(sites);
+  if (!(heard.weight.sum() > 0)) return relative;
+  Means best;
+  for (const Reach& reach : kReaches) {
+    Means means = around(heard, reach, context);
+    if (best.value.size() == 0 || means.gain > best.gain + kSurely) best = std::move(means);
+  }
+  std::vector<double> alike;
+  for (std::size_t i = 0; i < relative.size(); ++i)
+    if (sites.sigma[i] < kAlike * figure && kAlike * sites.sigma[i] > figure)
+      alike.push_back(best.value[Eigen::Index(i)]);
+  if (alike.empty()) return relative;
+  const double typical = quantile(alike, 0.5);
+  for (std::size_t i = 0; i < relative.size(); ++i) {
+    // Half: of the standard deviation, not of the variance.
+    const double d =
+        std::clamp((best.value[Eigen::Index(i)] - typical) / 2, std::log(kLeast), std::log(kMost));
+    if (std::abs(d) > best.no_say) relative[i] = std::exp(d - best.no_say * best.no_say / d);
+  }
+  return relative;
+}
+
+}  // namespace rfsmooth::rfs_mesh

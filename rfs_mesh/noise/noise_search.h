@@ -1,0 +1,27 @@
+/// The noise of a cloud as one figure to start from, found from below.
+///
+/// Only points within 3 sigma of a fitted quadric count (scatter.h), and sigma is what is sought. The window
+/// opens until what the calmer quarter of the places shows in it is as narrow as a normal distribution would
+/// be. Coming from below stops at the noise of one sheet; coming from above would stop at the thickness. m
+/// starts at 16 and grows until the ball holds a patch of 2 sigma in radius with all of the window above and
+/// below it. What the calmer fifth shows without any window is an upper bound.
+#pragma once
+
+#include "rfs_mesh/noise/scatter_statistics.h"
+
+namespace rfsmooth::rfs_mesh {
+
+constexpr std::size_t kNarrowestScatter = 16;  ///< least m
+
+/// Where the search for the noise begins.
+struct NoiseStart {
+  double sigma = 0;  ///< world units
+  double least = 0;  ///< what counts as zero; 0: the points coincide
+  double most = 0;   ///< bound
+  std::size_t m = kNarrowestScatter;
+};
+
+/// O(log n). Parallel, deterministic. \param index at least 25 points.
+NoiseStart search_noise(const SpatialIndex& index, const Context& context);
+
+}  // namespace rfsmooth::rfs_mesh

@@ -1,0 +1,33 @@
+/// The noise around up to 2,000 sites of a cloud.
+///
+/// Around a site speaks the mean of its nearest sites' fits, each with the site's own window (scatter.h),
+/// four rounds from the figure to start from. Then two things are told apart that both make the scatter s(m)
+/// grow with the number of neighbours m:
+///
+/// - Shape that a quadric does not follow grows without an end: s^2(m) = sigma^2 + b m to first order, so
+///   sigma^2 = 2 s^2(m) - s^2(2 m), at most 0.6 of s^2(m) taken off.
+/// - Depths in steps (time of flight, stereo, structured light) and noise that neighbours share grow, too,
+///   but stop where the neighbourhood is wider than a step. Where s(192) < 1.6 s(24), no windows, the scatter
+///   is noise: at least s(24) and 0.65 s(192). Up to 1.9 this fades out. Equal scatter needs no such floor:
+///   it is plain noise, or two sheets.
+#pragma once
+
+#include "rfs_mesh/noise/noise_search.h"
+
+namespace rfsmooth::rfs_mesh {
+
+/// By site.
+struct NoiseSites {
+  Positions at;
+  std::vector<double> sigma;  ///< world units
+  std::vector<double> shape;  ///< part of s^2(m) taken off as shape, 0 to 0.6
+  std::vector<double> area;   ///< how much the site counts, 0 to 1
+  std::vector<char> speaks;   ///< whether sigma is of this place; else it is what came nearest to it
+  std::vector<double> floor;  ///< what depths in steps or shared noise make sure of, world units; 0: nothing
+  std::vector<Scatter> fits;  ///< to the m nearest of the site by itself
+};
+
+/// \param start sigma and m to start from, `least` > 0. O(log n). Parallel, deterministic.
+NoiseSites listen(const SpatialIndex& index, const NoiseStart& start, const Context& context);
+
+}  // namespace rfsmooth::rfs_mesh

@@ -1,0 +1,108 @@
+#include "rfs_mesh/noise/scatter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+
+namespace rfsmooth::rfs_mesh {
+
+namespace {
+
+constexpr double kLeastKept = 0.75;  // of the weight; 3 sigma of half the true sigma keep 0.87
+constexpr double kLeastFlat = 0.5;   // the patch's radius over the ball's, where the window is high
+constexpr int kScatterRounds = 3;    // the first without a window
+
+/// Axes of least to most spread of the points about `place`, nearer ones weighing more.
+Eigen::Matrix3d axes_of(const Positions& points, const std::vector<Neighbor>& near,
+                        const Eigen::Vector3d& place, double r) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  double weights = 0;
+  for (const Neighbor& q : near) {
+    const Eigen::Vector3d d = (points[q.index] - place) / r;
+    const double inside = 1 - d.squaredNorm(), w = inside * inside;
+    sum += w * d;
+    spread += w * d * d.transpose();
+    weights += w;
+  }
+  spread -= sum * sum.transpose() / weights;
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors();
+}
+
+}  // namespace
+
+double variance_inside(double c) {
+  return 1 - 2 * c * std::exp(-c * c / 2) / std::sqrt(2 * M_PI) / std::erf(c / std::sqrt(2));
+}
+
+Scatter ScatterFit::operator()(const SpatialIndex& index, const Eigen::Vector3d& place, std::size_t m,
+                               double sigma) {
+  using Vector6 = Eigen::Matrix<double, 6, 1>;
+  using Matrix6 = Eigen::Matrix<double, 6, 6>;
+  static const double kInside = variance_inside(kScatterWindow);
+  const Positions& points = index.points();
+  index.nearest(place, int(m), near_);
+  Scatter s;
+  s.foot = place;
+  s.radius = std::sqrt(near_.back().squared_distance);
+  if (!(s.radius > 0)) return s;
+  const double r = 1.1 * s.radius;  // the farthest neighbour keeps a little weight
+  const Eigen::Matrix3d axes = axes_of(points, near_, place, r);
+  const double high = kScatterWindow * sigma / r;
+  const double flat = std::sqrt(std::max(kLeastFlat * kLeastFlat, 1 - high * high));
+  local_.clear();
+  weight_.clear();
+  double all = 0;
+  for (const Neighbor& q : near_) {
+    const Eigen::Vector3d d = (points[q.index] - place) / r;
+    const Eigen::Vector3d x(axes.col(2).dot(d) / flat, axes.col(1).dot(d) / flat, axes.col(0).dot(d));
+    const double inside = 1 - x.head<2>().squaredNorm();
+    if (inside <= 0) continue;
+    local_.push_back(x);
+    weight_.push_back(inside * inside);
+    all += inside * inside;
+  }
+  Vector6 c = Vector6::Zero();
+  double window = std::numeric_limits<double>::infinity();
+  for (int round = 0; round < (sigma > 0 ? kScatterRounds : 1); ++round) {
+    Matrix6 a = Matrix6::Zero(), b = Matrix6::Zero();
+    Vector6 right = Vector6::Zero();
+    double kept = 0, squares = 0, heights = 0;
+    for (std::size_t i = 0; i < local_.size(); ++i) {
+      const double u = local_[i].x(), v = local_[i].y(), z = local_[i].z();
+      // Before there is a window, height weighs too: a second sheet at the rim of the ball must not pull.
+      const double low = 1 - z * z;
+      const double w = round > 0 ? weight_[i] : weight_[i] * (sigma > 0 ? low : low * low);
+      const Vector6 f = (Vector6() << 1, u, v, u * u, u * v, v * v).finished();
+      if (std::abs(z - f.dot(c)) > window) continue;
+      a.selfadjointView<Eigen::Lower>().rankUpdate(f, w);
+      b.selfadjointView<Eigen::Lower>().rankUpdate(f, w * w);
+      right += w * z * f;
+      heights += w * z * z;
+      kept += w;
+      squares += w * w;
+    }
+    s.freedom = 0;
+    s.foot = place;
+    s.normal = axes.col(0);
+    if (round > 0 && kept < kLeastKept * all) return s;
+    a.diagonal().array() += 1e-9 * kept;
+    const Eigen::LLT<Matrix6> solver(a.selfadjointView<Eigen::Lower>());
+    c = solver.solve(right);
+    const Matrix6 full = b.selfadjointView<Eigen::Lower>();
+    const double left = kept - solver.solve(full).trace();
+    const double residual = heights - right.dot(c);
+    if (!(left > 0.02 * kept) || !std::isfinite(residual)) return s;
+    s.variance = r * r * std::max(0.0, residual) / left / (round > 0 ? kInside : 1);
+    s.freedom = left * left / squares;
+    s.foot = place + r * c[0] * axes.col(0);
+    s.normal = (axes.col(0) - c[1] / flat * axes.col(2) - c[2] / flat * axes.col(1)).normalized();
+    window = high;
+  }
+  return s;
+}
+
+}  // namespace rfsmooth::rfs_mesh

@@ -1,0 +1,47 @@
+/// How far the points near a place scatter about a quadric through them.
+///
+///     z = c0 + c1 u + c2 v + c3 u^2 + c4 u v + c5 v^2 over the plane of least spread, weights (1 -
+///     t^2/r^2)^2 in the distance t along the plane,   s^2 = sum w e^2 / (sum w - tr(A^-1 B)), A = sum w f
+///     f^T,  B = sum w^2 f f^T: the expectation of s^2 is sigma^2 exactly where the surface is one.
+///
+/// With a window, only points within 3 sigma of the quadric take part (two rounds of refitting), and s^2 is
+/// divided by what the cut takes from a normal distribution: a second sheet, an edge or a stray beyond the
+/// window does not count. A place where the window would cut off a quarter of the weight says nothing.
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "rfs_mesh/search/neighbors.h"
+
+namespace rfsmooth::rfs_mesh {
+
+constexpr double kScatterWindow = 3;  ///< sigma
+
+/// Variance of a normal variable cut at +-c standard deviations, over its variance uncut.
+double variance_inside(double c);
+
+/// How far the points around one scatter about the quadric through them.
+struct Scatter {
+  double variance = 0;                               ///< s^2, world units squared
+  double freedom = 0;                                ///< its degrees of freedom; 0: nothing can be said here
+  double radius = 0;                                 ///< of the ball of neighbours, world units
+  Eigen::Vector3d foot = Eigen::Vector3d::Zero();    ///< the surface at the place
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< there; zero if the points coincide
+};
+
+/// Fits one after the other, keeping its buffers. Not for several threads at once.
+class ScatterFit {
+ public:
+  /// \param m nearest points, at most all, at least 1. \param sigma half a third of the window, world units;
+  /// 0: no window. O(log n + m).
+  Scatter operator()(const SpatialIndex& index, const Eigen::Vector3d& place, std::size_t m, double sigma);
+
+ private:
+  std::vector<Neighbor> near_;
+  std::vector<Eigen::Vector3d> local_;  ///< u, v, z; u and v over the patch's radius, z over the ball's
+  std::vector<double> weight_;
+};
+
+}  // namespace rfsmooth::rfs_mesh

@@ -1,0 +1,53 @@
+/// What many scatter fits say together: quantiles by area, and the mean without the fits that stand out.
+///
+/// A scan has most of its points where its surface is nearest to the scanner, so a fit counts by the area it
+/// covers (the square of its ball's radius), up to that of one among
+/// the widest quarter.
+#pragma once
+
+#include <vector>
+
+#include <rfsmooth/context.h>
+
+#include "rfs_mesh/noise/scatter.h"
+
+namespace rfsmooth::rfs_mesh {
+
+/// A value and how much it counts.
+struct Weighed {
+  double value, weight;
+};
+
+/// The value with `share` (0 to 1) of the others below it. Reorders. \param values at least one.
+double quantile(std::vector<double>& values, double share);
+
+/// The least value that with those below it has `share` of the weight. Sorts. \param values at least one.
+double quantile(std::vector<Weighed>& values, double share);
+
+/// How much each fit counts: 0 to 1.
+std::vector<double> areas(const std::vector<Scatter>& all);
+
+/// Whether a fit has degrees of freedom enough to say anything.
+inline bool says(const Scatter& fit) {
+  return fit.freedom > 0.5;
+}
+
+/// The variances of the fits that say something, each over the quantile of its own distribution (chi-square
+/// over its degrees of freedom, by Wilson and Hilferty 1931) at a standard normal `deviate`: so that fits of
+/// different freedom compare. \param area of each fit.
+std::vector<Weighed> comparable(const std::vector<Scatter>& all, const std::vector<double>& area,
+                                double deviate);
+
+/// The mean variance of the fits, without those above four times the typical one, which is the quantile
+/// `share` made up for being one by `deviate` (the same of a normal distribution). Zero if none has anything
+/// to say.
+double mean_variance(const std::vector<Scatter>& all, double share, double deviate);
+
+/// `count` points of the cloud, evenly over the indices.
+Positions pick(const Positions& points, std::size_t count);
+
+/// A fit to the m nearest of each place with the window `sigma` of each (scatter.h). Parallel.
+std::vector<Scatter> fits(const SpatialIndex& index, const Positions& places, std::size_t m,
+                          const std::vector<double>& sigma, const Context& context);
+
+}  // namespace rfsmooth::rfs_mesh

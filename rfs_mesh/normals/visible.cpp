@@ -1,0 +1,57 @@
+#include "rfs_mesh/normals/visible.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/median.h"
+#include "base/parallel.h"
+
+namespace rfsmooth::rfs_mesh {
+
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kCell = 3, kBehind = 10;  // spacings
+constexpr std::size_t kMostCells = 512;    // along an edge of the cube: 12 MB
+
+/// The cell of a direction: the face of the cube by the largest coordinate, then rows and columns.
+std::size_t cell_of(const Vector3d& direction, std::size_t cells) {
+  Eigen::Index axis = 0;
+  const double largest = direction.cwiseAbs().maxCoeff(&axis);
+  const auto place = [&](double c) {
+    const double share = (c / largest + 1) / 2;
+    return std::min(cells - 1, std::size_t(share * double(cells)));
+  };
+  const std::size_t face = 2 * std::size_t(axis) + (direction[axis] < 0 ? 1 : 0);
+  return (face * cells + place(direction[(axis + 1) % 3])) * cells + place(direction[(axis + 2) % 3]);
+}
+
+}  // namespace
+
+std::vector<double> seen_squarely(const Positions& points, const Positions& normals,
+                                  const Vector3d& viewpoint, double spacing, const Context& context) {
+  const std::size_t n = points.size();
+  std::vector<double> seen(n, 0), distance(n);
+  if (n == 0) return seen;
+  for_each_index(context, n, [&](std::size_t i) { distance[i] = (points[i] - viewpoint).norm(); });
+  std::vector<double> sorted = distance;
+  const double wanted = 2 * median(sorted) / (kCell * spacing);
+  const auto cells = std::size_t(std::clamp(wanted, 1.0, double(kMostCells)));
+  std::vector<double> nearest(6 * cells * cells, std::numeric_limits<double>::infinity());
+  for (std::size_t i = 0; i < n; ++i) {
+    if (!(distance[i] > 0)) continue;
+    double& least = nearest[cell_of(points[i] - viewpoint, cells)];
+    least = std::min(least, distance[i]);
+  }
+  for_each_index(context, n, [&](std::size_t i) {
+    if (!(distance[i] > 0)) return;
+    const Vector3d ray = viewpoint - points[i];
+    if (distance[i] <= nearest[cell_of(-ray, cells)] + kBehind * spacing)
+      seen[i] = normals[i].dot(ray) / distance[i];
+  });
+  return seen;
+}
+
+}  // namespace rfsmooth::rfs_mesh

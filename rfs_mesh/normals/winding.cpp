@@ -1,0 +1,152 @@
+#include "rfs_mesh/normals/winding.h"
+
+#include <cmath>
+#include <stdexcept>
+
+#include "base/parallel.h"
+
+namespace rfsmooth::rfs_mesh {
+
+namespace {
+
+using Eigen::Vector3d;
+constexpr double kFourPi = 12.566370614359172;
+constexpr double kOpening = 0.25;  // squared ratio of radius to distance below which a box is a point
+constexpr std::size_t kGrain = 256;
+
+}  // namespace
+
+Winding::Winding(const Positions& points, double softening, const Context& context)
+    : points_(points), softening_square_(softening * softening), tree_(points, context) {
+  if (!(softening_square_ > 0)) throw std::invalid_argument("Winding: the softening must be positive");
+  balls_.resize(tree_.node_count());
+  if (!tree_.empty()) enclose(tree_.root());
+}
+
+void Winding::enclose(KdTree::Cursor at) {
+  Ball& ball = balls_[at.node];
+  if (at.is_leaf()) {
+    for (const Index id : tree_.leaf(at.first).id) {
+      if (id == kNone) continue;
+      ball.centre += points_[id];
+      ball.count += 1;
+    }
+  } else {
+    for (const KdTree::Cursor child : {at.left(), at.right()}) {
+      enclose(child);
+      ball.centre += balls_[child.node].count * balls_[child.node].centre;
+      ball.count += balls_[child.node].count;
+    }
+  }
+  ball.centre /= ball.count;
+  const KdTree::Node& box = tree_.node(at.node);
+  ball.square = (box.high - ball.centre).cwiseMax(ball.centre - box.low).squaredNorm();
+}
+
+template <class Moment, class Of>
+std::vector<Moment> Winding::moments(Moment zero, Of&& of) const {
+  std::vector<Moment> sums(tree_.node_count(), zero);
+  const auto add = [&](auto&& self, KdTree::Cursor at) -> void {
+    if (at.is_leaf()) {
+      for (const Index id : tree_.leaf(at.first).id)
+        if (id != kNone) sums[at.node] += of(id);
+      return;
+    }
+    for (const KdTree::Cursor child : {at.left(), at.right()}) {
+      self(self, child);
+      sums[at.node] += sums[child.node];
+    }
+  };
+  if (!tree_.empty()) add(add, tree_.root());
+  return sums;
+}
+
+template <class Far, class Near>
+void Winding::visit(const Vector3d& q, std::vector<KdTree::Cursor>& open, Far&& far, Near&& near) const {
+  open.assign(1, tree_.root());
+  while (!open.empty()) {
+    const KdTree::Cursor at = open.back();
+    open.pop_back();
+    const Ball& ball = balls_[at.node];
+    const Vector3d r = ball.centre - q;
+    const double square = r.squaredNorm();
+    if (ball.square < kOpening * square) {
+      const double soft = square + softening_square_;
+      far(at.node, r, 1 / (soft * std::sqrt(soft)));
+    } else if (at.is_leaf()) {
+      for (const Index id : tree_.leaf(at.first).id) {
+        if (id == kNone) continue;
+        const Vector3d d = points_[id] - q;
+        const double soft = d.squaredNorm() + softening_square_;
+        near(id, d, 1 / (soft * std::sqrt(soft)));
+      }
+    } else {
+      open.push_back(at.right());
+      open.push_back(at.left());
+    }
+  }
+}
+
+std::vector<double> Winding::numbers(const Positions& area_vectors, const Context& context) const {
+  const std::vector<Vector3d> sums =
+      moments(Vector3d(Vector3d::Zero()), [&](Index id) { return area_vectors[id]; });
+  std::vector<double> w(points_.size());
+  for_blocks(context, w.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    std::vector<KdTree::Cursor> open;
+    for (std::size_t i = begin; i < end; ++i) {
+      double sum = 0;
+      visit(
+          points_[i], open,
+          [&](std::uint32_t node, const Vector3d& r, double weight) { sum += weight * r.dot(sums[node]); },
+          [&](Index id, const Vector3d& r, double weight) { sum += weight * r.dot(area_vectors[id]); });
+      w[i] = sum / kFourPi;
+    }
+  });
+  return w;
+}
+
+Positions Winding::field(const std::vector<double>& charges, const Context& context) const {
+  const std::vector<double> sums = moments(0.0, [&](Index id) { return charges[id]; });
+  Positions field(points_.size());
+  for_blocks(context, field.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    std::vector<KdTree::Cursor> open;
+    for (std::size_t i = begin; i < end; ++i) {
+      Vector3d sum = Vector3d::Zero();
+      visit(
+          points_[i], open,
+          [&](std::uint32_t node, const Vector3d& r, double weight) { sum -= (weight * sums[node]) * r; },
+          [&](Index id, const Vector3d& r, double weight) { sum -= (weight * charges[id]) * r; });
+      field[i] = sum / kFourPi;
+    }
+  });
+  return field;
+}
+
+Positions Winding::gauss(int steps, const Context& context) const {
+  const std::size_t n = points_.size();
+  const auto square = [&](const std::vector<double>& v) {
+    return sum_over(context, n, 0.0, [&](std::size_t i) { return v[i] * v[i]; });
+  };
+  Positions area_vectors(n, Vector3d(Vector3d::Zero()));
+  std::vector<double> residual(n, 0.5), direction = residual;
+  double before = square(residual);
+  for (int step = 0; step < steps && before > 0; ++step) {
+    const Positions along = field(direction, context);
+    const std::vector<double> change = numbers(along, context);
+    const double curvature =
+        sum_over(context, n, 0.0, [&](std::size_t i) { return direction[i] * change[i]; });
+    if (!(curvature > 0)) break;
+    const double length = before / curvature;
+    for_each_index(context, n, [&](std::size_t i) {
+      area_vectors[i] += length * along[i];
+      residual[i] -= length * change[i];
+    });
+    const double after = square(residual);
+    for_each_index(context, n,
+                   [&](std::size_t i) { direction[i] = residual[i] + after / before * direction[i]; });
+    before = after;
+  }
+  return area_vectors;
+}
+
+}  // namespace rfsmooth::rfs_mesh

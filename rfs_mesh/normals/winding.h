@@ -1,0 +1,60 @@
+/// The winding number of oriented points, and what it says about the side of a normal without looking at its
+/// neighbours.
+///
+/// Points p_j with area vectors m_j (area times normal) wind about q
+///
+///     w(q) = 1/(4 pi) sum over j of m_j . (p_j - q) / (|p_j - q|^2 + e^2)^(3/2)
+///
+/// times: 1 inside a closed surface with outward normals, 0 outside, 1/2 on it (Barill et al. 2018, "Fast
+/// winding numbers for soups and clouds"). Conversely the area vectors for which w is 1/2 at every point are
+/// those of the closed surface through them: parametric Gauss reconstruction (Lin et al. 2022, "Surface
+/// reconstruction from point clouds without normals by parametrizing the Gauss formula"). Few steps of
+/// conjugate gradients towards the smallest such m tell the side at nearly all points, between thin sheets
+/// that noise has mixed, too.
+///
+/// Sums over far points are taken as one (Barnes and Hut 1986): a box of the kd-tree whose radius is under
+/// half its distance counts as a point at its centroid. e is about a spacing.
+#pragma once
+
+#include <vector>
+
+#include <rfsmooth/context.h>
+
+#include "rfs_mesh/points.h"
+#include "rfs_mesh/search/kd_tree.h"
+
+namespace rfsmooth::rfs_mesh {
+
+/// The winding number of the points and their normals.
+class Winding {
+ public:
+  /// \param points n x 3, kept by reference; \param softening e, world units, > 0. O(n log n).
+  Winding(const Positions& points, double softening, const Context& context);
+
+  /// w at every point, for area vectors m (n). O(n log n), parallel, the same bits for any number of threads.
+  std::vector<double> numbers(const Positions& area_vectors, const Context& context) const;
+
+  /// The adjoint: the field sum over j of c_j (p_i - p_j) / (4 pi (...)^(3/2)) at every point.
+  Positions field(const std::vector<double>& charges, const Context& context) const;
+
+  /// `steps` of conjugate gradients from zero towards the smallest area vectors with w = 1/2 everywhere.
+  Positions gauss(int steps, const Context& context) const;
+
+ private:
+  struct Ball {
+    Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+    double count = 0, square = 0;  ///< points in it, squared radius
+  };
+  void enclose(KdTree::Cursor at);
+  template <class Moment, class Of>
+  std::vector<Moment> moments(Moment zero, Of&& of) const;
+  template <class Far, class Near>
+  void visit(const Eigen::Vector3d& q, std::vector<KdTree::Cursor>& open, Far&& far, Near&& near) const;
+
+  const Positions& points_;
+  double softening_square_;
+  KdTree tree_;
+  std::vector<Ball> balls_;  ///< of each node
+};
+
+}  // namespace rfsmooth::rfs_mesh

@@ -1,0 +1,170 @@
+/// The kd-tree as Boruvka's rounds see it: what is near a point, a leaf or a node and belongs to another
+/// component. Internal to the EMST (boruvka.h).
+///
+/// Subtrees inside the own component are passed over: once the components are known, `label` names for each
+/// node the one that all its points share. Ties go by index.
+#pragma once
+
+#include <limits>
+#include <vector>
+
+#include "base/parallel.h"
+#include "rfs_mesh/search/neighbors.h"
+
+namespace rfsmooth::rfs_mesh {
+
+/// Searches for foreign points. Const ones may run in parallel.
+class ForeignSearch {
+ public:
+  using Cursor = KdTree::Cursor;
+
+  /// A few leaves.
+  struct Leaves {
+    static constexpr std::size_t kMost = 64;
+    Cursor at[kMost];
+    std::size_t count = 0;
+  };
+
+  /// \param component n: of each of the index's points; read at every call, so it outlives this.
+  ForeignSearch(const SpatialIndex& index, const std::vector<Index>& component)
+      : points_(index.points()),
+        tree_(index.tree()),
+        component_(component),
+        shared_(tree_.node_count()),
+        subtrees_(tree_.subtrees(kSubtree)) {}
+
+  /// Subtrees that cover the tree, each for one thread.
+  const std::vector<Cursor>& subtrees() const { return subtrees_; }
+
+  /// Looks at the components as they are now. O(n), parallel.
+  void label(const Context& context) {
+    for_each_index(
+        context, subtrees_.size(), [&](std::size_t s) { label(subtrees_[s]); }, 1);
+    label_upper(tree_.root());
+  }
+
+  /// The component that all points of a node share, kNone if they do not.
+  Index shared(const Cursor& c) const { return shared_[c.node]; }
+
+  /// Whether a box with foreign points is within sqrt(bound) of that of `of`, whose points are `own`.
+  bool any_within(const Cursor& of, Index own, double bound) const {
+    bool any = false;
+    visit(of, own, bound, [&](const Cursor&) {
+      any = true;
+      return false;
+    });
+    return any;
+  }
+
+  /// The leaves of such boxes. False if there are too many.
+  bool list(const Cursor& of, Index own, double bound, Leaves& leaves) const {
+    if (bound == std::numeric_limits<double>::infinity()) return false;
+    leaves.count = 0;
+    bool fits = true;
+    visit(of, own, bound, [&](const Cursor& leaf) {
+      fits = leaves.count < Leaves::kMost;
+      if (fits) leaves.at[leaves.count++] = leaf;
+      return fits;
+    });
+    return fits;
+  }
+
+  /// The foreign point in `leaves` nearest to the point `self` and at most sqrt(bound) away, or {kNone,
+  /// bound}.
+  Neighbor nearest_in(const Leaves& leaves, Index self, Index own, double bound) const {
+    const Eigen::Vector3d q = points_[self];
+    Neighbor best = {kNone, bound};
+    for (std::size_t l = 0; l < leaves.count; ++l)
+      if (squared_distance(q, tree_.node(leaves.at[l].node)) <= best.squared_distance)
+        scan(leaves.at[l], q, own, best);
+    return best;
+  }
+
+  /// The same in the whole tree.
+  Neighbor nearest(Index self, Index own, double bound) const {
+    const Eigen::Vector3d q = points_[self];
+    Neighbor best = {kNone, bound};
+    struct Pending {
+      Cursor cursor;
+      double squared_distance;
+    } stack[64];
+    std::size_t top = 0;
+    stack[top++] = {tree_.root(), 0};
+    while (top > 0) {
+      Pending at = stack[--top];
+      while (shared_[at.cursor.node] != own &&
+             !(best < Neighbor{tree_.node(at.cursor.node).least_id, at.squared_distance})) {
+        if (at.cursor.is_leaf()) {
+          scan(at.cursor, q, own, best);
+          break;
+        }
+        Pending near = {at.cursor.left(), 0}, far = {at.cursor.right(), 0};
+        near.squared_distance = squared_distance(q, tree_.node(near.cursor.node));
+        far.squared_distance = squared_distance(q, tree_.node(far.cursor.node));
+        if (far.squared_distance < near.squared_distance) std::swap(near, far);
+        stack[top++] = far;
+        at = near;
+      }
+    }
+    return best;
+  }
+
+ private:
+  static constexpr std::uint32_t kSubtree = 128;  ///< leaves
+
+  Index label(const Cursor& c) {
+    Index& shared = shared_[c.node];
+    if (!c.is_leaf()) {
+      const Index left = label(c.left()), right = label(c.right());
+      return shared = left == right ? left : kNone;
+    }
+    const KdTree::Leaf& leaf = tree_.leaf(c.first);
+    shared = component_[leaf.id[0]];
+    for (std::uint32_t i = 1; i < KdTree::kLeaf && leaf.id[i] != kNone; ++i)
+      if (component_[leaf.id[i]] != shared) shared = kNone;
+    return shared;
+  }
+  Index label_upper(const Cursor& c) {
+    if (c.last - c.first <= kSubtree) return shared_[c.node];
+    const Index left = label_upper(c.left()), right = label_upper(c.right());
+    return shared_[c.node] = left == right ? left : kNone;
+  }
+
+  /// Calls `see(cursor)` for the leaves with foreign points whose boxes are within sqrt(bound) of that of
+  /// `of`, until it says false.
+  template <class See>
+  void visit(const Cursor& of, Index own, double bound, See&& see) const {
+    const KdTree::Node& box = tree_.node(of.node);
+    Cursor stack[64];
+    std::size_t top = 0;
+    stack[top++] = tree_.root();
+    while (top > 0) {
+      Cursor at = stack[--top];
+      while (shared_[at.node] != own && squared_distance(box, tree_.node(at.node)) <= bound) {
+        if (at.is_leaf()) {
+          if (!see(at)) return;
+          break;
+        }
+        stack[top++] = at.right();
+        at = at.left();
+      }
+    }
+  }
+
+  void scan(const Cursor& c, const Eigen::Vector3d& q, Index own, Neighbor& best) const {
+    const KdTree::Leaf& leaf = tree_.leaf(c.first);
+    for (std::uint32_t i = 0; i < KdTree::kLeaf; ++i) {
+      const Neighbor candidate = {leaf.id[i],
+                                  squared_distance(q, Eigen::Vector3d(leaf.x[i], leaf.y[i], leaf.z[i]))};
+      if (candidate < best && component_[leaf.id[i]] != own) best = candidate;
+    }
+  }
+
+  const Positions& points_;
+  const KdTree& tree_;
+  const std::vector<Index>& component_;
+  std::vector<Index> shared_;  ///< of each node
+  std::vector<Cursor> subtrees_;
+};
+
+}  // namespace rfsmooth::rfs_mesh

@@ -1,0 +1,221 @@
+#include "rfs_mesh/search/kd_tree.h"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <stdexcept>
+
+#include "base/halving.h"
+#include "base/parallel.h"
+
+namespace rfsmooth::rfs_mesh {
+
+namespace {
+
+struct Item {
+  double at[3];
+  Index id;
+};
+
+constexpr std::uint32_t kSerialLeaves =
+    512;  // subtrees below this size are built by one thread, in its cache
+
+/// The longest axis of the box around `count` points, and where the box lies on it.
+struct Span {
+  int axis = 0;
+  double low = 0, extent = 0;
+
+  template <class At>
+  Span(std::size_t count, At&& at) {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    double lows[3] = {kInfinity, kInfinity, kInfinity}, highs[3] = {-kInfinity, -kInfinity, -kInfinity};
+    for (std::size_t i = 0; i < count; ++i) {
+      const double* const p = at(i);
+      for (int k = 0; k < 3; ++k) {
+        lows[k] = std::min(lows[k], p[k]);
+        highs[k] = std::max(highs[k], p[k]);
+      }
+    }
+    for (int k = 0; k < 3; ++k)
+      if (k == 0 || highs[k] - lows[k] > extent) {
+        axis = k;
+        low = lows[k];
+        extent = highs[k] - lows[k];
+      }
+  }
+};
+
+constexpr double kLargest = 1e150;  // squares stay finite
+
+class Builder {
+ public:
+  Builder(const Positions& points, std::vector<KdTree::Node>& nodes, std::vector<KdTree::Leaf>& leaves)
+      : points_(points), order_(points.size()), spare_(points.size()), nodes_(nodes), leaves_(leaves) {
+    std::iota(order_.begin(), order_.end(), Index{0});
+  }
+
+  /// The whole tree: the upper nodes level by level, then the subtrees below them, each by one thread.
+  void build(KdTree::Cursor root, const Context& context) {
+    std::vector<KdTree::Cursor> level = {root}, upper, small;
+    while (!level.empty()) {
+      std::vector<KdTree::Cursor> next;
+      for (const KdTree::Cursor& c : level) (c.last - c.first <= kSerialLeaves ? small : next).push_back(c);
+      for_each_index(
+          context, next.size(), [&](std::size_t i) { split(next[i]); }, 1);
+      level.clear();
+      for (const KdTree::Cursor& c : next) {
+        upper.push_back(c);
+        level.push_back(c.left());
+        level.push_back(c.right());
+      }
+    }
+    for_blocks(context, small.size(), 1, [&](std::size_t begin, std::size_t) {
+      const KdTree::Cursor& c = small[begin];
+      Halving halving;
+      std::vector<Item> items(end_of(c.last) - begin_of(c.first)), spare(items.size());
+      for (std::size_t i = 0; i < items.size(); ++i) {
+        const Index id = order_[begin_of(c.first) + i];
+        items[i] = {{points_[id][0], points_[id][1], points_[id][2]}, id};
+      }
+      build_serial(c, items.data(), spare.data(), halving);
+    });
+    for (std::size_t i = upper.size(); i-- > 0;) join_children(upper[i]);
+  }
+
+ private:
+  std::size_t begin_of(std::uint32_t leaf) const { return std::size_t(leaf) * KdTree::kLeaf; }
+  std::size_t end_of(std::uint32_t leaf) const { return std::min(points_.size(), begin_of(leaf)); }
+  std::size_t count_of(const KdTree::Cursor& c) const { return end_of(c.last) - begin_of(c.first); }
+
+  /// Puts the lower half of an upper node's points before its middle.
+  void split(const KdTree::Cursor& c) {
+    Index *const ids = order_.data() + begin_of(c.first), *const to = spare_.data() + begin_of(c.first);
+    const std::size_t count = count_of(c);
+    const Span span(count, [&](std::size_t i) { return points_[ids[i]].data(); });
+    Halving()(ids, count, begin_of(c.middle()) - begin_of(c.first), span.low, span.extent, to,
+              [&](Index id) { return points_[id][span.axis]; });
+    std::copy(to, to + count, ids);
+  }
+
+  void build_serial(const KdTree::Cursor& c, Item* items, Item* spare, Halving& halving) {
+    if (c.is_leaf()) return fill(c, items);
+    const std::size_t count = count_of(c), half = begin_of(c.middle()) - begin_of(c.first);
+    const Span span(count, [&](std::size_t i) { return items[i].at; });
+    halving(items, count, half, span.low, span.extent, spare,
+            [axis = span.axis](const Item& item) { return item.at[axis]; });
+    build_serial(c.left(), spare, items, halving);
+    build_serial(c.right(), spare + half, items + half, halving);
+    join_children(c);
+  }
+
+  void join_children(const KdTree::Cursor& c) {
+    const KdTree::Node &left = nodes_[c.left().node], &right = nodes_[c.right().node];
+    nodes_[c.node] = {left.low.cwiseMin(right.low), left.high.cwiseMax(right.high),
+                      std::min(left.least_id, right.least_id)};
+  }
+
+  /// The points ascend by id.
+  void fill(const KdTree::Cursor& c, const Item* items) {
+    KdTree::Leaf& leaf = leaves_[c.first];
+    KdTree::Node& node = nodes_[c.node];
+    const std::size_t count = count_of(c);
+    constexpr double kFar = std::numeric_limits<double>::infinity();
+    node.low = node.high = Eigen::Vector3d(items[0].at[0], items[0].at[1], items[0].at[2]);
+    node.least_id = items[0].id;
+    for (std::size_t i = 0; i < KdTree::kLeaf; ++i) {
+      const bool there = i < count;
+      leaf.x[i] = there ? items[i].at[0] : kFar;
+      leaf.y[i] = there ? items[i].at[1] : kFar;
+      leaf.z[i] = there ? items[i].at[2] : kFar;
+      leaf.id[i] = there ? items[i].id : kNone;
+      if (!there) continue;
+      const Eigen::Vector3d p(items[i].at[0], items[i].at[1], items[i].at[2]);
+      node.low = node.low.cwiseMin(p);
+      node.high = node.high.cwiseMax(p);
+    }
+  }
+
+  const Positions& points_;
+  std::vector<Index> order_, spare_;
+  std::vector<KdTree::Node>& nodes_;
+  std::vector<KdTree::Leaf>& leaves_;
+};
+
+}  // namespace
+
+KdTree::KdTree(const Positions& points, const Context& context) {
+  if (points.empty()) return;
+  for_each_index(context, points.size(), [&](std::size_t i) {
+    if (!(points[i].array().abs() < kLargest).all())
+      throw std::invalid_argument("KdTree: a coordinate is not finite");
+  });
+  leaves_.resize((points.size() + kLeaf - 1) / kLeaf);
+  nodes_.resize(2 * leaves_.size() - 1);
+  Builder(points, nodes_, leaves_).build(root(), context);
+}
+
+/// The box around those of the children.
+void KdTree::enclose_children(const Cursor& c) {
+  const Node &left = nodes_[c.left().node], &right = nodes_[c.right().node];
+  nodes_[c.node].low = left.low.cwiseMin(right.low);
+  nodes_[c.node].high = left.high.cwiseMax(right.high);
+}
+
+/// The nodes of a subtree, from its leaves up.
+void KdTree::enclose(const Positions& points, const Cursor& c) {
+  if (!c.is_leaf()) {
+    enclose(points, c.left());
+    enclose(points, c.right());
+    return enclose_children(c);
+  }
+  Leaf& leaf = leaves_[c.first];
+  Node& box = nodes_[c.node];
+  box.low = box.high = points[leaf.id[0]];
+  for (std::size_t i = 0; i < kLeaf && leaf.id[i] != kNone; ++i) {
+    const Eigen::Vector3d& p = points[leaf.id[i]];
+    if (!(p.array().abs() < kLargest).all())
+      throw std::invalid_argument("KdTree: a coordinate is not finite");
+    leaf.x[i] = p[0];
+    leaf.y[i] = p[1];
+    leaf.z[i] = p[2];
+    box.low = box.low.cwiseMin(p);
+    box.high = box.high.cwiseMax(p);
+  }
+}
+
+void KdTree::follow(const Positions& points, const Context& context) {
+  if (empty()) return;
+  const std::vector<Cursor> small = subtrees(kSerialLeaves);
+  for_each_index(
+      context, small.size(), [&](std::size_t i) { enclose(points, small[i]); }, 1);
+  // The nodes above them: in preorder a node comes before what is below it.
+  std::vector<Cursor> above, stack = {root()};
+  while (!stack.empty()) {
+    const Cursor c = stack.back();
+    stack.pop_back();
+    if (c.last - c.first <= kSerialLeaves) continue;
+    above.push_back(c);
+    stack.push_back(c.left());
+    stack.push_back(c.right());
+  }
+  for (std::size_t i = above.size(); i-- > 0;) enclose_children(above[i]);
+}
+
+std::vector<KdTree::Cursor> KdTree::subtrees(std::uint32_t leaves) const {
+  std::vector<Cursor> found;
+  if (empty()) return found;
+  std::vector<Cursor> stack = {root()};
+  while (!stack.empty()) {
+    const Cursor c = stack.back();
+    stack.pop_back();
+    if (c.last - c.first <= leaves) {
+      found.push_back(c);
+    } else {
+      stack.push_back(c.right());
+      stack.push_back(c.left());
+    }
+  }
+  return found;
+}
+
+}  // namespace rfsmooth::rfs_mesh

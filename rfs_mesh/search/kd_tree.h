@@ -1,0 +1,109 @@
+/// The kd-tree under SpatialIndex: buckets of eight points, tight boxes, no pointers.
+///
+/// The points are partitioned at medians of the widest axis (halving.h) into leaves of exactly kLeaf
+/// points (the last may be short). Nodes lie in preorder; which leaves a node covers follows from the number
+/// of leaves alone: the node over the leaves [first, last) has its left child right behind it and its right
+/// child behind the left subtree. A leaf keeps its coordinates by axis, so that a scan of it is a few vector
+/// instructions.
+///
+/// Exactness: squared distances to points and to boxes are both evaluated as (dx^2 + dy^2) + dz^2 without
+/// contraction; rounding is monotone, so the distance to a box never exceeds that of a point in it.
+///
+/// O(n log n) to build, in parallel; the same tree for any number of threads. 43 bytes a point. Read-only
+/// once built: any number of threads may search it.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include <rfsmooth/context.h>
+
+#include "rfs_mesh/points.h"
+
+namespace rfsmooth::rfs_mesh {
+
+/// A balanced tree over points in leaves of eight.
+class KdTree {
+ public:
+  static constexpr std::uint32_t kLeaf = 8;  ///< points in a leaf
+
+  /// Coordinates by axis; the missing points of a short leaf lie at infinity and have the id kNone.
+  struct Leaf {
+    double x[kLeaf], y[kLeaf], z[kLeaf];
+    Index id[kLeaf];
+  };
+
+  /// What is known of the points below a node.
+  struct Node {
+    Eigen::Vector3d low, high;  ///< tight box
+    Index least_id;             ///< smallest id in it: decides ties of distance
+  };
+
+  /// A node and the leaves [first, last) that it covers.
+  struct Cursor {
+    std::uint32_t node, first, last;
+    bool is_leaf() const { return last - first == 1; }
+    std::uint32_t middle() const { return first + (last - first) / 2; }
+    Cursor left() const { return {node + 1, first, middle()}; }
+    Cursor right() const { return {node + 2 * (middle() - first), middle(), last}; }
+  };
+
+  /// \throw std::invalid_argument if a coordinate is not finite or squares of lengths overflow.
+  KdTree(const Positions& points, const Context& context);
+
+  /// Goes on with the same points at other places (finite, as above): the leaves keep their points, boxes are
+  /// tight again. Searches stay exact; they are as fast as in a new tree if neighbours stayed neighbours.
+  /// O(n), parallel, a tenth of the time of a new tree.
+  void follow(const Positions& points, const Context& context);
+
+  bool empty() const { return leaves_.empty(); }
+  Cursor root() const { return {0, 0, std::uint32_t(leaves_.size())}; }
+  const Node& node(std::uint32_t i) const { return nodes_[i]; }
+  const Leaf& leaf(std::uint32_t i) const { return leaves_[i]; }
+  std::size_t node_count() const { return nodes_.size(); }
+  std::size_t leaf_count() const { return leaves_.size(); }
+
+  /// The largest subtrees of at most that many leaves, left to right: work for parallel loops.
+  std::vector<Cursor> subtrees(std::uint32_t leaves) const;
+
+ private:
+  void enclose(const Positions& points, const Cursor& c);
+  void enclose_children(const Cursor& c);
+
+  std::vector<Node> nodes_;   // preorder
+  std::vector<Leaf> leaves_;  // left to right
+};
+
+/// Squared length as the tree evaluates it (bit for bit).
+inline double squared_distance(const Eigen::Vector3d& p, const Eigen::Vector3d& q) {
+  const double x = p[0] - q[0], y = p[1] - q[1], z = p[2] - q[2];
+  return (x * x + y * y) + z * z;
+}
+
+/// Twice the positive part. No branch: along a walk through the tree it could not be foreseen.
+inline double twice_positive(double x) {
+  return x + std::abs(x);
+}
+
+/// Squared distance between two boxes, 0 if they meet.
+inline double squared_distance(const KdTree::Node& a, const KdTree::Node& b) {
+  double d[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    const double below = a.low[axis] - b.high[axis], above = b.low[axis] - a.high[axis];
+    d[axis] = twice_positive(below > above ? below : above);
+  }
+  return 0.25 * ((d[0] * d[0] + d[1] * d[1]) + d[2] * d[2]);  // powers of two: the same bits
+}
+
+/// Squared distance from a point to a box, 0 inside.
+inline double squared_distance(const Eigen::Vector3d& q, const KdTree::Node& box) {
+  double d[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    const double below = box.low[axis] - q[axis], above = q[axis] - box.high[axis];
+    d[axis] = twice_positive(below > above ? below : above);
+  }
+  return 0.25 * ((d[0] * d[0] + d[1] * d[1]) + d[2] * d[2]);
+}
+
+}  // namespace rfsmooth::rfs_mesh

@@ -1,0 +1,244 @@
+#include "rfs_mesh/search/neighbors.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "base/parallel.h"
+#include "rfs_mesh/search/leaf_neighbors.h"
+
+namespace rfsmooth::rfs_mesh {
+
+namespace {
+
+using Eigen::Vector3d;
+
+struct Pending {
+  KdTree::Cursor cursor;
+  double squared_distance;
+};
+
+constexpr std::size_t kMaxDepth = 64;  // 2^32 points make 29 levels, one pending node each
+
+/// The k best candidates so far, sorted.
+class Nearest {
+ public:
+  Nearest(std::size_t k, std::vector<Neighbor>& storage) : list_(storage) {
+    list_.assign(k, Neighbor{kNone, std::numeric_limits<double>::infinity()});
+  }
+  const Neighbor& worst() const { return list_.back(); }
+  void offer(const Neighbor& candidate) {
+    std::size_t i = list_.size() - 1;
+    for (; i > 0 && candidate < list_[i - 1]; --i) list_[i] = list_[i - 1];
+    list_[i] = candidate;
+  }
+
+ private:
+  std::vector<Neighbor>& list_;
+};
+
+/// The same for lists so long that keeping them sorted would cost more than the search: candidates pile up to
+/// twice the number and the farther half goes.
+class NearestMany {
+ public:
+  NearestMany(std::size_t k, std::vector<Neighbor>& storage) : list_(storage), k_(k) {
+    list_.clear();
+    list_.reserve(2 * k);
+  }
+  const Neighbor& worst() const { return worst_; }
+  void offer(const Neighbor& candidate) {
+    list_.push_back(candidate);
+    if (list_.size() == 2 * k_) drop_farther();
+  }
+  void finish() {
+    if (list_.size() > k_) drop_farther();
+    std::sort(list_.begin(), list_.end());
+  }
+
+ private:
+  void drop_farther() {
+    const auto last = list_.begin() + std::ptrdiff_t(k_ - 1);
+    std::nth_element(list_.begin(), last, list_.end());
+    worst_ = *last;
+    list_.resize(k_);
+  }
+
+  std::vector<Neighbor>& list_;
+  std::size_t k_;
+  Neighbor worst_ = {kNone, std::numeric_limits<double>::infinity()};
+};
+
+/// Visits the leaves that may hold something better than `worst()`, nearer ones first; `scan(leaf)`.
+template <class Worst, class Scan>
+void search(const KdTree& tree, const Vector3d& q, Worst&& worst, Scan&& scan) {
+  if (tree.empty()) return;
+  Pending stack[kMaxDepth];
+  std::size_t top = 0;
+  stack[top++] = {tree.root(), squared_distance(q, tree.node(0))};
+  while (top > 0) {
+    Pending at = stack[--top];
+    for (;;) {
+      if (worst() < Neighbor{tree.node(at.cursor.node).least_id, at.squared_distance}) break;
+      if (at.cursor.is_leaf()) {
+        scan(tree.leaf(at.cursor.first));
+        break;
+      }
+      Pending near = {at.cursor.left(), 0}, far = {at.cursor.right(), 0};
+      near.squared_distance = squared_distance(q, tree.node(near.cursor.node));
+      far.squared_distance = squared_distance(q, tree.node(far.cursor.node));
+      if (Neighbor{tree.node(far.cursor.node).least_id, far.squared_distance} <
+          Neighbor{tree.node(near.cursor.node).least_id, near.squared_distance})
+        std::swap(near, far);
+      stack[top++] = far;
+      at = near;
+    }
+  }
+}
+
+void squared_distances(const KdTree::Leaf& leaf, const Vector3d& q, double* d2) {
+  for (std::uint32_t i = 0; i < KdTree::kLeaf; ++i) {
+    const double x = leaf.x[i] - q[0], y = leaf.y[i] - q[1], z = leaf.z[i] - q[2];
+    d2[i] = (x * x + y * y) + z * z;
+  }
+}
+
+/// Offers the points near q, except the point `self`, to `best`.
+template <class Best>
+void gather_nearest(const KdTree& tree, const Vector3d& q, Index self, Best& best) {
+  search(
+      tree, q, [&]() -> const Neighbor& { return best.worst(); },
+      [&](const KdTree::Leaf& leaf) {
+        double d2[KdTree::kLeaf];
+        squared_distances(leaf, q, d2);
+        for (std::uint32_t i = 0; i < KdTree::kLeaf; ++i)
+          if (const Neighbor candidate = {leaf.id[i], d2[i]}; candidate < best.worst() && leaf.id[i] != self)
+            best.offer(candidate);
+      });
+}
+
+/// The k nearest of q except the point `self`.
+void find_nearest(const KdTree& tree, const Vector3d& q, Index self, std::size_t k,
+                  std::vector<Neighbor>& out) {
+  constexpr std::size_t kMany = 64;
+  if (k <= kMany) {
+    Nearest best(k, out);
+    gather_nearest(tree, q, self, best);
+  } else {
+    NearestMany best(k, out);
+    gather_nearest(tree, q, self, best);
+    best.finish();
+  }
+}
+
+}  // namespace
+
+SpatialIndex::SpatialIndex(const Positions& points, const Context& context)
+    : points_(points), tree_(points, context) {}
+
+SpatialIndex::SpatialIndex(const Positions& points, KdTree tree, const Context& context)
+    : points_(points), tree_(std::move(tree)) {
+  tree_.follow(points, context);
+}
+
+NeighborTable SpatialIndex::nearest(int k, const Context& context) const {
+  NeighborTable table;
+  if (points_.size() < 2 || k < 1) return table;
+  table.k = int(std::min(std::size_t(k), points_.size() - 1));
+  table.items.resize(points_.size() * std::size_t(table.k));
+  fill(table, nullptr, context);
+  return table;
+}
+
+void SpatialIndex::renew(NeighborTable& table, const std::vector<char>& wanted,
+                         const Context& context) const {
+  fill(table, &wanted, context);
+}
+
+void SpatialIndex::fill(NeighborTable& table, const std::vector<char>* wanted, const Context& context) const {
+  const auto width = std::size_t(table.k);
+  const auto skip = [wanted](Index i) { return wanted != nullptr && (*wanted)[i] == 0; };
+  constexpr std::size_t kGrain = 64;  // leaves
+  for_blocks(context, tree_.leaf_count(), kGrain, [&](std::size_t begin, std::size_t end) {
+    LeafNeighbors together(tree_, width);
+    std::vector<Neighbor> found;
+    for (std::size_t l = begin; l < end; ++l) {
+      const KdTree::Leaf& leaf = tree_.leaf(std::uint32_t(l));
+      if (std::all_of(leaf.id, leaf.id + KdTree::kLeaf, [&](Index i) { return i == kNone || skip(i); }))
+        continue;
+      const bool prepared = together.prepare(std::uint32_t(l));
+      for (std::uint32_t slot = 0; slot < KdTree::kLeaf && leaf.id[slot] != kNone; ++slot) {
+        const Index i = leaf.id[slot];
+        if (skip(i)) continue;
+        Index* const row = table.items.data() + i * width;
+        if (prepared && together.find(slot, row)) continue;
+        find_nearest(tree_, points_[i], i, width, found);
+        for (std::size_t j = 0; j < width; ++j) row[j] = found[j].index;
+        together.expect(found.back().squared_distance);
+      }
+    }
+  });
+}
+
+NeighborTable nearest_left(const NeighborTable& near, const std::vector<char>& gone, const SpatialIndex& left,
+                           const Context& context) {
+  const auto width = std::size_t(near.k);
+  if (left.points().size() <= width) return left.nearest(near.k, context);
+  std::vector<Index> number(gone.size());
+  Index next = 0;
+  for (std::size_t i = 0; i < gone.size(); ++i) number[i] = gone[i] != 0 ? kNone : next++;
+  NeighborTable table;
+  table.k = near.k;
+  table.items.resize(left.points().size() * width);
+  for_blocks(context, gone.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    std::vector<Neighbor> found;
+    for (std::size_t i = begin; i < end; ++i) {
+      if (gone[i] != 0) continue;
+      Index* const row = table.items.data() + number[i] * width;
+      std::transform(near[i].begin(), near[i].end(), row, [&](Index j) { return number[j]; });
+      if (std::find(row, row + width, kNone) == row + width) continue;
+      find_nearest(left.tree(), left.points()[number[i]], number[i], width, found);
+      for (std::size_t k = 0; k < width; ++k) row[k] = found[k].index;
+    }
+  });
+  return table;
+}
+
+void SpatialIndex::nearest(const Vector3d& query, int k, std::vector<Neighbor>& out) const {
+  out.clear();
+  if (k < 1 || points_.empty()) return;
+  find_nearest(tree_, query, kNone, std::min(std::size_t(k), points_.size()), out);
+}
+
+namespace {
+
+/// Calls `found(neighbour)` for every point within the limit, which the call may lower.
+template <class Found>
+void for_each_within(const KdTree& tree, const Vector3d& query, const Neighbor& limit, Found&& found) {
+  search(
+      tree, query, [&]() -> const Neighbor& { return limit; },
+      [&](const KdTree::Leaf& leaf) {
+        double d2[KdTree::kLeaf];
+        squared_distances(leaf, query, d2);
+        for (std::uint32_t i = 0; i < KdTree::kLeaf; ++i)
+          if (leaf.id[i] != kNone && d2[i] <= limit.squared_distance) found({leaf.id[i], d2[i]});
+      });
+}
+
+}  // namespace
+
+void SpatialIndex::within(const Vector3d& query, double radius, std::vector<Neighbor>& out) const {
+  out.clear();
+  if (!(radius >= 0)) return;
+  for_each_within(tree_, query, {kNone, radius * radius}, [&](const Neighbor& q) { out.push_back(q); });
+  std::sort(out.begin(), out.end());
+}
+
+bool SpatialIndex::any_within(const Vector3d& query, double radius) const {
+  if (!(radius >= 0)) return false;
+  constexpr double kNothingMore = -1;
+  Neighbor limit = {kNone, radius * radius};
+  for_each_within(tree_, query, limit, [&](const Neighbor&) { limit.squared_distance = kNothingMore; });
+  return limit.squared_distance == kNothingMore;
+}
+
+}  // namespace rfsmooth::rfs_mesh

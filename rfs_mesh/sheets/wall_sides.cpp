@@ -1,0 +1,91 @@
+#include "rfs_mesh/sheets/wall_sides.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+
+#include "base/parallel.h"
+#include "rfs_mesh/fit/tangent_plane.h"
+
+namespace rfsmooth::rfs_mesh {
+
+namespace {
+
+// From rotor, armadillo and femur at 50,000 points after noise of 1 %: what is right there at the end hardly
+// depends on them.
+constexpr int kWallRounds = 2;        // a side that was put right helps others
+constexpr double kParallel = 0.5;     // cosine
+constexpr double kOtherSheet = 0.15;  // least share of its neighbours
+constexpr std::size_t kGlance = 4;    // at every so many neighbours first: one on another sheet is no wall
+constexpr double kFlatness = 0.5;     // mean square about the sheets, beside that of their distance
+constexpr double kWallRidge = 1e-9;
+
+bool faces_another(const Positions& normals, std::size_t i, const Adjacency::Row& row) {
+  std::size_t opposite = 0;
+  for (std::size_t k = kGlance - 1; k < row.size(); k += kGlance)
+    opposite += normals[i].dot(normals[row[k]]) < -kParallel ? 1 : 0;
+  return opposite > 1;
+}
+
+/// Whether the point i lies on the other sheet of a wall.
+bool on_other_sheet(const Positions& points, const Positions& normals, std::size_t i,
+                    const Adjacency::Row& row) {
+  const Eigen::Vector3d& normal = normals[i];
+  const TangentPlane plane(normal);
+  double square = 0;
+  for (const Index j : row) square = std::max(square, 1.05 * (points[j] - points[i]).squaredNorm());
+  if (!(square > 0)) return false;
+  const double in_radii = 1 / std::sqrt(square);
+  Eigen::Matrix4d a = Eigen::Matrix4d::Zero();
+  Eigen::Vector4d right = Eigen::Vector4d::Zero();
+  double all = 0, opposite = 0, squares = 0;
+  for (const Index j : row) {
+    const double cosine = normal.dot(normals[j]);
+    if (std::abs(cosine) < kParallel) continue;
+    const Eigen::Vector3d r = in_radii * (points[j] - points[i]);
+    const double inside = 1 - r.squaredNorm(), weight = inside * inside;
+    const Eigen::Vector2d at = plane.project(r);
+    const Eigen::Vector4d f(1, at.x(), at.y(), cosine < 0 ? -1 : 1);
+    a.noalias() += weight * f * f.transpose();
+    const double height = normal.dot(r);
+    right += weight * height * f;
+    squares += weight * height * height;
+    all += weight;
+    opposite += cosine < 0 ? weight : 0;
+  }
+  if (!(opposite > kOtherSheet * all)) return false;
+  a.diagonal().array() += kWallRidge * all;
+  const Eigen::Vector4d x = a.ldlt().solve(right);
+  const double middle = x[0], apart = x[3];
+  const double left = (squares - x.dot(right)) / all;  // about the two planes, mean square
+  return middle > 0 && middle < 2 * apart && left < kFlatness * apart * apart;
+}
+
+}  // namespace
+
+std::size_t turn_to_own_sheet(const Positions& points, const NeighborTable& near, Positions& normals,
+                              const Context& context) {
+  if (normals.size() != points.size() || (near.k > 0 && near.size() != points.size()))
+    throw std::invalid_argument("turn_to_own_sheet: points, neighbours and normals differ in number");
+  std::size_t turned = 0;
+  if (near.k == 0) return turned;
+  std::vector<char> other(points.size());
+  for (int round = 0; round < kWallRounds; ++round) {
+    for_each_index(context, points.size(), [&](std::size_t i) {
+      const Adjacency::Row row = near[i];
+      other[i] = faces_another(normals, i, row) && on_other_sheet(points, normals, i, row) ? 1 : 0;
+    });
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (other[i] == 0) continue;
+      normals[i] = -normals[i];
+      ++turned;
+    }
+  }
+  return turned;
+}
+
+}  // namespace rfsmooth::rfs_mesh

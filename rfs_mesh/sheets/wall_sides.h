@@ -1,0 +1,34 @@
+/// Normals of thin walls on the side where their points lie.
+///
+/// A normal's side comes from its neighbours, and a point that noise left between the two sheets of a wall
+/// has as many of either. Where it lies says which sheet it is on. With a its normal, over the neighbours j
+/// whose normals are parallel to it,
+///
+///     a.(x_j - x) = m + b.(u, v)_j + d s_j,    s_j = sign a.n_j,
+///
+/// is fitted by weighted least squares: two parallel planes with a middle, m above the point. In a wall
+/// (d > 0) a point below the middle (m > 0) belongs to the sheet whose normal is -a, unless it is farther
+/// from the middle than the sheets are from each other: then it is on neither. The two planes must be plain
+/// to see: the points about them by less than half as much, root mean square, as they are from the middle.
+#pragma once
+
+#include <cstddef>
+
+#include <rfsmooth/context.h>
+
+#include "rfs_mesh/points.h"
+#include "rfs_mesh/search/neighbors.h"
+
+namespace rfsmooth::rfs_mesh {
+
+/// Turns those of the oriented `normals` (n x 3, unit) of `points` (n x 3) whose points lie on the other
+/// sheet, in place; returns how often it turned one. `near`: at least 64
+/// neighbours make two sheets of 30; they may be those of places near the points, as where a first look put
+/// them.
+/// Points that see less than a seventh of their neighbours with opposite normals are left alone. O(n k),
+/// little where no two sheets are near; parallel, the same bytes for any number of threads.
+/// \throw std::invalid_argument if the sizes differ.
+std::size_t turn_to_own_sheet(const Positions& points, const NeighborTable& near, Positions& normals,
+                              const Context& context);
+
+}  // namespace rfsmooth::rfs_mesh

@@ -1,0 +1,49 @@
+/// The automatic flow: how strongly to smooth is chosen at every point from the data.
+///
+/// 1. Guide: one implicit fairing of second order on the RFS-mesh, (I + c L^2) g = x with the umbrella and
+///    c = 10 (sigma/h)^2, 10 (sigma/h)^4 above one spacing (Desbrun et al. 1999, 2.6; Kobbelt et al. 1998),
+///    sigma the noise, h the spacing. The more noise there is in a spacing, the more points must be averaged
+///    before neighbours on the guide are neighbours on the surface.
+///    Points it stranded are landed (stranded.h). The cloud is now a height field z over the guide.
+/// 2. Candidates: overlapping quadrics over m = m_0, 2 m_0, 4 m_0, ... points (patches.h), each scale a
+///    prediction f_m of every height. The narrowest patch has a radius of about 4.5 sigma: below that the
+///    guide, which was made from the same data, is within its noise.
+/// 3. Choice: Stein's unbiased risk (Stein 1981) of each scale at each point,
+///        rho_m = (z - f_m)^2 / sigma^2 + 2 df_m/dz - 1,
+///    sigma the noise around the point, whose mean over a neighbourhood estimates the mean squared error of
+///    f_m there, in units of sigma^2, without knowing the truth. Each scale is compared with the next
+///    narrower one over a neighbourhood of its own size (what a patch of m points can see, only a mean over m
+///    points can judge), and the scales are mixed with weights exp(-size of the evidence) (Leung and Barron
+///    2006) times how well each serves the cloud as a whole (mixture.h): smooth places take wide patches,
+///    edges and thin parts narrow ones, and where every patch is worse than the data the data stay.
+/// 4. Walls thinner than the noise, which look like one sheet with more of it, are taken apart where the
+///    cloud as a whole says that they are walls (hidden_sheets.h); those of a few sigma get their two sheets
+///    fitted together (thin_walls.h).
+/// 5. What is left: the mean risk of the mixture, at least the variance that the data's own weight passes on,
+///    sum sigma^2 df/dz. Points farther than 5 sigma from the result stay where they are and do not count:
+///    strays are no noise. On the development shapes (10,000 points, noise of 0.2 to 2 spacings) the estimate
+///    is off by a quarter in the middle, at worst four times too high on a sphere, of which hardly anything
+///    is left: an error of 2 % in sigma is then as much.
+///
+/// One strength for the whole cloud cannot do this: on the development shapes the best single c differs by
+/// 100 times between the flat and the thin parts of one cloud. Points move along the guide's normals from the
+/// guide's places; those that would move more than 5 sigma are strays and stay.
+#pragma once
+
+#include <rfsmooth/flow.h>
+
+#include "rfs_mesh/noise/noise.h"
+#include "rfs_mesh/search/neighbors.h"
+
+namespace rfsmooth::smoothing {
+
+/// The smoothed places of mesh.positions (n x 3). `noise`: along the normal; `sigma` below 0.05 spacings: the
+/// points come back as they are; `local`: n, positive. `spacing`: h, world units.
+/// \param keep_rings false: the mesh is left without its one-rings, as soon as they are read.
+/// \param near out: the nearest of every point on the guide (height_field.h); empty if nothing moved.
+/// O(n log n); about 500 bytes a point beside the mesh. Parallel, the same bits for any number of
+/// threads. Of the report, `noise` and what was equalized are the flow's to enter (flow_auto.cpp).
+Positions automatic_smoothing(Mesh& mesh, bool keep_rings, const rfs_mesh::NoiseField& noise, double spacing,
+                              AutomaticReport& report, rfs_mesh::NeighborTable& near, const Context& context);
+
+}  // namespace rfsmooth::smoothing

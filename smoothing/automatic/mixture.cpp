@@ -1,0 +1,76 @@
+#include "smoothing/automatic/mixture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+#include <Eigen/Core>
+
+#include "base/parallel.h"
+
+namespace rfsmooth::smoothing {
+
+namespace {
+
+constexpr int kMostCandidates = 16;     // candidates
+constexpr int kMixtureRounds = 3;       // of expectation maximisation: a fourth changes the third digit
+constexpr double kLeastOfScale = 1e-4;  // a scale that nearly no point wants may still be right for a few
+
+using CandidateWeights = Eigen::Array<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMostCandidates, 1>;
+
+}  // namespace
+
+Mixture::Mixture(std::vector<float> data) : evidence_(data.size(), 0) {
+  std::vector<float> own(data.size(), 1);
+  candidates_.push_back({std::move(data), std::move(own), evidence_});
+}
+
+void Mixture::add(std::vector<float> height, std::vector<float> own, std::vector<float> gain,
+                  const Context& context) {
+  if (candidates_.size() == kMostCandidates) throw std::length_error("Mixture: more than 16 candidates");
+  for_each_index(context, gain.size(), [&](std::size_t i) {
+    const bool here = !std::isnan(gain[i]);
+    if (here) evidence_[i] += gain[i];
+    gain[i] = here ? evidence_[i] : -std::numeric_limits<float>::infinity();
+  });
+  candidates_.push_back({std::move(height), std::move(own), std::move(gain)});
+}
+
+void Mixture::average(std::vector<float>& height, std::vector<float>& own, const Context& context) {
+  const std::size_t n = evidence_.size(), count = candidates_.size();
+  const auto rows = Eigen::Index(count);
+  // From here on e^(evidence - the largest): the exponential is the dear part.
+  for_each_index(context, n, [&](std::size_t i) {
+    float largest = candidates_[0].evidence[i];
+    for (const Candidate& c : candidates_) largest = std::max(largest, c.evidence[i]);
+    for (Candidate& c : candidates_) c.evidence[i] = std::exp(c.evidence[i] - largest);
+  });
+  const auto weights = [&](std::size_t i, const CandidateWeights& shares) {
+    CandidateWeights w(rows);
+    for (std::size_t s = 0; s < count; ++s)
+      w[Eigen::Index(s)] = shares[Eigen::Index(s)] * double(candidates_[s].evidence[i]);
+    return CandidateWeights(w * (1 / w.sum()));
+  };
+  CandidateWeights shares = CandidateWeights::Constant(rows, 1 / double(count));
+  for (int round = 0; round < kMixtureRounds; ++round) {
+    const CandidateWeights sum = sum_over(context, n, CandidateWeights(CandidateWeights::Zero(rows)),
+                                          [&](std::size_t i) { return weights(i, shares); });
+    shares = (sum / double(n)).max(kLeastOfScale);
+  }
+  height.resize(n);
+  own.resize(n);
+  for_each_index(context, n, [&](std::size_t i) {
+    const CandidateWeights w = weights(i, shares);
+    double mixed = 0, mixed_own = 0;
+    for (std::size_t s = 0; s < count; ++s) {
+      mixed += w[Eigen::Index(s)] * double(candidates_[s].height[i]);
+      mixed_own += w[Eigen::Index(s)] * double(candidates_[s].own[i]);
+    }
+    height[i] = float(mixed);
+    own[i] = float(mixed_own);
+  });
+}
+
+}  // namespace rfsmooth::smoothing

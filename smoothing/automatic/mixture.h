@@ -1,0 +1,43 @@
+/// Which of several predictions of a height to believe, at every point: an average of all of them with
+/// weights
+///
+///     w_s(i) ~ pi_s exp(E_s(i))
+///
+/// E_s(i) is the evidence for scale s at point i, cumulative over the comparisons that lead to it
+/// (automatic.h), pi_s the share of the cloud that scale s serves best, found from the weights themselves by
+/// expectation maximisation (Dempster, Laird and Rubin 1977) from equal shares. Evidence from a single
+/// neighbourhood is mostly chance: on a smooth shape one place in ten looks as if it had detail. The rest of
+/// the cloud tells which: without the shares a tenth of a noisy torus keeps half of its noise.
+#pragma once
+
+#include <vector>
+
+#include <rfsmooth/context.h>
+
+namespace rfsmooth::smoothing {
+
+/// Candidate heights, mixed by their evidence.
+class Mixture {
+ public:
+  /// \param data n: the heights themselves are the first candidate, all their own, with evidence 0.
+  explicit Mixture(std::vector<float> data);
+
+  /// A further candidate, of at most 15. \param height, own n: as in Prediction. \param gain n: its evidence
+  /// over the candidate before it, nats; NaN: no prediction here (the evidence stays for the next). \throw
+  /// std::length_error.
+  void add(std::vector<float> height, std::vector<float> own, std::vector<float> gain,
+           const Context& context);
+
+  /// Replaces `height` and `own` (n) by the averages; the mixture is used up. O(n) times the number of
+  /// candidates; parallel, the same bits for any number of threads.
+  void average(std::vector<float>& height, std::vector<float>& own, const Context& context);
+
+ private:
+  struct Candidate {
+    std::vector<float> height, own, evidence;  ///< n; evidence -inf: no prediction
+  };
+  std::vector<float> evidence_;  ///< n: of the last candidate
+  std::vector<Candidate> candidates_;
+};
+
+}  // namespace rfsmooth::smoothing

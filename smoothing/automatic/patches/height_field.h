@@ -1,0 +1,81 @@
+/// A noisy cloud seen as heights over a smooth guide.
+///
+///     x_i = g_i + z_i n_i + (a tangential rest that is left alone)
+///
+/// The guide g lies near the surface, its neighbourhoods and normals are calm; what is left to estimate is
+/// one number a point. The normals are those of the plane through the nearest guide points, and point to one
+/// side along the guide (Hoppe et al. 1992, 3.3, grown together by sides.h): the two sheets of a thin wall
+/// have opposite normals however near they are to each other. Which of the two sides is arbitrary.
+#pragma once
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include <rfsmooth/context.h>
+
+#include "base/raw_array.h"
+#include "rfs_mesh/search/neighbors.h"
+
+namespace rfsmooth::smoothing {
+
+/// Heights of the data over the guide.
+class HeightField {
+ public:
+  static constexpr int kNear = 32;  ///< neighbours over which values are averaged
+
+  /// A point's normal and height, together for those who read many at random.
+  struct Local {
+    Eigen::Vector3f normal;
+    float height;
+  };
+
+  /// \param guide n x 3, near the surface; n >= 2.
+  /// \param tree of the guide points, here or at places near these.
+  /// \param near n x kNear (n - 1 where that is less): the nearest of every guide point.
+  /// \param data n x 3, the noisy points of the same indices.
+  /// \throw std::invalid_argument if the three differ in n.
+  /// O(n log n), parallel, the same bits for any number of threads.
+  HeightField(Positions guide, rfs_mesh::KdTree tree, rfs_mesh::NeighborTable near, const Positions& data,
+              const Context& context);
+  HeightField(const HeightField&) = delete;
+  HeightField& operator=(const HeightField&) = delete;
+
+  std::size_t size() const { return guide_.size(); }
+  const Positions& guide() const { return guide_; }
+  /// Unit; from single precision, like the height.
+  Eigen::Vector3d normal(std::size_t i) const { return local_[i].normal.cast<double>(); }
+  double height(std::size_t i) const { return double(local_[i].height); }  ///< z, world units
+  const rfs_mesh::SpatialIndex& index() const { return index_; }           ///< over the guide
+
+  const std::vector<Local>& local() const { return local_; }          ///< n: normals and heights
+  const rfs_mesh::NeighborTable& neighbors() const { return near_; }  ///< n x kNear, on the guide
+
+  /// The mean of `values` over the nearest points on the same sheet, nearer ones weighing more. O(n).
+  std::vector<float> local_mean(const std::vector<float>& values, const Context& context) const;
+
+  /// Several values of a point, whose means are taken together: reading the neighbours is what takes the
+  /// time.
+  using Columns = Eigen::Array<float, 8, 1>;
+  std::vector<Columns> local_mean(const std::vector<Columns>& values, const Context& context) const;
+
+  /// The neighbours, for one who goes on with them; the field is of no use afterwards.
+  rfs_mesh::NeighborTable release_neighbors() { return std::move(near_); }
+
+ private:
+  void orient(const Context& context);
+
+  Positions guide_;
+  rfs_mesh::SpatialIndex index_;
+  rfs_mesh::NeighborTable near_;
+  std::vector<Local> local_;
+  RawArray<std::uint8_t> near_weight_;  ///< of near_, in 1/255: 1 - d^2/r^2; 0 on another sheet
+};
+
+/// cos^2 of the angle between two normals from its cosine; 0 beyond 60 degrees: another sheet, or round an
+/// edge.
+inline float same_sheet(float cosine) {
+  return cosine < 0.5F ? 0 : cosine * cosine;
+}
+
+}  // namespace rfsmooth::smoothing

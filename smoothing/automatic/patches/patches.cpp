@@ -1,0 +1,330 @@
+#include "smoothing/automatic/patches/patches.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <stdexcept>
+
+#include <Eigen/Geometry>
+
+#include "base/collect.h"
+#include "base/parallel.h"
+#include "base/small_cholesky.h"
+#include "smoothing/automatic/patches/quadric_sums.h"
+#include "smoothing/automatic/patches/thinning.h"
+#include "smoothing/automatic/patches/weighted_sum.h"
+
+namespace rfsmooth::smoothing {
+
+namespace {
+
+constexpr std::size_t kAxis = 12;                      // nearest points whose normals make the patch's axis
+constexpr float kWeightUnit = 65535, kRounded = 0.5F;  // of the weights kept
+constexpr float kCovered = 0.2F * kWeightUnit;         // least weight of the best patch over a point
+constexpr std::size_t kPowers[6][2] = {{0, 0}, {1, 0}, {0, 1}, {2, 0}, {1, 1}, {0, 2}};  // of u and v
+constexpr float kOpposite = 0.7F;      // cosine of a normal of another sheet that is parallel
+constexpr float kFacing = 0.1F;        // share of such members, and
+constexpr double kRough = 0.1;         // variance beyond the noise's, sigma^2: there is more than one sheet
+constexpr std::size_t kTogether = 64;  // patches fitted in a row: each tells the next how far to look
+constexpr std::size_t kRange = 16384;  // points whose lists are made together
+constexpr std::size_t kGroup = 4096;   // members looked through together for them
+
+typedef float Floats __attribute__((vector_size(4 * sizeof(float))));
+
+Floats four(const float* at) {
+  Floats f;
+  std::memcpy(&f, at, sizeof f);
+  return f;
+}
+
+float total(const Floats& f) {
+  return (f[0] + f[1]) + (f[2] + f[3]);
+}
+
+}  // namespace
+
+/// The members of one patch, by axis, in its frame.
+struct Patches::Workspace {
+  Workspace(const HeightField& field, std::size_t members) : near(field.index(), members) {
+    for (std::vector<float>* values : {&u, &v, &height, &weight, &cosine}) values->assign(padded(members), 0);
+  }
+  rfs_mesh::WideNeighbors near;
+  std::vector<float> u, v, height, weight, cosine;
+};
+
+/// How many patches are over each point, and where their members are. Points are taken in ranges and members
+/// in groups; both lie in memory about as in space, so a group has members in few ranges.
+struct Patches::Covering {
+  explicit Covering(std::size_t n) : groups((n + kRange - 1) / kRange), patches(n, 0), covered(n, 0) {}
+  /// The members [begin, end).
+  struct Group {
+    std::size_t begin, end;
+  };
+  std::vector<std::vector<Group>> groups;  ///< of each range, ascending
+  std::vector<Index> patches;              ///< n
+  std::vector<char> covered;               ///< n
+};
+
+Patches::Patches(const HeightField& field, std::size_t members, std::vector<Index> seeds,
+                 const std::vector<double>& sigma, Memory& memory, const Context& context)
+    : field_(field), members_(std::min(members, field.size())), seeds_(std::move(seeds)), memory_(memory) {
+  memory_.patches_ = {};  // wide patches are few
+  memory_.member_.clear();
+  memory_.member_weight_.clear();
+  memory_.over_.clear();
+  memory_.over_weight_.clear();
+  Covering covering(field_.size());
+  fit(0, seeds_.size(), sigma, context);
+  count(0, seeds_.size(), covering, context);
+  // A place between sheets or at the end of something thin may be in no patch, or only at the rim of one.
+  const auto missing = rfsmooth::collect<Index>(context, field_.size(), [&](std::size_t i, auto&& emit) {
+    if (covering.covered[i] == 0) emit(Index(i));
+  });
+  if (!missing.empty()) {
+    const std::size_t first = seeds_.size();
+    const std::vector<Index> more = thin(field.guide(), missing, context);
+    seeds_.insert(seeds_.end(), more.begin(), more.end());
+    fit(first, seeds_.size(), sigma, context);
+    count(first, seeds_.size(), covering, context);
+  }
+  transpose(covering, context);
+}
+
+void Patches::fit(std::size_t first, std::size_t last, const std::vector<double>& sigma,
+                  const Context& context) {
+  if (last * members_ > kNone) throw std::length_error("Patches: too many members");
+  memory_.patches_.resize(last);
+  memory_.member_.resize(last * members_);
+  memory_.member_weight_.resize(last * members_);
+  for_blocks(context, last - first, kTogether, [&](std::size_t begin, std::size_t end) {
+    Workspace work(field_, members_);
+    for (std::size_t s = first + begin; s < first + end; ++s) fit_one(s, sigma[seeds_[s]], work);
+  });
+}
+
+void Patches::fit_one(std::size_t s, double sigma, Workspace& work) {
+  using Matrix6 = Eigen::Matrix<double, 6, 6>;
+  using Vector6 = Eigen::Matrix<double, 6, 1>;
+  const Index seed = seeds_[s];
+  Patch& patch = memory_.patches_[s];
+  patch.centre = field_.guide()[seed];
+  patch.weight = 0;
+  patch.several = false;
+  patch.quadric.fill(0);
+  patch.spread.fill(0);
+  patch.spread_u4 = 0;
+  rfs_mesh::WideNeighbors& near = work.near;
+  near.find(patch.centre);
+
+  const std::vector<HeightField::Local>& local = field_.local();
+  const Eigen::Vector3f own = local[seed].normal;
+  Eigen::Vector3f sum_of_normals = 2 * own;
+  const auto row = field_.neighbors()[seed];
+  for (std::size_t k = 0; k < std::min(row.size(), kAxis - 1); ++k)
+    if (const Eigen::Vector3f& n = local[row[k]].normal; same_sheet(n.dot(own)) > 0) sum_of_normals += n;
+  const Eigen::Vector3d axis = sum_of_normals.cast<double>().normalized();
+  // A little beyond the farthest point, so that it counts.
+  const float square = std::max(1.1F * near.farthest(), std::numeric_limits<float>::min());
+  const float shrink = 1 / std::sqrt(square);  // from the lengths of `near` to radii
+  const double radius = near.unit() / double(shrink);
+  const Eigen::Vector3d across = axis.unitOrthogonal();
+  patch.radius = float(radius);
+  const Eigen::Vector3f along = axis.cast<float>(), u = across.cast<float>() * shrink,
+                        v = axis.cross(across).cast<float>() * shrink, up = along * shrink;
+  const Eigen::Vector3f u_in_radii = (across / radius).cast<float>(),
+                        v_in_radii = (axis.cross(across) / radius).cast<float>();
+  for (std::size_t of = 0; of < 3; ++of) {
+    const auto x = Eigen::Index(of);
+    float* const parts = patch.frame.data() + 4 * of;
+    parts[0] = u_in_radii[x];
+    parts[1] = v_in_radii[x];
+    parts[2] = along[x];
+    parts[3] = 0;
+  }
+
+  const auto in_radii = float(1 / radius);
+  Weight* const weights = memory_.member_weight_.data() + s * members_;
+  Index* const indices = memory_.member_.data() + s * members_;
+  double sum = 0, squares = 0;
+  float parallel = 0, opposite = 0;
+  for (std::size_t k = 0; k < members_; ++k) {
+    const Index i = near.index()[k];
+    const HeightField::Local& here = local[i];
+    const float cosine = along.dot(here.normal);
+    const float inside = 1 - near.squared()[k] / square;
+    const float w = same_sheet(cosine) * inside * inside;
+    parallel += std::abs(cosine) > kOpposite ? inside * inside : 0;
+    opposite += cosine < -kOpposite ? inside * inside : 0;
+    const Eigen::Vector3f r(near.x()[k], near.y()[k], near.z()[k]);
+    work.u[k] = u.dot(r);
+    work.v[k] = v.dot(r);
+    work.height[k] = w > 0 ? up.dot(r) + here.height * in_radii / cosine : 0;
+    work.weight[k] = w;
+    work.cosine[k] = cosine;
+    indices[k] = i;
+    weights[k] = Weight(w * kWeightUnit + kRounded);
+    sum += double(w);
+    squares += double(w) * double(w);
+  }
+  if (!(sum > 0)) return;
+  const std::size_t size = padded(members_);
+  QuadricSums sums;
+  sum_quadric(size, work.u.data(), work.v.data(), work.height.data(), work.weight.data(), sums);
+  // Few points, or points in a line, leave the quadric undetermined: the ridge makes it flat there.
+  Matrix6 system = sums.a;
+  system.diagonal().array() += 1e-9 * system(0, 0) + 1e-12;
+  const Matrix6 inverse = SmallCholesky<6>(system).inverse();
+  const Vector6 quadric = inverse * sums.right;
+  for (int a = 0; a < 6; ++a) {
+    patch.quadric[4 * kPowers[a][1] + kPowers[a][0]] = float(quadric[a]);
+    for (int b = 0; b < 6; ++b) {
+      const std::size_t u_power = kPowers[a][0] + kPowers[b][0], v_power = kPowers[a][1] + kPowers[b][1];
+      (u_power == 4 ? patch.spread_u4 : patch.spread[4 * v_power + u_power]) += float(inverse(a, b));
+    }
+  }
+
+  const double in_sigma = radius / sigma;
+  const double residuals = in_sigma * in_sigma *
+                           sum_residuals(size, work.u.data(), work.v.data(), work.height.data(),
+                                         work.weight.data(), work.cosine.data(), quadric);
+  Matrix6 squared;
+  sum_squared_weights(size, work.u.data(), work.v.data(), work.weight.data(), squared);
+  const double leverage = inverse.cwiseProduct(squared).sum();
+  const double points = sum * sum / squares, variance = 6 / points;
+  const double excess = (residuals - (sum - leverage)) / sum - std::sqrt(2 / points);
+  patch.several = opposite > kFacing * parallel || excess > kRough;
+  patch.weight = float(variance / (variance + std::max(0.0, excess)));
+}
+
+/// Counts the patches [first, last) over the points.
+void Patches::count(std::size_t first, std::size_t last, Covering& covering, const Context& context) {
+  const std::size_t in_group = std::max<std::size_t>(1, kGroup / members_);
+  const auto members_of = [&](std::size_t g) {
+    return Covering::Group{(first + g * in_group) * members_,
+                           std::min(last, first + (g + 1) * in_group) * members_};
+  };
+  std::vector<std::vector<Index>> ranges((last - first + in_group - 1) / in_group);  // that a group touches
+  for_each_index(
+      context, ranges.size(),
+      [&](std::size_t g) {
+        const Covering::Group group = members_of(g);
+        Index before = kNone;
+        for (std::size_t k = group.begin; k < group.end; ++k) {
+          const auto range = Index(memory_.member_[k] / kRange);
+          if (range == before) continue;
+          before = range;
+          if (std::find(ranges[g].begin(), ranges[g].end(), range) == ranges[g].end())
+            ranges[g].push_back(range);
+        }
+      },
+      16);
+  for (std::size_t g = 0; g < ranges.size(); ++g)
+    for (const Index range : ranges[g]) covering.groups[range].push_back(members_of(g));
+  for_each_index(
+      context, covering.groups.size(),
+      [&](std::size_t range) {
+        for (const Covering::Group& group : covering.groups[range]) {
+          if (group.begin < first * members_) continue;  // counted before
+          for (std::size_t k = group.begin; k < group.end; ++k) {
+            const Index i = memory_.member_[k];
+            if (i / kRange != range || memory_.member_weight_[k] == 0) continue;
+            ++covering.patches[i];
+            if (memory_.member_weight_[k] >= kCovered) covering.covered[i] = 1;
+          }
+        }
+      },
+      1);
+}
+
+/// The lists of members the other way round.
+void Patches::transpose(const Covering& covering, const Context& context) {
+  const std::size_t n = field_.size();
+  memory_.over_start_.resize(n + 1);
+  memory_.over_start_[0] = 0;
+  for (std::size_t i = 0; i < n; ++i)
+    memory_.over_start_[i + 1] = memory_.over_start_[i] + covering.patches[i];
+  memory_.over_.resize(memory_.over_start_[n]);
+  memory_.over_weight_.resize(memory_.over_start_[n]);
+  for_each_index(
+      context, covering.groups.size(),
+      [&](std::size_t range) {
+        const std::size_t begin = range * kRange, end = std::min(n, begin + kRange);
+        std::vector<Index> next(memory_.over_start_.begin() + std::ptrdiff_t(begin),
+                                memory_.over_start_.begin() + std::ptrdiff_t(end));
+        for (const Covering::Group& group : covering.groups[range])
+          for (std::size_t s = group.begin / members_; s < group.end / members_; ++s)
+            for (std::size_t k = s * members_; k < (s + 1) * members_; ++k) {
+              const Index i = memory_.member_[k];
+              if (i / kRange != range || memory_.member_weight_[k] == 0) continue;
+              const Index to = next[i - begin]++;
+              memory_.over_[to] = Index(s);
+              memory_.over_weight_[to] = memory_.member_weight_[k];
+            }
+      },
+      1);
+}
+
+Prediction Patches::predict(const Context& context) const {
+  const std::size_t n = field_.size();
+  Prediction p{std::vector<float>(n, 0), std::vector<float>(n, 0), std::vector<char>(n, 0)};
+  for_each_index(context, n, [&](std::size_t i) {
+    const Eigen::Vector3f& normal = field_.local()[i].normal;
+    float height = 0, own = 0, weights = 0;
+    for (Index k = memory_.over_start_[i]; k < memory_.over_start_[i + 1]; ++k) {
+      const Patch& patch = memory_.patches_[memory_.over_[k]];
+      const float e = float(memory_.over_weight_[k]) / kWeightUnit, w = e * patch.weight;
+      const Eigen::Vector3f r = (field_.guide()[i] - patch.centre).cast<float>();
+      const Floats x = four(patch.frame.data()), y = four(patch.frame.data() + 4),
+                   z = four(patch.frame.data() + 8), parts = r.x() * x + r.y() * y + r.z() * z;
+      const float cosine = normal.x() * x[2] + normal.y() * y[2] + normal.z() * z[2];
+      const float u = parts[0], v = parts[1], uu = u * u;
+      const Floats powers = {1, u, uu, uu * u};
+      const float *const q = patch.quadric.data(), *const s = patch.spread.data();
+      const float value = total(powers * (four(q) + v * (four(q + 4) + v * four(q + 8))));
+      const Floats in_v =
+          four(s) + v * (four(s + 4) + v * (four(s + 8) + v * (four(s + 12) + v * four(s + 16))));
+      height += w * (value * patch.radius - parts[2]) * cosine;
+      own += w * e * (total(powers * in_v) + patch.spread_u4 * uu * uu);
+      weights += w;
+    }
+    if (!(weights > 0)) return;
+    p.height[i] = height / weights;
+    p.own[i] = own / weights;
+    p.covered[i] = 1;
+  });
+  return p;
+}
+
+std::vector<Index> Patches::with_several_sheets() const {
+  std::vector<Index> found;
+  for (std::size_t s = 0; s < seeds_.size(); ++s)
+    if (memory_.patches_[s].several) found.push_back(seeds_[s]);
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+std::vector<float> Patches::mean(const std::vector<float>& values, const Context& context) const {
+  std::vector<float> of_patch(memory_.patches_.size(), 0), mean = values;
+  for_each_index(
+      context, memory_.patches_.size(),
+      [&](std::size_t s) {
+        const WeightedSum inside = weighted_sum(members_, memory_.member_.data() + s * members_,
+                                                memory_.member_weight_.data() + s * members_, values.data());
+        if (inside.weights > 0) of_patch[s] = inside.sum / inside.weights;
+      },
+      kTogether);
+  for_each_index(context, field_.size(), [&](std::size_t i) {
+    float sum = 0, weights = 0;
+    for (Index k = memory_.over_start_[i]; k < memory_.over_start_[i + 1]; ++k) {
+      const float w = memory_.over_weight_[k];
+      sum += w * of_patch[memory_.over_[k]];
+      weights += w;
+    }
+    if (weights > 0) mean[i] = sum / weights;
+  });
+  return mean;
+}
+
+}  // namespace rfsmooth::smoothing

@@ -1,0 +1,157 @@
+#include "smoothing/automatic/patches/thinning.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+
+#include "base/collect.h"
+#include "base/parallel.h"
+
+namespace rfsmooth::smoothing {
+
+namespace {
+
+constexpr std::size_t kNear = 3;
+
+using Three = std::array<Index, kNear>;
+
+enum class State : unsigned char { open, kept, dropped };
+
+/// Marks that several threads set, none takes back.
+using Marks = std::vector<std::atomic<char>>;
+void mark(std::atomic<char>& at) {
+  at.store(1, std::memory_order_relaxed);
+}
+
+/// The thinning of points whose three nearest are known. An edge of the graph is seen from one end only, so
+/// each end may tell the other.
+class Thinning {
+ public:
+  Thinning(const Positions& at, const std::vector<Three>& near, const Context& context)
+      : near_(near),
+        context_(context),
+        priority_(at.size()),
+        state_(at.size(), State::open),
+        blocked_(at.size()),
+        covered_(at.size()),
+        open_(at.size()) {
+    for_each_index(context, at.size(), [&](std::size_t s) {
+      // A sum, since two points that are each other's third neighbours would tie.
+      double sum = 0;
+      for (const Index t : near_[s]) sum += (at[t] - at[s]).squaredNorm();
+      priority_[s] = sum;
+      open_[s] = Index(s);
+    });
+  }
+
+  std::vector<Index> run() {
+    while (!open_.empty()) {
+      // Open ones before all their open neighbours are kept, then the neighbours of kept ones are dropped.
+      for_open([&](Index s) {
+        for (const Index t : near_[s])
+          if (state_[t] == State::open) mark(blocked_[before(t, s) ? s : t]);
+      });
+      for_open([&](Index s) {
+        if (blocked_[s] == 0) state_[s] = State::kept;
+      });
+      for_open([&](Index s) {
+        for (const Index t : near_[s]) {
+          if (state_[s] == State::kept) mark(covered_[t]);
+          if (state_[t] == State::kept) mark(covered_[s]);
+        }
+      });
+      for_open([&](Index s) {
+        blocked_[s].store(0, std::memory_order_relaxed);
+        if (state_[s] == State::open && covered_[s] != 0) state_[s] = State::dropped;
+      });
+      const std::vector<Index> all = std::move(open_);
+      open_ = rfsmooth::collect<Index>(context_, all.size(), [&](std::size_t k, auto&& emit) {
+        if (state_[all[k]] == State::open) emit(all[k]);
+      });
+    }
+    return rfsmooth::collect<Index>(context_, state_.size(), [&](std::size_t s, auto&& emit) {
+      if (state_[s] == State::kept) emit(Index(s));
+    });
+  }
+
+ private:
+  bool before(Index a, Index b) const {
+    return priority_[a] != priority_[b] ? priority_[a] > priority_[b] : a < b;
+  }
+  template <class Body>
+  void for_open(const Body& body) {
+    for_each_index(context_, open_.size(), [&](std::size_t k) { body(open_[k]); });
+  }
+
+  const std::vector<Three>& near_;
+  const Context& context_;
+  std::vector<double> priority_;
+  std::vector<State> state_;
+  Marks blocked_, covered_;
+  std::vector<Index> open_;
+};
+
+Positions places(const Positions& points, const std::vector<Index>& subset, const Context& context) {
+  Positions at(subset.size());
+  for_each_index(context, subset.size(), [&](std::size_t s) { at[s] = points[subset[s]]; });
+  return at;
+}
+
+/// Those of a set with fewer than four points: one, if there is any.
+std::vector<Index> first_of(const std::vector<Index>& subset) {
+  return {subset.begin(), subset.begin() + std::ptrdiff_t(std::min<std::size_t>(subset.size(), 1))};
+}
+
+std::vector<Index> named(std::vector<Index> kept, const std::vector<Index>& subset) {
+  for (Index& k : kept) k = subset[k];
+  return kept;
+}
+
+std::vector<Three> first_three(const rfs_mesh::NeighborTable& near, const Context& context) {
+  std::vector<Three> three(near.size());
+  for_each_index(context, near.size(),
+                 [&](std::size_t s) { std::copy_n(near[s].begin(), kNear, three[s].begin()); });
+  return three;
+}
+
+}  // namespace
+
+std::vector<Index> thin(const Positions& points, const std::vector<Index>& subset, const Context& context) {
+  if (subset.size() <= kNear) return first_of(subset);
+  const Positions at = places(points, subset, context);
+  const auto three = first_three(rfs_mesh::SpatialIndex(at, context).nearest(int(kNear), context), context);
+  return named(Thinning(at, three, context).run(), subset);
+}
+
+std::vector<Index> thin_all(const rfs_mesh::SpatialIndex& index, const rfs_mesh::NeighborTable& near,
+                            const Context& context) {
+  return Thinning(index.points(), first_three(near, context), context).run();
+}
+
+std::vector<Index> thin_dense(const rfs_mesh::SpatialIndex& index, const rfs_mesh::NeighborTable& near,
+                              const std::vector<Index>& subset, const Context& context) {
+  const Positions& points = index.points();
+  if (subset.size() <= kNear) return first_of(subset);
+  std::vector<Index> number(points.size(), kNone);
+  for_each_index(context, subset.size(), [&](std::size_t s) { number[subset[s]] = Index(s); });
+  std::vector<Three> three(subset.size());
+  for_blocks(context, subset.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    std::vector<rfs_mesh::Neighbor> found;
+    for (std::size_t s = begin; s < end; ++s) {
+      std::size_t to = 0;
+      const auto offer = [&](Index j) {
+        if (to < kNear && number[j] != kNone && j != subset[s]) three[s][to++] = number[j];
+      };
+      for (const Index j : near[subset[s]]) offer(j);
+      for (std::size_t k = 4 * std::size_t(near.k); to < kNear; k *= 4) {
+        index.nearest(points[subset[s]], int(std::min(k, points.size())), found);
+        to = 0;
+        for (const rfs_mesh::Neighbor& q : found) offer(q.index);
+      }
+    }
+  });
+  const Positions at = places(points, subset, context);
+  return named(Thinning(at, three, context).run(), subset);
+}
+
+}  // namespace rfsmooth::smoothing

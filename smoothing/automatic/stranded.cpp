@@ -1,0 +1,214 @@
+#include "smoothing/automatic/stranded.h"
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <optional>
+#include <utility>
+
+#include <Eigen/Eigenvalues>
+
+#include "base/parallel.h"
+#include "rfs_mesh/search/neighbors.h"
+
+namespace rfsmooth::smoothing {
+
+namespace {
+
+constexpr std::size_t kTenth = 9;  // the neighbours whose distances
+constexpr std::size_t kLast = 31;  // measure density
+constexpr float kThin = 1.7F;      // times the usual: 1.4 takes points at edges, 2 leaves small islands
+constexpr int kOfPlane = 24;       // points of the plane
+constexpr std::size_t kTooFewPoints = 100;  // points: below, nothing is usual
+constexpr int kStrandedRounds = 2;
+
+using rfs_mesh::Neighbor;
+using rfs_mesh::NeighborTable;
+
+/// The guide while points of it are moved: an index of where it was, and a small one of the moved points.
+class MovingGuide {
+ public:
+  MovingGuide(const Positions& guide, const Context& context)
+      : before_(guide), index_(before_, context), gone_(guide.size(), 0) {}
+
+  const rfs_mesh::SpatialIndex& before() const { return index_; }
+
+  /// The end of it.
+  rfs_mesh::KdTree release_tree() { return index_.release_tree(); }
+
+  /// Takes a point out, or puts it back where it was.
+  void set_gone(Index i, bool gone) { gone_[i] = char(gone); }
+
+  /// The points that are gone and have a place again.
+  void set_moved(std::vector<Index> moved, const Positions& guide, const Context& context) {
+    moved_ = std::move(moved);
+    places_.clear();
+    for (const Index i : moved_) places_.push_back(guide[i]);
+    moved_index_.emplace(places_, context);
+  }
+
+  /// Whether point i is where it was.
+  bool stays(Index i) const { return gone_[i] == 0; }
+
+  struct Search {
+    std::vector<Neighbor> found, moved;
+  };
+
+  /// The k nearest of `at`, ascending.
+  const std::vector<Neighbor>& nearest(const Eigen::Vector3d& at, std::size_t k, Search& search) const {
+    std::vector<Neighbor>& found = search.found;
+    for (std::size_t asked = k + k / 4;; asked *= 2) {
+      index_.nearest(at, int(asked), found);
+      const bool all = found.size() < asked;
+      found.erase(
+          std::remove_if(found.begin(), found.end(), [&](const Neighbor& q) { return gone_[q.index] != 0; }),
+          found.end());
+      if (all || found.size() >= k) break;
+    }
+    if (moved_index_) {
+      moved_index_->nearest(at, int(k), search.moved);
+      for (const Neighbor& q : search.moved) found.push_back({moved_[q.index], q.squared_distance});
+      std::sort(found.begin(), found.end());
+    }
+    found.resize(std::min(k, found.size()));
+    return found;
+  }
+
+ private:
+  const Positions before_;
+  rfs_mesh::SpatialIndex index_;
+  std::vector<char> gone_;
+  std::vector<Index> moved_;
+  Positions places_;
+  std::optional<rfs_mesh::SpatialIndex> moved_index_;
+};
+
+std::vector<Index> find_stranded(const Mesh& mesh, const Positions& guide, const NeighborTable& near,
+                                 const Context& context) {
+  const std::size_t n = guide.size();
+  std::vector<char> stranded(n);
+  for_each_index(context, n, [&](std::size_t i) { stranded[i] = mesh.one_ring.degree(i) == 0; });
+  using Distances = std::array<float, 2>;  // to the tenth and to the last
+  std::vector<Distances> distance(n);
+  for_each_index(context, n, [&](std::size_t i) {
+    for (std::size_t r = 0; r < 2; ++r)
+      distance[i][r] = float((guide[near[i][r == 0 ? kTenth : kLast]] - guide[i]).norm());
+  });
+  for_each_index(context, n, [&](std::size_t i) {
+    // Above so many times the lower quartile: that many are below this.
+    const Distances usual = {distance[i][0] / kThin, distance[i][1] / kThin};
+    std::array<std::size_t, 2> below = {};
+    for (const Index j : near[i])
+      for (std::size_t r = 0; r < 2; ++r) below[r] += std::size_t(distance[j][r] < usual[r]);
+    if (std::max(below[0], below[1]) > (kLast + 1) / 4) stranded[i] = 1;
+  });
+  std::vector<Index> found;
+  for (std::size_t i = 0; i < n; ++i)
+    if (stranded[i]) found.push_back(Index(i));
+  return found;
+}
+
+/// p projected onto the plane through the points nearest to `at`.
+Eigen::Vector3d project(const MovingGuide& surface, const Positions& guide, const Eigen::Vector3d& at,
+                        const Eigen::Vector3d& p, MovingGuide::Search& search) {
+  const std::vector<Neighbor>& near = surface.nearest(at, kOfPlane, search);
+  const double square = 1.05 * near.back().squared_distance;
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  double weights = 0;
+  for (const auto& q : near) {
+    const double w = square > 0 ? 1 - q.squared_distance / square : 1;
+    centre += w * guide[q.index];
+    weights += w;
+  }
+  centre /= weights;
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (const auto& q : near) {
+    const Eigen::Vector3d d = guide[q.index] - centre;
+    spread += (square > 0 ? 1 - q.squared_distance / square : 1) * d * d.transpose();
+  }
+  const Eigen::Vector3d normal = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(0);
+  return p - normal * normal.dot(p - centre);
+}
+
+/// Lands the points `stranded`; returns which found a place. The others stay.
+std::vector<Index> land(const Mesh& mesh, const std::vector<Index>& stranded, double most,
+                        MovingGuide& surface, Positions& guide, const Context& context) {
+  Positions landed(stranded.size());
+  for_blocks(context, stranded.size(), 256, [&](std::size_t begin, std::size_t end) {
+    MovingGuide::Search search;
+    for (std::size_t k = begin; k < end; ++k) {
+      const Eigen::Vector3d& p = mesh.positions[stranded[k]];
+      const Eigen::Vector3d from = guide[surface.nearest(p, 1, search).front().index];
+      landed[k] = project(surface, guide, project(surface, guide, from, p, search), p, search);
+    }
+  });
+  std::vector<Index> moved;
+  for (std::size_t k = 0; k < stranded.size(); ++k) {
+    const Index i = stranded[k];
+    if (!landed[k].allFinite() || !((landed[k] - mesh.positions[i]).norm() < most)) continue;
+    guide[i] = landed[k];
+    moved.push_back(i);
+  }
+  return moved;
+}
+
+/// A new row for point i.
+void renew(const MovingGuide& surface, const Positions& guide, std::size_t i, NeighborTable& near,
+           MovingGuide::Search& search) {
+  const auto width = std::size_t(near.k);
+  Index* const row = near.items.data() + i * width;
+  std::size_t to = 0;
+  for (const Neighbor& q : surface.nearest(guide[i], width + 1, search))
+    if (q.index != i && to < width) row[to++] = q.index;
+}
+
+/// Who is to have a new row: the moved points, and those that had one near.
+std::vector<char> beside_moved(const MovingGuide& surface, const NeighborTable& near,
+                               const Context& context) {
+  std::vector<char> beside(near.size());
+  for_each_index(context, near.size(), [&](std::size_t i) {
+    const auto row = near[i];
+    beside[i] = char(!surface.stays(Index(i)) ||
+                     !std::all_of(row.begin(), row.end(), [&](Index j) { return surface.stays(j); }));
+  });
+  return beside;
+}
+
+}  // namespace
+
+Landed land_stranded(const Mesh& mesh, double most, Positions& guide, const Context& context) {
+  MovingGuide surface(guide, context);
+  NeighborTable near = surface.before().nearest(int(kLast) + 1, context);
+  if (guide.size() < kTooFewPoints) return {0, std::move(near), surface.release_tree()};
+  std::vector<Index> moved;
+  std::size_t first = 0;
+  for (int round = 0; round < kStrandedRounds; ++round) {
+    const std::vector<Index> stranded = find_stranded(mesh, guide, near, context);
+    if (round == 0) first = stranded.size();
+    if (stranded.empty() || guide.size() - stranded.size() < kTooFewPoints) break;
+    // None of them is part of the surface that they are put onto, wherever it was put before.
+    std::vector<Index> others;
+    std::set_difference(moved.begin(), moved.end(), stranded.begin(), stranded.end(),
+                        std::back_inserter(others));
+    for (const Index i : stranded) surface.set_gone(i, true);
+    surface.set_moved(others, guide, context);
+    const std::vector<Index> landed = land(mesh, stranded, most, surface, guide, context);
+    for (const Index i : stranded)
+      if (!std::binary_search(moved.begin(), moved.end(), i)) surface.set_gone(i, false);
+    std::vector<Index> all;
+    std::set_union(moved.begin(), moved.end(), landed.begin(), landed.end(), std::back_inserter(all));
+    for (const Index i : landed) surface.set_gone(i, true);
+    moved = std::move(all);
+    surface.set_moved(moved, guide, context);
+    for_blocks(context, moved.size(), 256, [&](std::size_t begin, std::size_t end) {
+      MovingGuide::Search search;
+      for (std::size_t k = begin; k < end; ++k) renew(surface, guide, moved[k], near, search);
+    });
+  }
+  const std::vector<char> beside = moved.empty() ? std::vector<char>() : beside_moved(surface, near, context);
+  rfs_mesh::SpatialIndex index(guide, surface.release_tree(), context);
+  if (!beside.empty()) index.renew(near, beside, context);
+  return {first, std::move(near), index.release_tree()};
+}
+
+}  // namespace rfsmooth::smoothing

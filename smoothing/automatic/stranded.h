@@ -1,0 +1,31 @@
+/// Points that a fairing left beside the surface, put onto it.
+///
+/// Where noise exceeds the spacing, some points have no face, or only faces among a few others that lie off
+/// the surface like themselves; the fairing, which only knows neighbours, leaves such islands where they are.
+/// They show themselves: the faired points lie densely on the surface and thinly beside it. A point whose
+/// tenth or 32nd neighbour (islands of a dozen points are dense inside) is farther than 1.7 times what is
+/// usual around it (the lower quartile), or that has no neighbours in the mesh, is projected from its noisy
+/// place onto the plane of the others, taken around the one nearest to it: seen from half-way between two
+/// sheets, the nearest of both would make one plane across.
+#pragma once
+
+#include <rfsmooth/mesh.h>
+
+#include "rfs_mesh/search/neighbors.h"
+
+namespace rfsmooth::smoothing {
+
+/// What was done, and what others need of the guide afterwards.
+struct Landed {
+  std::size_t stranded = 0;      ///< points that were found at first
+  rfs_mesh::NeighborTable near;  ///< the 32 nearest of every guide point. A point that has a moved one near
+                                 ///< it anew may not know.
+  rfs_mesh::KdTree tree;         ///< of the guide points, here or where they were before
+};
+
+/// Moves the stranded points of `guide` (n x 3, the faired mesh.positions), except those farther from the
+/// surface than `most` (world units): they are strays. Then once more: the landed ones make the surface
+/// denser, and smaller islands stand out. O(n log n), parallel, deterministic.
+Landed land_stranded(const Mesh& mesh, double most, Positions& guide, const Context& context);
+
+}  // namespace rfsmooth::smoothing

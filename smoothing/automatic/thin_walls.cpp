@@ -1,0 +1,150 @@
+#include "smoothing/automatic/thin_walls.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+
+#include "base/parallel.h"
+#include "rfs_mesh/search/wide_neighbors.h"
+#include "rfs_mesh/sheets/two_layers.h"
+#include "smoothing/automatic/patches/thinning.h"
+
+namespace rfsmooth::smoothing {
+
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr std::array<std::size_t, 3> kWider = {1, 2, 4};  // times the members of the patches that saw it
+constexpr double kFlat = 0.7;         // cosine from which a normal counts for the patch's axis
+constexpr double kPlaced = 0.3;       // and from which a point is put onto a layer: no points of rims
+constexpr double kStray = 4;          // sigma
+constexpr double kLeastShare = 0.05;  // of the cloud: less says nothing, as for hidden_sheets.h
+constexpr double kLeastCovered = 10;  // sum of weights, in points
+
+/// What a patch says of a member.
+struct Move {
+  Index point = kNone;
+  float weight = 0;
+  Eigen::Vector3f by = Eigen::Vector3f::Zero();
+};
+
+/// What all patches say of a point.
+struct Mean {
+  Vector3d move = Vector3d::Zero();
+  double weight = 0;
+};
+
+/// Patches of one size.
+class Walls {
+ public:
+  Walls(const HeightField& field, const Positions& data, const Positions& smooth,
+        const rfs_mesh::NoiseField& noise, std::size_t members)
+      : field_(field), data_(data), smooth_(smooth), noise_(noise), members_(members) {}
+
+  void look(const std::vector<Index>& seeds, std::vector<Mean>& means, const Context& context) {
+    moves_.assign(seeds.size() * members_, Move());
+    for_blocks(context, seeds.size(), 16, [&](std::size_t begin, std::size_t end) {
+      rfs_mesh::WideNeighbors near(field_.index(), members_);
+      std::vector<LayerPoint> points(members_);
+      for (std::size_t s = begin; s < end; ++s) fit(seeds[s], near, points, moves_.data() + s * members_);
+    });
+    for (const Move& move : moves_) {
+      if (move.weight == 0) continue;
+      means[move.point].move += double(move.weight) * move.by.cast<double>();
+      means[move.point].weight += double(move.weight);
+    }
+  }
+
+ private:
+  /// What the normals of the members have in common, whatever their side.
+  Vector3d axis(const rfs_mesh::WideNeighbors& near, double square) const {
+    Vector3d axis = Vector3d::Zero();
+    for (int again = 0; again < 3; ++again) {
+      Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+      for (std::size_t k = 0; k < members_; ++k) {
+        const Vector3d normal = field_.normal(near.index()[k]);
+        if (again > 0 && std::abs(normal.dot(axis)) < kFlat) continue;
+        sum += std::pow(1 - double(near.squared()[k]) / square, 2) * normal * normal.transpose();
+      }
+      axis = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(sum).eigenvectors().col(2);
+    }
+    return axis;
+  }
+
+  void fit(Index seed, rfs_mesh::WideNeighbors& near, std::vector<LayerPoint>& points, Move* moves) const {
+    const Vector3d& centre = field_.guide()[seed];
+    near.find(centre);
+    const double square = 1.1 * double(near.farthest());  // a little beyond the farthest
+    if (!(square > 0)) return;
+    const Vector3d normal = axis(near, square), u = normal.unitOrthogonal(), v = normal.cross(u);
+    const double in_radii = 1 / std::sqrt(square), sigma = std::min(noise_.sigma, noise_.local[seed]);
+    double weights = 0;
+    for (std::size_t k = 0; k < members_; ++k) {
+      const Index i = near.index()[k];
+      const Vector3d r(near.x()[k], near.y()[k], near.z()[k]);
+      const double inside = 1 - double(near.squared()[k]) / square;
+      const float cosine = std::abs(float(normal.dot(field_.normal(i))));
+      LayerPoint& p = points[k];
+      p.u = u.dot(r) * in_radii;
+      p.v = v.dot(r) * in_radii;
+      p.height = normal.dot(data_[i] - centre) / sigma;
+      p.estimate = normal.dot(smooth_[i] - centre) / sigma;
+      p.weight = inside * inside * double(same_sheet(cosine));
+      weights += p.weight;
+    }
+    const TwoLayers layers(points);
+    if (!layers.convincing()) return;
+    for (std::size_t k = 0; k < members_; ++k) {
+      const LayerPoint& p = points[k];
+      const Index i = near.index()[k];
+      const double height = layers.nearer(p), inside = 1 - double(near.squared()[k]) / square;
+      if (std::abs(p.height - height) > kStray || std::abs(normal.dot(field_.normal(i))) < kPlaced) continue;
+      // The more points, the better is what they say.
+      moves[k] = {i, float(inside * inside * weights),
+                  (sigma * (height - p.estimate) * normal).cast<float>()};
+    }
+  }
+
+  const HeightField& field_;
+  const Positions &data_, &smooth_;
+  const rfs_mesh::NoiseField& noise_;
+  std::size_t members_;
+  std::vector<Move> moves_;  ///< patches x members
+};
+
+}  // namespace
+
+ThinWalls part_thin_walls(const HeightField& field, const Positions& data, const std::vector<Index>& seeds,
+                          std::size_t members, const rfs_mesh::NoiseField& noise, Positions& smooth,
+                          const Context& context) {
+  if (data.size() != field.size() || smooth.size() != field.size() || noise.local.size() != field.size())
+    throw std::invalid_argument("part_thin_walls: the field and what belongs to its points differ in number");
+  ThinWalls done;
+  if (seeds.empty()) return done;
+  const double most = double(seeds.size()) * double(kWider.back() * members);  // points they can reach
+  if (most < kLeastShare * double(field.size())) return done;
+  std::vector<Mean> means(field.size());
+  for (const std::size_t wider : kWider) {
+    std::vector<Index> sparse = seeds;
+    while (sparse.size() > 1 && sparse.size() * wider >= seeds.size())
+      sparse = thin(field.guide(), sparse, context);
+    Walls walls(field, data, smooth, noise, std::min(wider * members, field.size()));
+    walls.look(sparse, means, context);
+    done.patches += sparse.size();
+  }
+  const auto covered = [](const Mean& mean) { return mean.weight >= kLeastCovered; };
+  const auto points = std::size_t(std::count_if(means.begin(), means.end(), covered));
+  if (double(points) < kLeastShare * double(means.size())) return done;
+  done.points = points;
+  for_each_index(context, means.size(), [&](std::size_t i) {
+    if (covered(means[i])) smooth[i] += means[i].move / means[i].weight;
+  });
+  return done;
+}
+
+}  // namespace rfsmooth::smoothing

@@ -1,0 +1,34 @@
+/// Walls (and slits) a few sigma thick, whose two sheets are fitted together.
+///
+/// Noise carries points of such a wall past its middle, and a patch of one sheet takes some of the other for
+/// its own: the smoothed sheets touch, wave, and leave points between them. Here patches take in the points
+/// of both and tell them apart by the fit of two layers with a common middle (two_layers.h); where that is
+/// convincing, a point goes to the layer nearer to it, half-way between which there is no surface. Which of
+/// the two it came from is not known, and need not be for the surface to be right.
+///
+/// On rotor (50,000 points, noise of 1 %, walls of 3.6 sigma) the mean squared distance to the surface falls
+/// from 0.30 to 0.16 of sigma^2.
+#pragma once
+
+#include <vector>
+
+#include "rfs_mesh/noise/noise.h"
+#include "smoothing/automatic/patches/height_field.h"
+
+namespace rfsmooth::smoothing {
+
+/// What was done.
+struct ThinWalls {
+  std::size_t patches = 0;  ///< tried
+  std::size_t points = 0;   ///< put onto one of two sheets
+};
+
+/// Moves points of `smooth` (n x 3: where the points of the field are, smoothed) onto the nearer sheet.
+/// \param data n x 3, as measured. \param seeds ascending: places where patches of `members` points see more
+/// than one sheet (patches.h). \param noise its figure counts where the field is above: walls raise that.
+/// O(s m) for s seeds of m members, 20 bytes each. Parallel, the same bits for any number of threads.
+ThinWalls part_thin_walls(const HeightField& field, const Positions& data, const std::vector<Index>& seeds,
+                          std::size_t members, const rfs_mesh::NoiseField& noise, Positions& smooth,
+                          const Context& context);
+
+}  // namespace rfsmooth::smoothing

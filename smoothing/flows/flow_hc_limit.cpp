@@ -1,0 +1,134 @@
+/// What simultaneous HC converges to, in one solve.
+///
+///     [B + c (D - W) D^-1 (D - W)] x = B o,   B = beta D + (1 - beta) W,   c = (1 - beta) / alpha
+///
+/// W = adjacency, D = degrees. Derived from Vollmer, Mencl, Mueller 1999, section 4: the fixed point of the
+/// step T x - [beta + (1 - beta) T] (T x - alpha o - (1 - alpha) x). Positive definite for alpha > 0, beta >
+/// 1/2 (the conditions of theorem 5.2). Fixed vertices: W over movable ones, full degrees in D, and the right
+/// side gains c (D - W) r with r the fixed neighbours' share of T x. Constraints to an axis or a plane, and
+/// strengths, are HC's own per-step rules and are refused here.
+#include "base/parallel.h"
+#include "smoothing/integrators/solver.h"
+
+namespace rfsmooth::smoothing {
+
+namespace {
+
+using Eigen::Vector3d;
+
+class HcLimit : public Flow {
+ public:
+  HcLimit(const Mesh& mesh, const FlowOptions& options, const Constraints& constraints)
+      : beta_(*options.beta), c_((1 - beta_) / *options.alpha), original_(mesh.positions) {
+    solver_.tolerance = *options.tolerance;
+    solver_.linf = *options.norm == "linf";
+    fixed_.assign(mesh.positions.size(), 0);
+    for (const HardConstraint& constraint : constraints.hard) fixed_.at(constraint.vertex) = 1;
+  }
+
+  void step(Mesh& mesh, const Context& context) override {
+    const std::size_t n = mesh.positions.size();
+    const Adjacency& rows = mesh.one_ring;
+    const auto degree = [&](std::size_t i) { return double(rows.degree(i)); };
+    // Isolated vertices get a unit row, fixed ones too: both keep their place.
+    const auto still = [&](std::size_t i) { return fixed_[i] != 0 || rows.degree(i) == 0; };
+    const Vector3d centre =
+        sum_over(context, n, Vector3d(Vector3d::Zero()), [&](std::size_t i) { return original_[i]; }) /
+        double(std::max<std::size_t>(1, n));
+    /// sum of x over the movable neighbours: (W x)_i
+    const auto movable_sum = [&](const Positions& x, std::size_t i) {
+      Vector3d sum = Vector3d::Zero();
+      for (const Index j : rows[i])
+        if (!fixed_[j]) sum += x[j];
+      return sum;
+    };
+    Positions level(n);
+    const Product product = [&](const Positions& x, Positions& y) {
+      for_each_index(context, n, [&](std::size_t i) {
+        const Vector3d w = movable_sum(x, i);
+        level[i] = still(i) ? Vector3d(Vector3d::Zero()) : Vector3d(x[i] - w / degree(i));
+        y[i] = still(i) ? x[i] : Vector3d(beta_ * degree(i) * x[i] + (1 - beta_) * w);
+      });
+      return sum_over(context, n, 0.0, [&](std::size_t i) {
+        if (!still(i)) y[i] += c_ * (degree(i) * level[i] - movable_sum(level, i));
+        return x[i].dot(y[i]);
+      });
+    };
+    Positions x(n), b(n), share(n);
+    std::vector<double> diagonal(n), mass(n);
+    for_each_index(context, n, [&](std::size_t i) {
+      x[i] = still(i) ? Vector3d(Vector3d::Zero()) : Vector3d(mesh.positions[i] - centre);
+      share[i].setZero();
+      double second = degree(i);
+      for (const Index j : rows[i]) {
+        if (fixed_[j])
+          share[i] += (mesh.positions[j] - centre) / degree(i);
+        else
+          second += 1 / degree(j);
+      }
+      if (still(i)) share[i].setZero();
+      mass[i] = std::max(1.0, degree(i));
+      diagonal[i] = still(i) ? 1 : beta_ * degree(i) + c_ * second;
+    });
+    for_each_index(context, n, [&](std::size_t i) {
+      b[i].setZero();
+      if (still(i)) return;
+      Vector3d w = Vector3d::Zero();
+      for (const Index j : rows[i])
+        if (!fixed_[j]) w += original_[j] - centre;
+      b[i] = beta_ * degree(i) * (original_[i] - centre) + (1 - beta_) * w +
+             c_ * (degree(i) * share[i] - movable_sum(share, i));
+    });
+    iterations_ += conjugate_gradients(product, diagonal, mass, b, x, {}, solver_, context).iterations;
+    for_each_index(context, n, [&](std::size_t i) {
+      if (const Vector3d p = x[i] + centre; !still(i) && p.allFinite()) mesh.positions[i] = p;
+    });
+  }
+
+  int solver_iterations() const override { return iterations_; }
+  bool applies_constraints() const override { return true; }
+
+ private:
+  double beta_, c_;
+  Positions original_;
+  std::vector<char> fixed_;
+  SolverOptions solver_;
+  int iterations_ = 0;
+};
+
+std::unique_ptr<Flow> make_hc_limit(const Mesh& mesh, const FlowOptions& options,
+                                    const Constraints& constraints, const Context&) {
+  if (!(*options.alpha > 0 && *options.beta > 0.5))
+    throw Failure({ErrorCode::usage, "HC has a limit for --alpha above 0 and --beta above 0.5 only"});
+  for (const HardConstraint& constraint : constraints.hard)
+    if (constraint.kind != HardConstraint::Kind::fixed)
+      throw Failure({ErrorCode::usage, "hc-limit takes fixed vertices only; use hc, or implicit"});
+  for (const double s : constraints.strength)
+    if (s != 0 && s != 1)
+      throw Failure({ErrorCode::usage, "hc-limit takes strengths of 0 and 1 only; use hc, or implicit"});
+  Constraints fixed = constraints;
+  for (Index i = 0; i < constraints.strength.size(); ++i)
+    if (constraints.strength[i] == 0)
+      fixed.hard.push_back({i, HardConstraint::Kind::fixed, Vector3d::Zero()});
+  fixed.strength.clear();
+  return std::make_unique<HcLimit>(mesh, options, fixed);
+}
+
+}  // namespace
+
+FlowEntry flow_hc_limit() {
+  FlowOptions defaults;
+  defaults.iterations = 1;
+  defaults.alpha = 0.04;  // c = 10
+  defaults.beta = 0.6;
+  defaults.tolerance = 1e-5;
+  defaults.norm = "l2";
+  return {"hc-limit",
+          "what HC converges to, in one solve",
+          "Vollmer 4, theorem 5.2; our derivation",
+          {"iterations", "alpha", "beta", "tolerance", "norm"},
+          defaults,
+          make_hc_limit};
+}
+
+}  // namespace rfsmooth::smoothing

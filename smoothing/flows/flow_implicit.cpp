@@ -1,0 +1,95 @@
+/// Implicit fairing: one linear solve per step, stable for any time step.
+///
+///     (I + dt [(1 - m) L^k + m L]) X = X_n,   k = order, m = mixture
+///
+/// Desbrun et al. 1999, 2.3-2.6, 4 and 5.4; L = umbrella, scale-dependent umbrella or curvature operator. dt
+/// is dimensionless (times h^2 for operators of unit 1/length^2, h^4 for their square). Weights are frozen
+/// during a step and, with keep_weights, for all steps. A negative mixture enhances middle frequencies (2.6);
+/// it must leave the system positive definite. Soft constraints are a data mass m / s (the paper's variable
+/// lambda). Differs from the paper: the symmetric form and conjugate gradients instead of BiCG (see
+/// solver.h).
+#include <cmath>
+
+#include "base/parallel.h"
+#include "smoothing/integrators/solver.h"
+
+namespace rfsmooth::smoothing {
+
+namespace {
+
+class ImplicitFlow : public Flow {
+ public:
+  ImplicitFlow(const FlowOptions& options, AllowedMoves allowed)
+      : source_(*options.op, *options.keep_weights), allowed_(std::move(allowed)) {
+    const double dt = *options.dt, m = *options.mixture;
+    a_[*options.order - 1] = dt * (1 - m);
+    a_[0] += dt * m;
+    solver_.tolerance = *options.tolerance;
+    solver_.linf = *options.norm == "linf";
+  }
+
+  void step(Mesh& mesh, const Context& context) override {
+    const Operator& op = source_.on(mesh, context);
+    Fairing system{op.rows(mesh), op, a_, {}, {}};
+    double unit = 1;
+    for (double& a : system.a) a *= unit *= op.unit;
+    system.data = op.mass;
+    for_each_index(context, system.data.size(), [&](std::size_t i) {
+      if (const double s = allowed_.strength(i); s > 0) system.data[i] /= s;
+    });
+    const Positions before = mesh.positions;
+    iterations_ += solve(system, before, mesh.positions, allowed_, solver_, context).iterations;
+  }
+
+  void connectivity_changed(const Mesh&, const Context&) override { source_.connectivity_changed(); }
+  int solver_iterations() const override { return iterations_; }
+  bool applies_constraints() const override { return true; }
+
+ private:
+  OperatorSource source_;
+  AllowedMoves allowed_;
+  std::array<double, 4> a_ = {0, 0, 0, 0};
+  SolverOptions solver_;
+  int iterations_ = 0;
+};
+
+/// The least value of 1 + dt [(1 - m) k^order + m k] over eigenvalues k >= 0.
+double least_eigenvalue(const FlowOptions& options) {
+  const double dt = *options.dt, m = *options.mixture;
+  const int order = *options.order;
+  if (m >= 0) return 1;
+  if (order == 1) return 1 + dt * ((1 - m) + m);  // the mixture of L with itself
+  const double k = std::pow(-m / (order * (1 - m)), 1.0 / (order - 1));
+  return 1 + dt * ((1 - m) * std::pow(k, order) + m * k);
+}
+
+std::unique_ptr<Flow> make_implicit(const Mesh& mesh, const FlowOptions& options,
+                                    const Constraints& constraints, const Context&) {
+  if (!(least_eigenvalue(options) > 0))
+    throw Failure({ErrorCode::usage,
+                   "--mixture is too negative for this --dt and --order: the system has no "
+                   "stable solution; bring it nearer to zero or shorten dt"});
+  return std::make_unique<ImplicitFlow>(options, AllowedMoves(constraints, mesh.positions.size()));
+}
+
+}  // namespace
+
+FlowEntry flow_implicit() {
+  FlowOptions defaults;
+  defaults.iterations = 1;
+  defaults.dt = 10;
+  defaults.op = "umbrella";
+  defaults.order = 2;  // the paper's recommendation (2.6)
+  defaults.mixture = 0;
+  defaults.keep_weights = false;
+  defaults.tolerance = 1e-5;
+  defaults.norm = "l2";
+  return {"implicit",
+          "one stable linear solve per step, of first to fourth order",
+          "Desbrun 2.3-2.7, 4, 5",
+          {"iterations", "dt", "operator", "order", "mixture", "keep-weights", "tolerance", "norm"},
+          defaults,
+          make_implicit};
+}
+
+}  // namespace rfsmooth::smoothing

@@ -1,0 +1,69 @@
+/// Laplacian smoothing and its two anchored variants.
+///
+///     none:      p = q + lambda U(q)
+///     centre:    p = alpha q + (1 - alpha) T q        (a step of lambda = 1 - alpha)
+///     original:  p = alpha o + (1 - alpha) T q        (converges for alpha > 0)
+///
+/// Vollmer, Mencl, Mueller 1999, sections 3.1, 3.2, 3.3; weights of Ohtake, Belyaev, Bogaevski 2000, (3),
+/// (4). lambda multiplies the step of every variant.
+#include "smoothing/integrators/umbrella_speed.h"
+
+namespace rfsmooth::smoothing {
+
+namespace {
+
+using Eigen::Vector3d;
+
+/// F = alpha a + (1 - alpha) T q - q with the anchor a = q or o, from U(q) = T q - q.
+class AnchoredSpeed : public Speed {
+ public:
+  AnchoredSpeed(std::unique_ptr<Speed> umbrella, double alpha, Positions original)
+      : umbrella_(std::move(umbrella)), alpha_(alpha), original_(std::move(original)) {}
+
+  void evaluate(const Mesh& mesh, Positions& speed, const Context& context) override {
+    umbrella_->evaluate(mesh, speed, context);
+    for (Index i = 0; i < speed.size(); ++i) speed[i] = anchored(mesh, i, speed[i]);
+  }
+
+  Vector3d at(const Mesh& mesh, Index i) override { return anchored(mesh, i, umbrella_->at(mesh, i)); }
+
+ private:
+  Vector3d anchored(const Mesh& mesh, Index i, const Vector3d& umbrella) const {
+    const Vector3d free = (1 - alpha_) * umbrella;
+    return original_.empty() ? free : Vector3d(free + alpha_ * (original_[i] - mesh.positions[i]));
+  }
+
+  std::unique_ptr<Speed> umbrella_;
+  double alpha_;
+  Positions original_;  ///< empty: the anchor is the centre
+};
+
+std::unique_ptr<Flow> make_laplacian(const Mesh& mesh, const FlowOptions& options, const Constraints&,
+                                     const Context&) {
+  auto speed = make_umbrella_speed(*options.weights == "inverse-distance");
+  if (*options.anchor != "none")
+    speed = std::make_unique<AnchoredSpeed>(std::move(speed), *options.alpha,
+                                            *options.anchor == "original" ? mesh.positions : Positions{});
+  const Update update = *options.update == "sequential" ? Update::sequential : Update::simultaneous;
+  return make_explicit(std::move(speed), *options.lambda, update);
+}
+
+}  // namespace
+
+FlowEntry flow_laplacian() {
+  FlowOptions defaults;
+  defaults.iterations = 10;
+  defaults.lambda = 1;
+  defaults.alpha = 0.5;
+  defaults.anchor = "none";
+  defaults.weights = "equal";
+  defaults.update = "simultaneous";
+  return {"laplacian",
+          "each vertex to the mean of its neighbours; fast, shrinks",
+          "Vollmer 3; Ohtake (1)-(4)",
+          {"iterations", "lambda", "alpha", "anchor", "weights", "update"},
+          defaults,
+          make_laplacian};
+}
+
+}  // namespace rfsmooth::smoothing

@@ -1,0 +1,79 @@
+/// Moves in the umbrella's (median) direction with the normal speed of mean curvature flow: smooths like it
+/// and makes edge lengths even.
+///
+///     m = U0 / |U0|,  cos t = m . H n / |H|
+///     F = |H| m / cos t              where cos t > eps
+///         2 H n - |H| m / cos t      where cos t < -eps
+///         0                          else, and where H or U0 vanishes;  eps = 0.1
+///
+/// Ohtake, Belyaev, Bogaevski 2000, (12), (13); H n times h^2. |F| reaches |H| / eps, so a step is limited to
+/// |U0|: beyond the neighbours' mean it would overshoot what the direction is for.
+#include <cmath>
+
+#include "base/parallel.h"
+#include "smoothing/integrators/curvature_speed.h"
+#include "smoothing/integrators/umbrella_speed.h"
+
+namespace rfsmooth::smoothing {
+
+namespace {
+
+using Eigen::Vector3d;
+
+class MedianDirectionSpeed : public Speed {
+ public:
+  explicit MedianDirectionSpeed(double lambda)
+      : lambda_(lambda),
+        curvature_(make_curvature_speed(false, lambda)),
+        umbrella_(make_umbrella_speed(false)) {}
+
+  void evaluate(const Mesh& mesh, Positions& speed, const Context& context) override {
+    curvature_->evaluate(mesh, speed, context);
+    umbrella_->evaluate(mesh, median_, context);
+    for_each_index(context, speed.size(), [&](std::size_t i) { speed[i] = median(speed[i], median_[i]); });
+  }
+
+  void connectivity_changed(const Mesh& mesh, const Context& context) override {
+    curvature_->connectivity_changed(mesh, context);
+  }
+
+ private:
+  Vector3d median(const Vector3d& curvature, const Vector3d& umbrella) const {
+    constexpr double kEps = 0.1;  // the paper's, "independently of the mesh sampling rate"
+    const double H = curvature.norm(), U = umbrella.norm();
+    if (!(H > 0 && U > 0)) return Vector3d::Zero();
+    const Vector3d m = umbrella / U;
+    const double cosine = m.dot(curvature) / H;
+    if (std::abs(cosine) <= kEps) return Vector3d::Zero();
+    const Vector3d along = H / cosine * m;
+    const Vector3d F = cosine > 0 ? along : Vector3d(2 * curvature - along);
+    const double longest = U / std::max(lambda_, 1e-300);
+    return F.norm() > longest ? Vector3d(longest / F.norm() * F) : F;
+  }
+
+  double lambda_;
+  std::unique_ptr<Speed> curvature_, umbrella_;
+  Positions median_;
+};
+
+std::unique_ptr<Flow> make_median_direction(const Mesh&, const FlowOptions& options, const Constraints&,
+                                            const Context&) {
+  return make_explicit(std::make_unique<MedianDirectionSpeed>(*options.lambda), *options.lambda,
+                       Update::simultaneous);
+}
+
+}  // namespace
+
+FlowEntry flow_median_direction() {
+  FlowOptions defaults;
+  defaults.iterations = 10;
+  defaults.lambda = 0.25;
+  return {"median-direction",
+          "curvature flow moving towards the neighbours' mean; smooths and evens edges",
+          "Ohtake (12), (13)",
+          {"iterations", "lambda"},
+          defaults,
+          make_median_direction};
+}
+
+}  // namespace rfsmooth::smoothing

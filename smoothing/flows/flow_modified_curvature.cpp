@@ -1,0 +1,69 @@
+/// Mean curvature flow that also evens the sampling: the umbrella's tangential part is added.
+///
+///     F = H n + C [U0 - (U0 . n) n]
+///
+/// Ohtake, Belyaev, Bogaevski 2000, (11), with H n in units of the mean edge length (times h^2). Differs from
+/// the paper: it prints (U0 . n) U0; it must be n, since the text calls the bracket the projection of U0 onto
+/// the tangent plane. The bracket does not depend on the sign of n, so faces need not agree in orientation.
+#include "base/parallel.h"
+#include "smoothing/integrators/curvature_speed.h"
+#include "smoothing/integrators/umbrella_speed.h"
+#include "smoothing/operators/surface.h"
+
+namespace rfsmooth::smoothing {
+
+namespace {
+
+using Eigen::Vector3d;
+
+class ModifiedCurvatureSpeed : public Speed {
+ public:
+  ModifiedCurvatureSpeed(double lambda, double tangential)
+      : curvature_(make_curvature_speed(false, lambda)),
+        umbrella_(make_umbrella_speed(false)),
+        tangential_(tangential) {}
+
+  void evaluate(const Mesh& mesh, Positions& speed, const Context& context) override {
+    if (faces_.size() != mesh.positions.size()) faces_ = vertex_faces(mesh, context);
+    curvature_->evaluate(mesh, speed, context);
+    umbrella_->evaluate(mesh, even_, context);
+    for_each_index(context, speed.size(), [&](std::size_t i) {
+      const Vector3d n = unsigned_normal(mesh, faces_, Index(i));
+      if (n != Vector3d::Zero()) speed[i] += tangential_ * (even_[i] - even_[i].dot(n) * n);
+    });
+  }
+
+  void connectivity_changed(const Mesh& mesh, const Context& context) override {
+    curvature_->connectivity_changed(mesh, context);
+    faces_ = {};
+  }
+
+ private:
+  std::unique_ptr<Speed> curvature_, umbrella_;
+  double tangential_;
+  Adjacency faces_;
+  Positions even_;
+};
+
+std::unique_ptr<Flow> make_modified_curvature(const Mesh&, const FlowOptions& options, const Constraints&,
+                                              const Context&) {
+  return make_explicit(std::make_unique<ModifiedCurvatureSpeed>(*options.lambda, *options.tangential),
+                       *options.lambda, Update::simultaneous);
+}
+
+}  // namespace
+
+FlowEntry flow_modified_curvature() {
+  FlowOptions defaults;
+  defaults.iterations = 10;
+  defaults.lambda = 0.25;
+  defaults.tangential = 1;
+  return {"modified-curvature",
+          "curvature flow that evens the sampling by the umbrella's tangential part",
+          "Ohtake (11)",
+          {"iterations", "lambda", "tangential"},
+          defaults,
+          make_modified_curvature};
+}
+
+}  // namespace rfsmooth::smoothing

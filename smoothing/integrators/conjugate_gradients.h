@@ -1,0 +1,118 @@
+/// The conjugate gradient iteration behind solver.h, in double or in single precision.
+///
+/// Hestenes, Stiefel 1952, with a Jacobi preconditioner; Desbrun et al. 1999, 2.4-2.5. The coordinates of a
+/// vector are one system with a common step length. Four passes over the vectors per iteration; fixed-block
+/// sums in double, so the bits do not depend on the number of threads.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "base/parallel.h"
+#include "smoothing/modifiers/constraint.h"
+
+namespace rfsmooth::smoothing {
+
+/// Eigen::Vector3d, or Eigen::Vector4f with a zero at the end: one aligned load per gathered neighbour.
+template <class Vector>
+using Vectors = std::vector<Vector>;
+
+/// One number per vertex; not filled when made, so that the pages are first touched in parallel.
+template <class Scalar>
+using Numbers = Eigen::Array<Scalar, Eigen::Dynamic, 1>;
+
+/// The part of a move that the hard constraints allow, in either precision.
+inline Eigen::Vector3d allowed_part(const AllowedMoves& allowed, std::size_t i, const Eigen::Vector3d& move) {
+  return allowed(i, move);
+}
+/// The same; the fourth number is not a coordinate.
+inline Eigen::Vector4f allowed_part(const AllowedMoves& allowed, std::size_t i, const Eigen::Vector4f& move) {
+  if (allowed.all_free()) return move;
+  Eigen::Vector4f part = Eigen::Vector4f::Zero();
+  part.head<3>() = allowed(i, Eigen::Vector3d(move.head<3>().cast<double>())).cast<float>();
+  return part;
+}
+
+/// What the iteration needs beside the product: 1 / A's diagonal and the weights of the residual's norm.
+template <class Scalar>
+struct Scales {
+  Numbers<Scalar> inverse;
+  Numbers<Scalar> norm;
+  bool largest = false;  ///< the largest weighted residual instead of the root of the sum of squares
+};
+
+/// r.z and the residual's squared norm.
+struct ResidualSums {
+  double rz = 0, square = 0;
+};
+
+/// `update(i)` for all i, returning the sums over the residuals that it returns.
+template <class Scalar, class Update>
+ResidualSums residual_sums(const Context& context, std::size_t n, const Scales<Scalar>& scales,
+                           Update&& update) {
+  const bool largest = scales.largest;
+  const auto join = [largest](double u, double v) { return largest ? std::max(u, v) : u + v; };
+  return reduce_blocks(
+      context, n, ResidualSums{},
+      [&](std::size_t begin, std::size_t end) {
+        ResidualSums s;
+        for (std::size_t i = begin; i < end; ++i) {
+          const double square = double(update(i).squaredNorm());
+          s.rz += square * double(scales.inverse[Eigen::Index(i)]);
+          s.square = join(s.square, square * double(scales.norm[Eigen::Index(i)]));
+        }
+        return s;
+      },
+      [&](const ResidualSums& u, const ResidualSums& v) {
+        return ResidualSums{u.rz + v.rz, join(u.square, v.square)};
+      });
+}
+
+/// How far the iteration came.
+struct Iterated {
+  int iterations = 0;
+  double norm = 0;  ///< of the recursive residual
+};
+
+/// Continues A x = b from r = b - A x (already the allowed part, with its `sums`) until the norm of r is at
+/// most `goal`. `product(p, y)`: y = A p, returns p . y. A breakdown stops at the last iterate.
+template <class Vector, class Product>
+Iterated conjugate_gradient_iteration(const Context& context, Product&& product,
+                                      const Scales<typename Vector::Scalar>& scales, Vectors<Vector>& r,
+                                      ResidualSums sums, Vectors<Vector>& x, const AllowedMoves& allowed,
+                                      double goal, int max_iterations) {
+  using Scalar = typename Vector::Scalar;
+  const std::size_t n = r.size();
+  Vectors<Vector> p(n), y(n);
+  Iterated done;
+  // x follows one pass behind, in the pass that reads the old direction anyway.
+  double previous = 0, alpha = 0;
+  while (done.iterations < max_iterations && std::sqrt(sums.square) > goal) {
+    const Scalar beta = done.iterations == 0 ? Scalar(0) : Scalar(sums.rz / previous), step = Scalar(alpha);
+    const bool first = done.iterations == 0;
+    for_each_index(context, n, [&](std::size_t i) {
+      if (first) {
+        p[i] = scales.inverse[Eigen::Index(i)] * r[i];
+        return;
+      }
+      x[i] += step * p[i];
+      p[i] = scales.inverse[Eigen::Index(i)] * r[i] + beta * p[i];
+    });
+    const double curvature = product(p, y);
+    alpha = 0;
+    if (!(curvature > 0) || !std::isfinite(sums.rz / curvature)) break;
+    alpha = sums.rz / curvature;
+    previous = sums.rz;
+    const Scalar length = Scalar(alpha);
+    sums = residual_sums(context, n, scales, [&](std::size_t i) -> const Vector& {
+      return r[i] -= length * allowed_part(allowed, i, y[i]);
+    });
+    ++done.iterations;
+  }
+  if (alpha != 0) for_each_index(context, n, [&](std::size_t i) { x[i] += Scalar(alpha) * p[i]; });
+  done.norm = std::sqrt(sums.square);
+  return done;
+}
+
+}  // namespace rfsmooth::smoothing

@@ -1,0 +1,38 @@
+#include "smoothing/integrators/curvature_speed.h"
+
+#include "base/parallel.h"
+#include "smoothing/operators/operator.h"
+
+namespace rfsmooth::smoothing {
+
+namespace {
+
+class CurvatureSpeed : public Speed {
+ public:
+  CurvatureSpeed(bool normalised, double lambda)
+      : source_(normalised ? "curvature-normalised" : "curvature", false), lambda_(lambda) {}
+
+  void evaluate(const Mesh& mesh, Positions& speed, const Context& context) override {
+    const Operator& op = source_.on(mesh, context);
+    apply(op.rows(mesh), op, mesh.positions, speed, context);
+    const std::vector<double> sums = weight_sums(op.rows(mesh), op, context);
+    for_each_index(context, speed.size(), [&](std::size_t i) {
+      const double rate = lambda_ * op.unit * sums[i] / op.mass[i];
+      speed[i] *= -op.unit / std::max(1.0, rate);
+    });
+  }
+
+  void connectivity_changed(const Mesh&, const Context&) override { source_.connectivity_changed(); }
+
+ private:
+  OperatorSource source_;
+  double lambda_;
+};
+
+}  // namespace
+
+std::unique_ptr<Speed> make_curvature_speed(bool normalised, double lambda) {
+  return std::make_unique<CurvatureSpeed>(normalised, lambda);
+}
+
+}  // namespace rfsmooth::smoothing

@@ -1,0 +1,72 @@
+/// The implicit side of the flow library: symmetric positive definite solves on a mesh, by conjugate
+/// gradients with a Jacobi preconditioner, the three coordinates together.
+///
+///     (Q + a_1 S + a_2 S C M^-1 S + a_3 S (M^-1 S)^2 + a_4 S (M^-1 S)^3) x = Q o
+///
+/// S = M L of an Operator, Q = diag(data), C = diag(strength). With Q = M = D (degrees) and S = D - W this is
+/// implicit fairing of first order (a_1 = dt), of second order (a_2 = dt, a smoothing spline: (D + c (D-W)
+/// D^-1 (D-W)) x = D o), of higher order, and their mixtures (Desbrun et al. 1999, 2.3-2.6 and appendix A;
+/// written in the symmetric form, so CG suffices where the paper uses BiCG).
+///
+/// The three coordinates are one system of 3n unknowns with a common step length, so the iterates turn with
+/// the cloud. The right side is centred first, since the stopping test depends on the origin:
+///
+///     |A x - b| < tolerance |b|    in the inner product of M^-1 (l2), or per vertex over m_i (linf)
+///
+/// Corrections are computed in single precision, residuals and positions in double; where single precision
+/// does not suffice, all is double. Second order with the umbrella and nothing else (Q = M, C = 1, no
+/// constraint, l2) is solved by a polynomial instead (chebyshev.h), several times faster.
+///
+/// Determinism: fixed-block reductions, the same bits for any number of threads. Never returns a non-finite
+/// position: a breakdown (a singular or indefinite system) stops at the last finite iterate and says so.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <vector>
+
+#include "smoothing/modifiers/constraint.h"
+#include "smoothing/operators/operator.h"
+
+namespace rfsmooth::smoothing {
+
+/// When to stop.
+struct SolverOptions {
+  double tolerance = 1e-5;    ///< of the residual, relative to the centred right side
+  int max_iterations = 5000;  ///< then the last iterate is returned with converged = false
+  bool linf = false;          ///< stop on the largest instead of the root mean square residual
+};
+
+/// How it ended.
+struct SolverReport {
+  int iterations = 0;   ///< products with A in the iteration
+  double residual = 0;  ///< reached, relative, in the norm of the options
+  bool converged = false;
+};
+
+/// y = A x for a symmetric positive definite A; x and y n rows, distinct. Returns x . y, summed in fixed
+/// blocks.
+using Product = std::function<double(const Positions& x, Positions& y)>;
+
+/// Solves A x = b from the start x (which hard constraints keep feasible). `diagonal` is A's, positive;
+/// `mass` defines the norm of the residual. 5 n-vectors of memory.
+SolverReport conjugate_gradients(const Product& product, const std::vector<double>& diagonal,
+                                 const std::vector<double>& mass, const Positions& b, Positions& x,
+                                 const AllowedMoves& allowed, const SolverOptions& options,
+                                 const Context& context);
+
+/// The system above. Everything referred to must outlive the calls.
+struct Fairing {
+  const Adjacency& rows;
+  const Operator& op;
+  std::array<double, 4> a = {0, 0, 0, 0};  ///< a_1 .. a_4, in units of op (times op.unit^k for dimensionless)
+  std::vector<double> data = {};           ///< n: Q >= 0, not all zero; empty = op.mass
+  std::vector<double> strength = {};       ///< n: C >= 0, of the a_2 term; empty = all 1
+};
+
+/// Solves it for o, starting from x if it has o's size (a warm start), else from o. Hard constraints hold
+/// relative to the start. \throw std::invalid_argument if the array sizes disagree.
+SolverReport solve(const Fairing& system, const Positions& o, Positions& x, const AllowedMoves& allowed,
+                   const SolverOptions& options, const Context& context);
+
+}  // namespace rfsmooth::smoothing

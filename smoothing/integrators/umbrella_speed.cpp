@@ -1,0 +1,50 @@
+#include "smoothing/integrators/umbrella_speed.h"
+
+#include "base/parallel.h"
+
+namespace rfsmooth::smoothing {
+
+using Eigen::Vector3d;
+
+namespace {
+
+template <bool kInverseDistance>
+class UmbrellaSpeed : public Speed {
+ public:
+  void evaluate(const Mesh& mesh, Positions& speed, const Context& context) override {
+    speed.resize(mesh.positions.size());
+    for_each_index(context, speed.size(), [&](std::size_t i) { speed[i] = of(mesh, Index(i)); });
+  }
+
+  Vector3d at(const Mesh& mesh, Index i) override { return of(mesh, i); }
+
+ private:
+  static Vector3d of(const Mesh& mesh, Index i) {
+    const Vector3d q = mesh.positions[i];
+    const auto row = mesh.one_ring[i];
+    Vector3d sum = Vector3d::Zero();
+    double total = 0;
+    for (const Index j : row) {
+      const Vector3d& neighbour = mesh.positions[j];
+      if constexpr (kInverseDistance) {
+        const double length = (neighbour - q).norm();
+        if (length == 0) continue;  // coincident neighbours: no direction, nothing to average
+        sum += (neighbour - q) / length;
+        total += 1 / length;
+      } else {
+        sum += neighbour;
+      }
+    }
+    if constexpr (kInverseDistance) return total > 0 ? Vector3d(sum / total) : Vector3d::Zero();
+    return row.size() > 0 ? Vector3d((1 / double(row.size())) * sum - q) : Vector3d::Zero();
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Speed> make_umbrella_speed(bool inverse_distance) {
+  if (inverse_distance) return std::make_unique<UmbrellaSpeed<true>>();
+  return std::make_unique<UmbrellaSpeed<false>>();
+}
+
+}  // namespace rfsmooth::smoothing

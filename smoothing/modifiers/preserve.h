@@ -1,0 +1,27 @@
+/// Restores an invariant after every step of any flow: the enclosed volume of a closed mesh, the area of an
+/// open one, or the volume between a height field and the plane z = 0.
+///
+///     p += t d,  t such that the invariant is what it was;  d_i = p_i - centroid (scaling), or e_z (height
+///     field)
+///
+/// Desbrun et al. 1999, 3.1-3.2: without constraints this is their scaling by (V0/V)^(1/3), or (A0/A)^(1/2).
+/// Differs from the paper: it scales about the origin, we about the centroid; height fields are shifted,
+/// since scaling them depends on the plane; and constrained vertices stay constrained (d is projected and
+/// scaled with their strength), where the paper's scaling moves them. Faces are oriented first for the
+/// volume; an open, non-manifold or one-sided mesh is refused.
+#pragma once
+
+#include <memory>
+
+#include "smoothing/modifiers/constraint.h"
+
+namespace rfsmooth::smoothing {
+
+/// What a flow keeps: the enclosed volume, the area, or the volume under a height field.
+enum class Invariant { volume, area, height_field };
+
+/// Wraps a flow so that the mesh keeps the invariant.
+std::unique_ptr<Flow> make_preserving(std::unique_ptr<Flow> inner, const Mesh& mesh, Invariant invariant,
+                                      AllowedMoves allowed, const Context& context);
+
+}  // namespace rfsmooth::smoothing

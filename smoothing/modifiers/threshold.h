@@ -1,0 +1,30 @@
+/// Adaptive threshold over any flow: vertices whose speed is below T stay, the others move by the excess, so
+/// that smoothing slows down and stops by itself.
+///
+///     move by lambda (|F| - T) F / |F| where |F| > T, else stay
+///
+/// Ohtake, Belyaev, Bogaevski 2000, (14). F = (p - q) / lambda, what the wrapped step did per unit of its
+/// step length. T is constant, or the mean of |F| over the vertex and its first, or first and second, ring of
+/// neighbours, recomputed every few steps. Differs from the paper: it takes |H| for the ring means, which is
+/// |F| for its curvature flow; |F| has the right unit over every flow.
+#pragma once
+
+#include <memory>
+
+#include <rfsmooth/flow.h>
+
+namespace rfsmooth::smoothing {
+
+/// Where the threshold comes from.
+struct ThresholdRule {
+  int rings = 0;          ///< 0 = constant, 1 or 2 = mean over that many rings
+  double constant = 0.1;  ///< T of the constant rule, x mean edge length of the first mesh
+  int every = 5;          ///< steps between recomputing the ring means
+  double lambda = 1;      ///< the wrapped flow's step length
+};
+
+/// Wraps a flow by the rule.
+std::unique_ptr<Flow> make_threshold(std::unique_ptr<Flow> inner, const Mesh& mesh, const ThresholdRule& rule,
+                                     const Context& context);
+
+}  // namespace rfsmooth::smoothing

@@ -1,0 +1,81 @@
+#include "smoothing/operators/operator.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+
+#include "base/parallel.h"
+#include "rfs_mesh/measure.h"
+
+namespace rfsmooth::smoothing {
+
+using Eigen::Vector3d;
+
+void apply(const Adjacency& rows, const Operator& op, const Positions& x, Positions& y,
+           const Context& context) {
+  y.resize(x.size());
+  const Index* const items = rows.items.data();
+  const double* const weight = op.weight.empty() ? nullptr : op.weight.data();
+  for_each_index(context, x.size(), [&](std::size_t i) {
+    const Index begin = rows.start[i], end = rows.start[i + 1];
+    Vector3d sum = Vector3d::Zero();
+    if (weight == nullptr) {
+      for (Index k = begin; k < end; ++k) sum += x[items[k]];
+      sum = double(end - begin) * x[i] - sum;
+    } else {
+      for (Index k = begin; k < end; ++k) sum += weight[k] * (x[i] - x[items[k]]);
+    }
+    y[i] = (1 / op.mass[i]) * sum;
+  });
+}
+
+std::vector<double> weight_sums(const Adjacency& rows, const Operator& op, const Context& context) {
+  std::vector<double> sums(rows.size());
+  for_each_index(context, sums.size(), [&](std::size_t i) {
+    if (op.weight.empty()) {
+      sums[i] = double(rows.degree(i));
+      return;
+    }
+    for (Index k = rows.start[i]; k < rows.start[i + 1]; ++k) sums[i] += std::abs(op.weight[k]);
+  });
+  return sums;
+}
+
+double length_unit(const Mesh& mesh, const Context& context) {
+  const double h = rfs_mesh::mean_edge_length(mesh, context);
+  return h > 0 ? h : 1;
+}
+
+OperatorSource::OperatorSource(std::string_view name, bool frozen) : name_(name), frozen_(frozen) {
+  const std::array<std::string_view, 6> known = {"umbrella",  "inverse-distance",     "scale-dependent",
+                                                 "curvature", "curvature-normalised", "tufted"};
+  if (std::find(known.begin(), known.end(), name) == known.end())
+    throw std::invalid_argument("unknown operator " + name_);
+}
+
+const Operator& OperatorSource::on(const Mesh& mesh, const Context& context) {
+  const bool fixed_weights = frozen_ || name_ == "umbrella";
+  if (ready_ && fixed_weights) return op_;
+  if (name_ == "umbrella") {
+    op_ = umbrella(mesh, context);
+  } else if (name_ == "inverse-distance") {
+    op_ = inverse_distance(mesh, context);
+  } else if (name_ == "scale-dependent") {
+    op_ = scale_dependent(mesh, context);
+  } else if (name_ == "tufted") {
+    op_ = tufted(mesh, context);
+  } else {
+    if (!ready_) faces_ = vertex_faces(mesh, context);
+    op_ = curvature(mesh, faces_, context);
+    if (name_ == "curvature-normalised") op_ = normalised(mesh.one_ring, std::move(op_), context);
+  }
+  ready_ = true;
+  return op_;
+}
+
+void OperatorSource::connectivity_changed() {
+  ready_ = false;
+}
+
+}  // namespace rfsmooth::smoothing

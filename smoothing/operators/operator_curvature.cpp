@@ -1,0 +1,88 @@
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+#include "base/parallel.h"
+#include "smoothing/operators/operator.h"
+
+namespace rfsmooth::smoothing {
+
+namespace {
+
+using Eigen::Vector3d;
+
+/// Cotangents of a face's three angles and each corner's share of its mixed area; all zero if it is skipped.
+struct FaceShape {
+  std::array<double, 3> cot = {0, 0, 0};
+  std::array<double, 3> area = {0, 0, 0};
+};
+
+FaceShape shape_of(const Mesh& mesh, const Face& face) {
+  constexpr double kSliver = 1e-8;  // twice the area over the longest edge squared
+  FaceShape shape;
+  std::array<double, 3> squared;  // of the edge opposite each corner
+  std::array<double, 3> dot;      // of the two edges at each corner
+  for (int k = 0; k < 3; ++k) {
+    const Vector3d &p = mesh.positions[face[k]], &q = mesh.positions[face[(k + 1) % 3]],
+                   &r = mesh.positions[face[(k + 2) % 3]];
+    squared[k] = (q - r).squaredNorm();
+    dot[k] = (q - p).dot(r - p);
+  }
+  const Vector3d &a = mesh.positions[face[0]], &b = mesh.positions[face[1]], &c = mesh.positions[face[2]];
+  const double doubled = (b - a).cross(c - a).norm();
+  if (!(doubled > kSliver * std::max({squared[0], squared[1], squared[2]}))) return shape;
+  int obtuse = -1;
+  for (int k = 0; k < 3; ++k) {
+    shape.cot[k] = dot[k] / doubled;
+    if (dot[k] < 0) obtuse = k;
+  }
+  for (int k = 0; k < 3; ++k) {
+    const int m = (k + 1) % 3, n = (k + 2) % 3;
+    shape.area[k] = obtuse < 0    ? (squared[m] * shape.cot[m] + squared[n] * shape.cot[n]) / 8
+                    : obtuse == k ? doubled / 4
+                                  : doubled / 8;
+  }
+  return shape;
+}
+
+}  // namespace
+
+Operator curvature(const Mesh& mesh, const Adjacency& vertex_faces, const Context& context) {
+  Operator op;
+  const Adjacency& rows = mesh.one_ring;
+  const double h = length_unit(mesh, context);
+  op.unit = h * h;
+  op.mass.resize(mesh.positions.size());
+  op.weight.assign(rows.items.size(), 0);
+  std::vector<FaceShape> shape(mesh.faces.size());
+  for_each_index(context, shape.size(), [&](std::size_t f) { shape[f] = shape_of(mesh, mesh.faces[f]); });
+  for_each_index(context, op.mass.size(), [&](std::size_t i) {
+    const auto row = rows[i];
+    const auto add = [&](Index j, double cot) {
+      op.weight[rows.start[i] + Index(std::lower_bound(row.begin(), row.end(), j) - row.begin())] +=
+          0.5 * cot;
+    };
+    double area = 0;
+    for (const Index f : vertex_faces[i]) {
+      const Face& face = mesh.faces[f];
+      const int k = face[0] == i ? 0 : face[1] == i ? 1 : 2;
+      const int m = (k + 1) % 3, n = (k + 2) % 3;
+      add(face[m], shape[f].cot[n]);
+      add(face[n], shape[f].cot[m]);
+      area += shape[f].area[k];
+    }
+    op.mass[i] = area > 0 ? 2 * area : op.unit;
+  });
+  return op;
+}
+
+Operator normalised(const Adjacency& rows, Operator op, const Context& context) {
+  op.mass = weight_sums(rows, op, context);
+  for (double& m : op.mass)
+    if (!(m > 0)) m = 1;
+  op.unit = 1;
+  return op;
+}
+
+}  // namespace rfsmooth::smoothing

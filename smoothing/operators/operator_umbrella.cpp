@@ -1,0 +1,15 @@
+#include "base/parallel.h"
+#include "smoothing/operators/operator.h"
+
+namespace rfsmooth::smoothing {
+
+Operator umbrella(const Mesh& mesh, const Context& context) {
+  Operator op;
+  op.mass.resize(mesh.positions.size());
+  for_each_index(context, op.mass.size(), [&](std::size_t i) {
+    op.mass[i] = double(std::max<std::size_t>(1, mesh.one_ring.degree(i)));
+  });
+  return op;
+}
+
+}  // namespace rfsmooth::smoothing

@@ -1,0 +1,49 @@
+/// Discrete fairing, interpolating: a finer mesh of least thin-plate energy through the given vertices.
+///
+/// Every level splits each face into four, then the new vertices (all but the given ones) take the places
+/// that minimise the energy of divided_difference.h, coarse to fine. Boundary curves, and edges named sharp,
+/// get their points from the four-point scheme (-1, 9, 9, -1) / 16 along the curve alone and then stay, so
+/// that meshes that share a boundary still do. Kobbelt 1997, sections 4 and 5.
+///
+/// Differs from the paper: conjugate gradients instead of Gauss-Seidel sweeps (no visiting order, so the same
+/// bits for any number of threads); charts of a level come from the mesh it starts with.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <rfsmooth/mesh.h>
+#include <rfsmooth/options.h>
+
+namespace rfsmooth::smoothing {
+
+/// How to refine.
+struct RefineOptions {
+  int levels = 1;               ///< each multiplies the faces by four
+  std::string chart = "mixed";  ///< how neighbours get their parameters
+  double pimple = 0;            ///< how far given vertices may move at the end, to take off pimples
+  double tolerance = 1e-4;      ///< of each level's solve, relative
+
+  template <class Self, class Visit>
+  static void describe(Self& self, Visit&& visit) {
+    visit(OptionInfo{"levels", "each multiplies the faces by four", "", 0, 10}, self.levels);
+    OptionInfo chart{"chart", "how neighbours get their parameters", ""};
+    chart.choices = {"tangent", "exponential", "mixed"};
+    visit(chart, self.chart);
+    visit(OptionInfo{"pimple", "how far given vertices may move at the end", "x mean edge", 0, 10},
+          self.pimple);
+    visit(OptionInfo{"tolerance", "relative residual of each level", "", 1e-14, 1}, self.tolerance);
+  }
+};
+
+/// The refined mesh. Vertices 0 .. n-1 are the given ones, bit for bit (unless pimple > 0); loose edges stay.
+/// Errors: usage, out_of_memory, cancelled. \throw std::invalid_argument if a sharp edge is not an edge of a
+/// face.
+Result<Mesh> refine(const Mesh& mesh, const RefineOptions& options, const Context& context,
+                    const std::vector<Edge>& sharp = {});
+
+/// One split of every face into four, new vertices at the middle of the edges. `curve` edges (boundary and
+/// sharp, each {a, b}, any order) are split too.
+Mesh split(const Mesh& mesh, std::vector<Edge>& curve, const Context& context);
+
+}  // namespace rfsmooth::smoothing

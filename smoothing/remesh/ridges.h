@@ -1,0 +1,35 @@
+/// Ridges and ravines of a (smoothed) mesh.
+///
+///     ridge:   the maximal principal curvature has a positive maximum along its curvature line
+///     ravine:  the minimal principal curvature has a negative minimum along its curvature line
+///
+/// Ohtake, Belyaev, Bogaevski 2000, section 5. The curvature tensor of each vertex comes from
+/// the normal curvatures towards the neighbours with Taubin's (1995) weights. Differs from Taubin: it is
+/// fitted to them instead of averaged; the average takes the neighbours' directions for evenly spread, which
+/// splits a sphere's k1 and k2 by up to 20 %. The one-ring polygon is cut by the plane of normal and
+/// principal direction; curvatures are interpolated linearly at the two crossings and compared. Positive
+/// curvature bends away from the normal's side, as on a sphere with outward normals; faces should agree in
+/// orientation, else ridges and ravines trade places. Smooth first: it reads third derivatives.
+#pragma once
+
+#include <vector>
+
+#include <rfsmooth/mesh.h>
+
+namespace rfsmooth::smoothing {
+
+/// Principal curvatures of every vertex, k1 >= k2, in 1 / world units; zero where the vertex has no faces.
+struct PrincipalCurvatures {
+  std::vector<double> k1, k2;
+  Positions direction1, direction2;  ///< unit tangents; zero where unknown
+  Positions normal;                  ///< unit
+};
+
+/// The principal curvatures at every vertex.
+PrincipalCurvatures principal_curvatures(const Mesh& mesh, const Context& context);
+
+/// n: 1 = ridge, -1 = ravine, 0 = neither. Vertices whose one-ring polygon the plane does not cross twice
+/// (boundary) are 0. \param least curvature that counts, x 1 / mean edge length.
+std::vector<int> ridges_and_ravines(const Mesh& mesh, double least, const Context& context);
+
+}  // namespace rfsmooth::smoothing

@@ -1,0 +1,23 @@
+/// Every setting of every peer that the quality benchmark tries.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "tests/bench/peers/peers.h"
+
+namespace rfsmooth::bench {
+
+struct PeerSetting {
+  std::string family;  ///< "CGAL jet"
+  std::string name;    ///< "CGAL jet k 48 x2"
+  int tier = 0;        ///< 0: the strong and quick ones, run first; 1; 2: slow
+  std::string base;    ///< name of the setting whose result this one starts from; empty = the noisy cloud
+  std::function<peers::Smoothed(const Positions& points, int threads)> run;
+};
+
+/// In the order of the issue; a `base` comes before those that build on it.
+const std::vector<PeerSetting>& peer_settings();
+
+}  // namespace rfsmooth::bench

@@ -1,0 +1,106 @@
+/// info, mesh, smooth-mesh and compare.
+#include <cmath>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/cli/support/folder.h"
+#include "tests/cli/support/small_clouds.h"
+
+using ::testing::HasSubstr;
+
+namespace rfsmooth::test {
+namespace {
+
+using nlohmann::json;
+
+class Commands : public InFolder {
+ protected:
+  json info(const std::string& name) const { return json::parse(run({"info", "--json", name}).out); }
+};
+
+TEST_F(Commands, InfoSaysWhatAFileHolds) {
+  BinaryPly cloud = noisy_plane(10);
+  cloud.xyz[0] = NAN;
+  put("in.ply", cloud.bytes());
+  const json in = info("in.ply");
+  EXPECT_EQ(in["format"], "ply");
+  EXPECT_EQ(in["points"], 100);
+  EXPECT_EQ(in["finite"], 99);
+  EXPECT_EQ(in["organised"], false);
+  ASSERT_EQ(in["fields"].size(), 5u);
+  EXPECT_EQ(in["fields"][3]["name"], "intensity");
+  EXPECT_EQ(in["fields"][4]["type"], "uint32");
+  EXPECT_NEAR(in["spacing"].get<double>(), 0.75, 0.3);
+  const Ran text = run({"info", "in.ply"});
+  EXPECT_EQ(text.err, "");
+  EXPECT_THAT(text.out,
+              ::testing::AllOf(HasSubstr("100 (99 finite"), HasSubstr("label:uint32"), HasSubstr("spacing")));
+}
+
+TEST_F(Commands, InfoOfPointsThatCannotBeMeasured) {
+  put("in.ply",
+      "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float "
+      "z\nend_header\nnan 0 0\n");
+  const json in = info("in.ply");
+  EXPECT_EQ(in["finite"], 0);
+  EXPECT_TRUE(in["spacing"].is_null());
+}
+
+TEST_F(Commands, MeshWritesEdgesForTheGraphsAndFacesForTheMesh) {
+  put("in.ply", noisy_plane(20).bytes());
+  for (const char* stage : {"emst", "sdg", "rfs"})
+    ASSERT_EQ(run({"mesh", "in.ply", std::string(stage) + ".ply", "--stage", stage}).code, 0);
+  const auto count = [&](const std::string& file, const std::string& element) {
+    const json in = info(file);
+    for (const auto& e : in.value("elements", json::array()))
+      if (e["name"] == element) return e["count"].get<int>();
+    return 0;
+  };
+  EXPECT_EQ(info("emst.ply")["points"], 400);
+  EXPECT_EQ(count("emst.ply", "edge"), 399);
+  EXPECT_GT(count("sdg.ply", "edge"), 399);
+  EXPECT_EQ(count("emst.ply", "face"), 0);
+  EXPECT_GT(count("rfs.ply", "face"), 400);
+}
+
+TEST_F(Commands, SmoothMeshMovesVerticesAndKeepsFaces) {
+  put("in.ply", noisy_plane(20).bytes());
+  ASSERT_EQ(run({"mesh", "in.ply", "rough.ply"}).code, 0);
+  const Ran ran = run({"smooth-mesh", "--flow", "laplacian", "--iterations", "5", "rough.ply", "smooth.ply"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  const std::string before = take("rough.ply"), after = take("smooth.ply");
+  ASSERT_EQ(after.size(), before.size());
+  const std::size_t faces = before.find("end_header\n") + 11 + 400 * 24;
+  EXPECT_TRUE(after.substr(faces) == before.substr(faces));
+  EXPECT_FALSE(after == before);
+}
+
+TEST_F(Commands, SmoothMeshNeedsFaces) {
+  put("in.ply", noisy_plane(5).bytes());
+  const Ran ran = run({"smooth-mesh", "in.ply", "out.ply"});
+  EXPECT_EQ(ran.code, 3);
+  EXPECT_THAT(ran.err, HasSubstr("no faces"));
+}
+
+TEST_F(Commands, CompareAgainstItselfIsZero) {
+  put("in.ply", noisy_plane(20).bytes());
+  ASSERT_EQ(run({"mesh", "in.ply", "mesh.ply"}).code, 0);
+  const json cloud = json::parse(run({"compare", "--json", "in.ply", "in.ply"}).out);
+  EXPECT_EQ(cloud["own_units"]["chamfer"], 0);
+  EXPECT_EQ(cloud["points"], 400);
+  const json mesh = json::parse(run({"compare", "--json", "in.ply", "mesh.ply"}).out);
+  EXPECT_GT(mesh["truth_faces"], 0);
+  EXPECT_TRUE(mesh["own_units"].contains("p2s_root"));
+  EXPECT_TRUE(mesh["unit_sphere"].contains("p2s_root"));
+  EXPECT_THAT(run({"compare", "in.ply", "mesh.ply"}).out, HasSubstr("p2s_root"));
+}
+
+TEST_F(Commands, CompareNeedsTwoFiles) {
+  EXPECT_EQ(run({"compare", "a.ply"}).code, 2);
+  EXPECT_EQ(run({"compare", "a.ply", "b.ply"}).code, 3);
+}
+
+}  // namespace
+}  // namespace rfsmooth::test

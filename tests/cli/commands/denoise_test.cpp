@@ -1,0 +1,242 @@
+/// rfsmooth denoise on small files: the cloud's own bytes, and the contracts of files and streams.
+#include <cmath>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/cli/support/folder.h"
+#include "tests/cli/support/small_clouds.h"
+#include "tests/support/sanitized.h"
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+namespace rfsmooth::test {
+namespace {
+
+class DenoiseCommand : public InFolder {};
+
+TEST_F(DenoiseCommand, MovesPointsAndKeepsEveryOtherByte) {
+  const BinaryPly cloud = noisy_plane(30);
+  put("in.ply", cloud.bytes());
+  const Ran ran = run({"denoise", "--flow", "hc", "in.ply", "out.ply"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  EXPECT_EQ(ran.out, "");
+  const std::string before = cloud.bytes(), after = take("out.ply");
+  ASSERT_EQ(after.size(), before.size());
+  EXPECT_NE(after, before);
+  const std::size_t header = cloud.header().size();
+  EXPECT_EQ(after.substr(0, header), before.substr(0, header));
+  for (std::size_t byte = header; byte < before.size(); ++byte) {
+    const bool coordinate = (byte - header) % BinaryPly::kRow < 12;
+    ASSERT_TRUE(coordinate || after[byte] == before[byte]) << "byte " << byte;
+  }
+  EXPECT_THAT(names(), ElementsAre("in.ply", "out.ply"));
+}
+
+TEST_F(DenoiseCommand, SaysWhatItDidOnStderr) {
+  put("in.ply", noisy_plane(20).bytes());
+  const Ran ran = run({"denoise", "--flow", "hc", "in.ply", "out.ply"});
+  EXPECT_THAT(ran.err, HasSubstr("400 points"));
+  EXPECT_THAT(ran.err, HasSubstr("spacing"));
+  EXPECT_THAT(ran.err, HasSubstr("seconds: read"));
+  EXPECT_THAT(ran.err, HasSubstr("largest move"));
+  EXPECT_THAT(ran.err, Not(HasSubstr("\x1b"))) << "no colours away from a terminal";
+  EXPECT_THAT(ran.err, Not(HasSubstr("\r"))) << "no bar away from a terminal";
+}
+
+TEST_F(DenoiseCommand, QuietSaysNothing) {
+  put("in.ply", noisy_plane(10).bytes());
+  const Ran ran = run({"denoise", "--flow", "hc", "-q", "in.ply", "out.ply"});
+  EXPECT_EQ(ran.code, 0);
+  EXPECT_EQ(ran.err, "");
+  EXPECT_EQ(ran.out, "");
+}
+
+TEST_F(DenoiseCommand, ExistingOutputIsRefusedWithoutForce) {
+  put("in.ply", noisy_plane(10).bytes());
+  put("out.ply", "precious");
+  const Ran refused = run({"denoise", "--flow", "hc", "in.ply", "out.ply"});
+  EXPECT_EQ(refused.code, 5);
+  EXPECT_THAT(refused.err, HasSubstr("--force"));
+  EXPECT_EQ(take("out.ply"), "precious");
+  const Ran forced = run({"denoise", "--flow", "hc", "--force", "in.ply", "out.ply"});
+  EXPECT_EQ(forced.code, 0) << forced.err;
+  EXPECT_NE(take("out.ply"), "precious");
+}
+
+TEST_F(DenoiseCommand, InputAndOutputMayBeTheSameFileWithForce) {
+  const std::string before = noisy_plane(10).bytes();
+  put("a.ply", before);
+  EXPECT_EQ(run({"denoise", "--flow", "hc", "a.ply", "a.ply"}).code, 5);
+  EXPECT_EQ(take("a.ply"), before);
+  ASSERT_EQ(run({"denoise", "--flow", "hc", "a.ply", "b.ply"}).code, 0);
+  ASSERT_EQ(run({"denoise", "--flow", "hc", "a.ply", "a.ply", "--force"}).code, 0);
+  EXPECT_EQ(take("a.ply"), take("b.ply"));
+}
+
+TEST_F(DenoiseCommand, StreamsGiveTheSameBytesAsFiles) {
+  const std::string cloud = noisy_plane(10).bytes();
+  put("in.ply", cloud);
+  ASSERT_EQ(run({"denoise", "--flow", "hc", "in.ply", "out.ply"}).code, 0);
+  RunSetup setup;
+  setup.input = cloud;
+  const Ran ran = run({"denoise", "--flow", "hc", "-", "-", "--format", "ply"}, setup);
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  EXPECT_TRUE(ran.out == take("out.ply"));
+}
+
+TEST_F(DenoiseCommand, StandardOutputNeedsAFormat) {
+  put("in.ply", noisy_plane(10).bytes());
+  const Ran ran = run({"denoise", "in.ply", "-"});
+  EXPECT_EQ(ran.code, 2);
+  EXPECT_THAT(ran.err, HasSubstr("--format"));
+}
+
+TEST_F(DenoiseCommand, NormalsStayAndAWarningSaysTheyAreOld) {
+  put("in.ply", noisy_plane(10, "nx").bytes());
+  const Ran ran = run({"denoise", "--flow", "hc", "in.ply", "out.ply"});
+  EXPECT_EQ(ran.code, 0);
+  EXPECT_THAT(ran.err, HasSubstr("warning"));
+  EXPECT_THAT(ran.err, HasSubstr("normals"));
+}
+
+TEST_F(DenoiseCommand, ReportSaysWhatWasDoneAndConfigDoesItAgain) {
+  put("in.ply", noisy_plane(20).bytes());
+  const Ran first = run({"denoise", "--flow", "hc", "--beta", "0.7", "--iterations", "4", "in.ply", "one.ply",
+                         "--report", "report.json"});
+  ASSERT_EQ(first.code, 0) << first.err;
+  const auto report = nlohmann::json::parse(take("report.json"));
+  EXPECT_EQ(report["command"], "denoise");
+  EXPECT_EQ(report["input"]["path"], "in.ply");
+  EXPECT_EQ(report["input"]["points"], 400);
+  EXPECT_EQ(report["options"]["flow"], "hc");
+  EXPECT_EQ(report["options"]["beta"], 0.7);
+  EXPECT_EQ(report["options"]["iterations"], 4);
+  EXPECT_FALSE(report["options"]["alpha"].is_null()) << "chosen values are filled in";
+  EXPECT_EQ(report["counts"]["points"], 400);
+  EXPECT_GT(report["spacing"], 0);
+  EXPECT_TRUE(report.contains("noise"));
+  EXPECT_GE(report["seconds"]["smooth"], 0);
+  const Ran again = run({"denoise", "--config", "report.json", "in.ply", "two.ply"});
+  ASSERT_EQ(again.code, 0) << again.err;
+  EXPECT_TRUE(take("one.ply") == take("two.ply"));
+  const Ran other = run({"denoise", "--config", "report.json", "--beta", "0.9", "in.ply", "three.ply"});
+  ASSERT_EQ(other.code, 0) << other.err;
+  EXPECT_FALSE(take("one.ply") == take("three.ply")) << "the command line wins";
+}
+
+TEST_F(DenoiseCommand, ReportOfTheAutomaticFlowSaysEverythingItChose) {
+  put("in.ply", noisy_plane(20).bytes());
+  const Ran first = run({"denoise", "in.ply", "one.ply", "--threads", "2", "--report", "report.json"});
+  ASSERT_EQ(first.code, 0) << first.err;
+  const auto report = nlohmann::json::parse(take("report.json"));
+  EXPECT_THAT(rfsmooth({"--version"}).out, HasSubstr(report["rfsmooth"].get<std::string>()));
+  EXPECT_EQ(report["input"]["format"], "ply");
+  EXPECT_EQ(report["input"]["fields"].size(), 5u);
+  EXPECT_EQ(report["output"]["path"], "one.ply");
+  EXPECT_EQ(report["threads"], 2);
+  EXPECT_EQ(report["options"]["flow"], "auto");
+  // Chosen, not asked for: iterations, strength, the measured noise, evening out.
+  EXPECT_EQ(report["options"]["iterations"], 1);
+  EXPECT_EQ(report["options"]["strength"], 1);
+  EXPECT_EQ(report["options"]["equalize"], true);
+  EXPECT_EQ(report["options"]["noise"], report["noise"]);
+  EXPECT_GT(report["noise"], 0);
+  EXPECT_LT(report["noise_left"], report["noise"]);
+  EXPECT_GT(report["guide_strength"], 0);
+  EXPECT_GT(report["equalized"]["rms"], 0);
+  EXPECT_GT(report["largest_move"], report["rms_move"]);
+  for (const char* count : {"points", "finite", "distinct", "moved", "faces", "edges", "bridges", "stranded"})
+    EXPECT_TRUE(report["counts"].contains(count)) << count;
+  for (const char* stage : {"read", "prepare", "emst", "sdg", "rfs-mesh", "smooth", "write"})
+    EXPECT_TRUE(report["seconds"].contains(stage)) << stage;
+  const Ran again = run({"denoise", "--config", "report.json", "in.ply", "two.ply", "--threads", "1"});
+  ASSERT_EQ(again.code, 0) << again.err;
+  EXPECT_TRUE(take("one.ply") == take("two.ply"));
+}
+
+TEST_F(DenoiseCommand, ThreadsBindsEveryThreadOfTheProgram) {
+  put("in.ply", noisy_plane(kSanitized ? 80 : 150).bytes());
+  for (const std::size_t threads : {1u, 2u, 3u}) {
+    const Ran ran = run({"denoise", "--force", "--threads", std::to_string(threads), "in.ply", "out.ply"});
+    ASSERT_EQ(ran.code, 0) << ran.err;
+    // More threads may exist asleep; a hundredth of a second is what the clocks differ by.
+    EXPECT_LE(ran.processor_seconds, 1.02 * double(threads) * ran.seconds + 0.01) << threads;
+  }
+}
+
+TEST_F(DenoiseCommand, ConfigAloneRunsTheReportAgain) {
+  put("in.ply", noisy_plane(10).bytes());
+  ASSERT_EQ(run({"denoise", "--flow", "hc", "in.ply", "out.ply", "--report", "r.json"}).code, 0);
+  const std::string first = take("out.ply");
+  std::filesystem::remove(at("out.ply"));
+  const Ran again = run({"denoise", "--config", "r.json"});
+  ASSERT_EQ(again.code, 0) << again.err;
+  EXPECT_TRUE(take("out.ply") == first);
+}
+
+TEST_F(DenoiseCommand, ConfigErrorsAreNamed) {
+  put("in.ply", noisy_plane(10).bytes());
+  put("typo.json", R"({"betta": 0.7})");
+  const Ran typo = run({"denoise", "--config", "typo.json", "in.ply", "out.ply"});
+  EXPECT_EQ(typo.code, 2);
+  EXPECT_THAT(typo.err, HasSubstr("did you mean 'beta'?"));
+  put("broken.json", R"({"beta": )");
+  const Ran broken = run({"denoise", "--config", "broken.json", "in.ply", "out.ply"});
+  EXPECT_EQ(broken.code, 3);
+  EXPECT_THAT(broken.err, HasSubstr("byte"));
+  put("range.json", R"({"beta": 7})");
+  EXPECT_EQ(run({"denoise", "--config", "range.json", "in.ply", "out.ply"}).code, 2);
+  EXPECT_EQ(run({"denoise", "--config", "missing.json", "in.ply", "out.ply"}).code, 3);
+  EXPECT_FALSE(there("out.ply"));
+}
+
+TEST_F(DenoiseCommand, ManyFilesGoOnAfterAnError) {
+  put("a.ply", noisy_plane(10).bytes());
+  put("b.ply", "not a cloud");
+  put("c.ply", noisy_plane(12).bytes());
+  const Ran ran = run({"denoise", "--flow", "hc", "a.ply", "b.ply", "c.ply", "-o", "out/"});
+  EXPECT_EQ(ran.code, 3);
+  EXPECT_TRUE(there("out/a.ply"));
+  EXPECT_FALSE(there("out/b.ply"));
+  EXPECT_TRUE(there("out/c.ply"));
+  EXPECT_THAT(ran.err, HasSubstr("2 of 3 done"));
+  EXPECT_THAT(ran.err, HasSubstr("FAILED"));
+  ASSERT_EQ(run({"denoise", "--flow", "hc", "a.ply", "single.ply"}).code, 0);
+  EXPECT_TRUE(take("out/a.ply") == take("single.ply"));
+}
+
+TEST_F(DenoiseCommand, TwoInputsOfOneNameAreRefusedBeforeAnythingIsDone) {
+  std::filesystem::create_directory(at("x"));
+  put("a.ply", noisy_plane(10).bytes());
+  put("x/a.ply", noisy_plane(10).bytes());
+  const Ran ran = run({"denoise", "a.ply", "x/a.ply", "-o", "out/"});
+  EXPECT_EQ(ran.code, 2);
+  EXPECT_FALSE(there("out"));
+}
+
+TEST_F(DenoiseCommand, AFileCalledLikeACommandIsAFile) {
+  put("info", noisy_plane(10).bytes());
+  const Ran ran = run({"denoise", "--flow", "hc", "info", "mesh", "--format", "ply"});
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  EXPECT_TRUE(there("mesh"));
+}
+
+TEST_F(DenoiseCommand, PositionalArgumentsAreCounted) {
+  for (const auto& arguments : std::vector<std::vector<std::string>>{{"denoise"},
+                                                                     {"denoise", "a"},
+                                                                     {"denoise", "a", "b", "c"},
+                                                                     {"denoise", "-o", "b"},
+                                                                     {"denoise", "a", ""}}) {
+    const Ran ran = run(arguments);
+    EXPECT_EQ(ran.code, 2);
+    EXPECT_EQ(ran.out, "");
+    EXPECT_THAT(ran.err, HasSubstr("error"));
+  }
+}
+
+}  // namespace
+}  // namespace rfsmooth::test

@@ -1,0 +1,151 @@
+/// denoise --outliers and --mark-outliers: what happens to strays in the file.
+#include <cmath>
+#include <random>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/cli/support/cloud_file.h"
+#include "tests/cli/support/folder.h"
+
+using ::testing::HasSubstr;
+
+namespace rfsmooth::test {
+namespace {
+
+namespace io = pipeline::io;
+
+constexpr int kSide = 30;
+constexpr std::size_t kStrays[] = {100, 450, 700};  // rows
+
+/// A noisy plane of kSide x kSide points on a grid of width kSide; three of them float high above it.
+io::Cloud plane_with_strays() {
+  std::mt19937_64 engine(9);
+  std::normal_distribution<double> noise(0, 0.2);
+  std::vector<double> xyz, row;
+  for (int i = 0; i < kSide; ++i)
+    for (int j = 0; j < kSide; ++j) {
+      for (const int c : {i, j, 0}) xyz.push_back(c + noise(engine));
+      row.push_back(i * kSide + j);
+    }
+  for (const std::size_t i : kStrays) xyz[3 * i + 2] = 8 + 0.01 * double(i);
+  io::Cloud cloud = io::make_cloud(xyz.data(), xyz.size() / 3, io::Scalar::float32);
+  io::set_field(cloud, "row", io::Scalar::int32, row);
+  return cloud;
+}
+
+class OutliersOption : public InFolder {
+ protected:
+  void write(const io::Cloud& cloud, const std::string& name) const {
+    value_or_throw(io::write_cloud(cloud, at(name), {}, {}));
+  }
+  /// The output of a run over the plane, as `out` with the report "report.json".
+  io::Cloud clean(const std::vector<std::string>& options, const std::string& extension = ".ply",
+                  bool organised = false) {
+    io::Cloud cloud = plane_with_strays();
+    if (organised) {
+      cloud.width = cloud.height = kSide;
+    }
+    std::filesystem::remove_all(at("in" + extension));
+    write(cloud, "in" + extension);
+    std::vector<std::string> arguments = {"denoise", "--force", "--report", "report.json"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    arguments.insert(arguments.end(), {"in" + extension, "out" + extension});
+    const Ran ran = run(arguments);
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    said_ = ran.err;
+    return read(at("out" + extension));
+  }
+  nlohmann::json report() const { return nlohmann::json::parse(take("report.json")); }
+  std::string said_;
+};
+
+std::vector<double> values_of(const io::Cloud& cloud, const std::string& name) {
+  return io::field_values(cloud, io::find_field(cloud, name).value());
+}
+
+TEST_F(OutliersOption, AreLeftWhereTheyAreByDefault) {
+  const io::Cloud out = clean({});
+  EXPECT_THAT(said_, HasSubstr("3 outliers"));
+  EXPECT_EQ(report()["counts"]["outliers"], 3);
+  EXPECT_EQ(report()["counts"]["removed"], 0);
+  EXPECT_EQ(report()["options"]["outliers"], "keep");
+  const auto before = io::positions(plane_with_strays()), after = io::positions(out);
+  ASSERT_EQ(after.size(), before.size());
+  EXPECT_EQ(out.points().fields.size(), 4u) << "no field is added";
+  for (const std::size_t i : kStrays)
+    for (std::size_t axis = 0; axis < 3; ++axis) EXPECT_EQ(after[3 * i + axis], before[3 * i + axis]);
+  EXPECT_NE(after[3], before[3]) << "others move";
+}
+
+TEST_F(OutliersOption, MarkAddsAField) {
+  for (const std::vector<std::string>& options :
+       {std::vector<std::string>{"--outliers", "mark"}, {"--mark-outliers"}}) {
+    for (const char* extension : {".ply", ".pcd"}) {
+      const io::Cloud out = clean(options, extension);
+      const io::Field& field = out.points().fields.back();
+      EXPECT_EQ(field.name, "outlier");
+      EXPECT_EQ(field.type, io::Scalar::uint8);
+      const std::vector<double> flags = values_of(out, "outlier");
+      for (std::size_t i = 0; i < flags.size(); ++i)
+        EXPECT_EQ(flags[i], std::count(std::begin(kStrays), std::end(kStrays), i)) << i;
+    }
+  }
+}
+
+TEST_F(OutliersOption, RemoveLeavesThemOutAndKeepsTheOrder) {
+  const io::Cloud kept = clean({}), out = clean({"--outliers", "remove"});
+  EXPECT_THAT(said_, HasSubstr("3 outliers removed"));
+  EXPECT_EQ(report()["counts"]["removed"], 3);
+  ASSERT_EQ(out.size(), kept.size() - 3);
+  const std::vector<double> rows = values_of(out, "row");
+  const auto all = io::positions(kept), left = io::positions(out);
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    if (std::count(std::begin(kStrays), std::end(kStrays), i) != 0) continue;
+    EXPECT_EQ(rows[next], double(i));
+    for (std::size_t axis = 0; axis < 3; ++axis) EXPECT_EQ(left[3 * next + axis], all[3 * i + axis]);
+    ++next;
+  }
+}
+
+TEST_F(OutliersOption, RemoveKeepsTheGridOfAnOrganisedCloud) {
+  const io::Cloud out = clean({"--outliers", "remove", "--write-displacement"}, ".pcd", true);
+  EXPECT_EQ(out.width, std::size_t(kSide));
+  EXPECT_EQ(out.height, std::size_t(kSide));
+  EXPECT_EQ(report()["counts"]["removed"], 3);
+  const auto xyz = io::positions(out);
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const bool stray = std::count(std::begin(kStrays), std::end(kStrays), i) != 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) EXPECT_EQ(std::isnan(xyz[3 * i + axis]), stray) << i;
+  }
+  for (const double moved : values_of(out, "displacement")) EXPECT_TRUE(moved >= 0 && moved < 2);
+}
+
+TEST_F(OutliersOption, SmoothLooksForNone) {
+  clean({"--outliers", "smooth"});
+  EXPECT_EQ(report()["counts"]["outliers"], 0);
+  EXPECT_FALSE(report()["seconds"].contains("outliers"));
+  const Ran ran = run({"denoise", "--outliers", "smooth", "--mark-outliers", "in.ply", "never.ply"});
+  EXPECT_EQ(ran.code, 2);
+  EXPECT_THAT(ran.err, HasSubstr("--mark-outliers"));
+}
+
+TEST_F(OutliersOption, StraysDoNotPullTheOthers) {
+  const auto with = io::positions(clean({}));
+  io::Cloud alone = plane_with_strays();
+  std::vector<std::size_t> rows;
+  for (std::size_t i = 0; i < alone.size(); ++i)
+    if (std::count(std::begin(kStrays), std::end(kStrays), i) == 0) rows.push_back(i);
+  io::select_points(alone, rows);
+  write(alone, "alone.ply");
+  ASSERT_EQ(run({"denoise", "alone.ply", "alone_out.ply"}).code, 0);
+  const auto without = io::positions(read(at("alone_out.ply")));
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      EXPECT_NEAR(with[3 * rows[k] + axis], without[3 * k + axis], 0.05) << "row " << rows[k];
+}
+
+}  // namespace
+}  // namespace rfsmooth::test

@@ -1,0 +1,195 @@
+// rfsmooth reconstruct: the command hands the work to rfsmooth-reconstruct, which keeps every contract of the
+// command.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "pipeline/io/mesh_file.h"
+#include "pipeline/surface/topology.h"
+#include "tests/cli/support/folder.h"
+
+using ::testing::HasSubstr;
+
+namespace rfsmooth::test {
+namespace {
+
+namespace io = pipeline::io;
+
+/// Points of the unit sphere along a spiral, nearly even, each coloured by its octant.
+io::Cloud coloured_sphere(std::size_t n) {
+  std::vector<double> xyz;
+  std::array<std::vector<double>, 3> colours;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double z = 1 - (2 * double(i) + 1) / double(n), r = std::sqrt(1 - z * z),
+                 turn = 2.399963 * double(i);
+    for (const double c : {r * std::cos(turn), r * std::sin(turn), z}) {
+      colours[xyz.size() % 3].push_back(c > 0 ? 200 : 50);
+      xyz.push_back(c);
+    }
+  }
+  io::Cloud cloud = io::make_cloud(xyz.data(), n, io::Scalar::float32);
+  const char* const names[] = {"red", "green", "blue"};
+  for (std::size_t k = 0; k < 3; ++k) io::set_field(cloud, names[k], io::Scalar::uint8, colours[k]);
+  return cloud;
+}
+
+class Reconstruct : public InFolder {
+ protected:
+  void SetUp() override {
+    if (!std::filesystem::exists(RFSMOOTH_RECONSTRUCT)) GTEST_SKIP() << "built without CGAL or Open3D";
+    put("in.ply", io::serialize_cloud(coloured_sphere(600), {}, {}).value());
+  }
+};
+
+class ReconstructMethods : public Reconstruct, public ::testing::WithParamInterface<const char*> {};
+
+TEST_P(ReconstructMethods, ASurfaceWithTheColoursOfItsPoints) {
+  const std::string method = GetParam();
+  const Ran ran = run({"reconstruct", "--method", method, "in.ply", "out.ply"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  EXPECT_EQ(ran.out, "");
+  const auto read = io::read_mesh(at("out.ply"), {}, {});
+  ASSERT_TRUE(read.ok());
+  const io::Cloud& cloud = read.value().cloud;
+  const Topology found = pipeline::topology(cloud.size(), read.value().faces);
+  EXPECT_EQ(found.components, 1u);
+  if (method != "ball-pivoting") {
+    EXPECT_TRUE(found.closed_manifold());
+    EXPECT_EQ(found.genus, 0);
+    EXPECT_THAT(ran.err, HasSubstr("closed, genus 0"));
+  }
+  const std::vector<double> xyz = io::positions(cloud);
+  const char* const names[] = {"red", "green", "blue"};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::vector<double> colour = io::field_values(cloud, io::find_field(cloud, names[k]).value());
+    for (std::size_t i = 0; i < colour.size(); ++i)
+      if (std::abs(xyz[3 * i + k]) > 0.2) {
+        EXPECT_EQ(colour[i], xyz[3 * i + k] > 0 ? 200 : 50);
+      }
+  }
+}
+
+TEST_P(ReconstructMethods, SameBytesForAnyNumberOfThreads) {
+  const std::string method = GetParam();
+  ASSERT_EQ(run({"reconstruct", "--method", method, "in.ply", "a.ply", "--threads", "1"}).code, 0);
+  ASSERT_EQ(run({"reconstruct", "--method", method, "in.ply", "b.ply", "--threads", "4"}).code, 0);
+  EXPECT_TRUE(take("a.ply") == take("b.ply"));
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ReconstructMethods,
+                         ::testing::Values("poisson", "advancing-front", "ball-pivoting"),
+                         [](const auto& test) {
+                           std::string name = test.param;
+                           name.erase(std::remove(name.begin(), name.end(), '-'), name.end());
+                           return name;
+                         });
+
+TEST_F(Reconstruct, ReportIsTakenBackByConfig) {
+  ASSERT_EQ(run({"reconstruct", "--method", "advancing-front", "in.ply", "a.ply", "--no-denoise", "--report",
+                 "a.json"})
+                .code,
+            0);
+  const auto report = nlohmann::json::parse(take("a.json"));
+  EXPECT_EQ(report["command"], "reconstruct");
+  EXPECT_EQ(report["options"]["denoise"], false);
+  EXPECT_EQ(report["closed_manifold"], true);
+  EXPECT_EQ(report["counts"]["vertices"], 600);
+  ASSERT_EQ(run({"reconstruct", "--config", "a.json", "in.ply", "b.ply"}).code, 0);
+  EXPECT_TRUE(take("a.ply") == take("b.ply"));
+}
+
+TEST_F(Reconstruct, NothingIsReplacedWithoutForce) {
+  put("out.ply", "mine");
+  EXPECT_EQ(run({"reconstruct", "in.ply", "out.ply"}).code, 5);
+  EXPECT_EQ(take("out.ply"), "mine");
+  EXPECT_EQ(run({"reconstruct", "in.ply", "out.ply", "--force"}).code, 0);
+  EXPECT_NE(take("out.ply"), "mine");
+}
+
+TEST_F(Reconstruct, StandardOutputTakesTheSurface) {
+  ASSERT_EQ(run({"reconstruct", "in.ply", "out.ply"}).code, 0);
+  const Ran ran = run({"reconstruct", "in.ply", "-", "--format", "ply", "--quiet"});
+  EXPECT_EQ(ran.code, 0);
+  EXPECT_EQ(ran.err, "");
+  EXPECT_TRUE(ran.out == take("out.ply"));
+}
+
+TEST_F(Reconstruct, PackedColoursAreUnpackedAndOtherFieldsStay) {
+  std::vector<double> packed(600), label(600);
+  for (std::size_t i = 0; i < 600; ++i) label[i] = double(i % 200);
+  for (std::size_t i = 0; i < 600; ++i) packed[i] = double((7u << 16) | (8u << 8) | unsigned(i % 200));
+  const std::vector<double> xyz = io::positions(coloured_sphere(600));
+  io::Cloud pcd = io::make_cloud(xyz.data(), 600, io::Scalar::float32);
+  io::set_field(pcd, "rgb", io::Scalar::uint32, packed);
+  io::set_field(pcd, "label", io::Scalar::uint16, label);
+  for (const char* normal : {"normal_x", "normal_y", "normal_z"})
+    io::set_field(pcd, normal, io::Scalar::float32, std::vector<double>(600, 0.5));
+  ASSERT_TRUE(io::write_cloud(pcd, at("in.pcd"), {}, {}).ok());
+  ASSERT_EQ(run({"reconstruct", "--method", "advancing-front", "in.pcd", "out.ply"}).code, 0);
+  const auto read = io::read_mesh(at("out.ply"), {}, {});
+  ASSERT_TRUE(read.ok());
+  const io::Cloud& made = read.value().cloud;
+  const auto field = [&](const char* name) {
+    return io::field_values(made, io::find_field(made, name).value());
+  };
+  const std::vector<double> red = field("red"), green = field("green"), blue = field("blue"),
+                            labels = field("label");
+  const std::vector<double> at_row = io::positions(made), nz = field("normal_z");
+  for (std::size_t v = 0; v < made.size(); ++v) {
+    EXPECT_EQ(red[v], 7);
+    EXPECT_EQ(green[v], 8);
+    EXPECT_EQ(blue[v], labels[v]);
+    EXPECT_NEAR(nz[v], at_row[3 * v + 2], 0.2) << "normals are the surface's";
+  }
+}
+
+TEST_F(Reconstruct, MistakesHaveTheirExitCodesAndLeaveNoFile) {
+  put("three.xyz", "0 0 0\n1 0 0\n0 1 0\n");
+  EXPECT_EQ(run({"reconstruct", "in.ply", "out.pcd"}).code, 2);
+  EXPECT_EQ(run({"reconstruct", "in.ply", "out.ply", "--method", "magic"}).code, 2);
+  EXPECT_EQ(run({"reconstruct", "in.ply", "out.ply", "--flow", "taubin", "--beta", "0.5"}).code, 2);
+  EXPECT_EQ(run({"reconstruct", "in.ply"}).code, 2);
+  EXPECT_EQ(run({"reconstruct", "none.ply", "out.ply"}).code, 3);
+  EXPECT_EQ(run({"reconstruct", "three.xyz", "out.ply"}).code, 4);
+  EXPECT_EQ(run({"reconstruct", "in.ply", "no/folder/out.ply"}).code, 5);
+  EXPECT_EQ(names(), (std::vector<std::string>{"in.ply", "three.xyz"}));
+}
+
+TEST_F(Reconstruct, CtrlCLeavesNoFile) {
+  put("large.ply", io::serialize_cloud(coloured_sphere(60000), {}, {}).value());
+  RunSetup setup;
+  setup.interrupt_after_ms = 400;
+  const Ran ran = run({"reconstruct", "--method", "poisson", "large.ply", "out.ply"}, setup);
+  EXPECT_EQ(ran.code, 130) << ran.err;  // also if it comes before there is a handler
+  EXPECT_EQ(names(), (std::vector<std::string>{"in.ply", "large.ply"}));
+}
+
+TEST_F(Reconstruct, TheProgramStandsAloneToo) {
+  RunSetup setup;
+  setup.folder = at("");
+  const Ran ran = run_program(RFSMOOTH_RECONSTRUCT, {"in.ply", "out.ply"}, setup);
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  EXPECT_TRUE(there("out.ply"));
+  EXPECT_EQ(run_program(RFSMOOTH_RECONSTRUCT, {"--version"}).out, rfsmooth({"--version"}).out);
+}
+
+TEST_F(InFolder, ReconstructWithoutItsProgramSaysWhatIsMissing) {
+  std::filesystem::copy_file(RFSMOOTH_COMMAND, at("alone"));
+  RunSetup setup;
+  setup.environment = {"PATH=" + at("")};
+  const Ran ran = run_program(at("alone"), {"reconstruct", "in.ply", "out.ply"}, setup);
+  EXPECT_EQ(ran.code, 127);
+  EXPECT_EQ(ran.out, "");
+  EXPECT_THAT(ran.err, HasSubstr("rfsmooth-reconstruct is not installed"));
+  EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1);
+  EXPECT_EQ(run_program(at("alone"), {"reconstruct", "--methd", "x"}, setup).code, 2)
+      << "options are still strict";
+}
+
+}  // namespace
+}  // namespace rfsmooth::test

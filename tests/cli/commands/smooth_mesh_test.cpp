@@ -1,0 +1,185 @@
+// smooth-mesh beyond the flow: constraints from fields, refinement, ridges.
+#include <cmath>
+#include <cstring>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/cli/support/folder.h"
+
+using ::testing::HasSubstr;
+
+namespace rfsmooth::test {
+namespace {
+
+constexpr int kMeshSide = 9;
+
+/// A grid with a bump in the middle, as text: x y z and the given columns of every vertex; two triangles a
+/// cell.
+std::string bumpy_grid(
+    const std::string& properties,
+    const std::function<std::string(int, int)>& columns = [](int, int) { return ""; }) {
+  std::string text = "ply\nformat ascii 1.0\nelement vertex " + std::to_string(kMeshSide * kMeshSide) +
+                     "\nproperty double x\nproperty double y\nproperty double z\n" + properties +
+                     "element face " + std::to_string(2 * (kMeshSide - 1) * (kMeshSide - 1)) +
+                     "\nproperty list uchar int vertex_indices\nend_header\n";
+  for (int i = 0; i < kMeshSide; ++i)
+    for (int j = 0; j < kMeshSide; ++j)
+      text += std::to_string(i) + " " + std::to_string(j) + " " +
+              std::to_string(std::exp(-0.3 * ((i - 4) * (i - 4) + (j - 4) * (j - 4)))) + columns(i, j) + "\n";
+  for (int i = 0; i + 1 < kMeshSide; ++i)
+    for (int j = 0; j + 1 < kMeshSide; ++j) {
+      const int a = i * kMeshSide + j, b = a + 1, c = a + kMeshSide, d = c + 1;
+      for (const auto& f : {std::array{a, c, b}, std::array{b, c, d}})
+        text += "3 " + std::to_string(f[0]) + " " + std::to_string(f[1]) + " " + std::to_string(f[2]) + "\n";
+    }
+  return text;
+}
+
+/// The numbers of the rows behind the header of an ascii PLY.
+std::vector<std::vector<double>> rows_of(const std::string& ply, std::size_t n) {
+  std::istringstream in(ply.substr(ply.find("end_header\n") + 11));
+  std::vector<std::vector<double>> rows;
+  std::string line;
+  while (rows.size() < n && std::getline(in, line)) {
+    std::istringstream words(line);
+    std::vector<double> row;
+    for (double v; words >> v;) row.push_back(v);
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+class SmoothMesh : public InFolder {
+ protected:
+  std::vector<std::vector<double>> smoothed(const std::string& in, std::vector<std::string> options,
+                                            std::size_t rows = kMeshSide * kMeshSide) {
+    put("in.ply", in);
+    options.insert(options.begin(), {"smooth-mesh", "in.ply", "out.ply", "--force"});
+    const Ran ran = run(options);
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    return rows_of(take("out.ply"), rows);
+  }
+};
+
+TEST_F(SmoothMesh, StrengthFieldHoldsBackAndFixedFieldFixes) {
+  const auto before = rows_of(bumpy_grid(""), kMeshSide * kMeshSide);
+  const auto half = smoothed(
+      bumpy_grid("property float s\n", [](int i, int) { return i < 4    ? " 0"
+                                                               : i == 4 ? " 0.5"
+                                                                        : " 1"; }),
+      {"--flow", "laplacian", "--iterations", "1", "--strength-field", "s"});
+  const auto whole = smoothed(bumpy_grid(""), {"--flow", "laplacian", "--iterations", "1"});
+  for (std::size_t v = 0; v < before.size(); ++v) {
+    const double s = v / kMeshSide < 4 ? 0 : v / kMeshSide == 4 ? 0.5 : 1;
+    for (std::size_t c = 0; c < 3; ++c)
+      EXPECT_NEAR(half[v][c], before[v][c] + s * (whole[v][c] - before[v][c]), 1e-6) << v;
+  }
+  const auto fixed =
+      smoothed(bumpy_grid("property uchar keep\n", [](int i, int j) { return i == j ? " 1" : " 0"; }),
+               {"--flow", "implicit", "--fixed-field", "keep"});
+  for (std::size_t v = 0; v < before.size(); ++v) {
+    if (v / kMeshSide == v % kMeshSide) {
+      EXPECT_EQ(fixed[v][2], before[v][2]) << v;
+    }
+  }
+  EXPECT_NE(fixed[3 * kMeshSide + 4][2], before[3 * kMeshSide + 4][2]);
+}
+
+TEST_F(SmoothMesh, DenoiseTakesStrengthsFromAFieldToo) {
+  const std::string in = bumpy_grid("property float s\n", [](int i, int) { return i < 4 ? " 0" : " 1"; });
+  put("in.ply", in);
+  for (const char* flow : {"hc", "implicit"}) {
+    const Ran ran = run({"denoise", "in.ply", "out.ply", "--force", "--flow", flow, "--strength-field", "s"});
+    ASSERT_EQ(ran.code, 0) << ran.err;
+    const auto before = rows_of(in, kMeshSide * kMeshSide),
+               after = rows_of(take("out.ply"), kMeshSide * kMeshSide);
+    double moved = 0;
+    for (std::size_t v = 0; v < before.size(); ++v) {
+      if (v / kMeshSide < 4) {
+        EXPECT_EQ(after[v], before[v]) << v;
+      }
+      moved = std::max(moved, std::abs(after[v][2] - before[v][2]));
+    }
+    EXPECT_GT(moved, 0.01) << flow;
+  }
+  EXPECT_EQ(run({"denoise", "in.ply", "new.ply", "--strength-field", "t"}).code, 2);
+}
+
+TEST_F(SmoothMesh, AxisAndPlaneFieldsLetVerticesSlide) {
+  const auto before = rows_of(bumpy_grid(""), kMeshSide * kMeshSide);
+  const std::string in = bumpy_grid("property int a\nproperty int p\n", [](int i, int) {
+    return std::string(i < 4 ? " 1" : " 0") + (i > 4 ? " 1" : " 0");
+  });
+  const auto after = smoothed(in, {"--flow", "laplacian", "--iterations", "3", "--axis-field", "a",
+                                   "--plane-field", "p", "--slide-direction", "0,0,2"});
+  for (std::size_t v = 0; v < before.size(); ++v) {
+    if (v / kMeshSide < 4) {
+      EXPECT_EQ(after[v][0], before[v][0]) << v;
+      EXPECT_EQ(after[v][1], before[v][1]) << v;
+    }
+    if (v / kMeshSide > 4) {
+      EXPECT_EQ(after[v][2], before[v][2]) << v;
+    }
+  }
+}
+
+TEST_F(SmoothMesh, WrongFieldsAreToldBeforeAnythingIsWritten) {
+  put("in.ply", bumpy_grid("property float s\n", [](int, int) { return " 2"; }));
+  const Ran range = run({"smooth-mesh", "in.ply", "out.ply", "--strength-field", "s"});
+  EXPECT_EQ(range.code, 2);
+  EXPECT_THAT(range.err, HasSubstr("found 2 at point 0"));
+  const Ran name = run({"smooth-mesh", "in.ply", "out.ply", "--fixed-field", "t"});
+  EXPECT_EQ(name.code, 2);
+  EXPECT_THAT(name.err, HasSubstr("x, y, z, s"));
+  const Ran normals = run({"smooth-mesh", "in.ply", "out.ply", "--axis-field", "s"});
+  EXPECT_EQ(normals.code, 2);
+  EXPECT_THAT(normals.err, HasSubstr("nx"));
+  EXPECT_FALSE(there("out.ply"));
+}
+
+TEST_F(SmoothMesh, RefineQuadruplesTheFacesThroughTheGivenVertices) {
+  const auto before = rows_of(bumpy_grid(""), kMeshSide * kMeshSide);
+  put("in.ply", bumpy_grid(""));
+  const Ran ran =
+      run({"smooth-mesh", "in.ply", "fine.ply", "--iterations", "0", "--refine", "1", "--encoding", "ascii"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  const nlohmann::json in = nlohmann::json::parse(run({"info", "--json", "fine.ply"}).out);
+  EXPECT_EQ(in["points"], (2 * kMeshSide - 1) * (2 * kMeshSide - 1));
+  const auto after = rows_of(take("fine.ply"), before.size());
+  for (std::size_t v = 0; v < before.size(); ++v) EXPECT_EQ(after[v], before[v]) << v;
+}
+
+TEST_F(SmoothMesh, RidgesAreWrittenAsAField) {
+  // The top of the bump is the only place where the larger curvature has a maximum both ways.
+  const auto after = smoothed(bumpy_grid(""), {"--iterations", "0", "--ridges", "--ridge-curvature", "0.3"});
+  ASSERT_EQ(after[0].size(), 4u);
+  int marked = 0;
+  for (const auto& row : after) marked += row[3] != 0;
+  EXPECT_GT(marked, 0);
+  EXPECT_EQ(after[0][3], 0);
+  EXPECT_EQ(after[4 * kMeshSide + 4][3], 1);
+
+  // The same with a third of the faces turned over.
+  std::string mixed = bumpy_grid("");
+  std::istringstream lines(mixed.substr(mixed.find("end_header\n") + 11));
+  std::string text = mixed.substr(0, mixed.find("end_header\n") + 11), line;
+  for (int row = 0; std::getline(lines, line); ++row) {
+    std::istringstream words(line);
+    std::string n, a, b, c;
+    words >> n >> a >> b >> c;
+    text +=
+        row >= kMeshSide * kMeshSide && row % 3 == 0 ? n + " " + a + " " + c + " " + b + "\n" : line + "\n";
+  }
+  const auto again = smoothed(text, {"--iterations", "0", "--ridges", "--ridge-curvature", "0.3"});
+  bool same = true, opposite = true;  // an open sheet has no outside
+  for (std::size_t v = 0; v < after.size(); ++v) {
+    same = same && again[v][3] == after[v][3];
+    opposite = opposite && (again[v][3] != 0) == (after[v][3] != 0);
+  }
+  EXPECT_TRUE(same || opposite);
+}
+
+}  // namespace
+}  // namespace rfsmooth::test

@@ -1,0 +1,72 @@
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include <gtest/gtest.h>
+
+#include <rfsmooth/cloud_file.h>
+
+using namespace rfsmooth;
+
+namespace {
+
+const char* const kFile =
+    "ply\nformat ascii 1.0\ncomment a tetrahedron\nelement vertex 4\nproperty float x\nproperty float y\n"
+    "property float z\nproperty uchar label\nelement face 1\nproperty list uchar int vertex_indices\n"
+    "end_header\n0 0 0 7\n1 0 0 8\n0 1 0 9\n0.5 0.5 1.50 10\n4 0 1 2 3\n";
+
+TEST(CloudFile, ComesBackByteForByte) {
+  const auto file = CloudFile::parse(kFile, "mesh.ply");
+  ASSERT_TRUE(file.ok());
+  EXPECT_EQ(file.value().format(), Format::ply);
+  EXPECT_EQ(file.value().encoding(), Encoding::ascii);
+  EXPECT_EQ(file.value().size(), 4U);
+  EXPECT_EQ(file.value().extent(), (std::array<std::size_t, 2>{4, 1}));
+  EXPECT_EQ(file.value().serialize().value(), kFile);
+}
+
+TEST(CloudFile, OnlyWhatMovedChanges) {
+  auto file = CloudFile::parse(kFile, "mesh.ply").value();
+  std::vector<double> xyz = file.positions();
+  ASSERT_EQ(xyz.size(), 12U);
+  EXPECT_EQ(xyz[11], 1.5);
+  xyz[3] = 2;
+  file.set_positions(xyz.data());
+  std::string expected = kFile;
+  expected.replace(expected.find("\n1 0 0 8"), 2, "\n2");
+  EXPECT_EQ(file.serialize().value(), expected);
+}
+
+TEST(CloudFile, FieldsAndFacesAreReadAndWritten) {
+  auto file = CloudFile::parse(kFile, "mesh.ply").value();
+  EXPECT_EQ(file.field_names(), (std::vector<std::string>{"x", "y", "z", "label"}));
+  EXPECT_EQ(file.field("label").value(), (std::vector<double>{7, 8, 9, 10}));
+  EXPECT_FALSE(file.field("colour").has_value());
+  EXPECT_EQ(file.faces().value(), (std::vector<Face>{{0, 1, 2}, {0, 2, 3}}));
+  ASSERT_TRUE(file.set_field("noise", {0, 1, 2, 3}).ok());
+  EXPECT_EQ(file.field_names().back(), "noise");
+  EXPECT_EQ(file.set_field("label", {0.5, 0, 0, 0}).error().code, ErrorCode::usage);
+  EXPECT_THROW((void)file.set_field("noise", {1}), std::invalid_argument);
+  const CloudFile copy = file;
+  file.select({0, 3});
+  EXPECT_EQ(file.size(), 2U);
+  EXPECT_EQ(copy.size(), 4U);
+  EXPECT_EQ(file.field("noise").value(), (std::vector<double>{0, 3}));
+}
+
+TEST(CloudFile, AFileOnDiskIsReplacedOnlyWhenAskedTo) {
+  const auto path = std::filesystem::temp_directory_path() / "rfsmooth_cloud_file_test.xyz";
+  std::filesystem::remove(path);
+  const double xyz[] = {0, 0, 0, 1, 2, 3};
+  const CloudFile file = CloudFile::of_points(xyz, 2);
+  ASSERT_TRUE(file.write(path).ok());
+  EXPECT_EQ(file.write(path).error().code, ErrorCode::cannot_write);
+  WriteOptions replace;
+  replace.force = true;
+  EXPECT_TRUE(file.write(path, replace).ok());
+  EXPECT_EQ(CloudFile::read(path).value().positions(), std::vector<double>(xyz, xyz + 6));
+  std::filesystem::remove(path);
+  EXPECT_EQ(CloudFile::read(path).error().code, ErrorCode::input_unreadable);
+}
+
+}  // namespace

@@ -1,0 +1,76 @@
+#include "pipeline/surface/hole_filling.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include <gtest/gtest.h>
+
+#include "pipeline/surface/topology.h"
+
+using namespace rfsmooth;
+using namespace rfsmooth::pipeline;
+
+namespace {
+
+/// A 20 x 20 grid of squares, each two faces that look up, without the squares that `missing` names.
+Mesh grid(const std::function<bool(int, int)>& missing) {
+  Mesh mesh;
+  for (int y = 0; y <= 20; ++y)
+    for (int x = 0; x <= 20; ++x) mesh.positions.emplace_back(x, y, 0.1 * std::sin(x + 2.0 * y));
+  const auto at = [](int x, int y) { return Index(21 * y + x); };
+  for (int y = 0; y < 20; ++y)
+    for (int x = 0; x < 20; ++x) {
+      if (missing(x, y)) continue;
+      mesh.faces.push_back({at(x, y), at(x + 1, y), at(x + 1, y + 1)});
+      mesh.faces.push_back({at(x, y), at(x + 1, y + 1), at(x, y + 1)});
+    }
+  rebuild_adjacency(mesh, {});
+  return mesh;
+}
+
+TEST(FillHoles, ASlitIsClosedAndTheRimOfTheSheetIsNot) {
+  Mesh mesh = grid([](int x, int y) { return y == 7 && x > 4 && x < 15; });
+  EXPECT_EQ(topology(mesh.positions.size(), mesh.faces).boundary_loops, 2u);
+  EXPECT_EQ(fill_holes(mesh, 2, {}), 1u);
+  const Topology after = topology(mesh.positions.size(), mesh.faces);
+  EXPECT_EQ(after.boundary_loops, 1u);
+  EXPECT_EQ(after.boundary_edges, 80u);
+  EXPECT_TRUE(after.manifold()) << "new faces look up as their neighbours do";
+  EXPECT_EQ(after.faces, 2u * 20 * 20) << "the slit is full again";
+  EXPECT_TRUE(check(mesh).empty());
+}
+
+TEST(FillHoles, AWideGapStaysOpen) {
+  const auto gap = [](int x, int y) { return x > 5 && x < 12 && y > 5 && y < 12; };
+  Mesh mesh = grid(gap);
+  const auto before = mesh.faces;
+  EXPECT_EQ(fill_holes(mesh, 4, {}), 0u);
+  EXPECT_EQ(mesh.faces, before);
+  EXPECT_EQ(fill_holes(mesh, 9, {}), 1u);
+  for (std::size_t f = before.size(); f < mesh.faces.size(); ++f)
+    for (std::size_t k = 0; k < 3; ++k)
+      EXPECT_LE((mesh.positions[mesh.faces[f][k]] - mesh.positions[mesh.faces[f][(k + 1) % 3]]).norm(), 9);
+}
+
+TEST(FillHoles, NoEdgeOfTheSurfaceIsUsedAgain) {
+  // A square hole whose one diagonal is an edge already: a flap stands on it.
+  Mesh mesh = grid([](int x, int y) { return x == 9 && y == 9; });
+  const Index a = 21 * 9 + 9, c = 21 * 10 + 10;
+  mesh.positions.emplace_back(9.5, 9.5, 5);
+  mesh.faces.push_back({a, c, Index(mesh.positions.size() - 1)});
+  rebuild_adjacency(mesh, {});
+  fill_holes(mesh, 2, {});
+  EXPECT_EQ(topology(mesh.positions.size(), mesh.faces).crowded_edges, 0u);
+}
+
+TEST(FillHoles, AnOpenTetrahedronIsClosed) {
+  Mesh mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  mesh.faces = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}};
+  rebuild_adjacency(mesh, {});
+  EXPECT_EQ(fill_holes(mesh, 1.5, {}), 1u);
+  EXPECT_TRUE(topology(4, mesh.faces).closed_manifold());
+}
+
+}  // namespace

@@ -1,0 +1,116 @@
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "base/parallel.h"
+#include "rfs_mesh/fit/local_surface.h"
+#include "tests/support/shapes.h"
+
+using namespace rfsmooth;
+using namespace rfsmooth::rfs_mesh;
+
+namespace {
+
+constexpr int kNear = 24;
+
+Positions with_noise(Positions points, double sigma) {
+  std::mt19937_64 engine(7);
+  std::normal_distribution<double> normal(0, sigma);
+  for (auto& p : points) {
+    const double x = normal(engine), y = normal(engine), z = normal(engine);
+    p += Eigen::Vector3d(x, y, z);
+  }
+  return points;
+}
+
+std::vector<LocalSurface> shared(const Positions& points, std::size_t m, double sigma) {
+  const SpatialIndex index(points, {});
+  return shared_local_surfaces(index, index.nearest(kNear, {}), {sigma, m}, kNear, {});
+}
+
+TEST(SharedSurface, AQuadricIsReproduced) {
+  // z = x^2 - x y on a plane's sample: whatever group a point is in, the quadric through it is this one.
+  Positions points = test::random_points(test::plane(), 3000, 1);
+  for (auto& p : points) p[2] = p[0] * p[0] - p[0] * p[1];
+  const auto surfaces = shared(points, 48, 1e-4);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto& p = points[i];
+    const Eigen::Vector3d truth = Eigen::Vector3d(-2 * p[0] + p[1], p[0], 1).normalized();
+    EXPECT_LT((surfaces[i].shadow - p).norm(), 2e-3) << i;
+    EXPECT_GT(std::abs(surfaces[i].normal.dot(truth)), 0.99) << i;
+  }
+}
+
+TEST(SharedSurface, APlaneIsReproducedExactly) {
+  const Positions points = test::random_points(test::plane(), 1000, 2);
+  for (const LocalSurface& s : shared(points, 48, 1e-3)) {
+    EXPECT_NEAR(std::abs(s.normal[2]), 1, 1e-12);
+    EXPECT_NEAR(s.shadow[2], 0, 1e-12);
+    EXPECT_NEAR(s.curvature, 0, 1e-8);
+  }
+}
+
+class SharedOnNoisySphere : public testing::TestWithParam<std::pair<double, int>> {};
+
+TEST_P(SharedOnNoisySphere, IsAsGoodAsAQuadricForEachPoint) {
+  const auto [noise, m] = GetParam();
+  const test::Shape sphere = test::unit_sphere();
+  const Positions clean = test::poisson_points(sphere, 4000, 3);
+  const double sigma = noise * std::sqrt(sphere.area / double(clean.size()));
+  const Positions points = with_noise(clean, sigma);
+  const SpatialIndex index(points, {});
+  const auto own = local_surfaces(points, index.nearest(m, {}), {});
+  const auto together = shared(points, std::size_t(m), sigma);
+  const auto errors = [&](const std::vector<LocalSurface>& surfaces) {
+    double off = 0, tilt = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      off += std::pow(surfaces[i].shadow.norm() - 1, 2);
+      tilt += 1 - std::abs(surfaces[i].normal.dot(points[i].normalized()));
+    }
+    return std::pair(off, tilt);
+  };
+  EXPECT_LE(errors(together).first, errors(own).first);
+  EXPECT_LE(errors(together).second, 1.2 * errors(own).second);
+}
+
+INSTANTIATE_TEST_SUITE_P(Noise, SharedOnNoisySphere,
+                         testing::Values(std::pair(0.5, 24), std::pair(1.0, 96), std::pair(2.0, 192)));
+
+TEST(SharedSurface, SheetsStayApart) {
+  // Two sheets three spacings apart, noise of 0.3: nearly every shadow is on its own side.
+  constexpr double kUnit = 0.02;
+  Positions clean;
+  for (const double z : {0.0, 3 * kUnit})
+    for (Eigen::Vector3d p : test::poisson_points(test::plane(), 2500, z == 0 ? 1 : 2)) {
+      p[2] = z;
+      clean.push_back(p);
+    }
+  const auto surfaces = shared(with_noise(clean, 0.3 * kUnit), 24, 0.3 * kUnit);
+  std::size_t strayed = 0;
+  for (std::size_t i = 0; i < clean.size(); ++i)
+    strayed += std::abs(surfaces[i].shadow[2] - clean[i][2]) > 1.5 * kUnit;
+  EXPECT_LT(double(strayed), 0.001 * double(clean.size()));
+}
+
+TEST(SharedSurface, SameBytesForAnyNumberOfThreads) {
+  const Positions points = with_noise(test::random_points(test::torus(), 4000, 5), 0.03);
+  const SpatialIndex index(points, {});
+  const NeighborTable near = index.nearest(kNear, {});
+  const auto run = [&](int threads) {
+    Context context;
+    context.threads = threads;
+    std::vector<LocalSurface> surfaces;
+    in_arena(context, [&] { surfaces = shared_local_surfaces(index, near, {0.03, 96}, kNear, context); });
+    return surfaces;
+  };
+  const auto one = run(1);
+  for (const int threads : {2, 4, 7}) {
+    const auto many = run(threads);
+    for (std::size_t i = 0; i < points.size(); ++i)
+      ASSERT_TRUE(one[i].shadow == many[i].shadow && one[i].normal == many[i].normal) << i;
+  }
+}
+
+}  // namespace

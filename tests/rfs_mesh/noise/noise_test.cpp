@@ -1,0 +1,257 @@
+#include "rfs_mesh/noise/noise.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include "tests/support/sanitized.h"
+#include "tests/support/shapes.h"
+
+using namespace rfsmooth;
+using rfs_mesh::measure_noise;
+using rfs_mesh::NoiseField;
+using rfs_mesh::SpatialIndex;
+
+namespace {
+
+/// 10,000 points of the unit sphere, off it along the normal by sigma(point) x a normal number.
+Positions noisy_sphere(const std::function<double(const Eigen::Vector3d&)>& sigma, bool isotropic) {
+  std::mt19937_64 engine(5);
+  std::normal_distribution<double> normal;
+  Positions points;
+  const test::Shape sphere = test::unit_sphere();
+  for (int i = 0; i < 10000; ++i) {
+    const Eigen::Vector3d p = sphere.sample(engine);
+    const Eigen::Vector3d noise(normal(engine), normal(engine), normal(engine));
+    points.emplace_back(p + sigma(p) * (isotropic ? noise : Eigen::Vector3d(noise.x() * p)));
+  }
+  return points;
+}
+
+NoiseField measured(const Positions& points, int threads = 0) {
+  Context context;
+  context.threads = threads;
+  const SpatialIndex index(points, context);
+  return measure_noise(index, context);
+}
+
+TEST(Noise, IsMeasuredOnASphereFromATenthToTwoSpacings) {
+  const double spacing = std::sqrt(4 * M_PI / 10000);
+  for (const bool isotropic : {true, false})
+    for (const double share : {0.1, 0.3, 1.0, 2.0}) {
+      if (test::kSanitized && isotropic != (share == 0.3)) continue;
+      const double sigma = share * spacing;
+      const NoiseField noise = measured(noisy_sphere([&](const auto&) { return sigma; }, isotropic));
+      EXPECT_NEAR(noise.sigma / sigma, 1, 0.15) << share << " spacings, isotropic " << isotropic;
+    }
+}
+
+TEST(Noise, TheFieldFollowsNoiseThatGrowsAcrossTheCloud) {
+  const double spacing = std::sqrt(4 * M_PI / 10000);
+  const auto sigma = [&](const Eigen::Vector3d& p) { return spacing * (0.5 + 0.3 * (p.z() + 1)); };
+  const Positions points = noisy_sphere(sigma, false);
+  const NoiseField noise = measured(points);
+  ASSERT_EQ(noise.local.size(), points.size());
+  double low = 0, high = 0, low_true = 0, high_true = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const bool upper = points[i].z() > 0.5, lower = points[i].z() < -0.5;
+    (upper ? high : low) += upper || lower ? noise.local[i] : 0;
+    (upper ? high_true : low_true) += upper || lower ? sigma(points[i].normalized()) : 0;
+  }
+  EXPECT_NEAR(low / low_true, 1, 0.25);
+  EXPECT_NEAR(high / high_true, 1, 0.25);
+}
+
+/// 100 x 100 points over [0, 1]^2, jittered, with normal noise of sigma(x) along z.
+Positions noisy_plane(const std::function<double(double)>& sigma) {
+  std::mt19937_64 engine(8);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> jitter(-0.3, 0.3);
+  Positions points;
+  for (int i = 0; i < 100; ++i)
+    for (int j = 0; j < 100; ++j) {
+      const double x = (i + 0.5 + jitter(engine)) / 100, y = (j + 0.5 + jitter(engine)) / 100;
+      points.emplace_back(x, y, sigma(x) * normal(engine));
+    }
+  return points;
+}
+
+TEST(Noise, OfOneHalfOfAPlaneIsSeenThereAndNotInTheOther) {
+  const NoiseField noise = measured(noisy_plane([](double x) { return x < 0.5 ? 0.002 : 0.006; }));
+  const Positions points = noisy_plane([](double) { return 0; });
+  double calm = 0, loud = 0;
+  std::size_t calms = 0, louds = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (points[i].x() < 0.4) calm += noise.local[i], ++calms;
+    if (points[i].x() > 0.6) loud += noise.local[i], ++louds;
+  }
+  EXPECT_NEAR(calm / double(calms) / 0.002, 1, 0.15);
+  EXPECT_NEAR(loud / double(louds) / 0.006, 1, 0.15);
+}
+
+TEST(Noise, AlongARayIsLessWhereTheRayGrazes) {
+  // A scanner far away along z: what is seen along the normal is |cos|, here alike on both sides of the
+  // sphere.
+  const double sigma = std::sqrt(4 * M_PI / 10000);
+  std::mt19937_64 engine(9);
+  std::normal_distribution<double> normal;
+  const test::Shape sphere = test::unit_sphere();
+  Positions points;
+  std::vector<double> truth;
+  for (int i = 0; i < 10000; ++i) {
+    const Eigen::Vector3d p = sphere.sample(engine);
+    points.emplace_back(p + sigma * normal(engine) * Eigen::Vector3d::UnitZ());
+    truth.push_back(sigma * std::abs(p.z()));
+  }
+  const NoiseField noise = measured(points);
+  std::vector<double> ratios;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (truth[i] > 0.2 * sigma) ratios.push_back(std::log(noise.local[i] / truth[i]));
+  // Up to a common factor: the measured figure is of the calmer places. Of a constant field 0.34.
+  const auto median = [](std::vector<double> v) {
+    std::nth_element(v.begin(), v.begin() + std::ptrdiff_t(v.size() / 2), v.end());
+    return v[v.size() / 2];
+  };
+  const double middle = median(ratios);
+  for (double& r : ratios) r = std::abs(r - middle);
+  EXPECT_LT(median(ratios), 0.22);
+}
+
+TEST(Noise, OfEvenNoiseTheFieldIsNearlyConstant) {
+  const NoiseField noise = measured(noisy_plane([](double) { return 0.005; }));
+  for (const double sigma : noise.local) EXPECT_NEAR(sigma / 0.005, 1, 0.35);
+  std::size_t near = 0;
+  for (const double sigma : noise.local) near += std::abs(sigma / 0.005 - 1) < 0.12 ? 1 : 0;
+  EXPECT_GT(double(near), 0.8 * double(noise.local.size()));
+}
+
+TEST(Noise, BesideASecondSheetIsThatOfOneSheet) {
+  // Two sheets fifteen sigma apart, nearer than the sixteenth neighbour.
+  Positions points = noisy_plane([](double) { return 0.002; });
+  const Positions other = noisy_plane([](double) { return 0.0019; });
+  for (const auto& p : other) points.emplace_back(p.y(), p.x(), p.z() + 0.03);
+  EXPECT_NEAR(measured(points).sigma / 0.002, 1, 0.2);
+}
+
+TEST(Noise, DoesNotDependOnTheOrderOfThePointsButForTheSites) {
+  Positions points = noisy_plane([](double) { return 0.004; });
+  const double here = measured(points).sigma;
+  std::mt19937_64 engine(3);
+  std::shuffle(points.begin(), points.end(), engine);
+  EXPECT_NEAR(measured(points).sigma / here, 1, 0.1);
+}
+
+TEST(Noise, ShapeThatGrowsWithTheNeighbourhoodIsTakenOff) {
+  // Waves of 12 spacings: what a quadric leaves of them at 16 points is above the noise of a tenth spacing.
+  Positions points = noisy_plane([](double) { return 0.001; });
+  for (auto& p : points) p.z() += 0.015 * std::sin(52 * p.x()) * std::sin(52 * p.y());
+  const NoiseField noise = measured(points);
+  EXPECT_LT(noise.sigma, 0.0015);
+  EXPECT_GT(noise.sigma, 0.0005);
+  EXPECT_GT(noise.shape, 0.1);
+}
+
+/// A depth image of 120 x 120 points a unit apart: a curved surface with normal noise, depths in steps.
+Positions depth_image(double slope, double step, double sigma) {
+  std::mt19937_64 engine(6);
+  std::normal_distribution<double> normal;
+  Positions points;
+  for (int i = 0; i < 120; ++i)
+    for (int j = 0; j < 120; ++j) {
+      const double bow = 0.002 * ((i - 60) * (i - 60) + (j - 60) * (j - 60));
+      const double z = slope * i + 0.03 * j + bow + sigma * normal(engine);
+      points.emplace_back(i, j, step * std::round(z / step));
+    }
+  return points;
+}
+
+TEST(Noise, OfDepthsInStepsIsTheirRoundingToo) {
+  // Around most points the sixteen nearest lie on one step or two: within a step there is no noise at all.
+  for (const double step : {0.5, 1.2})
+    for (const double slope : {0.02, 0.1, 0.5}) {
+      if (test::kSanitized && slope != 0.1) continue;
+      const double truth = std::hypot(step / 4, step / std::sqrt(12)) / std::sqrt(1 + slope * slope);
+      const NoiseField noise = measured(depth_image(slope, step, step / 4));
+      EXPECT_LT(noise.sigma / truth, 1.2) << step << " " << slope;
+      EXPECT_GT(noise.sigma / truth, 0.65) << step << " " << slope;
+    }
+}
+
+TEST(Noise, OfScanLinesRoundedToTenthsIsThatAcrossThem) {
+  std::mt19937_64 engine(7);
+  std::normal_distribution<double> normal;
+  for (const double sigma : {0.05, 0.2}) {
+    Positions points;
+    for (int i = 0; i < 80; ++i)
+      for (int j = 0; j < 300; ++j) {
+        Eigen::Vector3d p(1.5 * i, 0.3 * j, 0.0001 * j * j + sigma * normal(engine));
+        for (int axis = 0; axis < 3; ++axis) p[axis] = 0.1 * std::round(10 * p[axis]);
+        points.push_back(p);
+      }
+    EXPECT_NEAR(measured(points).sigma / std::hypot(sigma, 0.1 / std::sqrt(12)), 1, 0.2) << sigma;
+  }
+}
+
+TEST(Noise, IsOfTheSurfaceNotOfWhereThePointsAre) {
+  // A third of the points within two spacings, as beside a scanner, and without noise.
+  Positions points = noisy_plane([](double) { return 0.0015; });
+  std::mt19937_64 engine(4);
+  std::uniform_real_distribution<double> offset(2, 2.02);
+  for (int i = 0; i < 5000; ++i) points.emplace_back(offset(engine), offset(engine), 0);
+  EXPECT_NEAR(measured(points).sigma / 0.0015, 1, 0.2);
+}
+
+TEST(Noise, OfTwoCleanSheetsTwoSpacingsApartIsNotTheirDistance) {
+  Positions points = noisy_plane([](double) { return 0; });
+  for (const auto& p : noisy_plane([](double) { return 0; })) points.emplace_back(p.y(), p.x(), 0.02);
+  EXPECT_LT(measured(points).sigma, 0.0005);
+}
+
+TEST(Spacing, FollowsTheDensityAndIsExactOnAGrid) {
+  Positions points;
+  for (int i = 0; i < 60; ++i)
+    for (int j = 0; j < 60; ++j) {
+      points.emplace_back(i, j, 0);
+      points.emplace_back(1000 + 3 * i, 3 * j, 0);
+    }
+  const Context context;
+  const SpatialIndex index(points, context);
+  const std::vector<double> spacing = rfs_mesh::measure_spacing(index, context);
+  ASSERT_EQ(spacing.size(), points.size());
+  for (std::size_t i = 0; i < points.size(); ++i)
+    EXPECT_NEAR(spacing[i], points[i].x() < 500 ? 1 : 3, 1e-12) << i;
+}
+
+TEST(Noise, ScalesAndTurnsWithTheCloud) {
+  const Positions points = noisy_sphere([](const auto&) { return 0.02; }, true);
+  const NoiseField here = measured(points);
+  const Eigen::Matrix3d turn =
+      Eigen::AngleAxisd(1.1, Eigen::Vector3d(1, 2, -1).normalized()).toRotationMatrix();
+  Positions there = points;
+  for (auto& p : there) p = 1000 * (turn * p) + Eigen::Vector3d(5, -3, 7);
+  EXPECT_NEAR(measured(there).sigma, 1000 * here.sigma, 1e-6 * 1000 * here.sigma);
+}
+
+TEST(Noise, IsTheSameForAnyNumberOfThreads) {
+  const Positions points = noisy_sphere([](const auto&) { return 0.02; }, true);
+  const NoiseField one = measured(points, 1), four = measured(points, 4);
+  EXPECT_EQ(one.sigma, four.sigma);
+  EXPECT_EQ(one.local, four.local);
+}
+
+TEST(Noise, OfAFlatCloudIsNothingAndOfAFewPointsZero) {
+  Positions plane;
+  for (int i = 0; i < 40; ++i)
+    for (int j = 0; j < 40; ++j) plane.emplace_back(i, j + 0.3 * (i % 2), 0);
+  EXPECT_LT(measured(plane).sigma, 1e-6);
+  for (const std::size_t n : {0, 1, 2, 10}) {
+    const Positions few(plane.begin(), plane.begin() + std::ptrdiff_t(n));
+    EXPECT_EQ(measured(few).sigma, 0) << n;
+  }
+  const Positions same(100, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(measured(same).sigma, 0);
+}
+
+}  // namespace

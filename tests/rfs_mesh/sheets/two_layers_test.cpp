@@ -1,0 +1,118 @@
+#include "rfs_mesh/sheets/two_layers.h"
+
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+using namespace rfsmooth::smoothing;
+
+namespace {
+
+double middle_at(double u, double v) {
+  return 3 + 0.5 * u - v + 0.7 * u * u + 0.3 * u * v - 0.4 * v * v;
+}
+
+double apart_at(double u, double v, double apart) {
+  return apart + 0.2 * u - 0.1 * v;
+}
+
+/// What was thought of the points before.
+enum class Before { half_way, one_sheet };
+
+/// Points on two layers, `apart` from their middle, with noise.
+std::vector<LayerPoint> layers(std::size_t n, double apart, double noise, Before before, unsigned seed = 1) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> gauss;
+  std::uniform_real_distribution<double> place(-1, 1);
+  std::vector<LayerPoint> points;
+  while (points.size() < n) {
+    const double u = place(random), v = place(random), inside = 1 - (u * u + v * v);
+    if (inside <= 0) continue;
+    const double side = random() % 2 != 0 ? 1 : -1;
+    const double layer = middle_at(u, v) + side * apart_at(u, v, apart),
+                 height = layer + noise * gauss(random);
+    const double share = before == Before::half_way ? 0.75 : 0;
+    points.push_back(
+        {u, v, height, middle_at(u, v) + share * side * apart_at(u, v, apart), inside * inside, 0});
+  }
+  return points;
+}
+
+TEST(TwoLayers, FindsTheLayersInNoise) {
+  for (const unsigned seed : {1U, 2U, 3U}) {
+    auto points = layers(600, 1.9, 1, Before::half_way, seed);
+    const TwoLayers fit(points);
+    EXPECT_TRUE(fit.convincing());
+    double error = 0, weights = 0;
+    for (const LayerPoint& p : points) {
+      const double upper = middle_at(p.u, p.v) + apart_at(p.u, p.v, 1.9),
+                   lower = middle_at(p.u, p.v) - apart_at(p.u, p.v, 1.9), found = fit.nearer(p);
+      error += p.weight * std::pow(std::min(std::abs(found - upper), std::abs(found - lower)), 2);
+      weights += p.weight;
+    }
+    EXPECT_LT(error / weights, 0.1);  // of the noise's variance
+  }
+}
+
+TEST(TwoLayers, AreExactWithoutNoise) {
+  auto points = layers(300, 3, 0, Before::half_way);
+  const TwoLayers fit(points);
+  for (const LayerPoint& p : points) EXPECT_NEAR(fit.nearer(p), p.height, 1e-4);
+}
+
+TEST(TwoLayers, UpsideDownIsTheSame) {
+  auto points = layers(400, 1.9, 1, Before::half_way), turned = points;
+  for (LayerPoint& p : turned) {
+    p.height = -p.height;
+    p.estimate = -p.estimate;
+  }
+  const TwoLayers fit(points), other(turned);
+  EXPECT_EQ(fit.convincing(), other.convincing());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    EXPECT_NEAR(fit.nearer(points[i]), -other.nearer(turned[i]), 1e-9);
+    EXPECT_NEAR(points[i].upper, 1 - turned[i].upper, 1e-9);
+  }
+}
+
+TEST(TwoLayers, OneSheetHasNone) {
+  for (const double louder : {1.0, 1.5, 2.5}) {
+    auto points = layers(600, 0, louder, Before::half_way);
+    EXPECT_FALSE(TwoLayers(points).convincing()) << louder;
+  }
+}
+
+TEST(TwoLayers, FarApartOnesAndThoseThatNothingElseShowsAreLeftAlone) {
+  auto far = layers(600, 3, 1, Before::half_way), hidden = layers(600, 1.9, 1, Before::one_sheet);
+  EXPECT_FALSE(TwoLayers(far).convincing());
+  EXPECT_FALSE(TwoLayers(hidden).convincing());
+}
+
+TEST(TwoLayers, AStepIsNoWall) {
+  auto points = layers(600, 1.9, 1, Before::half_way);
+  for (LayerPoint& p : points) {
+    const double step = p.u < 0.1 ? -1.9 : 1.9, noise = p.height - p.estimate;
+    p.estimate = 0.75 * step;
+    p.height = step + 0.4 * noise;
+  }
+  EXPECT_FALSE(TwoLayers(points).convincing());
+}
+
+TEST(TwoLayers, LayersOfAnotherShapeAreNotTakenForThese) {
+  auto points = layers(600, 1.9, 0.8, Before::half_way);
+  for (LayerPoint& p : points) {
+    const double wave = 1.2 * std::sin(6 * p.u);
+    p.height += wave;
+    p.estimate += wave;
+  }
+  EXPECT_FALSE(TwoLayers(points).convincing());
+}
+
+TEST(TwoLayers, FewPointsSayNothing) {
+  auto points = layers(40, 1.9, 1, Before::half_way);
+  EXPECT_FALSE(TwoLayers(points).convincing());
+  std::vector<LayerPoint> none;
+  EXPECT_FALSE(TwoLayers(none).convincing());
+}
+
+}  // namespace

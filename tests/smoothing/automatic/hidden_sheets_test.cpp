@@ -1,0 +1,89 @@
+#include "smoothing/automatic/hidden_sheets.h"
+
+#include <cmath>
+#include <memory>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/near.h"
+
+using namespace rfsmooth;
+using namespace rfsmooth::smoothing;
+
+namespace {
+
+constexpr int kSide = 120;
+
+enum class Noise { gaussian, uniform };
+
+/// Noisy heights over a flat guide, smoothed to zero, where points of the left half truly are at +-`wall` and
+/// those of the right half have `louder` times the noise of 1. `truth`: where they are without noise.
+struct Sheet {
+  Sheet(double wall, double louder, Noise kind = Noise::gaussian) {
+    std::mt19937 random(7);
+    std::normal_distribution<double> gauss;
+    std::uniform_real_distribution<double> even(-std::sqrt(3.0), std::sqrt(3.0));
+    const auto noise = [&](std::mt19937& engine) {
+      return kind == Noise::uniform ? even(engine) : gauss(engine);
+    };
+    Positions guide, data;
+    for (int i = 0; i < kSide; ++i)
+      for (int j = 0; j < kSide; ++j) {
+        guide.emplace_back(i + 0.3 * std::sin(5.0 * j), j + 0.3 * std::cos(3.0 * i), 0);
+        const bool left = i < kSide / 3, right = i >= 2 * kSide / 3;
+        truth.push_back(left ? (random() % 2 != 0 ? wall : -wall) : 0);
+        data.push_back(guide.back());
+        data.back().z() = truth.back() + (right ? louder : 1) * noise(random);
+      }
+    field = std::make_unique<HeightField>(guide, rfs_mesh::KdTree(guide, {}), support::near_on(guide), data,
+                                          Context{});
+    height.assign(guide.size(), 0);
+    own.assign(guide.size(), 0.01F);
+  }
+
+  /// Mean squared distance to the surface: to the nearer sheet.
+  double error() const {
+    double sum = 0;
+    for (std::size_t i = 0; i < height.size(); ++i)
+      sum += std::pow(std::abs(double(height[i])) - std::abs(truth[i]), 2);
+    return sum / double(height.size());
+  }
+
+  std::unique_ptr<HeightField> field;
+  std::vector<double> truth;
+  std::vector<float> height, own;
+};
+
+TEST(HiddenSheets, PointsOfAWallThinnerThanTheNoiseGoToItsTwoSheets) {
+  for (const double measured : {1.0, 1.1}) {  // walls raise the measured noise
+    Sheet sheet(1, 1);
+    const double film = sheet.error();
+    const HiddenSheets found = split_hidden_sheets(*sheet.field, measured, sheet.height, sheet.own, {});
+    EXPECT_GT(found.evidence, 7);
+    EXPECT_NEAR(found.variance * measured * measured, 1, 0.15);
+    EXPECT_NEAR(double(found.split), kSide * kSide / 3.0, kSide * kSide / 20.0);
+    EXPECT_LT(sheet.error(), 0.2 * film);
+  }
+}
+
+TEST(HiddenSheets, LouderNoiseIsNotTakenForThem) {
+  for (const double louder : {1.2, 1.4, 1.8}) {
+    Sheet sheet(0, louder);
+    const std::vector<float> before = sheet.height;
+    const HiddenSheets found = split_hidden_sheets(*sheet.field, 1, sheet.height, sheet.own, {});
+    EXPECT_LT(found.evidence, 7) << louder;
+    EXPECT_EQ(found.split, 0u);
+    EXPECT_EQ(sheet.height, before);
+  }
+}
+
+// It is flatter than Gaussian noise, as that of two sheets is.
+TEST(HiddenSheets, UniformNoiseIsNotTakenForThem) {
+  Sheet sheet(0, 1, Noise::uniform);
+  const std::vector<float> before = sheet.height;
+  EXPECT_EQ(split_hidden_sheets(*sheet.field, 1, sheet.height, sheet.own, {}).split, 0u);
+  EXPECT_EQ(sheet.height, before);
+}
+
+}  // namespace

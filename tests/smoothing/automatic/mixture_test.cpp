@@ -1,0 +1,67 @@
+#include "smoothing/automatic/mixture.h"
+
+#include <cmath>
+#include <stdexcept>
+
+#include <gtest/gtest.h>
+
+using rfsmooth::smoothing::Mixture;
+
+namespace {
+
+using Values = std::vector<float>;
+
+TEST(Mixture, AloneTheDataAreTheirOwnMixture) {
+  const Values data{1, -2, 3};
+  Values height, own;
+  Mixture(data).average(height, own, {});
+  EXPECT_EQ(height, data);
+  EXPECT_EQ(own, Values(3, 1));
+}
+
+TEST(Mixture, LargeEvidenceDecidesAndEvidenceAddsUpAlongTheChain) {
+  Mixture mixture({0, 0, 0});
+  mixture.add({1, 1, 1}, {0.5F, 0.5F, 0.5F}, {60, -60, 60}, {});
+  mixture.add({2, 2, 2}, {0.1F, 0.1F, 0.1F}, {60, 60, -60}, {});  // in all: 120, 0, 0
+  Values height, own;
+  mixture.average(height, own, {});
+  EXPECT_NEAR(height[0], 2, 1e-9);
+  EXPECT_NEAR(own[0], 0.1, 1e-6);
+  EXPECT_GT(height[1], 0);  // the data and the second candidate, by their shares in the cloud
+  EXPECT_LT(height[1], 2);
+  EXPECT_NEAR(height[2], 1, 1e-9);
+}
+
+TEST(Mixture, WhereThereIsNoPredictionTheOthersServe) {
+  Mixture mixture({0, 0});
+  mixture.add({1, 7}, {0.5F, 0.5F}, {60, std::nanf("")}, {});
+  mixture.add({2, 2}, {0.1F, 0.1F}, {-120, 60}, {});
+  Values height, own;
+  mixture.average(height, own, {});
+  EXPECT_NEAR(height[0], 1, 1e-9);
+  EXPECT_NEAR(height[1], 2, 1e-9);
+}
+
+TEST(Mixture, TheRestOfTheCloudOutvotesFaintEvidence) {
+  const std::size_t n = 1000;
+  Values gain(n, 20), one(n, 1), zero(n, 0);
+  gain[7] = -1;  // alone, this would leave three quarters of the weight with the data
+  Mixture mixture(zero);
+  mixture.add(one, zero, gain, {});
+  Values height, own;
+  mixture.average(height, own, {});
+  EXPECT_GT(height[7], 0.9);
+  gain[7] = -30;  // but certainty counts
+  Mixture certain(zero);
+  certain.add(one, zero, gain, {});
+  certain.average(height, own, {});
+  EXPECT_LT(height[7], 0.01);
+}
+
+TEST(Mixture, StatesHowManyCandidatesItTakes) {
+  Mixture mixture({0});
+  for (int k = 0; k < 15; ++k) mixture.add({0.0F}, {0.0F}, {0.0F}, {});
+  EXPECT_THROW(mixture.add({0.0F}, {0.0F}, {0.0F}, {}), std::length_error);
+}
+
+}  // namespace
