@@ -3,6 +3,7 @@
 #include <string>
 
 #include "clouds/scanner/arguments.h"
+#include "clouds/scanner/laws.h"
 #include "clouds/scanner/sampling.h"
 #include "clouds/scanner/scan_files.h"
 #include "clouds/scanner/scanner.h"
@@ -26,6 +27,21 @@ struct SampleOptions {
     visit(OptionInfo{"sampling", "even or at random", "", 0, 0, {"poisson_disk", "uniform"}}, self.sampling);
     visit(OptionInfo{"noise", "isotropic Gaussian, standard deviation per coordinate", "x spacing", 0, 100},
           self.noise);
+  }
+};
+
+struct LawOptions {
+  std::string law = "white";
+  int points = 10000;
+  double times = 1;
+
+  template <class Self, class Visit>
+  static void describe(Self& self, Visit&& visit) {
+    OptionInfo law{"law", "of the noise", "", 0, 0};
+    for (const Law& known : laws()) law.choices.push_back(known.name);
+    visit(law, self.law);
+    visit(OptionInfo{"points", "how many; of rings about as many", "", 2, 1e7}, self.points);
+    visit(OptionInfo{"times", "all of the law's noise is larger by this factor", "", 0, 100}, self.times);
   }
 };
 
@@ -72,15 +88,19 @@ void run_scan(const Files& files, const ScannerOptions& options, std::uint64_t s
   if (!files.truth.empty()) files.write(true_cloud(returns, options, organised), files.truth);
 }
 
-/// n points of a shape of ours, or of the mesh in a file.
-Positions sample_of(const std::string& name, std::size_t n, std::uint64_t seed, Sampling sampling) {
-  if (!io::format_of_extension(name)) return sample(*find_shape(name), n, seed, sampling);
-  const auto file = value_or_throw(io::read_mesh(name, {}, {}));
+Mesh read_surface(const std::string& path) {
+  const auto file = value_or_throw(io::read_mesh(path, {}, {}));
   const std::vector<double> xyz = io::positions(file.cloud);
   Mesh mesh;
   for (std::size_t i = 0; i < xyz.size(); i += 3) mesh.positions.emplace_back(xyz[i], xyz[i + 1], xyz[i + 2]);
   mesh.faces = file.faces;
-  return sample(mesh, n, seed, sampling);
+  return mesh;
+}
+
+/// n points of a shape of ours, or of the mesh in a file.
+Positions sample_of(const std::string& name, std::size_t n, std::uint64_t seed, Sampling sampling) {
+  if (!io::format_of_extension(name)) return sample(*find_shape(name), n, seed, sampling);
+  return sample(read_surface(name), n, seed, sampling);
 }
 
 void run_sample(const Files& files, const SampleOptions& options, std::uint64_t seed) {
@@ -91,6 +111,18 @@ void run_sample(const Files& files, const SampleOptions& options, std::uint64_t 
   add_noise(noisy, options.noise * mean_spacing(clean), seed + 1);
   files.write(plain_cloud(noisy), files.out);
   if (!files.truth.empty()) files.write(plain_cloud(clean), files.truth);
+}
+
+void run_law(const Files& files, const LawOptions& options, std::uint64_t seed) {
+  value_or_throw(validate(options));
+  constexpr double kEdge = 0.02;  // facets of curved shapes are off by 5e-5
+  const bool file = io::format_of_extension(files.shape).has_value();
+  const Mesh mesh = file ? read_surface(files.shape) : find_shape(files.shape)->mesh(kEdge);
+  const Law law = scaled(*find_law(options.law), options.times);
+  const Spots spots = spread(law, mesh, std::size_t(options.points), seed);
+  const NoisyCloud cloud = add_noise(law, spots, mean_spacing(spots.points), seed + 1);
+  files.write(plain_cloud(cloud.measured), files.out);
+  if (!files.truth.empty()) files.write(plain_cloud(spots.points), files.truth);
 }
 
 void run_truth(const Files& files, const TruthOptions& options) {
@@ -107,14 +139,16 @@ int run(int argc, char** argv) {
   bool organised = false;
   ScannerOptions scanner;
   SampleOptions sampler;
+  LawOptions law;
   TruthOptions truth;
 
   const auto command = [&](const std::string& name, const std::string& help, bool cloud) {
     CLI::App* sub = app.add_subcommand(name, help);
     sub->add_option("SHAPE", files.shape,
-                    name == "sample" ? "a mesh file (.ply, .off), or sphere, torus, cube, l_part, plate, "
-                                       "wavy_sheet, two_density_sphere"
-                                     : "sphere, torus, cube, l_part, plate, wavy_sheet or two_density_sphere")
+                    name == "sample" || name == "law"
+                        ? "a mesh file (.ply, .off), or sphere, torus, cube, l_part, plate, "
+                          "wavy_sheet, two_density_sphere"
+                        : "sphere, torus, cube, l_part, plate, wavy_sheet or two_density_sphere")
         ->required();
     sub->add_option("OUT", files.out, cloud ? "cloud to write: .ply, .pcd or .xyz" : "mesh to write: .ply")
         ->required();
@@ -132,11 +166,15 @@ int run(int argc, char** argv) {
   scan_command->add_flag("--organised", organised, "keep the grid of rays, NaN where nothing was hit");
   CLI::App* sample_command = command("sample", "Spread points over a shape and add isotropic noise.", true);
   bind(*sample_command, sampler);
+  CLI::App* law_command =
+      command("law", "Points of a shape with the noise of a real scanner, law by law.", true);
+  bind(*law_command, law);
   CLI::App* truth_command = command("truth", "Write the shape itself as a mesh.", false);
   bind(*truth_command, truth);
   if (const auto ended = clouds::parse(app, argc, argv)) return *ended;
   if (*scan_command) run_scan(files, scanner, seed, organised);
   if (*sample_command) run_sample(files, sampler, seed);
+  if (*law_command) run_law(files, law, seed);
   if (*truth_command) run_truth(files, truth);
   return 0;
 }
