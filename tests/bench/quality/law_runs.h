@@ -11,10 +11,6 @@
 
 namespace rfsmooth::bench {
 
-/// The peers at the settings that their users find without looking: chosen once, for everything.
-inline constexpr const char* kFixedMls = "PCL MLS k 48";
-inline constexpr const char* kFixedJet = "CGAL jet k 24";
-
 /// What a run covers.
 struct LawPlan {
   std::vector<std::string> laws;  ///< names

@@ -17,6 +17,10 @@ struct PeerSetting {
   std::function<peers::Smoothed(const Positions& points, int threads)> run;
 };
 
+/// The peers at the settings that their users find without looking: chosen once, for everything.
+inline constexpr const char* kFixedMls = "PCL MLS k 48";
+inline constexpr const char* kFixedJet = "CGAL jet k 24";
+
 /// In the order of the issue; a `base` comes before those that build on it.
 const std::vector<PeerSetting>& peer_settings();
 

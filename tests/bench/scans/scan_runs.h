@@ -1,0 +1,44 @@
+/// A real scan, what rfsmooth and its peers make of it, and what is left on its flat places.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "tests/bench/quality/ours.h"
+#include "tests/bench/scans/flats.h"
+
+namespace rfsmooth::bench {
+
+/// A cloud as read: its finite points, each place once, around a local origin, in the file's order.
+struct Scan {
+  std::string name;
+  Positions points;
+  double spacing = 0;  ///< median distance to the nearest neighbour
+};
+
+/// At most `most` points: those nearest to the median of the coordinates. \throw Failure if it cannot be
+/// read.
+Scan read_scan(const std::filesystem::path& file, std::size_t most);
+
+/// A tool's result.
+struct Cleaned {
+  Positions points;
+  std::vector<Index> source;  ///< row of the scan of each point; empty: the same
+};
+
+/// Root mean squares, each length in the spacings of its own place.
+struct FlatError {
+  double plane = 0;   ///< distance to the patch's plane
+  double normal = 0;  ///< degrees: mean angle of the plane through the 12 nearest points to the patch's
+  double crease = 0;  ///< distance to the nearer of the two planes
+  std::size_t plane_rows = 0, crease_rows = 0;
+};
+
+FlatError measure_flats(const Flats& flats, const Scan& scan, const Cleaned& cleaned, int threads);
+
+/// One of the peers, from the store if it is there.
+Cleaned run_peer(const Scan& scan, const std::string& setting, const std::filesystem::path& cache,
+                 int threads);
+
+}  // namespace rfsmooth::bench
