@@ -11,6 +11,7 @@
 /// 0.005. Differs from the paper: (36) is garbled, this is the reading that is consistent; the paper calls
 /// the flow volume preserving, only the global one is. Normals of a one-ring are turned to the vertex's side,
 /// so faces need not agree in orientation; boundary and non-manifold vertices, where K means nothing, stay.
+#include <algorithm>
 #include <cmath>
 
 #include "base/parallel.h"
@@ -30,27 +31,39 @@ class LocalDirectionalSpeed : public Speed {
 
   void evaluate(const Mesh& mesh, Positions& speed, const Context& context) override {
     const std::size_t n = mesh.positions.size();
-    if (around_.size() != n) {
-      around_ = vertex_faces(mesh, context);
-      interior_ = interior_vertices(mesh, around_, context);
+    const Adjacency& around = fans_.faces;
+    if (around.size() != n) {
+      fans_ = fans_of(mesh, context);
+      interior_ = interior_vertices(mesh, around, context);
     }
-    const Operator op = curvature(mesh, around_, context);
+    const Operator op = curvature(mesh, around, context);
     const double h2 = op.unit;
-    Positions Hn, normal(n);
+    Positions Hn;
     apply(mesh.one_ring, op, mesh.positions, Hn, context);
-    for_each_index(context, n, [&](std::size_t i) { normal[i] = unsigned_normal(mesh, around_, Index(i)); });
+    std::vector<char> against;
+    const Positions normal = unsigned_normals(mesh, fans_, context, &against);
+    /// Whether face number f runs against the normal of its vertex i.
+    const auto opposed = [&](Index f, std::size_t i) {
+      const auto row = around[i];
+      return against[around.start[i] +
+                     std::size_t(std::lower_bound(row.begin(), row.end(), f) - row.begin())] != 0;
+    };
     speed.assign(n, Vector3d::Zero());
     for_each_index(context, n, [&](std::size_t i) {
       if (interior_[i] == 0) return;
       Vector3d b = Vector3d::Zero();
-      const auto add = [&](std::size_t j) {
-        const Vector3d part = op.mass[j] * Hn[j].squaredNorm() * normal[j];
-        b += normal[j].dot(normal[i]) < 0 ? Vector3d(-part) : part;
-      };
-      add(i);
-      for (const Index j : mesh.one_ring[i]) add(j);
+      const auto part = [&](std::size_t j) { return Vector3d(op.mass[j] * Hn[j].squaredNorm() * normal[j]); };
+      b += part(i);
+      for (const Index j : mesh.one_ring[i]) {
+        const auto row = around[i];  // its side is told by the first face that has both
+        const Index f = *std::find_if(row.begin(), row.end(), [&](Index g) {
+          const Face& face = mesh.faces[g];
+          return face[0] == j || face[1] == j || face[2] == j;
+        });
+        b += opposed(f, i) == opposed(f, j) ? part(j) : Vector3d(-part(j));
+      }
       if (!(b.norm() > 0)) return;
-      const double K = h2 * angle_deficit(mesh, around_, Index(i)) * 2 / op.mass[i];
+      const double K = h2 * angle_deficit(mesh, around, Index(i)) * 2 / op.mass[i];
       const double H2 = h2 * Hn[i].squaredNorm();
       const double w = K <= -eps_ ? 0 : K < eps_ ? std::abs(K) : (1 + K) / ((1 + H2) * K);
       // inward = -L x; a vertex moves by half an edge at most, so needles cannot blow the flow up
@@ -61,11 +74,11 @@ class LocalDirectionalSpeed : public Speed {
     });
   }
 
-  void connectivity_changed(const Mesh&, const Context&) override { around_ = {}; }
+  void connectivity_changed(const Mesh&, const Context&) override { fans_ = {}; }
 
  private:
   double eps_, lambda_;
-  Adjacency around_;
+  Fans fans_;
   std::vector<char> interior_;
 };
 

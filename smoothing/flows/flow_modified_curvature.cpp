@@ -24,24 +24,25 @@ class ModifiedCurvatureSpeed : public Speed {
         tangential_(tangential) {}
 
   void evaluate(const Mesh& mesh, Positions& speed, const Context& context) override {
-    if (faces_.size() != mesh.positions.size()) faces_ = vertex_faces(mesh, context);
+    if (fans_.faces.size() != mesh.positions.size()) fans_ = fans_of(mesh, context);
     curvature_->evaluate(mesh, speed, context);
     umbrella_->evaluate(mesh, even_, context);
+    const Positions normal = unsigned_normals(mesh, fans_, context);
     for_each_index(context, speed.size(), [&](std::size_t i) {
-      const Vector3d n = unsigned_normal(mesh, faces_, Index(i));
+      const Vector3d& n = normal[i];
       if (n != Vector3d::Zero()) speed[i] += tangential_ * (even_[i] - even_[i].dot(n) * n);
     });
   }
 
   void connectivity_changed(const Mesh& mesh, const Context& context) override {
     curvature_->connectivity_changed(mesh, context);
-    faces_ = {};
+    fans_ = {};
   }
 
  private:
   std::unique_ptr<Speed> curvature_, umbrella_;
   double tangential_;
-  Adjacency faces_;
+  Fans fans_;
   Positions even_;
 };
 

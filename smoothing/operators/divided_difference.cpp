@@ -70,13 +70,13 @@ Fan fan_of(const Mesh& mesh, const Adjacency& faces, Index i) {
 }
 
 /// (u, v) of each neighbour in row order; empty where the vertex has no tangent plane.
-std::vector<Vector2d> chart_of(const Mesh& mesh, const Adjacency& faces, Index i, std::string_view kind) {
+std::vector<Vector2d> chart_of(const Mesh& mesh, const Adjacency& faces, const Vector3d& n, Index i,
+                               std::string_view kind) {
   const Positions& x = mesh.positions;
   const auto row = mesh.one_ring[i];
   std::vector<Vector2d> chart;
   const Fan fan = kind == "tangent" ? Fan{} : fan_of(mesh, faces, i);
   if (fan.order.empty()) {
-    const Vector3d n = unsigned_normal(mesh, faces, i);
     if (n == Vector3d::Zero()) return chart;
     const Vector3d e1 = n.unitOrthogonal(), e2 = n.cross(e1);
     for (const Index j : row) chart.emplace_back(e1.dot(x[j] - x[i]), e2.dot(x[j] - x[i]));
@@ -117,7 +117,9 @@ DividedDifferences::DividedDifferences(const Mesh& mesh, std::string_view chart,
   constexpr double kRidge = 1e-4;  // of a fit whose columns are of size one
   constexpr double kTiny = 1e-12;  // keeps the fit of one or two neighbours regular
   const std::size_t n = mesh.positions.size();
-  const Adjacency faces = vertex_faces(mesh, context);
+  const Fans fans = fans_of(mesh, context);
+  const Adjacency& faces = fans.faces;
+  const Positions normal = unsigned_normals(mesh, fans, context);
   const Operator op = curvature(mesh, faces, context);
   const double h = std::sqrt(op.unit);
   coefficient_.assign(rows_.items.size(), Vector3d::Zero());
@@ -132,7 +134,7 @@ DividedDifferences::DividedDifferences(const Mesh& mesh, std::string_view chart,
           rows_.start[row[k]] +
           Index(std::lower_bound(partner.begin(), partner.end(), Index(i)) - partner.begin());
     }
-    const std::vector<Vector2d> uv = chart_of(mesh, faces, Index(i), chart);
+    const std::vector<Vector2d> uv = chart_of(mesh, faces, normal[i], Index(i), chart);
     double size = 0;
     for (const Vector2d& p : uv) size += p.squaredNorm() / double(uv.size());
     if (!(size > 0) || !std::isfinite(size)) return;
@@ -144,13 +146,13 @@ DividedDifferences::DividedDifferences(const Mesh& mesh, std::string_view chart,
       return (Vector5() << u, v, 0.5 * u * u, std::sqrt(0.5) * u * v, 0.5 * v * v).finished();
     };
     // on the second derivatives; the slope is fitted first, so that linear functions have no energy
-    Eigen::Matrix<double, 5, 5> normal =
+    Eigen::Matrix<double, 5, 5> squares =
         (Vector5() << kTiny, kTiny, kRidge, kRidge, kRidge).finished().asDiagonal();
     for (const Vector2d& p : uv) {
       const Vector5 t = terms(p);
-      normal += t * t.transpose();
+      squares += t * t.transpose();
     }
-    const Eigen::LLT<Eigen::Matrix<double, 5, 5>> factor(normal);
+    const Eigen::LLT<Eigen::Matrix<double, 5, 5>> factor(squares);
     const double unit = h * h / (size * size);
     for (std::size_t k = 0; k < row.size(); ++k) {
       const Vector5 c = factor.solve(terms(uv[k]));

@@ -19,18 +19,104 @@ using Eigen::Vector3d;
 using rfs_mesh::face_cross;
 using rfsmooth::Face;
 
-Vector3d unsigned_normal(const Mesh& mesh, const Adjacency& vertex_faces, Index i) {
-  Vector3d largest = Vector3d::Zero(), sum = Vector3d::Zero();
-  for (const Index f : vertex_faces[i]) {
-    const Vector3d cross = face_cross(mesh.positions, mesh.faces[f]);
-    if (cross.squaredNorm() > largest.squaredNorm()) largest = cross;
+namespace {
+
+/// The other two corners of a face at one of its vertices, in the face's order.
+struct Corner {
+  Index next, last;
+};
+
+Corner corner_at(const Face& face, Index i) {
+  const int k = face[0] == i ? 0 : face[1] == i ? 1 : 2;
+  return {face[(k + 1) % 3], face[(k + 2) % 3]};
+}
+
+/// Sorts the faces at one vertex into fans; fan and turned have one entry per face.
+void sort_fans(const std::vector<Corner>& corners, Index* fan, char* turned) {
+  const std::size_t m = corners.size();
+  /// The only other face at the edge to v, or m.
+  const auto partner = [&](std::size_t k, Index v) {
+    std::size_t found = m;
+    int others = 0;
+    for (std::size_t o = 0; o < m; ++o)
+      if (o != k && (corners[o].next == v || corners[o].last == v)) {
+        found = o;
+        ++others;
+      }
+    return others == 1 ? found : m;
+  };
+  std::fill_n(fan, m, kNone);
+  std::vector<std::size_t> walk;
+  Index fans = 0;
+  for (std::size_t seed = 0; seed < m; ++seed) {
+    if (fan[seed] != kNone) continue;
+    fan[seed] = fans;
+    turned[seed] = 0;
+    walk.assign(1, seed);
+    for (std::size_t at = 0; at < walk.size(); ++at)
+      for (const Index v : {corners[walk[at]].next, corners[walk[at]].last}) {
+        const std::size_t other = partner(walk[at], v);
+        if (other == m || fan[other] != kNone) continue;
+        const bool agree = (corners[other].next == v) != (corners[walk[at]].next == v);
+        fan[other] = fans;
+        turned[other] = static_cast<char>(agree ? turned[walk[at]] : 1 - turned[walk[at]]);
+        walk.push_back(other);
+      }
+    ++fans;
   }
-  for (const Index f : vertex_faces[i]) {
-    const Vector3d cross = face_cross(mesh.positions, mesh.faces[f]);
-    sum += cross.dot(largest) < 0 ? Vector3d(-cross) : cross;
-  }
-  const double length = sum.norm();
-  return length > 0 ? Vector3d(sum / length) : Vector3d(Vector3d::Zero());
+}
+
+}  // namespace
+
+Fans fans_of(const Mesh& mesh, const Context& context) {
+  Fans fans;
+  fans.faces = vertex_faces(mesh, context);
+  fans.fan.resize(fans.faces.items.size());
+  fans.turned.resize(fans.faces.items.size());
+  for_blocks(context, mesh.positions.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    std::vector<Corner> corners;
+    for (std::size_t i = begin; i < end; ++i) {
+      corners.clear();
+      for (const Index f : fans.faces[i]) corners.push_back(corner_at(mesh.faces[f], Index(i)));
+      const Index first = fans.faces.start[i];
+      sort_fans(corners, fans.fan.data() + first, fans.turned.data() + first);
+    }
+  });
+  return fans;
+}
+
+Positions unsigned_normals(const Mesh& mesh, const Fans& fans, const Context& context,
+                           std::vector<char>* against) {
+  constexpr double kRounding = 1e-6;  // far above the rounding of coordinates, far below a visible angle
+  const std::size_t n = mesh.positions.size();
+  Positions normals(n, Vector3d::Zero());
+  if (against != nullptr) against->assign(fans.faces.items.size(), 0);
+  for_blocks(context, n, 1024, [&](std::size_t begin, std::size_t end) {
+    Positions sums;
+    for (std::size_t i = begin; i < end; ++i) {
+      sums.clear();
+      double area = 0;
+      for (Index k = fans.faces.start[i]; k < fans.faces.start[i + 1]; ++k) {
+        const Vector3d cross = face_cross(mesh.positions, mesh.faces[fans.faces.items[k]]);
+        if (fans.fan[k] >= sums.size()) sums.resize(fans.fan[k] + 1, Vector3d::Zero());
+        sums[fans.fan[k]] += fans.turned[k] != 0 ? Vector3d(-cross) : cross;
+        area += cross.norm();
+      }
+      if (sums.empty()) continue;
+      Vector3d largest = sums.front();
+      for (const Vector3d& s : sums)
+        if (s.norm() > (1 + kRounding) * largest.norm()) largest = s;
+      Vector3d sum = Vector3d::Zero();
+      for (const Vector3d& s : sums)
+        if (s.norm() > 0) sum += s.dot(largest) / (s.norm() * largest.norm()) * s;
+      if (sum.norm() > kRounding * area) normals[i] = sum.normalized();
+      if (against == nullptr) continue;
+      for (Index k = fans.faces.start[i]; k < fans.faces.start[i + 1]; ++k)
+        (*against)[k] =
+            static_cast<char>((fans.turned[k] != 0) != (sums[fans.fan[k]].dot(largest) < 0) ? 1 : 0);
+    }
+  });
+  return normals;
 }
 
 std::vector<char> interior_vertices(const Mesh& mesh, const Adjacency& vertex_faces, const Context& context) {

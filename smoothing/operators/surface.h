@@ -1,5 +1,4 @@
-/// What the curvature-driven flows read off a mesh: normals that need no orientation, angle deficits, and the
-/// gradients of area and volume.
+/// What the curvature-driven flows read off a mesh: normals, angle deficits, and faces that agree.
 #pragma once
 
 #include <vector>
@@ -8,9 +7,26 @@
 
 namespace rfsmooth::smoothing {
 
-/// The unit normal of vertex i up to its sign: the sum of its faces' area vectors, each turned to the side of
-/// the largest. Zero without a face that has area. Works on meshes whose faces do not agree in orientation.
-Eigen::Vector3d unsigned_normal(const Mesh& mesh, const Adjacency& vertex_faces, Index i);
+/// The faces around each vertex, sorted into fans: faces that follow one another around the vertex across
+/// edges of exactly two faces. Within a fan it is always known which faces run against each other, however
+/// the file orders their corners and however sharp the edges are.
+struct Fans {
+  Adjacency faces;           ///< vertex_faces of the mesh
+  std::vector<Index> fan;    ///< per item of faces: which fan of its vertex it is in, from 0
+  std::vector<char> turned;  ///< per item: 1 = runs against the first face of its fan
+};
+
+/// Reads the connectivity only. O(sum of squared numbers of faces around a vertex), parallel.
+Fans fans_of(const Mesh& mesh, const Context& context);
+
+/// n unit normals, each up to its sign: the area vectors of the faces of a fan, turned to agree, summed; then
+/// the fans' sums, each times its cosine to the largest, which turns it to that side and lets rounding decide
+/// nothing at right angles (among sums equal within 1e-6 the first is the largest). Zero where there is no
+/// face or the sum vanishes. So it does not matter in which order a file gives the corners of a face.
+/// `against`, if given: per item of fans.faces, 1 where the face runs against the normal of that vertex; two
+/// vertices of one face are on one side if they agree there.
+Positions unsigned_normals(const Mesh& mesh, const Fans& fans, const Context& context,
+                           std::vector<char>* against = nullptr);
 
 /// n: 1 where every edge at the vertex has exactly two faces, so that the angle deficit means something.
 std::vector<char> interior_vertices(const Mesh& mesh, const Adjacency& vertex_faces, const Context& context);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <map>
 #include <random>
+#include <set>
 
 #include <Eigen/Geometry>
 
@@ -25,6 +26,33 @@ Mesh finished(Mesh mesh) {
 void add_cell(Mesh& mesh, Index a, Index b, Index c, Index d) {
   mesh.faces.push_back({a, b, d});
   mesh.faces.push_back({a, d, c});
+}
+
+/// The surface of a solid made of unit cells, named by their lowest corners.
+Mesh surface_of(const std::set<std::array<int, 3>>& cells) {
+  Mesh mesh;
+  std::map<std::array<int, 3>, Index> number;
+  const auto vertex = [&](const std::array<int, 3>& at) {
+    const auto [it, fresh] = number.try_emplace(at, Index(mesh.positions.size()));
+    if (fresh) mesh.positions.emplace_back(at[0], at[1], at[2]);
+    return it->second;
+  };
+  for (const std::array<int, 3>& cell : cells)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      for (const int side : {0, 1}) {
+        std::array<int, 3> beyond = cell, a = cell;
+        beyond[axis] += side == 1 ? 1 : -1;
+        if (cells.count(beyond) > 0) continue;
+        a[axis] += side;
+        std::array<int, 3> b = a, c = a, d = a;
+        // Along u then v turns outward on the upper side, v then u on the lower.
+        const std::size_t u = (axis + (side == 1 ? 1 : 2)) % 3, v = (axis + (side == 1 ? 2 : 1)) % 3;
+        ++b[u];
+        ++c[v];
+        ++d[u], ++d[v];
+        add_cell(mesh, vertex(a), vertex(b), vertex(c), vertex(d));
+      }
+  return finished(std::move(mesh));
 }
 
 }  // namespace
@@ -65,6 +93,64 @@ Mesh torus(int around, int along, double minor) {
   const auto at = [&](int i, int j) { return Index((i % around) * along + j % along); };
   for (int i = 0; i < around; ++i)
     for (int j = 0; j < along; ++j) add_cell(mesh, at(i, j), at(i + 1, j), at(i, j + 1), at(i + 1, j + 1));
+  return finished(std::move(mesh));
+}
+
+Mesh octahedron() {
+  Mesh mesh;
+  mesh.positions = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+  mesh.faces = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
+  return finished(std::move(mesh));
+}
+
+Mesh cube(int cells) {
+  std::set<std::array<int, 3>> solid;
+  for (int x = 0; x < cells; ++x)
+    for (int y = 0; y < cells; ++y)
+      for (int z = 0; z < cells; ++z) solid.insert({x, y, z});
+  Mesh mesh = surface_of(solid);
+  for (Vector3d& p : mesh.positions) p = 2.0 / cells * p - Vector3d::Ones();
+  return mesh;
+}
+
+Mesh bracket() {
+  std::set<std::array<int, 3>> solid;
+  for (int x = 0; x < 6; ++x)
+    for (int y = 0; y < 4; ++y)
+      for (int z = 0; z < 6; ++z)
+        if ((x < 2 || z < 2) && !(x >= 3 && x < 5 && y >= 1 && y < 3)) solid.insert({x, y, z});
+  return surface_of(solid);
+}
+
+Mesh bowl(int half) {
+  Mesh mesh = grid(2 * half + 1, 2 * half + 1);
+  for (Vector3d& p : mesh.positions) {
+    p -= Vector3d(half, half, 0);
+    p.z() = (p.x() * p.x() + p.y() * p.y()) / 8;
+  }
+  return mesh;
+}
+
+Mesh moebius(int around) {
+  Mesh mesh;
+  for (int i = 0; i < around; ++i)
+    for (const double w : {-0.3, 0.3}) {
+      const double u = 2 * kPi * i / around, r = 1 + w * std::cos(u / 2);
+      mesh.positions.emplace_back(r * std::cos(u), r * std::sin(u), w * std::sin(u / 2));
+    }
+  const auto at = [&](int i, int side) {
+    return i < around ? Index(2 * i + side)
+                      : Index(1 - side);  // around the strip once, the sides are swapped
+  };
+  for (int i = 0; i < around; ++i) add_cell(mesh, at(i, 0), at(i + 1, 0), at(i, 1), at(i + 1, 1));
+  return finished(std::move(mesh));
+}
+
+Mesh finned_sphere(int levels) {
+  Mesh mesh = icosphere(levels);
+  const Face first = mesh.faces.front();
+  mesh.faces.push_back({first[0], first[1], Index(mesh.positions.size())});
+  mesh.positions.push_back(1.3 * (mesh.positions[first[0]] + mesh.positions[first[1]]) / 2);
   return finished(std::move(mesh));
 }
 
@@ -150,8 +236,21 @@ Mesh degenerate_triangles() {
 }
 
 std::vector<Mesh> all_small() {
-  return {icosphere(2),         torus(24, 12, 0.4),     grid(9, 8),         grid(9, 8, true),
-          cylinder(16, 8, 0.3), two_density_sphere(16), non_manifold_fan(), degenerate_triangles()};
+  return {icosphere(2),
+          torus(24, 12, 0.4),
+          grid(9, 8),
+          grid(9, 8, true),
+          cylinder(16, 8, 0.3),
+          two_density_sphere(16),
+          non_manifold_fan(),
+          degenerate_triangles(),
+          octahedron(),
+          cube(1),
+          cube(3),
+          bracket(),
+          bowl(4),
+          moebius(16),
+          finned_sphere(1)};
 }
 
 void add_noise(Mesh& mesh, double sigma, unsigned seed) {

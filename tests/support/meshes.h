@@ -13,6 +13,26 @@ Mesh icosphere(int levels);
 /// Torus around z: major 1, minor radius `minor`; around x along vertices. Outward faces.
 Mesh torus(int around, int along, double minor);
 
+/// Six vertices, eight equilateral faces, right angles between opposite ones. Outward.
+Mesh octahedron();
+
+/// A cube of side 2 around the origin, every side split into cells x cells squares of two triangles. Outward.
+Mesh cube(int cells);
+
+/// A machined part: an L-shaped angle with a slot through its foot, in unit squares of two triangles, with
+/// edges that bend inward and outward. Closed, outward.
+Mesh bracket();
+
+/// Open, curved, with a boundary of right-angled corners: z = (x^2 + y^2) / 8 over a square of side 2 * half,
+/// all faces up.
+Mesh bowl(int half);
+
+/// A one-sided strip of 2 * around vertices; faces agree but at one place.
+Mesh moebius(int around);
+
+/// A sphere with a fin: one edge has a third face, whose own two edges have one.
+Mesh finned_sphere(int levels);
+
 /// columns x rows vertices at spacing 1 in the plane z = 0, one diagonal per cell; `equilateral` shears it
 /// into equilateral triangles.
 Mesh grid(int columns, int rows, bool equilateral = false);
