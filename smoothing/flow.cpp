@@ -93,14 +93,14 @@ FlowOptions modifier_defaults() {
   return o;
 }
 
-/// The flow with its modifiers, innermost first: push-back, constraints, threshold, invariant.
+/// The flow with its modifiers, innermost first: constraints, push-back, threshold, invariant.
 std::unique_ptr<Flow> compose(const FlowEntry& entry, const Mesh& mesh, const FlowOptions& o,
                               const Constraints& constraints, const Context& context) {
   AllowedMoves allowed(constraints, mesh.positions.size());
   std::unique_ptr<Flow> flow = entry.make(mesh, o, constraints, context);
-  if (*o.push_back) flow = make_pushback(std::move(flow), mesh, *o.push_alpha, *o.push_beta);
   const bool constrained = !constraints.hard.empty() || !constraints.strength.empty();
   if (constrained && !flow->applies_constraints()) flow = make_constrained(std::move(flow), allowed);
+  if (*o.push_back) flow = make_pushback(std::move(flow), mesh, *o.push_alpha, *o.push_beta, allowed);
   if (*o.threshold != "none") {
     ThresholdRule rule;
     rule.rings = *o.threshold == "two-ring" ? 2 : *o.threshold == "one-ring" ? 1 : 0;

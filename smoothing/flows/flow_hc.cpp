@@ -4,7 +4,8 @@
 ///
 /// Vollmer, Mencl, Mueller 1999, section 4. Converges for alpha > 0 and beta > 0.5 (theorem 5.2). With alpha
 /// = 0 one step is x - (1 - beta) L^2 x. The paper lists the simultaneous version; in the sequential one the
-/// Laplacian half updates in index order and the push-back follows.
+/// Laplacian half updates in index order and the push-back follows. Constraints hold in both halves, so that
+/// the difference of a fixed vertex is zero, as in the paper.
 #include "base/parallel.h"
 #include "smoothing/integrators/umbrella_speed.h"
 #include "smoothing/modifiers/constraint.h"
@@ -55,13 +56,11 @@ class SimultaneousHc : public Flow {
 std::unique_ptr<Flow> make_hc(const Mesh& mesh, const FlowOptions& options, const Constraints& constraints,
                               const Context&) {
   const Update update = *options.update == "sequential" ? Update::sequential : Update::simultaneous;
-  if (update == Update::simultaneous && constraints.hard.empty())
+  if (update == Update::simultaneous && constraints.hard.empty() && constraints.strength.empty())
     return std::make_unique<SimultaneousHc>(mesh, *options.alpha, *options.beta);
-  auto laplacian = make_explicit(make_umbrella_speed(false), 1, update);
-  if (!constraints.hard.empty())  // so that the difference of a fixed vertex is zero, as in the paper
-    laplacian =
-        make_constrained(std::move(laplacian), AllowedMoves({constraints.hard, {}}, mesh.positions.size()));
-  return make_pushback(std::move(laplacian), mesh, *options.alpha, *options.beta);
+  const AllowedMoves allowed(constraints, mesh.positions.size());
+  return make_pushback(make_explicit(make_umbrella_speed(false), 1, update, allowed), mesh, *options.alpha,
+                       *options.beta, allowed);
 }
 
 }  // namespace

@@ -38,14 +38,15 @@ class AnchoredSpeed : public Speed {
   Positions original_;  ///< empty: the anchor is the centre
 };
 
-std::unique_ptr<Flow> make_laplacian(const Mesh& mesh, const FlowOptions& options, const Constraints&,
-                                     const Context&) {
+std::unique_ptr<Flow> make_laplacian(const Mesh& mesh, const FlowOptions& options,
+                                     const Constraints& constraints, const Context&) {
   auto speed = make_umbrella_speed(*options.weights == "inverse-distance");
   if (*options.anchor != "none")
     speed = std::make_unique<AnchoredSpeed>(std::move(speed), *options.alpha,
                                             *options.anchor == "original" ? mesh.positions : Positions{});
   const Update update = *options.update == "sequential" ? Update::sequential : Update::simultaneous;
-  return make_explicit(std::move(speed), *options.lambda, update);
+  return make_explicit(std::move(speed), *options.lambda, update,
+                       AllowedMoves(constraints, mesh.positions.size()));
 }
 
 }  // namespace

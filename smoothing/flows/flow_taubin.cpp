@@ -14,24 +14,26 @@ namespace {
 
 class TaubinFlow : public Flow {
  public:
-  TaubinFlow(bool inverse_distance, double lambda, double mu)
-      : shrink_(make_explicit(make_umbrella_speed(inverse_distance), lambda, Update::simultaneous)),
-        inflate_(make_explicit(make_umbrella_speed(inverse_distance), -mu, Update::simultaneous)) {}
+  TaubinFlow(bool inverse_distance, double lambda, double mu, const AllowedMoves& allowed)
+      : shrink_(make_explicit(make_umbrella_speed(inverse_distance), lambda, Update::simultaneous, allowed)),
+        inflate_(make_explicit(make_umbrella_speed(inverse_distance), -mu, Update::simultaneous, allowed)) {}
 
   void step(Mesh& mesh, const Context& context) override {
     shrink_->step(mesh, context);
     inflate_->step(mesh, context);
   }
+  bool applies_constraints() const override { return true; }
 
  private:
   std::unique_ptr<Flow> shrink_, inflate_;
 };
 
-std::unique_ptr<Flow> make_taubin(const Mesh&, const FlowOptions& options, const Constraints&,
-                                  const Context&) {
+std::unique_ptr<Flow> make_taubin(const Mesh& mesh, const FlowOptions& options,
+                                  const Constraints& constraints, const Context&) {
   if (!(*options.mu > *options.lambda))
     throw Failure({ErrorCode::usage, "--mu must be greater than --lambda: the second step inflates"});
-  return std::make_unique<TaubinFlow>(*options.weights == "inverse-distance", *options.lambda, *options.mu);
+  return std::make_unique<TaubinFlow>(*options.weights == "inverse-distance", *options.lambda, *options.mu,
+                                      AllowedMoves(constraints, mesh.positions.size()));
 }
 
 }  // namespace

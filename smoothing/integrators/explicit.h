@@ -6,6 +6,8 @@
 
 #include <rfsmooth/flow.h>
 
+#include "smoothing/modifiers/constraint.h"
+
 namespace rfsmooth::smoothing {
 
 /// A speed F, evaluated for all vertices on the same positions. F in world units per dimensionless step.
@@ -30,5 +32,11 @@ enum class Update { simultaneous, sequential };
 
 /// A flow that adds lambda F. Positions that would not be finite stay where they are.
 std::unique_ptr<Flow> make_explicit(std::unique_ptr<Speed> speed, double lambda, Update update);
+
+/// The same with every move under the constraints as it is made, for flows of several part steps and for
+/// sequential ones, where others see a vertex before the step is over: a fixed vertex never moves
+/// (Vollmer 2, V_fix), and lambda times its strength is a vertex's own lambda (Desbrun 2.7).
+std::unique_ptr<Flow> make_explicit(std::unique_ptr<Speed> speed, double lambda, Update update,
+                                    AllowedMoves allowed);
 
 }  // namespace rfsmooth::smoothing

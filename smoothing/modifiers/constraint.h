@@ -1,9 +1,10 @@
 /// Constraints on vertices, for every flow: hard ones (fixed, on an axis, in a plane) and soft ones (a
 /// strength per vertex).
 ///
-/// Desbrun et al. 1999, section 2.7; fixed vertices are Vollmer's V_fix (section 2). Explicit steps are
-/// projected and scaled afterwards; implicit flows project inside the solver and take the strength s as a
-/// mass 1 / s of the data, which is the paper's variable lambda and keeps the system symmetric.
+/// Desbrun et al. 1999, section 2.7; fixed vertices are Vollmer's V_fix (section 2). Explicit moves are
+/// projected and scaled, each part step of those that have several; implicit flows project inside the solver
+/// and take the strength s as a mass 1 / s of the data, which is the paper's variable lambda and keeps the
+/// system symmetric.
 #pragma once
 
 #include <memory>

@@ -1,0 +1,140 @@
+// Constraints inside a step: what a fixed vertex shows its neighbours.
+#include "smoothing/modifiers/constraint.h"
+
+#include <algorithm>
+#include <functional>
+
+#include <gtest/gtest.h>
+
+#include <rfsmooth/flow.h>
+
+#include "tests/support/meshes.h"
+
+using namespace rfsmooth;
+using namespace rfsmooth::smoothing;
+using Eigen::Vector3d;
+using rfsmooth::Mesh;
+
+namespace {
+
+/// A flow made of umbrellas, in which several part steps or an order of vertices could let a fixed one move.
+struct GraphFlow {
+  const char* name;
+  std::function<void(FlowOptions&)> set;
+};
+
+FlowOptions graph_flow(const GraphFlow& flow) {
+  FlowOptions o;
+  o.iterations = 3;
+  flow.set(o);
+  return o;
+}
+
+class EveryGraphFlow : public testing::TestWithParam<GraphFlow> {
+ protected:
+  FlowOptions options() const { return graph_flow(GetParam()); }
+};
+INSTANTIATE_TEST_SUITE_P(Flows, EveryGraphFlow,
+                         testing::Values(GraphFlow{"laplacian", [](FlowOptions& o) { o.flow = "laplacian"; }},
+                                         GraphFlow{"laplacian_in_order",
+                                                   [](FlowOptions& o) {
+                                                     o.flow = "laplacian";
+                                                     o.update = "sequential";
+                                                   }},
+                                         GraphFlow{"hc", [](FlowOptions& o) { o.flow = "hc"; }},
+                                         GraphFlow{"hc_in_order",
+                                                   [](FlowOptions& o) {
+                                                     o.flow = "hc";
+                                                     o.update = "sequential";
+                                                   }},
+                                         GraphFlow{"taubin", [](FlowOptions& o) { o.flow = "taubin"; }},
+                                         GraphFlow{"pushed_back_laplacian",
+                                                   [](FlowOptions& o) {
+                                                     o.flow = "laplacian";
+                                                     o.push_back = true;
+                                                   }},
+                                         GraphFlow{"pushed_back_taubin",
+                                                   [](FlowOptions& o) {
+                                                     o.flow = "taubin";
+                                                     o.push_back = true;
+                                                     o.push_alpha = 0.1;
+                                                   }}),
+                         [](const auto& flow) { return std::string(flow.param.name); });
+
+Mesh rough_torus() {
+  Mesh mesh = support::torus(24, 12, 0.4);
+  support::add_noise(mesh, 0.04, 7);
+  return mesh;
+}
+
+/// Every seventh vertex and a whole ring of neighbours.
+std::vector<Index> held(const Mesh& mesh) {
+  std::vector<Index> all;
+  for (Index i = 0; i < mesh.positions.size(); ++i)
+    if (i % 7 == 0 || (i >= 100 && i < 112)) all.push_back(i);
+  return all;
+}
+
+Constraints fixed(const std::vector<Index>& vertices) {
+  Constraints constraints;
+  for (const Index i : vertices)
+    constraints.hard.push_back({i, HardConstraint::Kind::fixed, Vector3d::Zero()});
+  return constraints;
+}
+
+Constraints with_strength(const std::vector<Index>& vertices, double strength, std::size_t n) {
+  Constraints constraints;
+  constraints.strength.assign(n, 1);
+  for (const Index i : vertices) constraints.strength[i] = strength;
+  return constraints;
+}
+
+/// If it never moves, not even for part of a step, its own neighbours mean nothing to anybody.
+TEST_P(EveryGraphFlow, WhatFixedVerticesAreJoinedToDoesNotMatter) {
+  Mesh mesh = rough_torus(), joined = mesh;
+  const std::vector<Index> vertices = held(mesh);
+  for (std::size_t k = 0; k + 5 < vertices.size(); ++k) {
+    const auto row = mesh.one_ring[vertices[k]];
+    if (std::find(row.begin(), row.end(), vertices[k + 5]) == row.end())
+      joined.loose_edges.push_back({vertices[k], vertices[k + 5]});
+  }
+  ASSERT_GT(joined.loose_edges.size(), 10u);
+  rebuild_adjacency(joined, {});
+  const Positions before = mesh.positions;
+  ASSERT_TRUE(smooth(mesh, options(), {}, fixed(vertices)).ok());
+  ASSERT_TRUE(smooth(joined, options(), {}, fixed(vertices)).ok());
+  EXPECT_GT(support::rms_distance(mesh.positions, before), 1e-2);
+  EXPECT_LT(support::rms_distance(mesh.positions, joined.positions), 1e-14);
+}
+
+TEST_P(EveryGraphFlow, ALittleStrengthIsNearlyFixed) {
+  Mesh mesh = rough_torus(), soft = mesh;
+  const std::vector<Index> vertices = held(mesh);
+  ASSERT_TRUE(smooth(mesh, options(), {}, fixed(vertices)).ok());
+  ASSERT_TRUE(smooth(soft, options(), {}, with_strength(vertices, 1e-9, mesh.positions.size())).ok());
+  EXPECT_LT(support::rms_distance(mesh.positions, soft.positions), 1e-8);
+}
+
+TEST(Constraints, StrengthZeroIsFixedUnderEveryFlowWithAndWithoutPushBack) {
+  for (const FlowEntry& entry : flows())
+    for (const bool push_back : {false, true})
+      for (const char* update : {"simultaneous", "sequential"}) {
+        FlowOptions o;
+        o.flow = entry.name;
+        o.iterations = 2;
+        o.push_back = push_back;
+        const auto& used = entry.parameters;
+        if (std::find(used.begin(), used.end(), "update") != used.end())
+          o.update = update;
+        else if (std::string(update) == "sequential")
+          continue;
+        Mesh hard = rough_torus(), zero = hard;
+        const std::vector<Index> vertices = held(hard);
+        ASSERT_TRUE(smooth(hard, o, {}, fixed(vertices)).ok());
+        ASSERT_TRUE(smooth(zero, o, {}, with_strength(vertices, 0, zero.positions.size())).ok());
+        EXPECT_LT(support::rms_distance(hard.positions, zero.positions), 1e-13)
+            << entry.name << (push_back ? " pushed back, " : ", ") << update;
+      }
+}
+
+}  // namespace
