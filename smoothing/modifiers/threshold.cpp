@@ -1,10 +1,12 @@
 #include "smoothing/modifiers/threshold.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/parallel.h"
 #include "smoothing/modifiers/wrapped_flow.h"
 #include "smoothing/operators/operator.h"
+#include "smoothing/operators/surface.h"
 
 namespace rfsmooth::smoothing {
 
@@ -20,12 +22,12 @@ class Threshold : public WrappedFlow {
   void step(Mesh& mesh, const Context& context) override {
     before_ = mesh.positions;
     const std::size_t n = before_.size();
+    if (steps_++ % rule_.every == 0 || threshold_.size() != n) recompute(mesh, context);
     inner_->step(mesh, context);
     speed_.resize(n);
     for_each_index(context, n, [&](std::size_t i) {
       speed_[i] = (mesh.positions[i] - before_[i]).norm() / rule_.lambda;
     });
-    if (steps_++ % rule_.every == 0 || threshold_.size() != n) recompute(mesh, context);
     for_each_index(context, n, [&](std::size_t i) {
       const double excess = speed_[i] - threshold_[i];
       if (excess > 0)
@@ -35,13 +37,36 @@ class Threshold : public WrappedFlow {
     });
   }
 
+  void connectivity_changed(const Mesh& mesh, const Context& context) override {
+    WrappedFlow::connectivity_changed(mesh, context);
+    fans_ = {};
+  }
   bool applies_constraints() const override { return inner_->applies_constraints(); }
 
  private:
+  /// n: h^2 |H|, the length of the curvature vector times h^2; at rims of its part along the normal.
+  std::vector<double> bending(const Mesh& mesh, const Context& context) {
+    const std::size_t n = mesh.positions.size();
+    if (fans_.faces.size() != n) {
+      fans_ = fans_of(mesh, context);
+      interior_ = interior_vertices(mesh, fans_.faces, context);
+    }
+    const Operator op = curvature(mesh, fans_.faces, context);
+    const Positions normal = unsigned_normals(mesh, fans_, context);
+    Positions Hn;
+    apply(mesh.one_ring, op, mesh.positions, Hn, context);
+    std::vector<double> bend(n);
+    for_each_index(context, n, [&](std::size_t i) {
+      bend[i] = op.unit * (interior_[i] != 0 ? Hn[i].norm() : std::abs(Hn[i].dot(normal[i])));
+    });
+    return bend;
+  }
+
   void recompute(const Mesh& mesh, const Context& context) {
-    threshold_.assign(speed_.size(), rule_.constant * unit_);
+    threshold_.assign(mesh.positions.size(), rule_.constant * unit_);
     if (rule_.rings == 0) return;
-    for_blocks(context, speed_.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    const std::vector<double> bend = bending(mesh, context);
+    for_blocks(context, threshold_.size(), 1024, [&](std::size_t begin, std::size_t end) {
       std::vector<Index> ring;
       for (std::size_t i = begin; i < end; ++i) {
         ring.assign(1, Index(i));
@@ -51,8 +76,9 @@ class Threshold : public WrappedFlow {
         std::sort(ring.begin(), ring.end());
         ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
         double sum = 0;
-        for (const Index j : ring) sum += speed_[j];
-        threshold_[i] = sum / double(ring.size());
+        for (const Index j : ring)
+          if (j != i) sum += bend[j];
+        threshold_[i] = ring.size() > 1 ? sum / double(ring.size() - 1) : 0;
       }
     });
   }
@@ -60,6 +86,8 @@ class Threshold : public WrappedFlow {
   ThresholdRule rule_;
   double unit_;
   int steps_ = 0;
+  Fans fans_;
+  std::vector<char> interior_;
   Positions before_;
   std::vector<double> speed_, threshold_;
 };

@@ -4,9 +4,10 @@
 ///     move by lambda (|F| - T) F / |F| where |F| > T, else stay
 ///
 /// Ohtake, Belyaev, Bogaevski 2000, (14). F = (p - q) / lambda, what the wrapped step did per unit of its
-/// step length. T is constant, or the mean of |F| over the vertex and its first, or first and second, ring of
-/// neighbours, recomputed every few steps. Differs from the paper: it takes |H| for the ring means, which is
-/// |F| for its curvature flow; |F| has the right unit over every flow.
+/// step length. T is constant, or the mean curvature of the surroundings, recomputed every few steps: the
+/// mean of h^2 |H| over the first, or first and second, ring of neighbours without the vertex itself; h^2 |H|
+/// (h = mean edge length) is the speed that mean curvature flow has there. At rims, where |H| has no meaning
+/// (Desbrun 5.3), the part along the normal counts.
 #pragma once
 
 #include <memory>
@@ -17,7 +18,7 @@ namespace rfsmooth::smoothing {
 
 /// Where the threshold comes from.
 struct ThresholdRule {
-  int rings = 0;          ///< 0 = constant, 1 or 2 = mean over that many rings
+  int rings = 0;          ///< 0 = constant, 1 or 2 = mean curvature of that many rings
   double constant = 0.1;  ///< T of the constant rule, x mean edge length of the first mesh
   int every = 5;          ///< steps between recomputing the ring means
   double lambda = 1;      ///< the wrapped flow's step length

@@ -68,8 +68,10 @@ Operator curvature(const Mesh& mesh, const Adjacency& vertex_faces, const Contex
 /// full length. Unit h^2; own rows. O(n log n) typically, one thread.
 Operator tufted(const Mesh& mesh, const Context& context);
 
-/// The curvature operator with m = sum of |w| (Desbrun 5.5): rows sum to one, so explicit steps up to 1 are
-/// stable. The paper sums w, which is the same while no weight is negative. Unit 1.
+/// The curvature operator with m = sum of w (Desbrun 5.5): towards the weighted mean of the neighbours, so
+/// that explicit steps up to 1 are stable while no weight is negative. Where the weights cancel or sum to
+/// less than zero there is no such mean, and m is 1e-9 of the sum of |w|, still positive: explicit flows then
+/// move that vertex by its own limit (curvature_speed.h). Unit 1.
 Operator normalised(const Adjacency& rows, Operator op, const Context& context);
 
 /// y = L (L x): the umbrella-like second Laplacian, gradient of the discrete thin-plate energy (Kobbelt et

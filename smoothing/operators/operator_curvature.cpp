@@ -78,9 +78,13 @@ Operator curvature(const Mesh& mesh, const Adjacency& vertex_faces, const Contex
 }
 
 Operator normalised(const Adjacency& rows, Operator op, const Context& context) {
+  constexpr double kLeast = 1e-9;  // of the sum of |w|: keeps 1 / m finite
   op.mass = weight_sums(rows, op, context);
-  for (double& m : op.mass)
-    if (!(m > 0)) m = 1;
+  for_each_index(context, op.mass.size(), [&](std::size_t i) {
+    double sum = 0;
+    for (Index k = rows.start[i]; k < rows.start[i + 1]; ++k) sum += op.weight[k];
+    op.mass[i] = op.mass[i] > 0 ? std::max(sum, kLeast * op.mass[i]) : 1;
+  });
   op.unit = 1;
   return op;
 }

@@ -1,7 +1,11 @@
 #include "smoothing/modifiers/threshold.h"
 
+#include <cmath>
+#include <set>
+
 #include <gtest/gtest.h>
 
+#include "smoothing/operators/operator.h"
 #include "tests/support/meshes.h"
 
 using namespace rfsmooth;
@@ -50,6 +54,44 @@ TEST(Threshold, RingMeansLeaveAnEvenSphereNearlyStill) {
     EXPECT_LT(support::rms_distance(before, mesh.positions),
               0.25 * support::rms_distance(before, free.positions));
   }
+}
+
+/// Ohtake's T(P), written out: the mean of the mean curvatures of the ring, P itself not among them.
+double ring_threshold(const Mesh& mesh, Index i, int rings) {
+  std::set<Index> ring = {i};
+  for (int r = 0; r < rings; ++r) {
+    std::set<Index> wider = ring;
+    for (const Index j : ring) wider.insert(mesh.one_ring[j].begin(), mesh.one_ring[j].end());
+    ring = std::move(wider);
+  }
+  ring.erase(i);
+  const Operator op = curvature(mesh, vertex_faces(mesh, {}), {});
+  Positions Hn;
+  apply(mesh.one_ring, op, mesh.positions, Hn, {});
+  double sum = 0;
+  for (const Index j : ring) sum += std::pow(support::mean_edge(mesh), 2) * Hn[j].norm();
+  return sum / double(ring.size());
+}
+
+TEST(Threshold, OfTheRingsIsTheirMeanCurvatureUnderEveryFlow) {
+  for (const char* name : {"laplacian", "curvature"})
+    for (const int rings : {1, 2}) {
+      Mesh mesh = rough_sphere(), free = mesh;
+      const Mesh before = mesh;
+      FlowOptions o;
+      o.flow = name;
+      o.lambda = 0.2;
+      o.iterations = 1;
+      ASSERT_TRUE(smooth(free, o, {}).ok());
+      o.threshold = rings == 1 ? "one-ring" : "two-ring";
+      ASSERT_TRUE(smooth(mesh, o, {}).ok());
+      for (Index i = 0; i < mesh.positions.size(); i += 17) {
+        const double F = (free.positions[i] - before.positions[i]).norm() / 0.2;
+        const double T = ring_threshold(before, i, rings);
+        EXPECT_NEAR((mesh.positions[i] - before.positions[i]).norm(), F > T ? 0.2 * (F - T) : 0, 1e-12)
+            << name;
+      }
+    }
 }
 
 TEST(Threshold, MovesByTheExcess) {

@@ -193,4 +193,29 @@ TEST(Operators, UnknownNameThrows) {
   EXPECT_THROW(OperatorSource("laplace", false), std::invalid_argument);
 }
 
+/// Desbrun 5.5: towards the mean of the neighbours, weighted by their cotangents, the negative ones too.
+TEST(Normalised, DividesByTheSumOfTheWeights) {
+  Mesh mesh = support::torus(24, 12, 0.4);
+  support::add_noise(mesh, 0.04, 5);  // obtuse enough for some negative weights
+  const Operator plain = curvature(mesh, vertex_faces(mesh, {}), {});
+  const Operator op = normalised(mesh.one_ring, plain, {});
+  Positions L;
+  apply(mesh.one_ring, op, mesh.positions, L, {});
+  int negative = 0;
+  for (Index i = 0; i < mesh.positions.size(); ++i) {
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    double sum = 0;
+    bool any = false;
+    for (Index k = mesh.one_ring.start[i]; k < mesh.one_ring.start[i + 1]; ++k) {
+      mean += plain.weight[k] * mesh.positions[mesh.one_ring.items[k]];
+      sum += plain.weight[k];
+      any = any || plain.weight[k] < 0;
+    }
+    if (!(sum > 0.1)) continue;
+    EXPECT_LT((mesh.positions[i] - mean / sum - L[i]).norm(), 1e-12);
+    negative += any ? 1 : 0;
+  }
+  EXPECT_GT(negative, 0);
+}
+
 }  // namespace
