@@ -119,8 +119,10 @@ double mean_of(const Context& context, std::size_t n, const std::function<double
   return sum / double(n);
 }
 
-void measure_surface(const Points& cloud, const PointTree& cloud_tree, const TrueSurface& surface,
-                     const CompareOptions& options, const Context& context, Measures& out) {
+/// \return the squared distances of the points.
+std::vector<double> measure_surface(const Points& cloud, const PointTree& cloud_tree,
+                                    const TrueSurface& surface, const CompareOptions& options,
+                                    const Context& context, Measures& out) {
   const std::size_t n = cloud.positions.size();
   std::vector<double> squared(n), side(surface.closed() ? n : 0), angles(cloud.normals.size());
   for_each_index(
@@ -146,10 +148,13 @@ void measure_surface(const Points& cloud, const PointTree& cloud_tree, const Tru
     return cloud_tree.squared_distance_from(surface.corners(f));
   });
   out.p2m = *out.p2s_mean_square + *out.faces_to_cloud;
+  return squared;
 }
 
-void measure_clean_cloud(const Points& cloud, const PointTree& cloud_tree, const Points& clean,
-                         const CompareOptions& options, const Context& context, Measures& out) {
+/// \return the squared distances of the points.
+std::vector<double> measure_clean_cloud(const Points& cloud, const PointTree& cloud_tree, const Points& clean,
+                                        const CompareOptions& options, const Context& context,
+                                        Measures& out) {
   const PointTree clean_tree(clean.positions);
   const std::size_t n = cloud.positions.size();
   const bool normals = !cloud.normals.empty() && !clean.normals.empty();
@@ -167,6 +172,16 @@ void measure_clean_cloud(const Points& cloud, const PointTree& cloud_tree, const
                            [&](std::size_t i) { return cloud_tree.nearest(clean.positions[i]).squared; });
   out.chamfer = *out.to_clean + *out.from_clean;
   if (!out.normal_error) out.normal_error = mean_angle(angles);
+  return squared;
+}
+
+/// The roots of what was measured of the finite rows, at their rows.
+std::vector<double> deviations(const CloudView& cloud, const std::vector<double>& squared) {
+  std::vector<double> out(cloud.n, std::nan(""));
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < cloud.n; ++i)
+    if (Eigen::Map<const Vector3d>(cloud.xyz + 3 * i).allFinite()) out[i] = std::sqrt(squared[next++]);
+  return out;
 }
 
 void measure_evenness(const PointTree& tree, const Context& context, Measures& out) {
@@ -218,13 +233,15 @@ Result<CompareReport> compare(const CloudView& cloud, const Truth& truth, const 
         const TrueSurface surface = true_surface(*truth.mesh, sphere.centre);
         report.truth_faces = surface.face_count();
         report.truth_closed = surface.closed();
-        measure_surface(points, tree, surface, options, context, report.own_units);
+        const auto squared = measure_surface(points, tree, surface, options, context, report.own_units);
+        report.deviation = deviations(cloud, squared);
         context.report("compare", 0.5);
       }
       if (truth.cloud) {
         const Points clean = finite_points(*truth.cloud, sphere.centre);
         report.truth_points = clean.positions.size();
-        measure_clean_cloud(points, tree, clean, options, context, report.own_units);
+        const auto squared = measure_clean_cloud(points, tree, clean, options, context, report.own_units);
+        if (!truth.mesh) report.deviation = deviations(cloud, squared);
         context.report("compare", 0.8);
       }
       measure_evenness(tree, context, report.own_units);

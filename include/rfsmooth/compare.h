@@ -17,6 +17,7 @@
 #include <cstddef>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 #include <rfsmooth/context.h>
 #include <rfsmooth/mesh.h>
@@ -97,6 +98,9 @@ struct CompareReport {
   bool truth_closed = false;     ///< the true mesh encloses a volume
   double radius = 0;             ///< of the truth's unit sphere, world units
   Measures own_units;
+  /// One per row of the cloud: its distance to the true mesh, without one to the nearest clean point; world
+  /// units. NaN for rows that are not finite.
+  std::vector<double> deviation;
 };
 
 /// The figures as they would be on a sphere of radius 1: lengths / radius, squares / radius^2.

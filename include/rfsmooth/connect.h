@@ -159,6 +159,9 @@ struct UmbrellaOptions {
   }
 };
 
+/// How far to connect.
+enum class ConnectUpTo { emst, sdg, mesh };
+
 /// How to connect.
 struct ConnectOptions {
   int neighbours = 24;       ///< nearest neighbours looked at; about two and a half rings of a surface mesh
@@ -171,6 +174,9 @@ struct ConnectOptions {
   /// Whether vertices that no face reaches keep their SDG edges (Mesh::loose_edges) and are neighbours by
   /// them.
   bool loose_edges = true;
+  /// The last stage that is wanted; what only later ones make stays empty. `emst` measures no noise and makes
+  /// the tree of the points (or of the guide) even where `tree_of_points` is false.
+  ConnectUpTo up_to = ConnectUpTo::mesh;
 
   template <class Self, class Visit>
   static void describe(Self& self, Visit&& visit) {

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "pipeline/cli/commands/reconstruct_command.h"
+#include "pipeline/cli/other_program.h"
 
 namespace rfsmooth::cli {
 
@@ -20,12 +20,27 @@ int become_program(const std::string& name, const std::vector<std::string>& argu
   if (!unknown) execv((self.parent_path() / name).c_str(), argv.data());
   if (unknown || errno == ENOENT) execvp(name.c_str(), argv.data());
   if (errno == ENOENT)
-    throw Failure({ErrorCode::not_installed,
-                   fmt::format("the program {0} is not installed; it comes with the package {0}, or from a "
-                               "build that finds Open3D or CGAL",
-                               name)});
+    throw Failure(
+        {ErrorCode::not_installed,
+         fmt::format("the program {0} is not installed; it comes with the package {1}", name,
+                     name == "rfsmooth-reconstruct" ? name + ", or from a build that finds Open3D or CGAL"
+                                                    : "rfsmooth")});
   throw Failure({ErrorCode::not_installed,
                  fmt::format("the program {} cannot be started: {}", name, std::strerror(errno))});
+}
+
+std::vector<std::string> as_typed(const Invocation& typed, const std::vector<CommandOption>& options) {
+  std::vector<std::string> words;
+  for (const auto& [name, text] : typed.options) {
+    bool flag = false;
+    for (const CommandOption& o : options) flag = flag || (o.name == name && o.kind == ValueKind::flag);
+    std::string word = flag && text != "true" ? "--no-" : "--";
+    word += name;
+    if (!flag) word.append("=").append(text);
+    words.push_back(std::move(word));
+  }
+  words.insert(words.end(), typed.arguments.begin(), typed.arguments.end());
+  return words;
 }
 
 }  // namespace rfsmooth::cli

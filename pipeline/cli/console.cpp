@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include <fmt/format.h>
+#include <poll.h>
 #include <unistd.h>
 
 #include "pipeline/cli/stop.h"
@@ -15,6 +16,11 @@ namespace {
 constexpr auto kRedraw = std::chrono::milliseconds(100);
 constexpr int kBarWidth = 28;
 }  // namespace
+
+bool stdout_reader_is_gone() {
+  pollfd out = {STDOUT_FILENO, POLLOUT, 0};
+  return poll(&out, 1, 0) > 0 && (out.revents & (POLLERR | POLLHUP)) != 0;
+}
 
 Console::Console(const TalkOptions& options)
     : quiet_(options.quiet), verbose_(options.verbose && !options.quiet) {
@@ -70,23 +76,20 @@ Context Console::context(int threads) {
 }
 
 void Console::draw(std::string_view stage, double fraction) {
+  const bool new_stage = progress_.stage() != stage;
+  progress_.note(stage, fraction);
   if (!bar_) return;
-  const auto now = Clock::now();
-  if (stage != stage_) {
-    stage_ = stage;
-    stage_start_ = now;
-    last_draw_ = {};
-  }
-  if (now - last_draw_ < kRedraw) return;
+  const auto now = std::chrono::steady_clock::now();
+  if (!new_stage && progress_.done() < 1 && now - last_draw_ < kRedraw) return;
   last_draw_ = now;
-  fraction = std::clamp(fraction, 0.0, 1.0);
-  const double elapsed = std::chrono::duration<double>(now - stage_start_).count();
-  const int filled = int(fraction * kBarWidth);
-  std::string line = fmt::format("{:<12.12} [{}{}] {:3.0f} %", stage_, std::string(std::size_t(filled), '#'),
-                                 std::string(std::size_t(kBarWidth - filled), '.'), 100 * fraction);
-  if (fraction > 0 && elapsed > 0.2) {
-    if (points_ > 0) line += fmt::format("  {:.3g} points/s", double(points_) * fraction / elapsed);
-    line += fmt::format("  {:.0f} s left", elapsed * (1 - fraction) / fraction);
+  const int filled = int(progress_.done() * kBarWidth);
+  std::string line = fmt::format("{:<12.12} [{}{}] {:3.0f} %", stage, std::string(std::size_t(filled), '#'),
+                                 std::string(std::size_t(kBarWidth - filled), '.'), 100 * progress_.done());
+  const double elapsed = progress_.stage_seconds();
+  if (progress_.in_stage() > 0 && elapsed > 0.2) {
+    if (points_ > 0)
+      line += fmt::format("  {:.3g} points/s", double(points_) * progress_.in_stage() / elapsed);
+    line += fmt::format("  {:.0f} s left", progress_.seconds_left());
   }
   fmt::print(stderr, "\r\x1b[K{}", line);
   std::fflush(stderr);

@@ -11,6 +11,7 @@
 #include <rfsmooth/options.h>
 
 #include "base/thread_limit.h"
+#include "pipeline/cli/progress.h"
 
 namespace rfsmooth::cli {
 
@@ -25,6 +26,9 @@ struct TalkOptions {
     visit(OptionInfo{"verbose", "say more on stderr about what is done", ""}, self.verbose);
   }
 };
+
+/// Whether standard output is a pipe that nobody reads any more.
+bool stdout_reader_is_gone();
 
 class Console {
  public:
@@ -42,12 +46,14 @@ class Console {
   /// Number of points, for the rate beside the bar.
   void set_points(std::size_t points) { points_ = points; }
 
+  /// What the bar shows: the stages, and which file of how many they belong to.
+  Progress& progress() { return progress_; }
+
   /// A Context that logs and reports here and stops on Ctrl-C. `threads` (0 = all cores) binds the whole
   /// program while the console lives.
   Context context(int threads);
 
  private:
-  using Clock = std::chrono::steady_clock;
   void draw(std::string_view stage, double fraction);
   void clear_bar();
   void print(const char* colour, const char* label, const std::string& line);
@@ -55,9 +61,9 @@ class Console {
   bool quiet_, verbose_, bar_, colour_;
   bool drawn_ = false;
   std::size_t points_ = 0;
-  std::string stage_;
+  Progress progress_;
   std::optional<ThreadLimit> limit_;
-  Clock::time_point stage_start_, last_draw_;
+  std::chrono::steady_clock::time_point last_draw_;
 };
 
 }  // namespace rfsmooth::cli

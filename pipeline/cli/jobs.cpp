@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "pipeline/io/io.h"
+
 namespace rfsmooth::cli {
 
 namespace fs = std::filesystem;
@@ -16,7 +18,7 @@ namespace {
   throw Failure({code, message});
 }
 
-/// Makes the folder if its name ends in '/' and nothing is there; its parent must exist.
+/// Makes the folder if nothing is there; its parent must exist.
 void need_folder(const std::string& folder) {
   std::error_code error;
   const fs::file_status status = fs::status(folder, error);
@@ -70,19 +72,28 @@ std::vector<Job> plan_jobs(const std::vector<std::string>& arguments,
   if (arguments.size() == 1) return {{arguments[0], *output}};
   if (fs::exists(*output, error))
     fail(ErrorCode::cannot_write, fmt::format("{}: is not a folder, and there are several inputs", *output));
-  fail(ErrorCode::usage,
-       fmt::format("several inputs need a folder: write -o {}/", *output == "-" ? "FOLDER" : *output));
+  // The name of a file, or a slip: whoever wants a folder called so writes the slash.
+  if (*output == "-" || pipeline::io::format_of_extension(*output))
+    fail(ErrorCode::usage, fmt::format("several inputs need a folder: -o {}",
+                                       *output == "-" ? "FOLDER" : *output + "/ if it is to be called so"));
+  return into_folder(arguments, *output);
 }
 
 int run_jobs(const std::vector<Job>& jobs, Console& console,
-             const std::function<JobOutcome(const Job&)>& run) {
-  std::vector<JobOutcome> outcomes;
+             const std::function<std::optional<Error>(const Job&)>& run) {
+  std::vector<std::string> failed;
   std::optional<int> code;
-  for (const Job& job : jobs) {
-    outcomes.push_back(run(job));
-    const auto& error = outcomes.back().error;
+  std::size_t done = 0;
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    const Job& job = jobs[i];
+    console.progress().start_job(i, jobs.size());
+    const std::optional<Error> error = run(job);
+    done += !error;
     if (!error) continue;
-    console.error(error->message);
+    failed.push_back(job.input);
+    const bool reader_left =
+        job.output == "-" && error->code == ErrorCode::cannot_write && stdout_reader_is_gone();
+    if (!reader_left) console.error(error->message);
     code = !code || *code == int(error->code) ? int(error->code) : int(ErrorCode::internal);
     if (error->code == ErrorCode::cancelled) {
       code = int(ErrorCode::cancelled);
@@ -90,13 +101,7 @@ int run_jobs(const std::vector<Job>& jobs, Console& console,
     }
   }
   if (jobs.size() > 1) {
-    std::size_t width = 5, done = 0;
-    for (const Job& job : jobs) width = std::max(width, job.input.size());
-    for (std::size_t i = 0; i < outcomes.size(); ++i) {
-      done += !outcomes[i].error;
-      console.say(fmt::format("{:<{}}  {}", jobs[i].input, width,
-                              outcomes[i].error ? "FAILED" : outcomes[i].summary));
-    }
+    for (const std::string& input : failed) console.say(input + ": FAILED");
     console.say(fmt::format("{} of {} done", done, jobs.size()));
   }
   return code.value_or(0);

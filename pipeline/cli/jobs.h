@@ -18,21 +18,17 @@ struct Job {
 };
 
 /// Without `output` exactly two arguments, IN and OUT; with it every argument is an input and `output` is a
-/// file for one input or a folder (existing, or ending in '/': then it is made) for any number.
+/// file for one input or a folder for any number: one that exists or ends in '/', and for several inputs any
+/// name that is not a cloud file's. It is made if need be.
 /// \throw Failure: usage (wrong count, two inputs that would get the same name), cannot_write (a folder is
 /// needed and a file is in its place, or it cannot be made).
 std::vector<Job> plan_jobs(const std::vector<std::string>& arguments,
                            const std::optional<std::string>& output);
 
-/// What one job says in the table at the end.
-struct JobOutcome {
-  std::optional<Error> error;
-  std::string summary;  ///< "100000 points, largest move 0.012, 3.4 s"
-};
-
-/// Runs every job, going on after an error; several jobs end in a table on stderr. Stops at a cancel.
-/// \return 0; the code of the error if all failures share one; else 1.
+/// Runs every job, going on after an error; after several jobs stderr has the failed ones once more. Stops at
+/// a cancel. `run` returns what went wrong, if anything did. \return 0; the code of the error if all failures
+/// share one; else 1.
 int run_jobs(const std::vector<Job>& jobs, Console& console,
-             const std::function<JobOutcome(const Job&)>& run);
+             const std::function<std::optional<Error>(const Job&)>& run);
 
 }  // namespace rfsmooth::cli

@@ -18,11 +18,21 @@ namespace rfsmooth::cli {
 
 namespace {
 
-/// stdout is checked when it is closed: a full disk or a closed pipe must not end in exit code 0.
+/// stdout is checked when it is closed: a full disk or a closed pipe must not end in exit code 0. Nothing is
+/// said to a reader that has seen enough, as head has.
 int close_stdout(int code) {
-  if (std::fclose(stdout) == 0 || code != 0) return code;
-  Console({}).error("cannot write to standard output");
+  const bool failed = std::ferror(stdout) != 0, gone = stdout_reader_is_gone();
+  if ((std::fclose(stdout) == 0 && !failed) || code != 0) return code;
+  if (!gone) Console({}).error("cannot write to standard output");
   return int(ErrorCode::cannot_write);
+}
+
+/// What shows more of the sub-command that was typed, or of all.
+std::string help_line(int argc, const char* const* argv, const std::vector<Command>& commands) {
+  std::string name;
+  for (const Command& c : commands)
+    if (argc > 1 && c.name == argv[1]) name = c.name + ' ';
+  return fmt::format("see: rfsmooth {}--help\n", name);
 }
 
 int print(const std::string& text) {
@@ -60,7 +70,9 @@ int run(int argc, const char* const* argv, const std::vector<Command>& commands)
   }
   const Command& command = *parsed.command;
   if (typed.short_help || typed.long_help) return print(help_of(command, typed.long_help));
-  return command.run(with_config(command, typed));
+  const int code = command.run(with_config(command, typed));
+  if (code == int(ErrorCode::usage)) fmt::print(stderr, "{}", help_line(argc, argv, commands));
+  return code;
 }
 
 }  // namespace
@@ -73,12 +85,15 @@ int run_program(int argc, const char* const* argv, const std::vector<Command>& c
   } catch (const Failure& failure) {
     code = int(failure.error.code);
     Console({}).error(failure.error.message);
-    if (failure.error.code == ErrorCode::usage) fmt::print(stderr, "see: rfsmooth --help\n");
+    if (failure.error.code == ErrorCode::usage) fmt::print(stderr, "{}", help_line(argc, argv, commands));
   } catch (const std::bad_alloc&) {
     code = int(ErrorCode::out_of_memory);
     Console({}).error("not enough memory");
   } catch (const std::exception& bug) {
-    Console({}).error(fmt::format("internal error, please report it: {}", bug.what()));
+    if (std::ferror(stdout) != 0)  // fmt::print throws
+      code = 0;                    // said below
+    else
+      Console({}).error(fmt::format("internal error, please report it: {}", bug.what()));
   }
   return close_stdout(code);
 }

@@ -4,6 +4,7 @@
 
 #include <rfsmooth/version.h>
 
+#include "pipeline/cli/own_files.h"
 #include "pipeline/io/io.h"
 
 namespace rfsmooth::cli {
@@ -15,6 +16,7 @@ Report::Report(std::string command, const std::optional<std::string>& path, bool
   options.force = force_;
   options.format = pipeline::io::Format::ply;  // any: the extension of a report stands for no cloud
   value_or_throw(pipeline::io::check_output(path_, options));
+  need_no_cloud(path_, "report");
 }
 
 void Report::write() const {

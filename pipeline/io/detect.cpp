@@ -6,6 +6,7 @@
 
 #include "pipeline/io/formats/header_lines.h"
 #include "pipeline/io/formats/off.h"
+#include "pipeline/io/other_formats.h"
 #include "pipeline/io/table/text.h"
 
 namespace rfsmooth::pipeline::io {
@@ -15,10 +16,27 @@ bool is_pcd_word(std::string_view word) {
   return word == "VERSION" || word == "FIELDS" || word == "COLUMNS" || word == "SIZE" || word == "TYPE";
 }
 
+// What the first line of an OBJ file that is not a comment begins with.
+bool is_obj_word(std::string_view word) {
+  return word == "v" || word == "vn" || word == "vt" || word == "mtllib" || word == "o";
+}
+
+void refuse(const Source& source, const OtherFormat* other) {
+  if (other != nullptr) source.fail(fmt::format("{} is not read; {}", other->name, other->advice));
+}
+
+// Refuses by name a text or unknown bytes in a file that is called as somebody else's are, or an OBJ file.
+void refuse_other_name(const Source& source, std::string_view word) {
+  refuse(source, other_format_of_extension(is_obj_word(word) ? ".obj" : source.name()));
+}
+
 }  // namespace
 
 Format detect_format(const Source& source, const Context& context) {
   if (source.size() == 0) source.fail("byte 0: expected a PLY, PCD, XYZ or OFF file, found an empty file");
+  constexpr std::uint64_t kLongestMagic = 16;
+  const Bytes first = source.read(0, std::size_t(std::min(source.size(), kLongestMagic)), context);
+  refuse(source, other_format_of_bytes({first.data(), first.size()}));
   HeaderLines lines(source, context);
   while (!lines.at_end()) {
     const std::string_view line = lines.next("a point");
@@ -31,10 +49,15 @@ Format detect_format(const Source& source, const Context& context) {
     if (is_pcd_word(word)) return Format::pcd;
     // Words of text hold no control characters; anything else is not an XYZ file either.
     if (std::any_of(line.begin(), line.end(),
-                    [](char c) { return (c >= 0 && c < ' ' && c != '\t' && c != '\r') || c == 127; }))
+                    [](char c) { return (c >= 0 && c < ' ' && c != '\t' && c != '\r') || c == 127; })) {
+      refuse_other_name(source, word);
       lines.fail(fmt::format("expected a PLY, PCD, XYZ or OFF file, found {}", in_quotes(line)));
-    if (!word.empty() && word.front() != '#') return Format::xyz;
+    }
+    if (word.empty() || word.front() == '#') continue;
+    refuse_other_name(source, word);
+    return Format::xyz;
   }
+  refuse_other_name(source, "");
   source.fail("expected points, found comments and blank lines only");
 }
 

@@ -12,6 +12,7 @@
 #include "pipeline/io/formats/pcd.h"
 #include "pipeline/io/formats/ply.h"
 #include "pipeline/io/formats/xyz.h"
+#include "pipeline/io/other_formats.h"
 
 namespace rfsmooth::pipeline::io {
 namespace {
@@ -63,6 +64,10 @@ Format target_format(const Cloud& cloud, const std::filesystem::path& path, cons
   if (options.format) return *options.format;
   if (const auto format = format_of_extension(path)) return *format;
   if (!path.has_extension()) return cloud.format;
+  if (const OtherFormat* other = other_format_of_extension(path))
+    throw Failure({ErrorCode::usage,
+                   fmt::format("{}: {} is not written; write .ply, .pcd, .xyz or .off and convert that",
+                               path.string(), other->name)});
   throw Failure({ErrorCode::usage,
                  fmt::format("{}: the extension '{}' stands for no format we write (ply, pcd, xyz, off); "
                              "choose one with --format",

@@ -140,9 +140,23 @@ Ground survey(Cloud cloud, const ConnectOptions& options, const Context& context
   });
 }
 
+/// The tree and nothing else.
+Connection connect_tree(const Positions& points, std::optional<Cloud> known, const ConnectOptions& options,
+                        const Context& context, const Positions* guide) {
+  Connection c;
+  Stages stages(c.seconds, context);
+  if (!known || guide != nullptr)
+    known.emplace(search(guide != nullptr ? *guide : points, options, context, stages));
+  c.noise.spacing = mean_spacing(known->index.points(), known->near, context);
+  c.emst = stages.run("emst", 0.2, [&] { return emst(known->index, known->near, context); });
+  return c;
+}
+
 /// `known`: the caller's search, or none.
 Connection connect_all(const Positions& points, std::optional<Cloud> known, const ConnectOptions& options,
                        const Context& context, const Positions* guide) {
+  if (options.up_to == ConnectUpTo::emst)
+    return connect_tree(points, std::move(known), options, context, guide);
   Connection c;
   Stages stages(c.seconds, context);
   const std::size_t n = points.size();
@@ -155,6 +169,10 @@ Connection connect_all(const Positions& points, std::optional<Cloud> known, cons
   Sdg sdg = stages.run("sdg", 0.6, [&] { return make_sdg(terrain, ground.tree, options.sdg, context); });
   c.sdg = std::move(sdg.edges);
   c.bridges = std::move(sdg.bridges);
+  if (options.up_to == ConnectUpTo::sdg) {
+    c.surfaces = std::move(ground.surfaces);
+    return c;
+  }
   std::vector<Edge>().swap(ground.tree);
   const ProposedFaces proposed = stages.run("umbrellas", 0.75, [&] {
     const std::vector<Umbrella> umbrellas = open_umbrellas(terrain, sdg.graph, options.umbrella, context);

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -101,28 +102,52 @@ TEST_F(Flags, ThatAreAutoCanBeTurnedOnAndOff) {
   EXPECT_TRUE(equalized({}));
   EXPECT_TRUE(equalized({"--equalize"}));
   EXPECT_FALSE(equalized({"--no-equalize"}));
-  const std::string help = rfsmooth({"denoise", "--help"}).out;
+  const std::string help = rfsmooth({"denoise", "--help-all"}).out;
   EXPECT_THAT(help, HasSubstr("--equalize, --no-equalize"));
   for (const char* shell : {"bash", "zsh"})
     EXPECT_THAT(rfsmooth({"completion", shell}).out, HasSubstr("--no-equalize"));
 }
 
 TEST(Help, EveryOptionIsThereWithItsDefaultAndRange) {
-  const Ran shorter = rfsmooth({"denoise", "-h"}), complete = rfsmooth({"denoise", "--help"});
-  EXPECT_EQ(shorter.code, 0);
+  const Ran complete = rfsmooth({"denoise", "--help-all"});
   EXPECT_EQ(complete.code, 0);
   EXPECT_EQ(complete.err, "");
-  EXPECT_LT(shorter.out.size(), complete.out.size());
   for (const char* text :
        {"--flow", "--iterations", "--alpha", "--beta", "0 to 1", "default auto", "--no-swap", "--threads",
         "--report", "--config", "--force", "exit codes:", "130", "--sdg-reach", "one of auto, "})
     EXPECT_THAT(complete.out, HasSubstr(text));
-  EXPECT_THAT(shorter.out, ::testing::Not(HasSubstr("--sdg-reach")));
+}
+
+std::vector<std::string> options_in(const std::string& help) {
+  std::vector<std::string> found;
+  std::istringstream lines(help);
+  for (std::string line; std::getline(lines, line);)
+    if (const std::size_t at = line.find("--"); at == 6)
+      found.push_back(line.substr(at, line.find(' ', at) - at));
+  return found;
+}
+
+TEST(Help, ShowsTheEverydayOptionsOnOneScreen) {
+  for (const char* command : {"denoise", "mesh", "smooth-mesh", "reconstruct", "info", "compare", "flows"}) {
+    const Ran shorter = rfsmooth({command, "-h"}), complete = rfsmooth({command, "--help-all"});
+    EXPECT_EQ(shorter.code, 0);
+    EXPECT_EQ(shorter.err, "");
+    EXPECT_EQ(rfsmooth({command, "--help"}).out, shorter.out);
+    const auto few = options_in(shorter.out), all = options_in(complete.out);
+    EXPECT_LE(few.size(), 13u) << command << ": about ten and those of help";
+    EXPECT_GE(few.size(), std::min<std::size_t>(all.size(), 8)) << command;
+    EXPECT_THAT(all, ::testing::IsSupersetOf(few)) << command;
+    EXPECT_LE(std::count(shorter.out.begin(), shorter.out.end(), '\n'), 40) << command;
+  }
+  const auto everyday = options_in(rfsmooth({"denoise", "--help"}).out);
+  for (const char* option : {"--strength", "--noise", "--flow", "--outliers", "--output", "--force"})
+    EXPECT_THAT(everyday, ::testing::Contains(option));
+  EXPECT_GT(options_in(rfsmooth({"denoise", "--help-all"}).out).size(), 3 * everyday.size());
 }
 
 TEST(Help, ManualPagesNameEveryOptionOfTheHelp) {
   for (const char* command : {"denoise", "mesh", "smooth-mesh", "reconstruct", "info", "compare", "flows"}) {
-    const Ran help = rfsmooth({command, "--help"}), man = rfsmooth({"man", command});
+    const Ran help = rfsmooth({command, "--help-all"}), man = rfsmooth({"man", command});
     ASSERT_EQ(man.code, 0);
     EXPECT_THAT(man.out, ::testing::StartsWith(".TH "));
     std::string plain;
@@ -133,7 +158,7 @@ TEST(Help, ManualPagesNameEveryOptionOfTheHelp) {
          at = help.out.find("\n      --", at + 1)) {
       const std::size_t begin = at + 7, end = help.out.find_first_of(" \n", begin);
       const std::string option = help.out.substr(begin, end - begin);
-      if (option == "--help") continue;
+      if (option == "--help-all") continue;
       EXPECT_THAT(plain, HasSubstr(option)) << command;
       ++found;
     }
@@ -148,7 +173,8 @@ TEST(Help, ExitCodesAreDocumentedThereAndInTheReadme) {
   std::string codes = readme.substr(from, readme.find("\n\n", from) - from);
   std::replace(codes.begin(), codes.end(), '\n', ' ');
   for (const char* command : {"", "denoise", "mesh", "smooth-mesh", "reconstruct", "info", "compare"}) {
-    const std::string help = (*command == 0 ? rfsmooth({"--help"}) : rfsmooth({command, "--help"})).out;
+    const std::string help =
+        (*command == 0 ? rfsmooth({"--help-all"}) : rfsmooth({command, "--help-all"})).out;
     const std::size_t at = help.find("exit codes:");
     ASSERT_NE(at, std::string::npos) << command;
     for (const std::string code : {"0", "1", "2", "3", "4", "5", "6", "127", "130"}) {

@@ -14,15 +14,18 @@ namespace rfsmooth::cli {
 struct Invocation {
   std::vector<std::string> arguments;                        ///< positional ones, in order
   std::vector<std::pair<std::string, std::string>> options;  ///< name and text, in order
-  bool short_help = false, long_help = false, version = false;
+  bool short_help = false;                                   ///< -h, --help
+  bool long_help = false;                                    ///< --help-all
+  bool version = false;
 };
 
 struct Command {
   std::string name;
   std::string summary;             ///< one line
   std::vector<std::string> usage;  ///< what follows the name, one per form: "[options] IN OUT"
-  std::string description;         ///< paragraphs for --help and the man page
+  std::string description;         ///< paragraphs for --help-all and the man page
   std::vector<CommandOption> options;
+  std::vector<std::string> everyday;  ///< what --help shows, in this order; empty: all of them
   /// \return the exit code. \throw Failure. `invocation.options` are already assigned when it is called.
   std::function<int(const Invocation&)> run;
   bool listed = true;  ///< shown in the overview of `rfsmooth --help`
@@ -37,8 +40,7 @@ Command flows_command();
 Command man_command();
 Command completion_command();
 
-/// Gives options their one-letter names and --flow its words, and marks the tuning of the connecting stages
-/// as advanced.
+/// Gives options their one-letter names and --flow its words.
 void polish(Command& command);
 
 /// All of them, in the order of the overview.

@@ -7,6 +7,7 @@
 
 #include "pipeline/cli/commands/command.h"
 #include "pipeline/cli/console.h"
+#include "pipeline/cli/deviation.h"
 #include "pipeline/cli/files/cloud_files.h"
 #include "pipeline/io/mesh_file.h"
 
@@ -20,6 +21,8 @@ struct CompareCommandOptions {
   bool signed_normals = false;
   bool json = false;
   std::optional<int> threads;
+  FileOptions files;  // only where the coloured cloud goes
+  std::optional<double> red_from;
   TalkOptions talk;
 
   template <class Self, class Visit>
@@ -27,6 +30,15 @@ struct CompareCommandOptions {
     visit(OptionInfo{"signed-normals", "the cloud's normals claim a side: angles up to 180 degrees", ""},
           self.signed_normals);
     visit(OptionInfo{"json", "print JSON", ""}, self.json);
+    visit(OptionInfo{"output",
+                     "write the cloud here, coloured by its distance from the truth, blue to red, and with a "
+                     "field 'deviation'",
+                     "file"},
+          self.files.output);
+    visit(OptionInfo{"red-from", "distance from which points are red; auto: 95 % are nearer",
+                     "units of the file", 0, 1e300},
+          self.red_from);
+    visit(OptionInfo{"force", "replace an existing file", ""}, self.files.force);
     visit(OptionInfo{"threads", "threads to use; auto: all cores; the result is the same", "", 1, 1024},
           self.threads);
     TalkOptions::describe(self.talk, visit);
@@ -67,54 +79,93 @@ std::vector<double> normals_of(const pipeline::io::Cloud& cloud, const Context& 
   return {};
 }
 
-int run_compare(const CompareCommandOptions& options, const Invocation& typed) {
-  if (typed.arguments.size() != 2)
-    throw Failure(
-        {ErrorCode::usage, "two files are needed: the cloud and the truth (a mesh or a clean cloud)"});
-  Console console(options.talk);
-  const Context context = console.context(options.threads.value_or(0));
-  std::vector<StageTime> unused;
-  const auto cloud = load_cloud(typed.arguments[0], context, unused);
-  const auto truth_file = load_cloud(typed.arguments[1], context, unused);
+/// The file of the truth: a mesh, or a clean cloud if it has no faces. Keeps what `view` points at.
+struct TruthFile {
+  TruthFile(const std::string& path, const Context& context) {
+    std::vector<StageTime> unused;
+    const auto file = load_cloud(path, context, unused);
+    xyz = pipeline::io::positions(file, context);
+    faces = pipeline::io::faces_of(file, context);
+    if (faces.empty())
+      view.cloud = CloudView{xyz.data(), file.size(), nullptr};
+    else
+      view.mesh = MeshView{xyz.data(), file.size(), faces.data(), faces.size()};
+  }
+  std::vector<double> xyz;
+  std::vector<Face> faces;
+  Truth view;
+};
 
-  const std::vector<double> xyz = pipeline::io::positions(cloud, context),
-                            normals = normals_of(cloud, context);
-  const std::vector<double> truth_xyz = pipeline::io::positions(truth_file, context);
-  const std::vector<Face> faces = pipeline::io::faces_of(truth_file, context);
-  Truth truth;
-  if (faces.empty())
-    truth.cloud = CloudView{truth_xyz.data(), truth_file.size(), nullptr};
-  else
-    truth.mesh = MeshView{truth_xyz.data(), truth_file.size(), faces.data(), faces.size()};
-  CompareOptions compare_options;
-  compare_options.signed_normals = options.signed_normals;
-  const CompareReport report =
-      value_or_throw(rfsmooth::compare({xyz.data(), cloud.size(), normals.empty() ? nullptr : normals.data()},
-                                       truth, compare_options, context));
-
+ordered_json json_of(const CompareReport& report, const Deviation& deviation,
+                     const std::vector<std::string>& names) {
   ordered_json own, unit;
   Measures::describe(report.own_units, ToJson{own});
   const Measures scaled = rfsmooth::on_unit_sphere(report.own_units, report.radius);
   Measures::describe(scaled, ToJson{unit});
-  if (options.json) {
-    const ordered_json json = {{"cloud", typed.arguments[0]},
-                               {"truth", typed.arguments[1]},
-                               {"points", report.points},
-                               {"finite", report.finite},
-                               {"truth_points", report.truth_points},
-                               {"truth_faces", report.truth_faces},
-                               {"truth_closed", report.truth_closed},
-                               {"radius", report.radius},
-                               {"own_units", own},
-                               {"unit_sphere", unit}};
-    fmt::print("{}\n", json.dump(2, ' ', false, ordered_json::error_handler_t::replace));
-    return 0;
-  }
+  return {{"cloud", names[0]},
+          {"truth", names[1]},
+          {"points", report.points},
+          {"finite", report.finite},
+          {"truth_points", report.truth_points},
+          {"truth_faces", report.truth_faces},
+          {"truth_closed", report.truth_closed},
+          {"radius", report.radius},
+          {"deviation",
+           {{"rms", deviation.rms},
+            {"median", deviation.median},
+            {"percentile_95", deviation.most},
+            {"largest", deviation.largest}}},
+          {"own_units", own},
+          {"unit_sphere", unit}};
+}
+
+void print_text(const CompareReport& report, const Deviation& deviation, const ordered_json& json) {
+  const bool mesh = report.truth_faces > 0;
   fmt::print("{} points ({} finite) against {} {}\n", report.points, report.finite,
-             faces.empty() ? report.truth_points : report.truth_faces,
-             faces.empty() ? "clean points" : "true faces");
+             mesh ? report.truth_faces : report.truth_points, mesh ? "true faces" : "clean points");
+  fmt::print("distance of a point to {}, in the units of the file:\n",
+             mesh ? "the surface" : "the nearest clean point");
+  for (const auto& [name, value] : {std::pair("rms", deviation.rms),
+                                    {"median", deviation.median},
+                                    {"95 %", deviation.most},
+                                    {"largest", deviation.largest}})
+    fmt::print("  {:<8} {:.6g}\n", name, value);
   fmt::print("{:<21} {:>12} {:>12}  {}\n", "", "own units", "x 1e4", "(x 1e4: on the truth's unit sphere)");
-  Measures::describe(report.own_units, ToText{unit});
+  Measures::describe(report.own_units, ToText{json["unit_sphere"]});
+}
+
+int run_compare(const CompareCommandOptions& options, const Invocation& typed) {
+  if (typed.arguments.size() != 2)
+    throw Failure(
+        {ErrorCode::usage, "two files are needed: the cloud and the truth (a mesh or a clean cloud)"});
+  if (options.files.output == "-")
+    throw Failure({ErrorCode::usage, "-o needs the name of a file: standard output takes the figures"});
+  if (options.files.output) check_target(*options.files.output, options.files);
+  Console console(options.talk);
+  console.progress().plan({{"read", 1}, {"compare", 10}});
+  const Context context = console.context(options.threads.value_or(0));
+  std::vector<StageTime> unused;
+  auto cloud = load_cloud(typed.arguments[0], context, unused);
+  const TruthFile truth(typed.arguments[1], context);
+  const std::vector<double> xyz = pipeline::io::positions(cloud, context),
+                            normals = normals_of(cloud, context);
+  CompareOptions compare_options;
+  compare_options.signed_normals = options.signed_normals;
+  const CompareReport report =
+      value_or_throw(rfsmooth::compare({xyz.data(), cloud.size(), normals.empty() ? nullptr : normals.data()},
+                                       truth.view, compare_options, context));
+  const Deviation deviation = summed_up(report.deviation);
+  const ordered_json json = json_of(report, deviation, typed.arguments);
+  if (options.json)
+    fmt::print("{}\n", json.dump(2, ' ', false, ordered_json::error_handler_t::replace));
+  else
+    print_text(report, deviation, json);
+  if (!options.files.output) return 0;
+  const double red = options.red_from.value_or(deviation.most);
+  color_by_deviation(cloud, report.deviation, red, *options.files.output, context);
+  store_cloud(cloud, *options.files.output, options.files, context, unused);
+  console.say(
+      fmt::format("{}: blue 0, green {:.3g}, red from {:.3g} on", *options.files.output, red / 2, red));
   return 0;
 }
 
@@ -127,7 +178,10 @@ Command compare_command() {
   command.summary = "measure a cloud against the truth, a mesh or a clean cloud";
   command.usage = {"[options] CLOUD TRUTH"};
   command.description =
-      "TRUTH is a mesh (PLY with faces, OFF) or a clean cloud. Against a mesh: distances to the surface, "
+      "TRUTH is a mesh (PLY with faces, OFF) or a clean cloud. Prints the root of the mean square, the "
+      "median, "
+      "the 95th percentile and the largest of the distances between them in the units of the file; -o writes "
+      "the cloud coloured by them. Then what papers compare by: against a mesh distances to the surface, "
       "P2M, "
       "shrinkage; against a cloud: Chamfer distance; evenness of the cloud; the error of its normals if it "
       "has "

@@ -11,7 +11,7 @@ namespace rfsmooth::cli {
 namespace {
 
 std::vector<std::string> words_of(const Command& command) {
-  std::vector<std::string> words = {"-h", "--help"};
+  std::vector<std::string> words = {"-h", "--help", "--help-all"};
   for (const CommandOption& o : command.options) {
     if (o.short_name) words.push_back(fmt::format("-{}", o.short_name));
     for (const std::string& name : typed_names(o)) words.push_back(name);
@@ -36,7 +36,7 @@ std::string bash_script(const std::vector<Command>& commands) {
 _rfsmooth() {{
   local cur="${{COMP_WORDS[COMP_CWORD]}}" prev="${{COMP_WORDS[COMP_CWORD-1]}}" command="${{COMP_WORDS[1]}}" words=""
   if [ "$COMP_CWORD" -eq 1 ]; then
-    COMPREPLY=($(compgen -W "{} --help --version" -- "$cur"))
+    COMPREPLY=($(compgen -W "{} --help --help-all --version" -- "$cur"))
     return
   fi
   case "$command:$prev" in
@@ -87,7 +87,8 @@ std::string zsh_script(const std::vector<Command>& commands) {
     names += fmt::format("    '{}:{}'\n", c.name, zsh_escaped(c.summary));
     cases += fmt::format("    {})\n      _arguments \\\n", c.name);
     for (const CommandOption& o : c.options) cases += zsh_option(o);
-    cases += "        '--help[everything about the command]' '*:file:_files' ;;\n";
+    cases +=
+        "        '--help[everyday options]' '--help-all[everything about the command]' '*:file:_files' ;;\n";
   }
   return fmt::format(R"(#compdef rfsmooth
 # zsh completion for rfsmooth; made by: rfsmooth completion zsh

@@ -122,6 +122,19 @@ std::string said_of_outliers(const DenoiseReport& done, const DenoiseCommandOpti
   return fmt::format("; {} outlier{} {}", done.outliers, done.outliers == 1 ? "" : "s", what);
 }
 
+/// What came in, its noise, and how far it moved: a line each.
+std::string summary(const DenoiseReport& done, const DenoiseCommandOptions& options) {
+  const bool clean = done.effective.flow.flow == "auto" && done.guide_strength == 0;
+  const std::string left = clean ? ", too little to smooth"
+                           : done.noise_left < done.noise
+                               ? fmt::format(", about {:.3g} left", done.noise_left)
+                               : "";
+  return fmt::format(
+      "{} points, {} finite{}\nnoise {:.3g}{}; spacing {:.4g}\nlargest move {:.4g}, rms {:.4g}", done.points,
+      done.finite, said_of_outliers(done, options), done.noise, left, done.spacing, done.largest_move,
+      done.rms_move);
+}
+
 std::string denoise_cloud(const DenoiseCommandOptions& options, pipeline::io::Cloud& cloud, const Job& job,
                           const Context& context, Console& console, std::vector<StageTime>& stages,
                           ordered_json& entry) {
@@ -140,6 +153,7 @@ std::string denoise_cloud(const DenoiseCommandOptions& options, pipeline::io::Cl
     for (std::size_t i = 0; i < n; ++i)
       if (done.outlier[i] != 0) std::fill_n(&xyz[3 * i], 3, std::numeric_limits<double>::quiet_NaN());
   };
+  warn_if_coarse(cloud, pipeline::io::positions(cloud, context), done.spacing, job.input, console);
   if (as_nan) blank_outliers();
   pipeline::io::set_positions(cloud, xyz.data(), context);
   if (options.write_displacement) write_displacement(cloud, before, context);
@@ -154,15 +168,7 @@ std::string denoise_cloud(const DenoiseCommandOptions& options, pipeline::io::Cl
   if (some_removed) blank_outliers();  // normals are of the points that stay
   write_normals(options.normals, cloud, xyz.data(), job.output, options.job.files, context, stages, entry);
   if (some_removed && !as_nan) remove_outliers(cloud, done.outlier, context);
-  const bool clean = done.effective.flow.flow == "auto" && done.guide_strength == 0;
-  const std::string left = clean ? ", too little to smooth"
-                           : done.noise_left < done.noise
-                               ? fmt::format(", about {:.3g} left", done.noise_left)
-                               : "";
-  return fmt::format(
-      "{} points, {} finite{}; spacing {:.4g}, noise {:.3g}{}; largest move {:.4g}, rms {:.4g}", done.points,
-      done.finite, said_of_outliers(done, options), done.spacing, done.noise, left, done.largest_move,
-      done.rms_move);
+  return summary(done, options);
 }
 
 int run_denoise(const DenoiseCommandOptions& options, const Invocation& typed) {
@@ -171,9 +177,9 @@ int run_denoise(const DenoiseCommandOptions& options, const Invocation& typed) {
   if (options.mark_outliers && options.denoise.outliers == "smooth")
     throw Failure({ErrorCode::usage, "--mark-outliers has nothing to mark with --outliers smooth"});
   check(options.normals);
-  return run_cloud_jobs("denoise", options.job, typed, [&](auto&&... all) {
-    return denoise_cloud(options, std::forward<decltype(all)>(all)...);
-  });
+  return run_cloud_jobs(
+      "denoise", options.job, typed, denoising_stages(options.normals.normals),
+      [&](auto&&... all) { return denoise_cloud(options, std::forward<decltype(all)>(all)...); });
 }
 
 }  // namespace
@@ -183,7 +189,7 @@ Command denoise_command() {
   Command command;
   command.name = "denoise";
   command.summary = "take the noise out of point clouds";
-  command.usage = {"[options] IN OUT", "[options] IN... -o FOLDER/"};
+  command.usage = {"[options] IN OUT", "[options] IN... -o FOLDER"};
   command.description =
       "Reads a cloud (PLY, PCD, XYZ; the format is found by content), connects its points to a rough mesh "
       "(EMST, SDG, RFS-mesh), smooths the mesh, and writes the same cloud with x, y, z replaced: every "
@@ -195,6 +201,8 @@ Command denoise_command() {
       "are replaced only with --force. Ctrl-C stops within a second and leaves no file.";
   collect(*options, command.options);
   collect(options->job, command.options);
+  command.everyday = {"strength", "noise",   "flow",   "outliers", "normals", "output",
+                      "force",    "threads", "report", "quiet",    "verbose"};
   polish(command);
   command.run = [options](const Invocation& typed) { return run_denoise(*options, typed); };
   return command;

@@ -120,28 +120,26 @@ void print_text(const ordered_json& info) {
 int run_info(const InfoCommandOptions& options, const Invocation& typed) {
   if (typed.arguments.empty()) throw Failure({ErrorCode::usage, "no input given"});
   Console console(options.talk);
+  console.progress().plan({{"read", 1}});
   const Context context = console.context(0);
   auto all = ordered_json::array();
   std::vector<Job> jobs;
   for (const std::string& input : typed.arguments) jobs.push_back({input, ""});
-  const int code = run_jobs(jobs, console, [&](const Job& job) {
-    JobOutcome outcome;
+  const int code = run_jobs(jobs, console, [&](const Job& job) -> std::optional<Error> {
     const auto done = guarded([&] {
       std::vector<StageTime> unused;
       const pipeline::io::Cloud cloud = load_cloud(job.input, context, unused);
       ordered_json info = {{"path", job.input}};
       info.update(describe(cloud));
       info.update(measure(cloud, context));
+      if (!info["spacing"].is_null())
+        warn_if_coarse(cloud, pipeline::io::positions(cloud, context), info["spacing"], job.input, console);
       return info;
     });
-    if (!done.ok()) {
-      outcome.error = done.error();
-      return outcome;
-    }
+    if (!done.ok()) return done.error();
     if (!options.json) print_text(done.value());
     all.push_back(done.value());
-    outcome.summary = fmt::format("{} points", done.value()["points"].get<std::size_t>());
-    return outcome;
+    return std::nullopt;
   });
   if (options.json && !all.empty())
     fmt::print("{}\n",

@@ -1,4 +1,5 @@
 /// rfsmooth mesh: the connectivity that denoise works on, as a PLY to look at, stage by stage.
+#include <algorithm>
 #include <memory>
 
 #include <fmt/format.h>
@@ -59,8 +60,31 @@ std::vector<Edge> renumbered(std::vector<Edge> edges, const std::vector<Index>& 
   return edges;
 }
 
+/// The options of the stage: what only later ones need is not made.
+ConnectOptions connect_options(const MeshOptions& options) {
+  using rfs_mesh::ConnectUpTo;
+  ConnectOptions connect = options.connect;
+  connect.up_to = options.stage == "emst"  ? ConnectUpTo::emst
+                  : options.stage == "sdg" ? ConnectUpTo::sdg
+                                           : ConnectUpTo::mesh;
+  connect.tree_of_points = false;
+  return connect;
+}
+
+/// What the stages up to the one that was asked for made.
+ordered_json counts_of(const Connection& connection, const std::string& stage) {
+  if (stage == "emst") return {{"emst_edges", connection.emst.size()}};
+  ordered_json counts = {{"sdg_edges", connection.sdg.size()}, {"bridges", connection.bridges.size()}};
+  if (stage == "rfs")
+    counts.update({{"edges", connection.mesh.edge_count()},
+                   {"faces", connection.mesh.faces.size()},
+                   {"faceless", connection.faceless}});
+  return counts;
+}
+
 std::string connect_cloud(const MeshCommandOptions& options, pipeline::io::Cloud& cloud, const Job& job,
-                          const Context& context, std::vector<StageTime>& stages, ordered_json& entry) {
+                          const Context& context, Console& console, std::vector<StageTime>& stages,
+                          ordered_json& entry) {
   if (const auto error = refuse_without_memory(job.input, rfsmooth::denoise_memory(cloud.size())))
     throw Failure(*error);
   const std::vector<double> xyz = pipeline::io::positions(cloud, context);
@@ -68,9 +92,10 @@ std::string connect_cloud(const MeshCommandOptions& options, pipeline::io::Cloud
       value_or_fail(rfs_mesh::make_working_cloud(xyz.data(), cloud.size(), context), job.input);
   Connection connection;
   in_arena(context, [&] {
-    connection = value_or_throw(rfsmooth::connect(working.points, options.mesh.connect, context));
+    connection = value_or_throw(rfsmooth::connect(working.points, connect_options(options.mesh), context));
   });
   stages.insert(stages.end(), connection.seconds.begin(), connection.seconds.end());
+  warn_if_coarse(cloud, xyz, connection.noise.spacing, job.input, console);
 
   const FileOrder order = file_order(working, xyz);
   const std::string& stage = options.mesh.stage;
@@ -85,26 +110,27 @@ std::string connect_cloud(const MeshCommandOptions& options, pipeline::io::Cloud
   cloud = pipeline::io::make_mesh_file(order.points, faces, edges);
 
   entry["options"] = effective_options(options.mesh, options.job.files);
-  entry["counts"] = {{"points", xyz.size() / 3},
-                     {"vertices", order.points.size()},
-                     {"emst_edges", connection.emst.size()},
-                     {"sdg_edges", connection.sdg.size()},
-                     {"bridges", connection.bridges.size()},
-                     {"edges", connection.mesh.edge_count()},
-                     {"faces", connection.mesh.faces.size()},
-                     {"faceless", connection.faceless}};
+  entry["counts"] = {{"points", xyz.size() / 3}, {"vertices", order.points.size()}};
+  entry["counts"].update(counts_of(connection, stage));
   entry["spacing"] = connection.noise.spacing;
-  entry["noise"] = connection.noise.sigma;
+  if (stage != "emst") entry["noise"] = connection.noise.sigma;
   return fmt::format("{}: {} vertices, {} edges, {} faces", stage, order.points.size(), edges.size(),
                      faces.size());
 }
 
+/// What is reported until the stage that was asked for is made.
+std::vector<StageShare> stages_up_to(const std::string& stage) {
+  std::vector<StageShare> stages = connecting_stages();
+  const auto last =
+      std::find_if(stages.begin(), stages.end(), [&](const StageShare& s) { return s.stage == stage; });
+  if (last != stages.end()) stages.erase(last + 1, stages.end());
+  return stages;
+}
+
 int run_mesh(const MeshCommandOptions& options, const Invocation& typed) {
-  return run_cloud_jobs("mesh", options.job, typed,
-                        [&](pipeline::io::Cloud& cloud, const Job& job, const Context& context, Console&,
-                            std::vector<StageTime>& stages, ordered_json& entry) {
-                          return connect_cloud(options, cloud, job, context, stages, entry);
-                        });
+  return run_cloud_jobs("mesh", options.job, typed, stages_up_to(options.mesh.stage), [&](auto&&... all) {
+    return connect_cloud(options, std::forward<decltype(all)>(all)...);
+  });
 }
 
 }  // namespace
@@ -114,7 +140,7 @@ Command mesh_command() {
   Command command;
   command.name = "mesh";
   command.summary = "write the mesh that denoise works on, or the graphs it is made from";
-  command.usage = {"[options] IN OUT", "[options] IN... -o FOLDER/"};
+  command.usage = {"[options] IN OUT", "[options] IN... -o FOLDER"};
   command.description =
       "Connects the points of a cloud and writes a PLY that MeshLab or CloudCompare opens: edges for the "
       "Euclidean "
@@ -125,6 +151,7 @@ Command mesh_command() {
       "one vertex.";
   collect(options->mesh, command.options);
   collect(options->job, command.options);
+  command.everyday = {"stage", "output", "force", "threads", "report", "quiet", "verbose"};
   polish(command);
   command.run = [options](const Invocation& typed) { return run_mesh(*options, typed); };
   return command;

@@ -8,6 +8,7 @@
 #include "pipeline/cli/files/cloud_jobs.h"
 #include "pipeline/cli/files/memory.h"
 #include "pipeline/cli/files/surface_file.h"
+#include "pipeline/cli/other_program.h"
 
 namespace rfsmooth::cli {
 
@@ -67,17 +68,30 @@ void enter(const Reconstruction& made, const ReconstructCommandOptions& options,
 
 std::string reconstruct_cloud(const ReconstructCommandOptions& options, const SurfaceMethod& method,
                               pipeline::io::Cloud& cloud, const Job& job, const Context& context,
-                              std::vector<StageTime>& stages, ordered_json& entry) {
+                              Console& console, std::vector<StageTime>& stages, ordered_json& entry) {
   check_format(job, options.job.files);
   if (const auto error = refuse_without_memory(job.input, rfsmooth::denoise_memory(cloud.size())))
     throw Failure(*error);
   const Reconstruction made = value_or_fail(
       rfsmooth::reconstruct(pipeline::io::positions(cloud, context), options.reconstruct, method, context),
       job.input);
+  warn_if_coarse(cloud, pipeline::io::positions(cloud, context), made.report.spacing, job.input, console);
   cloud = surface_file(std::move(cloud), made, context);
   stages.insert(stages.end(), made.report.seconds.begin(), made.report.seconds.end());
   enter(made, options, entry);
   return text_of(made.report.topology);
+}
+
+/// A surface takes about as long as its normals, whatever the method; the bar stands still meanwhile.
+std::vector<StageShare> reconstructing_stages(const ReconstructCommandOptions& options) {
+  std::vector<StageShare> stages = options.reconstruct.denoise
+                                       ? denoising_stages(true)
+                                       : std::vector<StageShare>{{"read", 1}, {"normals", 100}};
+  for (const auto& [method, stage] : {std::pair("poisson", "Poisson"),
+                                      {"advancing-front", "advancing front"},
+                                      {"ball-pivoting", "ball pivoting"}})
+    if (options.reconstruct.method == method) stages.push_back({stage, 100});
+  return stages;
 }
 
 const SurfaceMethod& find_method(const std::vector<SurfaceMethod>& methods, const std::string& name) {
@@ -90,21 +104,6 @@ const SurfaceMethod& find_method(const std::vector<SurfaceMethod>& methods, cons
       {ErrorCode::not_installed,
        fmt::format("--method {} is not in this rfsmooth-reconstruct, which was built without {}; it has {}",
                    name, name == "advancing-front" ? "CGAL" : "Open3D", fmt::join(names, ", "))});
-}
-
-/// The arguments that say the same again.
-std::vector<std::string> as_typed(const Invocation& typed, const std::vector<CommandOption>& options) {
-  std::vector<std::string> words;
-  for (const auto& [name, text] : typed.options) {
-    bool flag = false;
-    for (const CommandOption& o : options) flag = flag || (o.name == name && o.kind == ValueKind::flag);
-    std::string word = flag && text != "true" ? "--no-" : "--";
-    word += name;
-    if (!flag) word.append("=").append(text);
-    words.push_back(std::move(word));
-  }
-  words.insert(words.end(), typed.arguments.begin(), typed.arguments.end());
-  return words;
 }
 
 Command table(const std::shared_ptr<ReconstructCommandOptions>& options) {
@@ -123,6 +122,8 @@ Command table(const std::shared_ptr<ReconstructCommandOptions>& options) {
       "installed or not; without it, or without the library that a method needs, the exit code is 127.";
   collect(options->reconstruct, command.options);
   collect(options->job, command.options);
+  command.everyday = {"method", "denoise", "trim",   "fill-holes", "strength", "output",
+                      "force",  "threads", "report", "quiet",      "verbose"};
   polish(command);
   return command;
 }
@@ -145,10 +146,9 @@ Command reconstruct_command(std::vector<SurfaceMethod> methods) {
   command.run = [options, methods = std::move(methods)](const Invocation& typed) {
     value_or_throw(rfsmooth::complete(options->reconstruct.denoising.flow));
     const SurfaceMethod& method = find_method(methods, options->reconstruct.method);
-    return run_cloud_jobs("reconstruct", options->job, typed,
-                          [&](pipeline::io::Cloud& cloud, const Job& job, const Context& context, Console&,
-                              std::vector<StageTime>& stages, ordered_json& entry) {
-                            return reconstruct_cloud(*options, method, cloud, job, context, stages, entry);
+    return run_cloud_jobs("reconstruct", options->job, typed, reconstructing_stages(*options),
+                          [&](auto&&... all) {
+                            return reconstruct_cloud(*options, method, std::forward<decltype(all)>(all)...);
                           });
   };
   return command;

@@ -17,8 +17,4 @@ Command reconstruct_command();
 /// As the program has it: `run` does the work with `methods`.
 Command reconstruct_command(std::vector<SurfaceMethod> methods);
 
-/// Becomes the program `name` with these arguments: the one beside this program, else the first in PATH.
-/// \throw Failure (not_installed) if there is none.
-int become_program(const std::string& name, const std::vector<std::string>& arguments);
-
 }  // namespace rfsmooth::cli

@@ -160,9 +160,10 @@ std::string smooth_file(const SmoothMeshCommandOptions& options, pipeline::io::C
 
 int run_smooth_mesh(const SmoothMeshCommandOptions& options, const Invocation& typed) {
   value_or_throw(rfsmooth::complete(options.flow));
-  return run_cloud_jobs("smooth-mesh", options.job, typed, [&](auto&&... all) {
-    return smooth_file(options, std::forward<decltype(all)>(all)...);
-  });
+  return run_cloud_jobs(
+      "smooth-mesh", options.job, typed,
+      {{"read", 1}, {"smooth", 10}, {"refine", options.after.refine.levels > 0 ? 20.0 : 0.0}},
+      [&](auto&&... all) { return smooth_file(options, std::forward<decltype(all)>(all)...); });
 }
 
 }  // namespace
@@ -172,7 +173,7 @@ Command smooth_mesh_command() {
   Command command;
   command.name = "smooth-mesh";
   command.summary = "smooth a triangle mesh from a file with any flow; refine it; find its ridges";
-  command.usage = {"[options] IN OUT", "[options] IN... -o FOLDER/"};
+  command.usage = {"[options] IN OUT", "[options] IN... -o FOLDER"};
   command.description =
       "Reads a mesh (PLY with faces, OFF), moves its vertices by a flow and writes the same file with x, y, "
       "z replaced. Faces, fields and order stay; polygons count as fans of triangles. Vertices that are not "
@@ -182,6 +183,8 @@ Command smooth_mesh_command() {
       "(--iterations 0 refines without smoothing); --ridges marks ridges and ravines.";
   collect(*options, command.options);
   collect(options->job, command.options);
+  command.everyday = {"flow",  "iterations", "strength-field", "refine", "ridges", "output",
+                      "force", "threads",    "report",         "quiet",  "verbose"};
   polish(command);
   command.run = [options](const Invocation& typed) { return run_smooth_mesh(*options, typed); };
   return command;

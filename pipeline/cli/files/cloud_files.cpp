@@ -1,12 +1,16 @@
 #include "pipeline/cli/files/cloud_files.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <limits>
 
 #include <fmt/format.h>
 
 #include "base/stopwatch.h"
 #include "pipeline/cli/files/memory.h"
+#include "pipeline/cli/own_files.h"
 
 namespace rfsmooth::cli {
 
@@ -64,11 +68,34 @@ void store_cloud(const io::Cloud& cloud, const std::string& output, const FileOp
       throw Failure({ErrorCode::cannot_write, "cannot write to standard output"});
   } else {
     value_or_throw(io::write_cloud(cloud, output, write_options(options), context));
+    mark_as_own(output);
   }
+  context.report("write", 1);
 }
 
 bool has_normals(const io::Cloud& cloud) {
   return io::find_field(cloud, "nx") || io::find_field(cloud, "normal_x");
+}
+
+void warn_if_coarse(const io::Cloud& cloud, const std::vector<double>& xyz, double spacing,
+                    const std::string& name, Console& console) {
+  float largest = 0;
+  for (std::size_t i = 0; i < xyz.size(); ++i) {
+    if (!std::isfinite(xyz[i]) || cloud.points().fields[cloud.xyz[i % 3]].type != io::Scalar::float32)
+      continue;
+    const auto value = float(xyz[i]);
+    if (double(value) != xyz[i]) return;  // a text with more digits
+    largest = std::max(largest, std::abs(value));
+  }
+  const double step =
+      double(std::nextafter(largest, std::numeric_limits<float>::infinity())) - double(largest);
+  const double rounding = step / std::sqrt(12.0);  // standard deviation of what is lost
+  if (rounding > spacing / 20)
+    console.warn(
+        fmt::format("{}: coordinates of {:.3g} have steps of {:.2g} in float32, at a spacing of {:.2g}: "
+                    "that noise was made when the file was written; write it anew with double "
+                    "coordinates, or shifted near the origin",
+                    name, largest, step, spacing));
 }
 
 ordered_json describe(const io::Cloud& cloud) {

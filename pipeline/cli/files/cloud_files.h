@@ -32,6 +32,11 @@ void store_cloud(const pipeline::io::Cloud& cloud, const std::string& output, co
 /// Whether the points have nx, ny, nz or normal_x, ...
 bool has_normals(const pipeline::io::Cloud& cloud);
 
+/// Warns where float32 cannot hold the coordinates' spacing: where rounding them is more than the noise that
+/// denoise lets be, a twentieth of the spacing. `xyz`: what the file holds. O(n).
+void warn_if_coarse(const pipeline::io::Cloud& cloud, const std::vector<double>& xyz, double spacing,
+                    const std::string& name, Console& console);
+
 /// Format, encoding, points, organised size and fields, for reports and `info`.
 nlohmann::ordered_json describe(const pipeline::io::Cloud& cloud);
 

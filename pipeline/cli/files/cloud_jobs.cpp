@@ -1,7 +1,10 @@
 #include "pipeline/cli/files/cloud_jobs.h"
 
+#include <sstream>
+
 #include <fmt/format.h>
 
+#include "pipeline/cli/own_files.h"
 #include "pipeline/cli/report.h"
 
 namespace rfsmooth::cli {
@@ -18,43 +21,55 @@ std::string text_of(const std::vector<StageTime>& stages) {
   return text;
 }
 
-std::string run_one(const Job& job, const JobOptions& options, const CloudWork& work, const Context& context,
-                    Console& console, ordered_json& entry) {
+/// Says a summary; of one job of many its first two lines, as one.
+void tell(const Job& job, const std::string& summary, bool one_of_many, Console& console) {
+  std::vector<std::string> lines;
+  std::istringstream text(summary);
+  for (std::string line; std::getline(text, line);) lines.push_back(line);
+  if (one_of_many && lines.size() > 1) lines = {lines[0] + "; " + lines[1]};
+  lines[0] = fmt::format("{} -> {}: {}", job.input, job.output, lines[0]);
+  for (const std::string& line : lines) console.say(line);
+}
+
+void run_one(const Job& job, const JobOptions& options, const CloudWork& work, const Context& context,
+             Console& console, ordered_json& entry, bool one_of_many) {
+  if (!options.files.output) need_own_target(job);
   check_target(job.output, options.files);
   std::vector<StageTime> stages;
   pipeline::io::Cloud cloud = load_cloud(job.input, context, stages);
   entry["input"].update(describe(cloud));
   console.set_points(cloud.size());
-  std::string summary = work(cloud, job, context, console, stages, entry);
+  const std::string summary = work(cloud, job, context, console, stages, entry);
   store_cloud(cloud, job.output, options.files, context, stages);
-  console.say(fmt::format("{} -> {}: {}", job.input, job.output, summary));
-  console.say("seconds: " + text_of(stages));
+  tell(job, summary, one_of_many, console);
+  console.detail("seconds: " + text_of(stages));
   entry["threads"] = options.run.threads ? ordered_json(*options.run.threads) : ordered_json(nullptr);
   entry["seconds"] = json_of(stages);
-  return summary;
 }
 
 }  // namespace
 
 int run_cloud_jobs(const std::string& command, const JobOptions& options, const Invocation& typed,
-                   const CloudWork& work) {
+                   std::vector<StageShare> stages, const CloudWork& work) {
   const std::vector<Job> jobs = plan_jobs(typed.arguments, options.files.output);
   need_free_stdout(jobs, options.run);
   Report report(command, options.run.report, options.files.force);
   Console console(options.talk);
+  console.progress().plan(std::move(stages));
   const Context context = console.context(options.run.threads.value_or(0));
   const int code = run_jobs(jobs, console, [&](const Job& job) {
     ordered_json entry = {{"input", {{"path", job.input}}}, {"output", {{"path", job.output}}}};
-    JobOutcome outcome;
-    const auto done = guarded([&] { return run_one(job, options, work, context, console, entry); });
-    if (done.ok()) {
-      outcome.summary = done.value();
-    } else {
-      outcome.error = done.error();
-      entry["error"] = {{"code", int(outcome.error->code)}, {"message", outcome.error->message}};
+    const auto done = guarded([&] {
+      run_one(job, options, work, context, console, entry, jobs.size() > 1);
+      return Done{};
+    });
+    std::optional<Error> error;
+    if (!done.ok()) {
+      error = done.error();
+      entry["error"] = {{"code", int(error->code)}, {"message", error->message}};
     }
     report.add(std::move(entry));
-    return outcome;
+    return error;
   });
   report.write();
   return code;

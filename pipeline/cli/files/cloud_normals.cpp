@@ -9,7 +9,7 @@
 
 #include "base/stopwatch.h"
 #include "pipeline/cli/files/cloud_files.h"
-#include "pipeline/io/table/text.h"
+#include "pipeline/cli/options/text_values.h"
 #include "pipeline/viewpoint.h"
 
 namespace rfsmooth::cli {
@@ -24,20 +24,9 @@ constexpr Names kPly = {"nx", "ny", "nz"}, kPcd = {"normal_x", "normal_y", "norm
 
 /// "x,y,z" strictly. \throw Failure (usage).
 Vector3d parse_point(const std::string& text) {
-  const char* at = text.data();
-  const char* const end = at + text.size();
-  Vector3d point;
-  bool good = true;
-  for (int axis = 0; axis < 3; ++axis) {
-    const char* comma = std::find(at, end, ',');
-    const auto value = io::parse_real({at, std::size_t(comma - at)});
-    good = good && value && std::isfinite(*value) && (comma == end) == (axis == 2);
-    if (!good) break;
-    point[axis] = *value;
-    at = comma == end ? end : comma + 1;
-  }
-  if (!good) throw Failure({ErrorCode::usage, fmt::format("--viewpoint: expected x,y,z; found '{}'", text)});
-  return point;
+  const auto point = read_three(text);
+  if (!point) throw Failure({ErrorCode::usage, fmt::format("--viewpoint: expected x,y,z; found '{}'", text)});
+  return {(*point)[0], (*point)[1], (*point)[2]};
 }
 
 bool complete(const io::Cloud& cloud, const Names& names) {

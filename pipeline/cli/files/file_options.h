@@ -17,8 +17,7 @@ struct FileOptions {
 
   template <class Self, class Visit>
   static void describe(Self& self, Visit&& visit) {
-    visit(OptionInfo{"output", "write here: a file for one input, a folder (NAME/) for many", "file"},
-          self.output);
+    visit(OptionInfo{"output", "write here: a file for one input, a folder for many", "file"}, self.output);
     OptionInfo format{"format", "format of the output; auto: by the output's extension, else as the input",
                       ""};
     format.choices = {"ply", "pcd", "xyz", "off"};

@@ -47,6 +47,15 @@ std::string entry(const std::string& heading, const std::string& text) {
   return line + wrapped(text, kColumn) + '\n';
 }
 
+std::vector<CommandOption> everyday_options(const Command& command) {
+  if (command.everyday.empty()) return command.options;
+  std::vector<CommandOption> chosen;
+  for (const std::string& name : command.everyday)
+    for (const CommandOption& o : command.options)
+      if (o.name == name) chosen.push_back(o);
+  return chosen;
+}
+
 }  // namespace
 
 const std::vector<ExitCode>& exit_codes() {
@@ -58,7 +67,7 @@ const std::vector<ExitCode>& exit_codes() {
       {4, "no usable points in the input"},
       {5, "output cannot be written, or exists and --force was not given"},
       {6, "not enough memory (estimated before starting, or met on the way)"},
-      {127, "reconstruct needs a program or a library that is not installed"},
+      {127, "reconstruct or render needs a program or a library that is not installed"},
       {130, "cancelled (Ctrl-C); no file is left behind"}};
   return codes;
 }
@@ -89,8 +98,8 @@ std::string overview(const std::vector<Command>& commands, bool complete) {
   for (const Command& c : commands)
     if (c.listed || complete) out += entry(c.name, c.summary);
   out += "\noptions:\n";
-  out += entry("-h", "this page; after a command: its options in short");
-  out += entry("--help", "after a command: everything about it, with defaults and ranges");
+  out += entry("-h, --help", "this page; after a command: its everyday options");
+  out += entry("--help-all", "everything: after a command all its options, and the exit codes");
   out += entry("--version", "print the version");
   if (complete) {
     out += "\nexit codes:\n";
@@ -109,15 +118,18 @@ std::string help_of(const Command& command, bool complete) {
   }
   if (complete) out += '\n' + wrapped(command.description, 0) + '\n';
   out += "\noptions:\n";
-  for (const CommandOption& o : command.options) {
-    if (o.advanced && !complete) continue;
-    const std::string limits = complete ? option_limits(o) : "";
+  const std::vector<CommandOption> shown = complete ? command.options : everyday_options(command);
+  for (const CommandOption& o : shown) {
+    const std::string limits = option_limits(o);
     std::string help = o.on_by_default ? "do not " + o.help : o.help;
     if (!limits.empty()) help += " (" + limits + ")";
     out += entry(option_heading(o), help);
   }
-  out += entry("-h", "the options in short");
-  out += entry("    --help", "everything, with defaults and ranges");
+  out += entry("-h, --help", complete ? "the everyday options" : "this page");
+  const std::size_t more = command.options.size() - shown.size();
+  out += entry("    --help-all", complete   ? "this page"
+                                 : more > 0 ? fmt::format("everything: {} more options, exit codes", more)
+                                            : std::string("everything: what it does, exit codes"));
   if (!complete) return out;
   out += "\nexit codes:\n";
   for (const ExitCode& e : exit_codes()) out += entry(std::to_string(e.code), e.meaning);

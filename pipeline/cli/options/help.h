@@ -11,7 +11,7 @@ namespace rfsmooth::cli {
 /// Every command in one screen.
 std::string overview(const std::vector<Command>& commands, bool complete);
 
-/// One command: usage and options; `complete` adds the description, ranges, defaults and exit codes.
+/// One command: usage and everyday options; `complete`: description, every option, exit codes.
 std::string help_of(const Command& command, bool complete);
 
 /// "-o, --output FILE".

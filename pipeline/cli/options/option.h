@@ -20,7 +20,6 @@ struct CommandOption {
   std::string help, unit;
   ValueKind kind = ValueKind::flag;
   bool optional = false;       ///< takes the word "auto" (files: may be left out)
-  bool advanced = false;       ///< left out of the short help
   bool on_by_default = false;  ///< a flag written --no-NAME to turn it off
   std::string default_text;    ///< as it would be typed
   std::string range;           ///< "0 to 1", "at least 0", ""

@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "pipeline/cli/commands/no_command.h"
 #include "pipeline/cli/options/suggest.h"
 
 namespace rfsmooth::cli {
@@ -14,8 +15,8 @@ namespace {
 
 void add_help(CLI::App& app, Invocation& into) {
   app.set_help_flag();  // ours says more
-  app.add_flag("-h", into.short_help);
-  app.add_flag("--help", into.long_help);
+  app.add_flag("-h,--help", into.short_help);
+  app.add_flag("--help-all", into.long_help);
 }
 
 void add_option(CLI::App& app, const CommandOption& option, Invocation& into) {
@@ -32,13 +33,9 @@ void add_option(CLI::App& app, const CommandOption& option, Invocation& into) {
   }
 }
 
-std::vector<std::string> option_names(const Command* command) {
-  std::vector<std::string> names = {"--help"};
-  if (command == nullptr) {
-    names.emplace_back("--version");
-    return names;
-  }
-  for (const CommandOption& o : command->options) {
+std::vector<std::string> option_names(const Command& command) {
+  std::vector<std::string> names = {"--help", "--help-all"};
+  for (const CommandOption& o : command.options) {
     names.push_back("--" + o.name);
     if (has_no_form(o)) names.push_back("--no-" + o.name);
   }
@@ -59,9 +56,9 @@ std::string in_our_words(const CLI::ParseError& error) {
   return what;
 }
 
-[[noreturn]] void refuse_unknown_option(const std::string& typed, const Command* command) {
+[[noreturn]] void refuse_unknown_option(const std::string& typed, const Command& command) {
   const std::string name = typed.substr(0, typed.find('='));
-  refuse(fmt::format("unknown option {}{}{}", name, command ? " for rfsmooth " + command->name : "",
+  refuse(fmt::format("unknown option {} for rfsmooth {}{}", name, command.name,
                      did_you_mean(name, option_names(command))));
 }
 
@@ -94,8 +91,7 @@ Parsed parse(int argc, const char* const* argv, const std::vector<Command>& comm
         parsed.command = &commands[i];
         into.arguments = positional[i];
         for (const std::string& extra : subs[i]->remaining())
-          if (extra.size() > 1 && extra[0] == '-' && extra != "--")
-            refuse_unknown_option(extra, parsed.command);
+          if (extra.size() > 1 && extra[0] == '-' && extra != "--") refuse_unknown_option(extra, commands[i]);
       }
   };
   try {
@@ -104,14 +100,11 @@ Parsed parse(int argc, const char* const* argv, const std::vector<Command>& comm
     refuse(in_our_words(error));
   }
   note_command();
-  if (parsed.command == nullptr)
-    for (const std::string& extra : app.remaining()) {
-      if (extra[0] == '-') refuse_unknown_option(extra, nullptr);
-      std::vector<std::string> names;
-      names.reserve(commands.size());
-      for (const Command& c : commands) names.push_back(c.name);
-      refuse(fmt::format("unknown command '{}'{}", extra, did_you_mean(extra, names)));
-    }
+  const std::vector<std::string> before = app.remaining();
+  if (parsed.command == nullptr && !before.empty()) refuse_words_without_command(before, commands);
+  if (!before.empty())
+    refuse(fmt::format("'{0}' stands before the command; write: rfsmooth {1} {0} ...", before.front(),
+                       parsed.command->name));
   return parsed;
 }
 

@@ -36,6 +36,18 @@ std::optional<Length> read_length(std::string_view text) {
   return Length{*value, times_spacing};
 }
 
+std::optional<std::array<double, 3>> read_three(std::string_view text) {
+  std::array<double, 3> values{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t comma = text.find(',');
+    const auto value = read_number(text.substr(0, comma));
+    if (!value || (comma == std::string_view::npos) != (k == 2)) return std::nullopt;
+    values[k] = *value;
+    text.remove_prefix(k == 2 ? text.size() : comma + 1);
+  }
+  return values;
+}
+
 std::string to_text(double value) {
   return fmt::format("{}", value);  // shortest text that reads back as the same double
 }

@@ -2,6 +2,7 @@
 /// errors), and numbers print with as many digits as bring back the same bits.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -18,6 +19,9 @@ std::optional<int> read_integer(std::string_view text);
 
 /// "0.02" (world units) or "2x" (times the mean spacing); nothing otherwise.
 std::optional<Length> read_length(std::string_view text);
+
+/// "x,y,z": three finite numbers; nothing otherwise.
+std::optional<std::array<double, 3>> read_three(std::string_view text);
 
 std::string to_text(double value);
 std::string to_text(const Length& value);

@@ -1,5 +1,7 @@
 /// rfsmooth denoise on small files: the cloud's own bytes, and the contracts of files and streams.
+#include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -40,9 +42,15 @@ TEST_F(DenoiseCommand, SaysWhatItDidOnStderr) {
   put("in.ply", noisy_plane(20).bytes());
   const Ran ran = run({"denoise", "--flow", "hc", "in.ply", "out.ply"});
   EXPECT_THAT(ran.err, HasSubstr("400 points"));
+  EXPECT_THAT(ran.err, HasSubstr("noise"));
   EXPECT_THAT(ran.err, HasSubstr("spacing"));
-  EXPECT_THAT(ran.err, HasSubstr("seconds: read"));
   EXPECT_THAT(ran.err, HasSubstr("largest move"));
+  EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 3) << ran.err;
+  std::istringstream lines(ran.err);
+  for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 80u) << line;
+  EXPECT_THAT(ran.err, Not(HasSubstr("seconds")));
+  EXPECT_THAT(run({"denoise", "--flow", "hc", "-v", "in.ply", "verbose.ply"}).err,
+              HasSubstr("seconds: read"));
   EXPECT_THAT(ran.err, Not(HasSubstr("\x1b"))) << "no colours away from a terminal";
   EXPECT_THAT(ran.err, Not(HasSubstr("\r"))) << "no bar away from a terminal";
 }

@@ -1,0 +1,38 @@
+/// A picture of clouds or meshes from files, side by side from the same place.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "clouds/render/scene.h"
+
+namespace rfsmooth::render {
+
+/// What is shown, and how.
+struct PictureOptions {
+  std::vector<std::string> inputs, labels;  ///< files; text above each, in order
+  std::string title;
+  std::optional<Eigen::Vector3d> direction, up;  ///< see CameraOptions
+  std::optional<std::array<double, 3>> zoom;     ///< x, y: shares of the full frame; magnification
+  int width = 700, height = 560;                 ///< of each input's, pixels
+  int neighbors = 8;                             ///< a normal is estimated from
+  double splat = 1;                              ///< size of the points, x what covers the surface
+  bool edges = false;                            ///< of faces too
+  std::string color = "plain";                   ///< plain, rgb, height, field, displacement
+  std::string field;                             ///< for color "field"
+  std::optional<double> low, high;               ///< values at the ends of the colours; empty: from the data
+  int levels = 256;                              ///< of brightness per colour
+};
+
+struct Picture {
+  std::string png;
+  std::optional<ColorRange> colors;  ///< what the colours mean, where values have any
+};
+
+/// Reads and draws. \throw Failure: a file that cannot be read, no finite point, a field or colours that are
+/// not there, two clouds of different size for "displacement", a direction of length zero.
+Picture make_picture(const PictureOptions& options, const Context& context);
+
+}  // namespace rfsmooth::render

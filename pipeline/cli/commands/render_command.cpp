@@ -1,0 +1,66 @@
+#include "pipeline/cli/commands/render_command.h"
+
+#include <memory>
+
+#include "pipeline/cli/files/file_options.h"
+#include "pipeline/cli/other_program.h"
+#include "pipeline/cli/own_files.h"
+#include "pipeline/io/io.h"
+
+namespace rfsmooth::cli {
+
+namespace {
+
+Command render_table(const std::shared_ptr<RenderOptions>& options) {
+  Command command;
+  command.name = "render";
+  command.summary = "make a picture of clouds or meshes, side by side";
+  command.usage = {"[options] IN... -o OUT.png"};
+  command.description =
+      "Draws each input from the same place, the one where the first fills the picture: points as small "
+      "discs "
+      "shaded by their neighbourhood, so that noise shows as grain, or faces, or edges. No screen is needed. "
+      "rfsmooth render before.ply after.ply -o pair.png --labels before,after\n\n"
+      "The work is done by the program rfsmooth-render; without it the exit code is 127.";
+  collect(*options, command.options);
+  command.everyday = {"output", "labels", "title",  "direction", "up",
+                      "zoom",   "width",  "height", "color",     "force"};
+  polish(command);
+  return command;
+}
+
+/// Told before the work. \throw Failure.
+void check_request(const RenderOptions& options, const Invocation& typed) {
+  if (typed.arguments.empty()) throw Failure({ErrorCode::usage, "no input given"});
+  if (!options.output) throw Failure({ErrorCode::usage, "no picture named: -o OUT.png"});
+  pipeline::io::WriteOptions any;
+  any.force = options.force;
+  any.format = pipeline::io::Format::ply;  // any: the extension of a picture stands for no cloud
+  value_or_throw(pipeline::io::check_output(*options.output, any));
+  need_no_cloud(*options.output, "picture");
+}
+
+}  // namespace
+
+Command render_command() {
+  const auto options = std::make_shared<RenderOptions>();
+  Command command = render_table(options);
+  command.run = [options, known = command.options](const Invocation& typed) {
+    check_request(*options, typed);
+    return become_program("rfsmooth-render", as_typed(typed, known));
+  };
+  return command;
+}
+
+Command render_command(std::function<void(const RenderOptions&, const std::vector<std::string>&)> draw) {
+  const auto options = std::make_shared<RenderOptions>();
+  Command command = render_table(options);
+  command.run = [options, draw = std::move(draw)](const Invocation& typed) {
+    check_request(*options, typed);
+    draw(*options, typed.arguments);
+    return 0;
+  };
+  return command;
+}
+
+}  // namespace rfsmooth::cli

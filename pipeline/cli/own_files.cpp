@@ -1,0 +1,66 @@
+#include "pipeline/cli/own_files.h"
+
+#include <array>
+#include <filesystem>
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <sys/xattr.h>
+
+#include "pipeline/io/detect.h"
+#include "pipeline/io/io.h"
+
+namespace rfsmooth::cli {
+
+namespace {
+
+constexpr const char* kMark = "user.rfsmooth";
+
+/// Size and time of the last change of the file's bytes; "" if there is no regular file.
+std::string state_of(const std::string& path) {
+  struct stat info {};
+  if (stat(path.c_str(), &info) != 0 || !S_ISREG(info.st_mode)) return "";
+  return fmt::format("{} {}.{:09}", info.st_size, info.st_mtim.tv_sec, info.st_mtim.tv_nsec);
+}
+
+}  // namespace
+
+void mark_as_own(const std::string& path) {
+  const std::string state = state_of(path);
+  if (!state.empty()) static_cast<void>(setxattr(path.c_str(), kMark, state.data(), state.size(), 0));
+}
+
+bool is_own(const std::string& path) {
+  std::array<char, 100> mark{};
+  const ssize_t size = getxattr(path.c_str(), kMark, mark.data(), mark.size());
+  return size > 0 && std::string(mark.data(), std::size_t(size)) == state_of(path);
+}
+
+bool holds_cloud(const std::string& path) {
+  std::error_code unknown;
+  if (!std::filesystem::is_regular_file(path, unknown)) return false;
+  const auto holds = guarded([&] {
+    const auto format =
+        pipeline::io::detect_format(pipeline::io::Source(std::filesystem::path(path), Context()), {});
+    // Any text may be XYZ: that is known when it has been read.
+    return format != pipeline::io::Format::xyz ||
+           value_or_throw(pipeline::io::read_cloud(path, {}, {})).size() > 0;
+  });
+  return holds.ok() ? holds.value() : holds.error().code == ErrorCode::out_of_memory;
+}
+
+void need_own_target(const Job& job) {
+  if (job.output == "-" || job.output == job.input || is_own(job.output) || !holds_cloud(job.output)) return;
+  throw Failure({ErrorCode::cannot_write,
+                 fmt::format("{1}: is a cloud that rfsmooth did not write; it stays as it is. To replace it: "
+                             "--force {0} -o {1}; to work on both: {0} {1} -o FOLDER",
+                             job.input, job.output)});
+}
+
+void need_no_cloud(const std::string& path, const char* what) {
+  if (holds_cloud(path))
+    throw Failure({ErrorCode::cannot_write,
+                   fmt::format("{}: is a cloud, which no {} replaces; remove it yourself", path, what)});
+}
+
+}  // namespace rfsmooth::cli

@@ -1,0 +1,87 @@
+/// rfsmooth-render: what `rfsmooth render` becomes.
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "clouds/render/picture.h"
+#include "pipeline/cli/commands/render_command.h"
+#include "pipeline/cli/options/text_values.h"
+#include "pipeline/cli/program.h"
+#include "pipeline/io/io.h"
+
+namespace {
+
+using rfsmooth::cli::RenderOptions;
+
+std::optional<std::array<double, 3>> three(const char* option, const std::optional<std::string>& text) {
+  if (!text) return std::nullopt;
+  const auto values = rfsmooth::cli::read_three(*text);
+  if (!values)
+    throw rfsmooth::Failure(
+        {rfsmooth::ErrorCode::usage,
+         fmt::format("--{}: expected three numbers as 1,0,0; found '{}'", option, *text)});
+  return values;
+}
+
+std::optional<Eigen::Vector3d> direction(const char* option, const std::optional<std::string>& text) {
+  const auto values = three(option, text);
+  if (!values) return std::nullopt;
+  return Eigen::Vector3d((*values)[0], (*values)[1], (*values)[2]);
+}
+
+/// What stands between the commas.
+std::vector<std::string> parts(const std::string& text) {
+  std::vector<std::string> found(1);
+  for (const char c : text)
+    if (c == ',')
+      found.emplace_back();
+    else
+      found.back() += c;
+  return found;
+}
+
+rfsmooth::render::PictureOptions picture_options(const RenderOptions& options,
+                                                 const std::vector<std::string>& inputs) {
+  rfsmooth::render::PictureOptions out;
+  out.inputs = inputs;
+  if (options.labels) out.labels = parts(*options.labels);
+  if (out.labels.size() > inputs.size())
+    throw rfsmooth::Failure({rfsmooth::ErrorCode::usage, fmt::format("--labels has {} texts for {} inputs",
+                                                                     out.labels.size(), inputs.size())});
+  out.title = options.title.value_or("");
+  out.direction = direction("direction", options.direction);
+  out.up = direction("up", options.up);
+  out.zoom = three("zoom", options.zoom);
+  out.width = options.width;
+  out.height = options.height;
+  out.neighbors = options.neighbors;
+  out.splat = options.splat;
+  out.edges = options.edges;
+  out.color = options.color;
+  out.field = options.field;
+  out.low = options.low;
+  out.high = options.high;
+  out.levels = options.levels;
+  return out;
+}
+
+void draw(const RenderOptions& options, const std::vector<std::string>& inputs) {
+  rfsmooth::cli::Console console(options.talk);
+  console.progress().plan({{"read", 1}});
+  const rfsmooth::Context context = console.context(0);
+  const auto made = rfsmooth::render::make_picture(picture_options(options, inputs), context);
+  value_or_throw(rfsmooth::pipeline::io::write_bytes(made.png, *options.output, options.force, context));
+  console.say(*options.output);
+  if (made.colors)
+    console.say(
+        fmt::format("colours from {:g} (dark blue) to {:g} (yellow)", made.colors->low, made.colors->high));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::vector<const char*> words(argv, argv + argc);
+  const bool version = argc == 2 && std::string_view(argv[1]) == "--version";
+  if (!version) words.insert(words.begin() + 1, "render");
+  return rfsmooth::cli::run_program(int(words.size()), words.data(), {rfsmooth::cli::render_command(draw)});
+}

@@ -1,0 +1,24 @@
+/// Formats that are not read or written here, and what to do with a file in one.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string_view>
+
+namespace rfsmooth::pipeline::io {
+
+/// A format of somebody else.
+struct OtherFormat {
+  const char* name;        ///< "LAS"
+  const char* extensions;  ///< ".las .laz", lower case
+  const char* magic;       ///< what such a file begins with; "" if anything
+  const char* advice;      ///< how to come by a file that is read here
+};
+
+/// The format of a file that begins with these bytes; null if it is none that we know of.
+const OtherFormat* other_format_of_bytes(std::string_view first_bytes);
+
+/// The format that the path's extension stands for; null if it is none that we know of.
+const OtherFormat* other_format_of_extension(const std::filesystem::path& path);
+
+}  // namespace rfsmooth::pipeline::io
