@@ -15,13 +15,16 @@ namespace {
 
 using Cell = std::pair<int, int>;
 
-constexpr int kSeeds = 400;   // places where a plane is looked for
-constexpr int kAround = 600;  // nearest points of a seed: wider than the steps of a depth camera far off
+constexpr int kSeeds = 400;              // places where a plane is looked for
+constexpr int kAround = 600;             // nearest points of a seed ...
+constexpr int kFarAround = 2400;         // ... and where these lie on one step of the depth
+constexpr double kLeastDeviation = 0.2;  // spacings: calm and loud places of one plane are one plane
+constexpr double kWhole = 0.9;           // filled cells of a patch and its border: one row in twelve may lack
 constexpr int kDraws =
     150;  // with half of the points on the plane one draw in eight is, so all fail with 2e-9
 constexpr double kCell = 3;         // side of a cell in spacings: nine points
-constexpr int kPatch = 8;           // side of a patch in cells: about six hundred points
-constexpr int kBorder = 2;          // cells between a patch and the border of its plane
+constexpr int kPatch = 6;           // side of a patch in cells: about three hundred points
+constexpr int kBorder = 3;          // cells between a patch and the border of its plane
 constexpr double kReach = 3;        // inliers, in standard deviations
 constexpr double kTails = 10;       // loud points that still belong to the plane, in standard deviations
 constexpr double kMostLoud = 0.1;   // share of points beyond kReach; more is another thing on the plane
@@ -84,24 +87,35 @@ class Finder {
 
  private:
   Grown grow(Index at) {
-    index_.nearest(points_[at], kAround, near_);
-    std::vector<Index> rows;
-    for (const auto& n : near_) rows.push_back(n.index);
-    Grown grown;
-    grown.plane = draw_plane(points_, rows, kDraws, random_);
-    within(grown.plane, kReach * robust_deviation(grown.plane, points_, rows), rows);
-    grown.plane = fit_plane_trimmed(points_, rows);
-    constexpr double kPi = 3.14159265358979;
-    const double radius = std::sqrt(near_.back().squared_distance);
-    grown.spacing = radius * std::sqrt(kPi / kAround);
-    grown.deviation = robust_deviation(grown.plane, points_, rows);
-    if (grown.spacing == 0 || grown.deviation > radius / 6) return {};  // as thick as it is wide
+    Grown grown = start(at, kAround);
+    if (grown.deviation == 0) grown = start(at, kFarAround);
+    if (grown.deviation == 0) return {};  // one step, or the same place many times
+    grown.deviation = std::max(grown.deviation, kLeastDeviation * grown.spacing);
     for (int pass = 0; pass < 2; ++pass) {
       fill(at, grown);
       if (grown.rows.size() < kAround / 2) return {};
       grown.plane = fit_plane_trimmed(points_, grown.rows);
     }
     fill(at, grown);
+    return grown;
+  }
+
+  /// The plane of the nearest points; deviation 0 if they lie on one step (within a thousandth of a spacing)
+  /// or are as thick as they are wide.
+  Grown start(Index at, int around) {
+    constexpr double kPi = 3.14159265358979;
+    index_.nearest(points_[at], around, near_);
+    std::vector<Index> rows;
+    for (const auto& n : near_) rows.push_back(n.index);
+    Grown grown;
+    grown.plane = draw_plane(points_, rows, kDraws, random_);
+    std::vector<Index> inliers = rows;
+    within(grown.plane, kReach * robust_deviation(grown.plane, points_, rows), inliers);
+    grown.plane = fit_plane_trimmed(points_, inliers);
+    const double radius = std::sqrt(near_.back().squared_distance);
+    grown.spacing = radius * std::sqrt(kPi / around);
+    grown.deviation = robust_deviation(grown.plane, points_, rows);
+    if (grown.deviation <= 1e-3 * grown.spacing || grown.deviation > radius / 6) grown.deviation = 0;
     return grown;
   }
 
@@ -148,10 +162,10 @@ std::map<Cell, std::size_t> inner_patches(const std::set<Cell>& cells, std::size
   std::map<Cell, std::size_t> patch_of;
   count = 0;
   for (const Cell& corner : cells) {
-    bool whole = true;
-    for_patch(corner, kBorder, [&](const Cell& c) { whole = whole && cells.count(c) != 0; });
-    for_patch(corner, 0, [&](const Cell& c) { whole = whole && patch_of.count(c) == 0; });
-    if (!whole) continue;
+    std::size_t filled = 0, taken = 0;
+    for_patch(corner, kBorder, [&](const Cell& c) { filled += cells.count(c); });
+    for_patch(corner, 0, [&](const Cell& c) { taken += patch_of.count(c); });
+    if (taken > 0 || double(filled) < kWhole * std::pow(kPatch + 2 * kBorder, 2)) continue;
     for_patch(corner, 0, [&](const Cell& c) { patch_of[c] = count; });
     ++count;
   }
@@ -271,10 +285,17 @@ Flats find_flats(const Positions& points, std::uint64_t seed) {
   if (points.size() < kAround) return flats;
   Finder finder(points, seed);
   const std::vector<Grown> planes = finder.planes();
-  flats.planes = planes.size();
-  for (const Grown& grown : planes) add_patches(points, grown, flats.patches);
+  std::vector<char> real;  // with a flat inside
+  for (const Grown& grown : planes) {
+    const std::size_t before = flats.patches.size();
+    add_patches(points, grown, flats.patches);
+    real.push_back(flats.patches.size() > before);
+    flats.planes += std::size_t(real.back());
+  }
   for (int a = 0; a < int(planes.size()); ++a)
-    for (int b = 0; b < a; ++b) add_creases(points, finder.owner(), planes, a, b, flats.creases);
+    for (int b = 0; b < a; ++b)
+      if (real[std::size_t(a)] != 0 && real[std::size_t(b)] != 0)
+        add_creases(points, finder.owner(), planes, a, b, flats.creases);
   return flats;
 }
 

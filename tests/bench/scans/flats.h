@@ -28,7 +28,7 @@ struct Crease {
 };
 
 struct Flats {
-  std::size_t planes = 0;
+  std::size_t planes = 0;  ///< that have a patch
   std::vector<Patch> patches;
   std::vector<Crease> creases;
 };

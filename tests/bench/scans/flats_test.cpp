@@ -32,10 +32,10 @@ TEST(Flats, ACubeHasSixPlanesAndTheirInsideHasTheNoise) {
     EXPECT_GT(patch.plane.normal.cwiseAbs().maxCoeff(), 0.999);
     EXPECT_NEAR(patch.spacing / cube.spacing, 1, 0.1);
     for (const Index i : patch.rows) {
-      // Of one face only: the second largest coordinate is far from the edge.
+      // Of one face: the second largest coordinate is inside. Of three cells one may lack and one be cut.
       Vector3d sorted = cube.clean[i].cwiseAbs();
       std::sort(sorted.data(), sorted.data() + 3);
-      EXPECT_LT(sorted[1], 1 - 4 * cube.spacing);
+      EXPECT_LT(sorted[1], 1 - 3 * cube.spacing);
       squares += std::pow(patch.plane.height(cube.noisy[i]), 2);
       ++count;
     }
