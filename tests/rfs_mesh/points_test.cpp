@@ -46,6 +46,7 @@ TEST(WorkingCloud, DuplicatesShareOnePoint) {
   const auto cloud = make_working_cloud(xyz.data(), 200, {}).value();
   EXPECT_EQ(cloud.points.size(), 100u);
   for (std::size_t i = 0; i < 100; ++i) EXPECT_EQ(cloud.of_input[i], cloud.of_input[i + 100]);
+  ASSERT_EQ(cloud.multiplicity.size(), 100u);
   for (const auto m : cloud.multiplicity) EXPECT_EQ(m, 2u);
 }
 

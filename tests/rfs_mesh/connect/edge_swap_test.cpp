@@ -39,6 +39,7 @@ TEST(EdgeSwap, FindsTheRidgeOfARoof) {
   EXPECT_TRUE(std::binary_search(mesh.one_ring[0].begin(), mesh.one_ring[0].end(), 2u));
   EXPECT_FALSE(std::binary_search(mesh.one_ring[1].begin(), mesh.one_ring[1].end(), 3u));
   EXPECT_NEAR(dihedral_angle_sum(mesh, {}), dihedral_angle_sum(roof(true), {}), 1e-12);
+  ASSERT_EQ(mesh.faces.size(), 6u);
   for (const Face& f : mesh.faces) EXPECT_GT(face_cross(mesh.positions, f)[2], 0) << "wound the other way";
 }
 

@@ -112,6 +112,9 @@ TEST(Connection, TwoSheetsApartAreJoinedByBridgesOnly) {
       points.push_back(p);
     }
   const Connection c = connected(points);
+  test::expect_sound(c, points.size());
+  EXPECT_GT(c.mesh.faces.size(), points.size()) << "each square is a surface";
+  EXPECT_EQ(c.bridges.size(), 1u) << "one tie is enough to hold two sheets together";
   for (const Face& f : c.mesh.faces)
     EXPECT_TRUE(points[f[0]][2] == points[f[1]][2] && points[f[1]][2] == points[f[2]][2]);
 }

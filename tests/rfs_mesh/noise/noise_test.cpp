@@ -121,6 +121,7 @@ TEST(Noise, AlongARayIsLessWhereTheRayGrazes) {
 
 TEST(Noise, OfEvenNoiseTheFieldIsNearlyConstant) {
   const NoiseField noise = measured(noisy_plane([](double) { return 0.005; }));
+  ASSERT_FALSE(noise.local.empty());
   for (const double sigma : noise.local) EXPECT_NEAR(sigma / 0.005, 1, 0.35);
   std::size_t near = 0;
   for (const double sigma : noise.local) near += std::abs(sigma / 0.005 - 1) < 0.12 ? 1 : 0;

@@ -56,7 +56,9 @@ TEST(Winding, IsOneHalfOnASphereWithOutwardNormals) {
   const Positions points = test::poisson_points(test::unit_sphere(), kPoints, 1);
   Positions m;
   for (const auto& p : points) m.emplace_back(4 * M_PI / double(points.size()) * p);
-  for (const double w : Winding(points, 0.03, {}).numbers(m, {})) EXPECT_NEAR(w, 0.5, 0.08);
+  const std::vector<double> numbers = Winding(points, 0.03, {}).numbers(m, {});
+  ASSERT_EQ(numbers.size(), points.size());
+  for (const double w : numbers) EXPECT_NEAR(w, 0.5, 0.08);
 }
 
 TEST(Winding, GaussFindsTheSideOfATorusFromItsPointsAlone) {

@@ -46,6 +46,7 @@ TEST_P(Neighbors, NearestOfEveryPointMatchBruteForceIncludingTies) {
     for (std::size_t i = 0; i < points.size(); ++i) {
       const std::vector<Neighbor> expected = all_sorted(points, points[i], Index(i));
       const auto row = table[i];
+      ASSERT_EQ(int(row.size()), table.k);
       for (std::size_t j = 0; j < row.size(); ++j)
         ASSERT_EQ(row[j], expected[j].index) << "k " << k << " point " << i << " place " << j;
     }

@@ -34,7 +34,9 @@ TEST_P(EveryChart, ConstantsHaveNoEnergyAndNothingIsNegative) {
     double quadratic = 0;
     for (std::size_t i = 0; i < x.size(); ++i) quadratic += x[i].dot(y[i]);
     EXPECT_NEAR(quadratic, d.energy(x, {}), 1e-9 * quadratic);
-    for (const double v : d.diagonal({})) EXPECT_GE(v, 0);
+    const std::vector<double> diagonal = d.diagonal({});
+    ASSERT_EQ(diagonal.size(), x.size());
+    for (const double v : diagonal) EXPECT_GE(v, 0);
   }
 }
 

@@ -48,7 +48,7 @@ TEST_P(EveryOperator, ConstantsAreInTheNullSpace) {
     const Operator& op = source.on(mesh, {});
     Positions y;
     apply(op.rows(mesh), op, Positions(mesh.positions.size(), Vector3d(1, -2, 3)), y, {});
-    for (const Vector3d& v : y) EXPECT_EQ(v, Vector3d::Zero());
+    EXPECT_EQ(y, Positions(mesh.positions.size(), Vector3d::Zero()));
   }
 }
 
@@ -122,6 +122,7 @@ TEST(Curvature, OfASphereIsOneOverItsRadiusOutward) {
     Mesh mesh = support::icosphere(4);
     for (Vector3d& p : mesh.positions) p *= radius;
     const Positions y = applied(mesh, "curvature");
+    ASSERT_EQ(y.size(), mesh.positions.size());
     for (std::size_t i = 0; i < y.size(); ++i)
       EXPECT_LT((y[i] - mesh.positions[i] / (radius * radius)).norm(), 0.02 / radius);
   }

@@ -57,6 +57,7 @@ TEST(Refine, APlaneStaysAPlane) {
   RefineOptions options;
   options.levels = 2;
   const Mesh fine = refine(support::grid(5, 4), options, {}).value();
+  ASSERT_EQ(fine.positions.size(), 17u * 13) << "every edge in four";
   for (const Vector3d& p : fine.positions) EXPECT_EQ(p.z(), 0);
 }
 
@@ -66,12 +67,17 @@ TEST(Refine, BoundaryCurvesDependOnThemselvesOnly) {
   RefineOptions options;
   options.levels = 2;
   const Mesh a = refine(flat, options, {}).value(), b = refine(bulged, options, {}).value();
-  for (const Edge& e : boundary_edges(a)) {
+  const std::vector<Edge> rims = boundary_edges(a);
+  ASSERT_EQ(rims.size(), 2u * 12 * 4) << "two rims of twelve edges, each in four";
+  std::size_t on_lower_rim = 0;
+  for (const Edge& e : rims) {
     EXPECT_EQ(a.positions[e[0]], b.positions[e[0]]);
     if (std::abs(a.positions[e[0]].z()) < 1e-12) {
+      ++on_lower_rim;
       EXPECT_NEAR(a.positions[e[0]].head<2>().norm(), 1, 0.01) << "the four-point scheme rounds the circle";
     }
   }
+  EXPECT_EQ(on_lower_rim, 48u);
 }
 
 TEST(Refine, SharpLinesInsideFollowTheCurveScheme) {
@@ -82,10 +88,13 @@ TEST(Refine, SharpLinesInsideFollowTheCurveScheme) {
   for (std::size_t i = 15; i < 25; ++i) bent.positions[i].z() = bent.positions[i].y() - 2;
   RefineOptions options;
   const Mesh fine = refine(bent, options, {}, sharp).value();
+  std::size_t on_line = 0;
   for (const Vector3d& p : fine.positions)
     if (std::abs(p.y() - 2) < 1e-9) {
+      ++on_line;
       EXPECT_NEAR(p.z(), 0, 1e-12);
     }
+  EXPECT_EQ(on_line, 9u) << "five points of the line and one between each two";
   EXPECT_THROW((void)refine(mesh, options, {}, {{0, 24}}), std::invalid_argument);
 }
 
@@ -104,6 +113,7 @@ TEST(Refine, PimplesMayMoveByTheirLimitOnly) {
 TEST(Refine, BrokenMeshesStayFinite) {
   for (const Mesh& mesh : {support::non_manifold_fan(), support::degenerate_triangles()}) {
     const Mesh fine = refine(mesh, {}, {}).value();
+    EXPECT_GT(fine.positions.size(), mesh.positions.size());
     for (const Vector3d& p : fine.positions) EXPECT_TRUE(p.allFinite());
   }
 }

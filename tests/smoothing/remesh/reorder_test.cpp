@@ -33,6 +33,7 @@ TEST(Reorder, KeepsTheMeshAndItsInvariants) {
   for (const Mesh& mesh : support::all_small()) {
     const Reordered near = reorder(mesh, {});
     EXPECT_TRUE(check(near.mesh).empty());
+    ASSERT_EQ(near.place.size(), mesh.positions.size());
     for (std::size_t i = 0; i < near.place.size(); ++i)
       EXPECT_EQ(near.mesh.positions[near.place[i]], mesh.positions[i]);
     ASSERT_EQ(near.mesh.faces.size(), mesh.faces.size());

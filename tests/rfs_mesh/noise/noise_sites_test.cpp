@@ -1,0 +1,96 @@
+#include "rfs_mesh/noise/noise_sites.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/shapes.h"
+
+namespace rfsmooth::rfs_mesh {
+namespace {
+
+constexpr std::size_t kOfPlane = 6000;
+constexpr double kSpacingOfPlane = 0.5 / 77.5;  // of so many random points of the unit square
+
+/// The unit square, its points moved up and down by normal noise of `sigma(x)`, in depth steps of `step`.
+template <class Sigma>
+Positions rough_square(Sigma&& sigma, double step = 0) {
+  std::mt19937_64 engine(5);
+  std::normal_distribution<double> normal;
+  Positions points = test::random_points(test::plane(), kOfPlane, 1);
+  for (auto& p : points) {
+    p.z() = sigma(p.x()) * normal(engine);
+    if (step > 0) p.z() = step * std::round(p.z() / step);
+  }
+  return points;
+}
+
+NoiseSites sites_of(const Positions& points) {
+  const SpatialIndex index(points, {});
+  return listen(index, search_noise(index, {}), {});
+}
+
+double median_where(const NoiseSites& sites, double from, double to) {
+  std::vector<double> of;
+  for (std::size_t s = 0; s < sites.at.size(); ++s)
+    if (sites.at[s].x() >= from && sites.at[s].x() < to) of.push_back(sites.sigma[s]);
+  EXPECT_GT(of.size(), 50u);
+  std::nth_element(of.begin(), of.begin() + std::ptrdiff_t(of.size() / 2), of.end());
+  return of[of.size() / 2];
+}
+
+TEST(NoiseSites, ArePointsOfTheCloudWithAValueEach) {
+  const Positions points = rough_square([](double) { return 0.5 * kSpacingOfPlane; });
+  const NoiseSites sites = sites_of(points);
+  const std::size_t n = sites.at.size();
+  EXPECT_GE(n, 250u);
+  EXPECT_LE(n, 2000u);
+  for (const std::size_t size : {sites.sigma.size(), sites.shape.size(), sites.area.size(),
+                                 sites.speaks.size(), sites.floor.size(), sites.fits.size()})
+    ASSERT_EQ(size, n);
+  const auto less = [](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+    return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
+  };
+  const std::set<Eigen::Vector3d, decltype(less)> in(points.begin(), points.end(), less);
+  for (std::size_t s = 0; s < n; ++s) {
+    EXPECT_EQ(in.count(sites.at[s]), 1u);
+    EXPECT_GT(sites.sigma[s], 0);
+    EXPECT_GE(sites.shape[s], 0);
+    EXPECT_LE(sites.shape[s], 0.6);
+    EXPECT_GE(sites.area[s], 0);
+    EXPECT_LE(sites.area[s], 1);
+    EXPECT_GE(sites.floor[s], 0);
+  }
+}
+
+TEST(NoiseSites, OfASquareFindItsNoise) {
+  for (const double spacings : {0.2, 0.5, 1.0}) {
+    const double sigma = spacings * kSpacingOfPlane;
+    const NoiseSites sites = sites_of(rough_square([&](double) { return sigma; }));
+    EXPECT_NEAR(median_where(sites, 0, 1) / sigma, 1, 0.15) << spacings;
+    EXPECT_GT(std::count(sites.speaks.begin(), sites.speaks.end(), 1), std::ptrdiff_t(sites.at.size() / 2));
+  }
+}
+
+TEST(NoiseSites, KnowTheLoudHalfFromTheCalmOne) {
+  const double calm = 0.2 * kSpacingOfPlane, loud = 0.6 * kSpacingOfPlane;
+  const NoiseSites sites = sites_of(rough_square([&](double x) { return x < 0.5 ? calm : loud; }));
+  EXPECT_NEAR(median_where(sites, 0.05, 0.45) / calm, 1, 0.25);
+  EXPECT_NEAR(median_where(sites, 0.55, 0.95) / loud, 1, 0.25);
+}
+
+TEST(NoiseSites, TheUnitDoesNotMatter) {
+  Positions points = rough_square([](double) { return 0.5 * kSpacingOfPlane; });
+  const NoiseSites here = sites_of(points);
+  for (auto& p : points) p *= 0x1p10;
+  const NoiseSites there = sites_of(points);
+  ASSERT_EQ(here.sigma.size(), there.sigma.size());
+  for (std::size_t s = 0; s < here.sigma.size(); ++s)
+    EXPECT_NEAR(there.sigma[s], 0x1p10 * here.sigma[s], 1e-6 * there.sigma[s]);
+}
+
+}  // namespace
+}  // namespace rfsmooth::rfs_mesh

@@ -1,0 +1,172 @@
+#include "smoothing/automatic/patches/patches.h"
+
+#include <cmath>
+#include <numeric>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "base/parallel.h"
+#include "smoothing/automatic/patches/thinning.h"
+#include "tests/support/meshes.h"
+#include "tests/support/near.h"
+
+using namespace rfsmooth;
+using namespace rfsmooth::smoothing;
+
+namespace {
+
+/// Seeds of patches: a thinning of all n points.
+std::vector<Index> seeds_of(const Positions& points) {
+  std::vector<Index> all(points.size());
+  std::iota(all.begin(), all.end(), Index{0});
+  return thin(points, all, {});
+}
+
+TEST(Patches, PredictAQuadricExactlyWhateverTheSharesOfThePointsAre) {
+  Positions guide, data;
+  for (int i = 0; i < 30; ++i)
+    for (int j = 0; j < 30; ++j) {
+      const double x = i + 0.3 * std::sin(7.0 * j), y = j + 0.3 * std::cos(5.0 * i);
+      guide.emplace_back(x, y, 0);
+      data.emplace_back(x, y, 0.01 * x * x - 0.02 * x * y + 0.3 * y - 1);
+    }
+  const HeightField field(guide, rfs_mesh::KdTree(guide, {}), support::near_on(guide), data, {});
+  for (const std::size_t m : {16, 100}) {
+    std::vector<Index> seeds = seeds_of(guide);
+    Patches::Memory memory;
+    const Patches patches(field, m, seeds, std::vector<double>(guide.size(), 1), memory, {});
+    const Prediction p = patches.predict({});
+    for (std::size_t i = 0; i < guide.size(); ++i) {
+      ASSERT_TRUE(p.covered[i]);
+      EXPECT_NEAR(double(p.height[i]), field.height(i), 1e-4) << m;
+      EXPECT_GT(p.own[i], 0);
+      EXPECT_LT(p.own[i], 1);
+    }
+  }
+}
+
+TEST(Patches, OwnIsTheDerivativeOfAPredictionByThePointsHeight) {
+  Positions guide, data;
+  for (int i = 0; i < 20; ++i)
+    for (int j = 0; j < 20; ++j) {
+      guide.emplace_back(i + 0.2 * std::sin(3.0 * j), j + 0.2 * std::cos(4.0 * i), 0);
+      data.push_back(guide.back() + Eigen::Vector3d(0, 0, 0.01 * std::sin(1.7 * i * j)));
+    }
+  // Noise so large that no patch has residuals above it: the weights of the patches stay as they are.
+  const std::vector<Index> seeds = seeds_of(guide);
+  const std::size_t i = 207;
+  const double step = 0.5;
+  const std::vector<double> sigma(guide.size(), 10);
+  const HeightField field(guide, rfs_mesh::KdTree(guide, {}), support::near_on(guide), data, {});
+  Patches::Memory memory;
+  const Prediction before = Patches(field, 24, seeds, sigma, memory, {}).predict({});
+  data[i].z() += step;
+  const HeightField lifted(guide, rfs_mesh::KdTree(guide, {}), support::near_on(guide), data, {});
+  const Prediction after = Patches(lifted, 24, seeds, sigma, memory, {}).predict({});
+  const double side = field.normal(i).z();
+  EXPECT_NEAR(double(after.height[i] - before.height[i]) / (side * step), double(before.own[i]), 1e-4);
+}
+
+TEST(Patches, MeanOfAConstantIsTheConstant) {
+  const Mesh mesh = support::icosphere(3);
+  const HeightField field(mesh.positions, rfs_mesh::KdTree(mesh.positions, {}),
+                          support::near_on(mesh.positions), mesh.positions, {});
+  const std::vector<float> seven(field.size(), 7);
+  Patches::Memory memory;
+  const Patches patches(field, 40, seeds_of(mesh.positions), std::vector<double>(field.size(), 1), memory,
+                        {});
+  for (const std::vector<float>& means : {patches.mean(seven, {}), field.local_mean(seven, {})}) {
+    ASSERT_EQ(means.size(), seven.size());
+    for (const float v : means) EXPECT_NEAR(v, 7, 1e-5);
+  }
+}
+
+/// A flat guide of side x side points, one apart, jittered; heights by `z(x, y)`.
+template <class Height>
+HeightField flat_field(int side, Height&& z) {
+  Positions guide, data;
+  for (int i = 0; i < side; ++i)
+    for (int j = 0; j < side; ++j) {
+      guide.emplace_back(i + 0.3 * std::sin(7.0 * j), j + 0.3 * std::cos(5.0 * i), 0);
+      data.push_back(guide.back());
+      data.back().z() = z(guide.back().x(), guide.back().y());
+    }
+  return HeightField(guide, rfs_mesh::KdTree(guide, {}), support::near_on(guide), data, {});
+}
+
+TEST(Patches, WiderOnesTakeMoreOfWhiteNoiseAwayAndSayHowMuch) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise;
+  const HeightField field = flat_field(40, [&](double, double) { return noise(random); });
+  const std::vector<double> sigma(field.size(), 1);
+  double before = 1;
+  for (const std::size_t m : {12, 24, 48, 96, 192}) {
+    Patches::Memory memory;
+    const Prediction p = Patches(field, m, seeds_of(field.guide()), sigma, memory, {}).predict({});
+    double square = 0, own = 0;
+    for (std::size_t i = 0; i < field.size(); ++i) {
+      square += double(p.height[i]) * double(p.height[i]) / double(field.size());
+      own += double(p.own[i]) / double(field.size());
+    }
+    EXPECT_LT(square, 0.8 * before) << m;
+    // Of a linear smoother of white noise by symmetric weights the mean square is the mean of its diagonal,
+    // and never above it by much.
+    EXPECT_LT(square, 1.2 * own) << m;
+    EXPECT_GT(square, 0.3 * own) << m;
+    before = square;
+  }
+}
+
+TEST(Patches, DoNotBridgeAStepFarAboveTheNoise) {
+  const HeightField field = flat_field(40, [](double x, double) { return x < 20 ? 0.0 : 50.0; });
+  Patches::Memory memory;
+  const Prediction p =
+      Patches(field, 24, seeds_of(field.guide()), std::vector<double>(field.size(), 0.1), memory, {})
+          .predict({});
+  const double side = field.normal(0).z();
+  std::size_t far = 0;
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    const double x = field.guide()[i].x();
+    if (std::abs(x - 20) < 3) continue;
+    ++far;
+    EXPECT_NEAR(side * double(p.height[i]), x < 20 ? 0 : 50, 0.5) << x;
+  }
+  EXPECT_GT(far, 1000u);
+}
+
+TEST(Patches, PlacesWithoutASeedGetOneOfTheirOwn) {
+  const HeightField field = flat_field(30, [](double x, double y) { return 0.1 * x - 0.2 * y; });
+  Patches::Memory memory;
+  const Prediction p =
+      Patches(field, 16, {Index{0}}, std::vector<double>(field.size(), 1), memory, {}).predict({});
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    ASSERT_TRUE(p.covered[i]);
+    EXPECT_NEAR(double(p.height[i]), field.height(i), 1e-4);
+  }
+}
+
+TEST(Patches, SameForAnyNumberOfThreads) {
+  const HeightField field =
+      flat_field(40, [](double x, double y) { return std::sin(3 * x) * std::cos(2 * y); });
+  const std::vector<double> sigma(field.size(), 0.3);
+  const auto predicted = [&](int threads) {
+    Context context;
+    context.threads = threads;
+    Prediction p;
+    in_arena(context, [&] {
+      Patches::Memory memory;
+      p = Patches(field, 48, seeds_of(field.guide()), sigma, memory, context).predict(context);
+    });
+    return p;
+  };
+  const Prediction one = predicted(1);
+  for (const int threads : {2, 4}) {
+    const Prediction many = predicted(threads);
+    EXPECT_EQ(one.height, many.height);
+    EXPECT_EQ(one.own, many.own);
+    EXPECT_EQ(one.covered, many.covered);
+  }
+}
+
+}  // namespace
