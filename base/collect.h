@@ -1,6 +1,6 @@
 /// Gathers what many threads produce into one vector, in index order: the items of fixed blocks are counted,
 /// then written to their places. The result does not depend on the number of threads. Used where a stage
-/// makes a variable number of things per vertex.
+/// makes a variable number of things per vertex. Thread safe, as far as `produce` is.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
 /// The median: of an even number of values the upper of the two in the middle, so that it is always one of
-/// them; 0 of none. The values change places. O(n).
+/// them; 0 of none. The values change places. O(n). Thread safe for different values.
 #pragma once
 
 #include <algorithm>

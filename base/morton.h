@@ -1,4 +1,4 @@
-/// Morton (Z-order) codes: points that are close in space are mostly close in this order.
+/// Morton (Z-order) codes: points that are close in space are mostly close in this order. Thread safe.
 #pragma once
 
 #include <cstdint>

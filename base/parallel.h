@@ -2,6 +2,7 @@
 ///
 /// Rules that make it so: write by index, gather over neighbours (never scatter), reduce in blocks of a fixed
 /// size combined in index order, sort by a total order. TBB stays in parallel.cpp.
+/// Thread safe: any number of callers may run loops at once, and loops may run inside loops.
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,6 @@
 /// An array whose elements are not filled before they are written: large ones are first touched by the
 /// threads that write them, side by side, and memory is kept from one use to the next.
+/// As std::vector: one thread changes it, or several read.
 #pragma once
 
 #include <algorithm>

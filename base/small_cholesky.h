@@ -1,5 +1,5 @@
 /// Cholesky's factors of small positive definite matrices, unrolled: a general solver spends longer on its
-/// loops than on the numbers.
+/// loops than on the numbers. Const functions are thread safe.
 #pragma once
 
 #include <cmath>

@@ -14,7 +14,7 @@ namespace rfsmooth {
 /// Adds the time it lives to a stage's entry, which it makes if there is none. Not thread safe.
 class Stopwatch {
  public:
-  /// \param stages outlives it where it is: it must not be moved meanwhile, as by a `return`.
+  /// \param stages is kept by reference: it must stay where it is, and not be returned, while this lives.
   Stopwatch(std::vector<StageTime>& stages, std::string_view name) : stages_(stages) { start(name); }
   ~Stopwatch() { stop(); }
   Stopwatch(const Stopwatch&) = delete;

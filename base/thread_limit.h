@@ -1,4 +1,4 @@
-/// A limit for the whole program.
+/// A limit for the whole program. Limits may be made and ended by any thread.
 #pragma once
 
 #include <memory>

@@ -1,5 +1,5 @@
 /// An allocator whose vectors do not fill new elements: large tables are first touched by the threads that
-/// write them, side by side, and files are read straight into their place.
+/// write them, side by side, and files are read straight into their place. Thread safe, as std::allocator.
 #pragma once
 
 #include <cstddef>

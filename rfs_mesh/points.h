@@ -3,7 +3,7 @@
 ///
 /// The points lie along a Morton (Z-order) curve, ties by coordinates, so that neighbours in space are
 /// neighbours in memory and the working cloud, hence every later result, does not depend on the order of the
-/// input (bit for bit).
+/// input (bit for bit). Thread safe: no state is kept.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,5 @@
 /// The faces around a vertex, edge by edge; internal to the choice of faces (flattest_pair.h).
+/// One object for each thread.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +15,7 @@ namespace rfsmooth::rfs_mesh {
 /// Brings the faces at the edges from a vertex to higher ones (wings) together by their edges, for one vertex
 /// after the other. A hash table that need not be emptied in between, no sorting, and no branch that the
 /// processor would have to foresee: on noisy points every vertex has some ten wings, and which of them share
-/// an edge is anyone's guess.
+/// an edge follows no pattern.
 class Wings {
  public:
   Wings() : places_(kPlaces, Place{0, kNone, 0}), wings_(kMost + 1), edge_(kMost + 1) {}

@@ -1,6 +1,7 @@
 /// The one mesh type: positions, faces, and the one-ring adjacency of every vertex. It holds the RFS-mesh
 /// (which may cross and overlap itself, may be open, non-orientable and non-manifold at vertices) as well as
 /// a mesh read from a file.
+/// Functions that take a const mesh are thread safe; a mesh is changed by one caller at a time.
 #pragma once
 
 #include <array>

@@ -11,6 +11,7 @@
 ///
 /// Field types: bool, int, double, std::string, Length, and std::optional of them (empty = "auto": chosen
 /// from the data or by the flow). An option with a fixed set of words lists them in `choices`.
+/// Thread safe: no state is kept.
 #pragma once
 
 #include <limits>

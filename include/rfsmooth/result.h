@@ -1,6 +1,6 @@
 /// Data and file failures as values: a Result holds what was asked for, or an Error that says what, where and
 /// what to do. Broken preconditions (a caller's bug) are exceptions derived from std instead; there is no
-/// third channel.
+/// third channel. A Result is a value: one thread at a time, or several that only read.
 #pragma once
 
 #include <new>

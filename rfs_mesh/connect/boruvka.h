@@ -11,7 +11,7 @@
 ///    foreign was found near their box.
 ///
 /// Bounds only ever save work: what is picked is the least by (length^2, min id, max id), whichever thread
-/// looked first.
+/// looked first. Thread safe: no state is kept.
 #pragma once
 
 #include <vector>

@@ -9,6 +9,7 @@
 /// Differs from the paper: which of many possible swaps come first. Here a pass takes, in parallel, swaps
 /// whose six faces (the pair and its four neighbours) belong to no better one, by (gain, edge), so every gain
 /// counts in full and the sum over the mesh never falls.
+/// Several meshes may be swapped at once; one mesh by one caller at a time.
 #pragma once
 
 #include <rfsmooth/connect.h>

@@ -3,7 +3,7 @@
 /// Vollmer et al. section 7: "If there are more than two faces at an edge we keep that pair that form the
 /// maximum dihedral angle." Every edge decides on the same snapshot and only marks; a face goes if any of its
 /// edges marked it. So the result depends on no order. A face that lost to faces that went themselves may
-/// come back in a later round, while its edges have room.
+/// come back in a later round, while its edges have room. Thread safe: no state is kept.
 #pragma once
 
 #include <cstdint>

@@ -12,6 +12,7 @@
 ///   an end between two sheets (two_sheets.h), is a bridge.
 ///
 /// Each rule decides for every vertex from one snapshot of the graph, so no order of visiting matters.
+/// Thread safe: no state is kept.
 #pragma once
 
 #include <vector>

@@ -4,6 +4,7 @@
 ///
 /// Differs from the paper: it does not say which neighbours. Ours are taken nearest first, leaving out
 /// directions close to one already taken, so that the umbrella covers every side once.
+/// Thread safe: no state is kept.
 #pragma once
 
 #include <array>

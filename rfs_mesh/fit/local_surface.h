@@ -7,6 +7,7 @@
 /// by Tukey's biweight of the residuals, so that a second sheet, a mixed pixel or a stray does not tilt it.
 /// Paper: none; Vollmer et al. (section 7) test angles and face quality on the points themselves, which fails
 /// once noise exceeds about half the spacing. The shadow is what the connectivity tests then look at.
+/// Thread safe: no state is kept.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,5 @@
 /// The normal of the plane through a point and its neighbours, least squares; its side is arbitrary.
+/// Thread safe.
 #pragma once
 
 #include <rfsmooth/mesh.h>

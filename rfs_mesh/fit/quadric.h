@@ -1,5 +1,6 @@
 /// A quadric fitted robustly to some points around another: what local surfaces (local_surface.h, where the
 /// formula stands) and shared patches (shared_surface.cpp) are made of; internal to the connection stage.
+/// Thread safe with a workspace for each thread.
 #pragma once
 
 #include <cmath>

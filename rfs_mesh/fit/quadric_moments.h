@@ -5,7 +5,7 @@
 /// The matrix holds the moments sum w u^p v^q of degree 0 to 4 only: 15 sums instead of 36.
 ///
 /// `Number`: double, or a vector of numbers of which each lane sums points of its own; `total` adds the lanes
-/// up. Internal to the fits.
+/// up. Internal to the fits. One thread at a time for each object.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,4 +1,4 @@
-/// Directions around a point in its tangent plane; internal to the connection stage.
+/// Directions around a point in its tangent plane; internal to the connection stage. Thread safe.
 #pragma once
 
 #include <algorithm>

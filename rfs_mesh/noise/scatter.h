@@ -1,8 +1,11 @@
 /// How far the points near a place scatter about a quadric through them.
 ///
-///     z = c0 + c1 u + c2 v + c3 u^2 + c4 u v + c5 v^2 over the plane of least spread, weights (1 -
-///     t^2/r^2)^2 in the distance t along the plane,   s^2 = sum w e^2 / (sum w - tr(A^-1 B)), A = sum w f
-///     f^T,  B = sum w^2 f f^T: the expectation of s^2 is sigma^2 exactly where the surface is one.
+/// The quadric z = q . f, f = (1, u, v, u^2, u v, v^2), is fitted over the plane of least spread, with
+/// weights w = (1 - t^2/r^2)^2 in the distance t along the plane. With e the residuals,
+///
+///     s^2 = sum w e^2 / (sum w - tr(A^-1 B)),   A = sum w f f^T,   B = sum w^2 f f^T.
+///
+/// Where the surface is a quadric, the expectation of s^2 is sigma^2 exactly.
 ///
 /// With a window, only points within 3 sigma of the quadric take part (two rounds of refitting), and s^2 is
 /// divided by what the cut takes from a normal distribution: a second sheet, an edge or a stray beyond the
@@ -34,8 +37,8 @@ struct Scatter {
 /// Fits one after the other, keeping its buffers. Not for several threads at once.
 class ScatterFit {
  public:
-  /// \param m nearest points, at most all, at least 1. \param sigma half a third of the window, world units;
-  /// 0: no window. O(log n + m).
+  /// Fits the m points nearest to `place`; 1 <= m <= n. \param sigma world units: the window reaches
+  /// kScatterWindow times as far to either side of the quadric; 0: no window. O(log n + m).
   Scatter operator()(const SpatialIndex& index, const Eigen::Vector3d& place, std::size_t m, double sigma);
 
  private:

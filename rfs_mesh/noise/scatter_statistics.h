@@ -2,7 +2,7 @@
 ///
 /// A scan has most of its points where its surface is nearest to the scanner, so a fit counts by the area it
 /// covers (the square of its ball's radius), up to that of one among
-/// the widest quarter.
+/// the widest quarter. Thread safe, but for the vectors that are reordered.
 #pragma once
 
 #include <vector>

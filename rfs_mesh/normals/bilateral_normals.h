@@ -15,7 +15,7 @@
 ///
 /// r the mean scatter of the points about the surface over the 24 nearest, R the distance to the last of
 /// them. Normals that turn among points that lie well on their surfaces turn because the shape does, and
-/// stay.
+/// stay. Thread safe: no state is kept.
 #pragma once
 
 #include <vector>

@@ -11,6 +11,7 @@
 ///
 /// A vote says which side a point is on by other evidence (positive: its normal is right). Regions whose
 /// votes speak against a join more loudly than the links for it stay apart.
+/// The functions are thread safe; a Sides object is for one thread.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-/// Which points a scanner at a known place can have seen, and how squarely.
+/// Which points a scanner at a known place can have seen, and how squarely. Thread safe: no state is kept.
 #pragma once
 
 #include <vector>

@@ -14,6 +14,7 @@
 ///
 /// Sums over far points are taken as one (Barnes and Hut 1986): a box of the kd-tree whose radius is under
 /// half its distance counts as a point at its centroid. e is about a spacing.
+/// Const functions are thread safe.
 #pragma once
 
 #include <vector>

@@ -20,6 +20,7 @@
 /// A surface of which much is open, so that w says nothing, is left alone; where e is above 1/4 at more than
 /// 3 samples of 10, all stays as it was unless the sum of e squared falls below 0.4 of what it was: half of a
 /// shape may be merged wall, but an open sheet turned to and fro is no better than it was.
+/// Thread safe: no state is kept.
 #pragma once
 
 #include <cstddef>

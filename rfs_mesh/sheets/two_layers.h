@@ -4,8 +4,9 @@
 ///
 /// A height belongs to the upper layer with the probability P = 1 / (1 + exp(-2 (z - m) d / s^2)), s^2 the
 /// variance of the noise; m, d, s and P are found in turns (expectation maximisation, Dempster, Laird and
-/// Rubin 1977), from one quadric through all and the variance that it leaves. All heights are in units of a
-/// noise that is known well from above only: s^2 is sought between 1/2 and 1.
+/// Rubin 1977), starting from one quadric through all heights and the variance that it leaves. Heights are in
+/// units of the measured noise. Walls make that too high, never too low, so s^2 is kept between 0.35 and 1.
+/// Const functions are thread safe.
 #pragma once
 
 #include <vector>
@@ -18,7 +19,7 @@ namespace rfsmooth::smoothing {
 struct LayerPoint {
   double u, v;       ///< where, within -1 .. 1
   double height;     ///< z, standard deviations of the noise
-  double estimate;   ///< what is thought of it so far: where it would be without noise
+  double estimate;   ///< the height that an earlier smoothing gave the point, same unit
   double weight;     ///< 0: not fitted to
   double upper = 0;  ///< out: P
 };
@@ -42,8 +43,8 @@ class TwoLayers {
   ///  - more variance is left than the noise has, or the residuals' means over the cells of a 5 x 5 grid are
   ///    more than noise: then the shape is another one;
   ///  - where a point is says to which layer it belongs: a step;
-  ///  - what is thought of the points does not know the layers at all: two that only the scatter of the
-  ///    heights shows may be louder noise, which takes more than one place to tell (hidden_sheets.h);
+  ///  - the estimates do not follow the two layers at all: layers that only the scatter of the heights
+  ///    shows may be louder noise, and one place has too few points to tell (hidden_sheets.h does);
   ///  - the layers are more than 2.1 from the middle.
   bool convincing() const { return convincing_; }
 

@@ -14,6 +14,7 @@
 /// cross; a single sheet has no second layer, and nothing changes on it.
 ///
 /// Paper: none; Vollmer et al. (section 7) have no noise that reaches the next sheet.
+/// Thread safe: no state is kept.
 #pragma once
 
 #include <vector>

@@ -10,6 +10,7 @@
 /// (d > 0) a point below the middle (m > 0) belongs to the sheet whose normal is -a, unless it is farther
 /// from the middle than the sheets are from each other: then it is on neither. The two planes must be plain
 /// to see: the points about them by less than half as much, root mean square, as they are from the middle.
+/// Thread safe: no state is kept.
 #pragma once
 
 #include <cstddef>
@@ -22,12 +23,11 @@
 namespace rfsmooth::rfs_mesh {
 
 /// Turns those of the oriented `normals` (n x 3, unit) of `points` (n x 3) whose points lie on the other
-/// sheet, in place; returns how often it turned one. `near`: at least 64
-/// neighbours make two sheets of 30; they may be those of places near the points, as where a first look put
-/// them.
-/// Points that see less than a seventh of their neighbours with opposite normals are left alone. O(n k),
-/// little where no two sheets are near; parallel, the same bytes for any number of threads.
-/// \throw std::invalid_argument if the sizes differ.
+/// sheet, in place; returns the number of turns. `near`: n rows of at least 64 neighbours, so that each of
+/// two sheets has about 30; neighbours of slightly other places, as before smoothing, will do. A point is
+/// left alone if fewer than a seventh of its neighbours have the opposite normal. O(n k), far less where no
+/// two sheets are near each other; parallel, the same bytes for any number of threads. \throw
+/// std::invalid_argument if the sizes differ.
 std::size_t turn_to_own_sheet(const Positions& points, const NeighborTable& near, Positions& normals,
                               const Context& context);
 

@@ -19,7 +19,7 @@
 /// sigma^2 times the gradient of the logarithm of the density of noisy places (Tweedie; Efron 2011), and f
 /// stands for that gradient in a cloud whose points keep their distance. So little noise moves points little,
 /// and what was even stays even. Repulsion in the tangent plane with a height corrected for curvature: Huang
-/// et al. 2009 (WLOP) without its attraction; the rest is ours.
+/// et al. 2009 (WLOP) without its attraction; the rest is ours. Thread safe: no state is kept.
 #pragma once
 
 #include <vector>

@@ -2,14 +2,14 @@
 ///
 /// Below about two sigma between them, the points of both scatter about the surface half-way like those of
 /// one, only wider: with variance v > c where the rest of the cloud has c. What pulls every point to the
-/// middle would then make a film of the wall. With the sheets at +-d of the middle, d^2 = v - c, and noise of
-/// variance c the best guess in the mean square of where a point with the residual e belongs is
-/// E[sheet | e] = d tanh(d e / c). But it leaves the most of them half-way, where there is no surface; for
-/// d^2 > c / 2 is taken
+/// middle would then make a film of the wall. Put the sheets at +-d of the middle, d^2 = v - c, and let the
+/// noise have variance c. For a point with the residual e the guess of least mean square error is the
+/// posterior mean, E[sheet | e] = d tanh(d e / c). It leaves most points half-way, where there is no surface.
+/// So where d^2 > c / 2 a sharper guess is taken instead,
 ///
-///     d tanh(4 d e / c),
+///     d tanh(4 d e / c).
 ///
-/// which puts nearly all on the nearer sheet, though that is the other one for up to a quarter of them: on
+/// It puts nearly all points on the nearer sheet, which for up to a quarter of them is the wrong one: on
 /// rotor (10,000 points, noise of 2 %) the mean squared distance to the surface is 0.13 instead of 0.17 of
 /// sigma^2, 93 % of the normals point outward instead of 87 %, and Poisson's surface has half of the error.
 /// Where the sheets are nearer to each other the side is a guess and the posterior mean is better: at 3 %
@@ -27,8 +27,9 @@
 /// it is largest. Walls make the measured noise too high themselves, so c must be found.
 ///
 /// Source: a likelihood ratio of two simple hypotheses.
-/// Residuals in steps (depths of a sensor) look a little like two sheets: fewer than a twentieth of the cloud
-/// says nothing. Uniform noise does so everywhere: more than three quarters of the cloud are not walls.
+/// Residuals in steps (depths of a sensor) look a little like two sheets in some places, so walls are
+/// believed only if they take at least a twentieth of the cloud. Uniform noise looks like two sheets
+/// everywhere, so they are not believed if they take more than three quarters of it.
 #pragma once
 
 #include <vector>
@@ -45,9 +46,9 @@ struct HiddenSheets {
 };
 
 /// Moves `height` (n: the smoothed heights over the field, world units) of points on hidden double sheets to
-/// the nearer one, or almost. `own` (n, automatic.h) is read only: how much more of its own height such a
-/// point then has is not in it. \param sigma the noise, world units, > 0. O(n); parallel, the same bits for
-/// any number of threads.
+/// the nearer one, or almost. `own` (n): each point's share of its own height in its smoothed height
+/// (patches.h). It is not changed here, so for the points that were moved it is too small afterwards. \param
+/// sigma the noise, world units, > 0. O(n); parallel, the same bits for any number of threads. Thread safe.
 HiddenSheets split_hidden_sheets(const HeightField& field, double sigma, std::vector<float>& height,
                                  const std::vector<float>& own, const Context& context);
 

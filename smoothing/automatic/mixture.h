@@ -8,6 +8,7 @@
 /// expectation maximisation (Dempster, Laird and Rubin 1977) from equal shares. Evidence from a single
 /// neighbourhood is mostly chance: on a smooth shape one place in ten looks as if it had detail. The rest of
 /// the cloud tells which: without the shares a tenth of a noisy torus keeps half of its noise.
+/// One thread at a time for each object.
 #pragma once
 
 #include <vector>

@@ -6,7 +6,7 @@
 /// tenth or 32nd neighbour (islands of a dozen points are dense inside) is farther than 1.7 times what is
 /// usual around it (the lower quartile), or that has no neighbours in the mesh, is projected from its noisy
 /// place onto the plane of the others, taken around the one nearest to it: seen from half-way between two
-/// sheets, the nearest of both would make one plane across.
+/// sheets, the nearest of both would make one plane across. Thread safe: no state is kept.
 #pragma once
 
 #include <rfsmooth/mesh.h>
@@ -18,8 +18,8 @@ namespace rfsmooth::smoothing {
 /// What was done, and what others need of the guide afterwards.
 struct Landed {
   std::size_t stranded = 0;      ///< points that were found at first
-  rfs_mesh::NeighborTable near;  ///< the 32 nearest of every guide point. A point that has a moved one near
-                                 ///< it anew may not know.
+  rfs_mesh::NeighborTable near;  ///< the 32 nearest of every guide point; rows that had no moved point before
+                                 ///< are as they were, even if one has come near
   rfs_mesh::KdTree tree;         ///< of the guide points, here or where they were before
 };
 

@@ -7,7 +7,7 @@
 /// the two it came from is not known, and need not be for the surface to be right.
 ///
 /// On rotor (50,000 points, noise of 1 %, walls of 3.6 sigma) the mean squared distance to the surface falls
-/// from 0.30 to 0.16 of sigma^2.
+/// from 0.30 to 0.16 of sigma^2. Thread safe: no state is kept.
 #pragma once
 
 #include <vector>
@@ -25,8 +25,9 @@ struct ThinWalls {
 
 /// Moves points of `smooth` (n x 3: where the points of the field are, smoothed) onto the nearer sheet.
 /// \param data n x 3, as measured. \param seeds ascending: places where patches of `members` points see more
-/// than one sheet (patches.h). \param noise its figure counts where the field is above: walls raise that.
-/// O(s m) for s seeds of m members, 20 bytes each. Parallel, the same bits for any number of threads.
+/// than one sheet (patches.h). \param noise where its field is above its figure, the figure is taken: walls
+/// make the field too high. O(s m) for s seeds of m members, 20 bytes each. Parallel, the same bits for any
+/// number of threads.
 ThinWalls part_thin_walls(const HeightField& field, const Positions& data, const std::vector<Index>& seeds,
                           std::size_t members, const rfs_mesh::NoiseField& noise, Positions& smooth,
                           const Context& context);

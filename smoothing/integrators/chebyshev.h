@@ -5,7 +5,7 @@
 ///
 /// x = p(L) b leaves the residual q(L) b, in L's own norm at most |a| + |b| times as large. q is the
 /// classical Chebyshev iteration's residual, with two numbers to meet the two roots (Manteuffel 1977 for
-/// one).
+/// one). Thread safe: no state is kept.
 #pragma once
 
 #include <optional>

@@ -2,7 +2,7 @@
 ///
 /// Hestenes, Stiefel 1952, with a Jacobi preconditioner; Desbrun et al. 1999, 2.4-2.5. The coordinates of a
 /// vector are one system with a common step length. Four passes over the vectors per iteration; fixed-block
-/// sums in double, so the bits do not depend on the number of threads.
+/// sums in double, so the bits do not depend on the number of threads. Thread safe for different vectors.
 #pragma once
 
 #include <algorithm>

@@ -5,7 +5,7 @@
 /// Desbrun et al. 1999, (14) and 5.5; Ohtake, Belyaev, Bogaevski 2000, (7), (8). Differs from the papers: the
 /// mixed area makes the operator H n where theirs is H n / 3; and a vertex whose own explicit limit (its
 /// weights over its area, at needles) is below the step moves by that limit only, so a bad triangle cannot
-/// blow up the flow.
+/// blow up the flow. A speed is for one thread at a time.
 #pragma once
 
 #include <memory>

@@ -1,5 +1,5 @@
 /// Explicit integration: p = q + lambda F(q), all vertices at once (simultaneous) or each seeing the new
-/// places of those before it (sequential, in index order).
+/// places of those before it (sequential, in index order). Flows and speeds are for one thread at a time.
 #pragma once
 
 #include <memory>

@@ -4,6 +4,7 @@
 ///
 /// divided by mu = the mean mass, with S in units of mu / op.unit, so that its entries are of order one
 /// whatever the scale of the mesh and fit into single precision.
+/// One thread at a time for each object: products share room for intermediate values.
 #pragma once
 
 #include <array>

@@ -19,6 +19,7 @@
 ///
 /// Determinism: fixed-block reductions, the same bits for any number of threads. Never returns a non-finite
 /// position: a breakdown (a singular or indefinite system) stops at the last finite iterate and says so.
+/// Thread safe for different positions.
 #pragma once
 
 #include <array>

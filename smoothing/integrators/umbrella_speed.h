@@ -3,6 +3,7 @@
 ///     F(q_i) = sum_j w_ij q_j / sum_j w_ij - q_i,   w_ij = 1 (U0) or 1 / |q_i - q_j| (U1)
 ///
 /// Vollmer, Mencl, Mueller 1999, section 3.1; Ohtake, Belyaev, Bogaevski 2000, (1)-(4).
+/// A speed is for one thread at a time.
 #pragma once
 
 #include <memory>

@@ -9,6 +9,7 @@
 /// Desbrun et al. 1999, 5.3 (curve: their (11) restricted to the two boundary neighbours; h = mean edge
 /// length). Vertices where more than two boundary edges meet stay under "curve". The boundary is the one the
 /// mesh has at the start; edge swaps do not change it.
+/// A flow is for one thread at a time; the free functions are thread safe.
 #pragma once
 
 #include <functional>

@@ -5,6 +5,7 @@
 /// projected and scaled, each part step of those that have several; implicit flows project inside the solver
 /// and take the strength s as a mass 1 / s of the data, which is the paper's variable lambda and keeps the
 /// system symmetric.
+/// Const functions are thread safe; a flow is for one thread at a time.
 #pragma once
 
 #include <memory>

@@ -8,7 +8,7 @@
 /// Differs from the paper: it scales about the origin, we about the centroid; height fields are shifted,
 /// since scaling them depends on the plane; and constrained vertices stay constrained (d is projected and
 /// scaled with their strength), where the paper's scaling moves them. Faces are oriented first for the
-/// volume; an open, non-manifold or one-sided mesh is refused.
+/// volume; an open, non-manifold or one-sided mesh is refused. A flow is for one thread at a time.
 #pragma once
 
 #include <memory>

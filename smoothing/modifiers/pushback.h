@@ -6,6 +6,7 @@
 /// Vollmer, Mencl, Mueller 1999, sections 4 and 6. o original, q before the step, p after it; vertices
 /// without neighbours stay where they are (section 2). Constraints hold for the correction too, and must have
 /// held for the step before it: then b of a fixed vertex is zero. O(edges), parallel.
+/// A flow is for one thread at a time.
 #pragma once
 
 #include <memory>

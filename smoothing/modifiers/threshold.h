@@ -8,6 +8,7 @@
 /// mean of h^2 |H| over the first, or first and second, ring of neighbours without the vertex itself; h^2 |H|
 /// (h = mean edge length) is the speed that mean curvature flow has there. At rims, where |H| has no meaning
 /// (Desbrun 5.3), the part along the normal counts.
+/// A flow is for one thread at a time.
 #pragma once
 
 #include <memory>

@@ -2,7 +2,7 @@
 /// modifier answers itself.
 ///
 /// `applies_constraints` does not go on: a modifier that moves vertices by itself breaks what the inner flow
-/// kept, so one that keeps it says so.
+/// kept, so one that keeps it says so. A flow is for one thread at a time.
 #pragma once
 
 #include <memory>

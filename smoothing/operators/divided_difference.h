@@ -8,6 +8,7 @@
 /// units squared; E does not depend on how the charts are turned. Charts come from one set of positions and
 /// stay fixed, so E is quadratic. Valence 3 and 4 leave the fit underdetermined: a ridge of 1e-6 picks the
 /// solution of minimum norm. Differs from the paper only there and in the choice of charts (below).
+/// One thread at a time for each object: products share room for intermediate values.
 #pragma once
 
 #include <string_view>

@@ -6,6 +6,7 @@
 /// in the null space. An operator of unit 1/length^2 carries `unit` = h^2 (h = mean edge length), so that
 /// time steps are dimensionless: flows use dt * unit * L. On a regular mesh, unit * L of the scale-dependent
 /// and of the curvature operator is twice the umbrella.
+/// The functions are thread safe; an OperatorSource is for one thread at a time.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,5 @@
 /// What the curvature-driven flows read off a mesh: normals, angle deficits, and faces that agree.
+/// Thread safe: no state is kept.
 #pragma once
 
 #include <vector>

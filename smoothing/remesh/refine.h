@@ -7,6 +7,7 @@
 ///
 /// Differs from the paper: conjugate gradients instead of Gauss-Seidel sweeps (no visiting order, so the same
 /// bits for any number of threads); charts of a level come from the mesh it starts with.
+/// Thread safe: no state is kept.
 #pragma once
 
 #include <string>

@@ -1,4 +1,5 @@
 /// Vertices in an order that keeps neighbours close in memory, for meshes that come from files in another.
+/// Thread safe: no state is kept.
 #pragma once
 
 #include <vector>

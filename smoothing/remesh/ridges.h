@@ -10,6 +10,7 @@
 /// principal direction; curvatures are interpolated linearly at the two crossings and compared. Positive
 /// curvature bends away from the normal's side, as on a sphere with outward normals; faces should agree in
 /// orientation, else ridges and ravines trade places. Smooth first: it reads third derivatives.
+/// Thread safe: no state is kept.
 #pragma once
 
 #include <vector>

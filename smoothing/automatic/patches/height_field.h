@@ -6,6 +6,7 @@
 /// one number a point. The normals are those of the plane through the nearest guide points, and point to one
 /// side along the guide (Hoppe et al. 1992, 3.3, grown together by sides.h): the two sheets of a thin wall
 /// have opposite normals however near they are to each other. Which of the two sides is arbitrary.
+/// Const functions are thread safe.
 #pragma once
 
 #include <cstdint>

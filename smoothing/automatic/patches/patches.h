@@ -11,6 +11,7 @@
 ///
 /// Source: aggregation of overlapping local estimates as in image denoising (Katkovnik et al. 2010, "From
 /// local kernel to nonlocal multiple-model image denoising", section 6); the constants are ours.
+/// Const functions are thread safe; a Memory belongs to one Patches at a time.
 #pragma once
 
 #include <array>
@@ -38,7 +39,7 @@ class Patches {
   struct Patch {
     Eigen::Vector3d centre;
     float radius, weight;
-    bool several;                   ///< sheets, it seems
+    bool several;                   ///< whether its points seem to lie on several sheets
     std::array<float, 12> frame;    ///< of x, y, z each: its parts along u, v (in radii) and the axis
     std::array<float, 12> quadric;  ///< the height, in radii
     std::array<float, 20> spread;   ///< f^T A^-1 f, A the normal equations, but for

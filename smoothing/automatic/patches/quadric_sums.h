@@ -1,6 +1,8 @@
 /// The sums of a weighted quadric fit over many points, several points an instruction.
 ///
 ///     a = sum w f f^T,   b = sum w^2 f f^T,   right = sum w y f,   f = (1, u, v, u^2, u v, v^2)
+///
+/// Thread safe.
 #pragma once
 
 #include <cstddef>

@@ -3,7 +3,7 @@
 /// A thinning keeps a maximal independent set of the graph of the three nearest neighbours (Luby 1986, with
 /// the sum of squared distances to them as the priority, ties by index): no two kept points are neighbours,
 /// and every other one has a kept neighbour. It depends on distances alone, so it turns with the cloud and
-/// does not know the order of the points.
+/// does not know the order of the points. Thread safe: no state is kept.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,4 @@
-/// The weighted sum of values picked out of an array, several at a time.
+/// The weighted sum of values picked out of an array, several at a time. Thread safe.
 #pragma once
 
 #include <cstddef>
