@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds, and runs every test: bash tests/run.sh [PRESET]   (dev by default; asan)
+# Installs what is missing, builds, and runs every test: bash tests/run.sh [PRESET]   (dev by default; asan, tsan, no-cgal)
 set -euo pipefail
 cd "$(dirname "$0")/.."
 . tests/packages.sh
