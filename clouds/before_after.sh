@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # before_after.sh [BIN [SCANS]]: three development shapes and three real scans before and after `rfsmooth denoise IN OUT`, one picture each in
 # clouds/pictures/before_after. The shapes come from CGAL's data archive (Debian: libcgal-demo), sampled at 50,000 points with isotropic noise;
-# the scans from the folder SCANS (default ../shared/scans beside the project). What is absent is left out.
+# the scans, of PCL's test data, from the folder SCANS (default: the environment variable RFSMOOTH_SCANS). What is absent is left out.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 bin=$(realpath "${1:-$here/../build/release/bin}")
-scans=${2:-$here/../../shared/scans}
+scans=${2:-${RFSMOOTH_SCANS:-}}
 pictures=$here/pictures/before_after
 archive=$(dpkg -L libcgal-demo libcgal-dev 2> /dev/null | grep '/data\.tar\.gz$' | head -n 1)
 work=$(mktemp -d)

@@ -1,5 +1,7 @@
 /// Real scans through the real command: everything but the coordinates of finite points comes back bit for
 /// bit.
+#include "tests/support/scans.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -155,26 +157,20 @@ class CalmScans : public Scans {
   }
 };
 
-class RawScans : public CalmScans, public ::testing::WithParamInterface<const char*> {
- protected:
-  std::string path() const { return std::string(RFSMOOTH_SCANS_DIR) + "/" + GetParam(); }
-  void SetUp() override {
-    if (!std::filesystem::exists(path())) GTEST_SKIP() << "no scan " << path() << " (set RFSMOOTH_SCANS_DIR)";
-  }
-};
+class RawScans : public CalmScans, public ::testing::WithParamInterface<std::string> {};
 
 TEST_P(RawScans, OnlyFinitePointsMove) {
-  expect_cleaned(path());
+  expect_cleaned(GetParam());
 }
 
-/// The default flow on five scans: the same file for 1, 2, 3 and 4 threads, and once more.
+/// The default flow: the same file for 1, 2, 3 and 4 threads, and once more.
 class DefaultFlow : public RawScans {};
 
 TEST_P(DefaultFlow, SameBytesForOneToFourThreadsAndAgain) {
   if (kSanitized) GTEST_SKIP() << "the same bytes are asked for without sanitizers";
   std::string first;
   for (const char* threads : {"1", "2", "3", "4", "4"}) {
-    const Ran ran = run({"denoise", "--force", "--threads", threads, path(), "out.pcd"});
+    const Ran ran = run({"denoise", "--force", "--threads", threads, GetParam(), "out.pcd"});
     ASSERT_EQ(ran.code, 0) << ran.err;
     const std::string bytes = take("out.pcd");
     if (first.empty()) {
@@ -185,26 +181,20 @@ TEST_P(DefaultFlow, SameBytesForOneToFourThreadsAndAgain) {
   }
 }
 
-std::string name_of_scan(const ::testing::TestParamInfo<const char*>& test) {
-  std::string name = test.param;
-  for (char& c : name)
-    if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
-  return name;
-}
-
 INSTANTIATE_TEST_SUITE_P(Files, DefaultFlow,
-                         ::testing::Values("table_scene_mug_stereo_textured.pcd", "mOSD_learn0.pcd",
-                                           "cturtle.pcd", "room_scan1.pcd", "terrain_samp11-utm.pcd"),
+                         ::testing::ValuesIn(crops_and({"table_scene_mug_stereo_textured.pcd",
+                                                        "mOSD_learn0.pcd", "cturtle.pcd", "room_scan1.pcd",
+                                                        "terrain_samp11-utm.pcd"})),
                          name_of_scan);
 
 TEST_P(RawScans, NoPointMovesFarBeyondTheNoiseAroundIt) {
-  expect_small_moves(path());
+  expect_small_moves(GetParam());
 }
 
 INSTANTIATE_TEST_SUITE_P(Files, RawScans,
-                         ::testing::Values("milk_cartoon_all_small_clorox.pcd",
-                                           "table_scene_mug_stereo_textured.pcd", "mOSD_learn0.pcd",
-                                           "cturtle.pcd", "room_scan1.pcd", "terrain_samp11-utm.pcd"),
+                         ::testing::ValuesIn(crops_and(
+                             {"milk_cartoon_all_small_clorox.pcd", "table_scene_mug_stereo_textured.pcd",
+                              "mOSD_learn0.pcd", "cturtle.pcd", "room_scan1.pcd", "terrain_samp11-utm.pcd"})),
                          name_of_scan);
 
 /// building.ply and b9_training.ply of CGAL's data archive (Debian: libcgal-demo).
@@ -244,19 +234,23 @@ double off_plane(const std::vector<double>& xyz) {
 }
 
 TEST_F(Scans, ThePlaneOfAnRgbdScanComesOutFlatter) {
-  const std::string path = std::string(RFSMOOTH_SCANS_DIR) + "/mOSD_learn0.pcd";
-  if (!std::filesystem::exists(path)) GTEST_SKIP() << "no scan " << path << " (set RFSMOOTH_SCANS_DIR)";
-  io::Cloud plane = read(path);
-  const std::vector<double> label = io::field_values(plane, io::find_field(plane, "label").value());
-  std::vector<std::size_t> rows;
-  for (std::size_t i = 0; i < label.size(); ++i)
-    if (label[i] == 1) rows.push_back(i);
-  io::select_points(plane, rows);
-  plane = middle_of(std::move(plane), kMiddle);
-  ASSERT_TRUE(io::write_cloud(plane, at("in.pcd"), {}, {}).ok());
-  const Ran ran = run({"denoise", "in.pcd", "out.pcd"});
-  ASSERT_EQ(ran.code, 0) << ran.err;
-  EXPECT_LT(off_plane(io::positions(read(at("out.pcd")))), off_plane(io::positions(plane)));
+  std::vector<std::string> paths = whole_scans({"mOSD_learn0.pcd"});
+  paths.emplace_back(kBoxCrop);
+  for (const std::string& path : paths) {
+    SCOPED_TRACE(path);
+    io::Cloud plane = read(path);
+    const std::vector<double> label = io::field_values(plane, io::find_field(plane, "label").value());
+    std::vector<std::size_t> rows;
+    for (std::size_t i = 0; i < label.size(); ++i)
+      if (label[i] == 1) rows.push_back(i);  // the table
+    ASSERT_GT(rows.size(), 4000u);
+    io::select_points(plane, rows);
+    plane = middle_of(std::move(plane), kMiddle);
+    ASSERT_TRUE(io::write_cloud(plane, at("in.pcd"), {}, {}).ok());
+    const Ran ran = run({"denoise", "--force", "in.pcd", "out.pcd"});
+    ASSERT_EQ(ran.code, 0) << ran.err;
+    EXPECT_LT(off_plane(io::positions(read(at("out.pcd")))), off_plane(io::positions(plane)));
+  }
 }
 
 TEST_F(Scans, UtmDoublesKeepTheirPrecision) {
