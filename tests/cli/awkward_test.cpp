@@ -1,13 +1,12 @@
-/// Awkward input through the real command: every row of the tables of what other tools get wrong.
+/// Awkward input through the real command, beyond the rows of peer_table_test.cpp.
 #include <chrono>
-#include <cmath>
-#include <cstring>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "tests/cli/support/cloud_file.h"
 #include "tests/cli/support/folder.h"
 #include "tests/cli/support/small_clouds.h"
 #include "tests/support/sanitized.h"
@@ -53,16 +52,6 @@ TEST_F(Awkward, FolderAsInput) {
   expect_refused("folder.ply", 3, "directory");
 }
 
-TEST_F(Awkward, EmptyFile) {
-  put("in.ply", "");
-  expect_refused("in.ply", 3, "in.ply");
-}
-
-TEST_F(Awkward, HeaderOnly) {
-  put("in.ply", ascii_ply({}));
-  expect_refused("in.ply", 4, "no points");
-}
-
 TEST_F(Awkward, OnlyNonFinitePoints) {
   put("in.ply", ascii_ply({"nan nan nan", "inf 0 0"}));
   expect_refused("in.ply", 4, "finite");
@@ -78,41 +67,17 @@ TEST_F(Awkward, TruncatedAtEveryByte) {
   }
 }
 
-TEST_F(Awkward, TruncationNamesTheByteExpectedAndFound) {
-  const std::string whole = noisy_plane(3).bytes();
-  put("in.ply", whole.substr(0, whole.size() - 5));
-  const Ran ran = run({"info", "in.ply"});
-  EXPECT_EQ(ran.code, 3);
-  EXPECT_THAT(ran.err, ::testing::AllOf(HasSubstr("byte"), HasSubstr("expected"), HasSubstr("found")));
-}
-
-TEST_F(Awkward, HeaderThatPromisesFourBillionPoints) {
-  std::string cloud = noisy_plane(3).bytes();
-  const std::string from = "element vertex 9", to = "element vertex 4000000000";
-  cloud.replace(cloud.find(from), from.size(), to);
-  put("in.ply", cloud);
-  RunSetup setup;
-  if (!kSanitized) setup.address_space = std::size_t{2} << 30;  // no room to allocate first and look later
-  const Ran ran = run({"info", "in.ply"}, setup);
-  EXPECT_EQ(ran.code, 3) << ran.err;
-  EXPECT_THAT(ran.err, HasSubstr("4000000000"));
-}
-
-TEST_F(Awkward, OnePoint) {
-  put("in.ply", ascii_ply({"1 2 3"}));
-  expect_unchanged("in.ply");
-}
-
-TEST_F(Awkward, TwoCoincidentPoints) {
-  put("in.ply", ascii_ply({"1 2 3", "1 2 3"}));
-  expect_unchanged("in.ply");
-}
-
 TEST_F(Awkward, TwoAndThreePointsStayNear) {
-  put("two.ply", ascii_ply({"0 0 0", "1 0 0"}));
-  EXPECT_EQ(run({"denoise", "two.ply", "o2.ply"}).code, 0);
-  put("three.ply", ascii_ply({"0 0 0", "1 0 0", "0 1 0"}));
-  EXPECT_EQ(run({"denoise", "three.ply", "o3.ply"}).code, 0);
+  for (const std::vector<std::string>& rows :
+       {std::vector<std::string>{"0 0 0", "1 0 0"}, {"0 0 0", "1 0 0", "0 1 0"}}) {
+    put("in.ply", ascii_ply(rows));
+    const Ran ran = run({"denoise", "--force", "in.ply", "out.ply"});
+    ASSERT_EQ(ran.code, 0) << ran.err;
+    const auto before = pipeline::io::positions(read(at("in.ply"))),
+               after = pipeline::io::positions(read(at("out.ply")));
+    ASSERT_EQ(after.size(), 3 * rows.size());
+    for (std::size_t k = 0; k < after.size(); ++k) EXPECT_NEAR(after[k], before[k], 0.5) << k;
+  }
 }
 
 TEST_F(Awkward, AMillionIdenticalPoints) {
@@ -133,33 +98,6 @@ TEST_F(Awkward, CollinearPointsStayOnTheirLine) {
   for (std::size_t at = out.find("end_header\n") + 11; at < out.size(); at = out.find('\n', at) + 1, ++lines)
     EXPECT_EQ(out.substr(out.find('\n', at) - 4, 4), " 0 0");
   EXPECT_EQ(lines, 200u);
-}
-
-TEST_F(Awkward, RegularOpenGridIsFlatAndStaysFlat) {
-  std::vector<std::string> rows;
-  for (int i = 0; i < 20; ++i)
-    for (int j = 0; j < 20; ++j) rows.push_back(std::to_string(i) + " " + std::to_string(j) + " 5");
-  put("in.ply", ascii_ply(rows));
-  ASSERT_EQ(run({"denoise", "in.ply", "out.ply"}).code, 0);
-  const std::string out = take("out.ply");
-  EXPECT_EQ(std::count(out.begin(), out.end(), '\n'), 407);  // 7 header lines, 400 rows
-  for (std::size_t at = out.find("end_header\n") + 11; at < out.size(); at = out.find('\n', at) + 1)
-    EXPECT_EQ(out.substr(out.find('\n', at) - 2, 2), " 5");
-}
-
-TEST_F(Awkward, NanAndInfStayInPlaceBitForBit) {
-  BinaryPly cloud = noisy_plane(20);
-  const BinaryPly clean = cloud;
-  const float nan = std::nanf("123");
-  for (const std::size_t row : {0, 17, 399}) cloud.xyz[3 * row + 1] = row == 17 ? INFINITY : nan;
-  put("in.ply", cloud.bytes());
-  ASSERT_EQ(run({"denoise", "in.ply", "out.ply"}).code, 0);
-  const std::string before = cloud.bytes(), after = take("out.ply");
-  ASSERT_EQ(after.size(), before.size());
-  const std::size_t header = cloud.header().size();
-  for (const std::size_t row : {0, 17, 399})
-    EXPECT_EQ(after.substr(header + row * BinaryPly::kRow, BinaryPly::kRow),
-              before.substr(header + row * BinaryPly::kRow, BinaryPly::kRow));
 }
 
 TEST_F(Awkward, UntouchedTextKeepsItsText) {
@@ -202,13 +140,6 @@ TEST_F(Awkward, AbsurdHeaders) {
     EXPECT_EQ(ran.code, 3) << header << ran.out;
     EXPECT_THAT(ran.err, HasSubstr(name));
   }
-}
-
-TEST_F(Awkward, OutputFolderMissing) {
-  put("in.ply", noisy_plane(4).bytes());
-  const Ran ran = run({"denoise", "in.ply", "no/such/out.ply"});
-  EXPECT_EQ(ran.code, 5);
-  EXPECT_THAT(ran.err, HasSubstr("no/such"));
 }
 
 TEST_F(Awkward, OutputFolderIsAFile) {
@@ -267,7 +198,7 @@ TEST_F(Awkward, MemoryIsRefusedBeforeStarting) {
 TEST_F(Awkward, InterruptStopsWithinASecondAndLeavesNoFile) {
   put("in.ply", noisy_plane(300).bytes());
   RunSetup setup;
-  setup.interrupt_after_ms = 300;
+  setup.interrupt_after_ms = 1000;  // the handler is there, on a busy machine, too
   const auto start = std::chrono::steady_clock::now();
   const Ran ran = run({"denoise", "--flow", "hc", "--iterations", "100000", "in.ply", "out.ply"}, setup);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

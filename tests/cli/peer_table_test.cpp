@@ -180,13 +180,6 @@ TEST_P(PeerTable, TwoCoincidentPointsComeBack) {
   expect_unchanged(cloud);
 }
 
-TEST_P(PeerTable, FiftyThousandIdenticalPointsComeBack) {
-  RichCloud cloud;
-  cloud.pcd = pcd();
-  cloud.xyz.assign(std::size_t{3} * 50000, 0.1);
-  expect_unchanged(cloud);
-}
-
 TEST_P(PeerTable, MisspeltOptionIsAnError) {
   const RichCloud cloud = bumpy(50, pcd());
   put(cloud.name(), cloud.bytes());

@@ -28,6 +28,7 @@ constexpr double kMeshError = 5e-4;
 TEST_P(EveryShape, MeshLiesOnTheSurfaceAndIsSound) {
   const Mesh mesh = shape_->mesh(kEdge);
   EXPECT_TRUE(rfsmooth::check(mesh).empty());
+  ASSERT_FALSE(mesh.positions.empty());
   for (const Vector3d& v : mesh.positions) EXPECT_NEAR(shape_->signed_distance(v), 0, 1e-9);
   const pipeline::TrueSurface surface(mesh.positions, mesh.faces);
   EXPECT_EQ(surface.closed(), shape_->volume().has_value());

@@ -250,6 +250,7 @@ TEST(Denoise, NeverThrowsAPointFar) {
       DenoiseOptions options = hc(10);
       options.flow.flow = flow;
       const auto result = denoise(xyz.data(), xyz.size() / 3, options, {});
+      EXPECT_EQ(result.ok(), !original.empty());
       if (!result.ok()) {
         EXPECT_EQ(result.error().code, ErrorCode::no_usable_points) << result.error().message;
         continue;

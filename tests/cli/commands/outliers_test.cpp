@@ -88,6 +88,7 @@ TEST_F(OutliersOption, MarkAddsAField) {
       EXPECT_EQ(field.name, "outlier");
       EXPECT_EQ(field.type, io::Scalar::uint8);
       const std::vector<double> flags = values_of(out, "outlier");
+      ASSERT_EQ(flags.size(), plane_with_strays().size());
       for (std::size_t i = 0; i < flags.size(); ++i)
         EXPECT_EQ(flags[i], std::count(std::begin(kStrays), std::end(kStrays), i)) << i;
     }
@@ -116,6 +117,7 @@ TEST_F(OutliersOption, RemoveKeepsTheGridOfAnOrganisedCloud) {
   EXPECT_EQ(out.height, std::size_t(kSide));
   EXPECT_EQ(report()["counts"]["removed"], 3);
   const auto xyz = io::positions(out);
+  ASSERT_EQ(out.size(), std::size_t(kSide) * kSide);
   for (std::size_t i = 0; i < out.size(); ++i) {
     const bool stray = std::count(std::begin(kStrays), std::end(kStrays), i) != 0;
     for (std::size_t axis = 0; axis < 3; ++axis) EXPECT_EQ(std::isnan(xyz[3 * i + axis]), stray) << i;
@@ -142,6 +144,8 @@ TEST_F(OutliersOption, StraysDoNotPullTheOthers) {
   write(alone, "alone.ply");
   ASSERT_EQ(run({"denoise", "alone.ply", "alone_out.ply"}).code, 0);
   const auto without = io::positions(read(at("alone_out.ply")));
+  ASSERT_EQ(without.size(), 3 * rows.size());
+  ASSERT_EQ(with.size(), without.size() + 9);
   for (std::size_t k = 0; k < rows.size(); ++k)
     for (std::size_t axis = 0; axis < 3; ++axis)
       EXPECT_NEAR(with[3 * rows[k] + axis], without[3 * k + axis], 0.05) << "row " << rows[k];

@@ -67,6 +67,7 @@ TEST_P(ReconstructMethods, ASurfaceWithTheColoursOfItsPoints) {
   const char* const names[] = {"red", "green", "blue"};
   for (std::size_t k = 0; k < 3; ++k) {
     const std::vector<double> colour = io::field_values(cloud, io::find_field(cloud, names[k]).value());
+    ASSERT_GT(colour.size(), 100u);
     for (std::size_t i = 0; i < colour.size(); ++i)
       if (std::abs(xyz[3 * i + k]) > 0.2) {
         EXPECT_EQ(colour[i], xyz[3 * i + k] > 0 ? 200 : 50);
@@ -140,6 +141,7 @@ TEST_F(Reconstruct, PackedColoursAreUnpackedAndOtherFieldsStay) {
   const std::vector<double> red = field("red"), green = field("green"), blue = field("blue"),
                             labels = field("label");
   const std::vector<double> at_row = io::positions(made), nz = field("normal_z");
+  ASSERT_EQ(made.size(), 600u) << "advancing front keeps the points";
   for (std::size_t v = 0; v < made.size(); ++v) {
     EXPECT_EQ(red[v], 7);
     EXPECT_EQ(green[v], 8);

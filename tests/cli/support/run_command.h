@@ -24,7 +24,7 @@ struct RunSetup {
   bool terminal = false;                 ///< stderr is a terminal
 };
 
-/// `arguments` do not include the program. A run of more than four minutes is killed (code 137).
+/// `arguments` do not include the program. A run of more than half an hour is killed (code 137).
 Ran rfsmooth(const std::vector<std::string>& arguments, const RunSetup& setup = {});
 
 /// The same for any program.

@@ -48,20 +48,40 @@ TEST(FillHoles, AWideGapStaysOpen) {
   EXPECT_EQ(fill_holes(mesh, 4, {}), 0u);
   EXPECT_EQ(mesh.faces, before);
   EXPECT_EQ(fill_holes(mesh, 9, {}), 1u);
+  EXPECT_EQ(topology(mesh.positions.size(), mesh.faces).boundary_loops, 1u) << "the rim only";
+  ASSERT_EQ(mesh.faces.size(), before.size() + 22) << "a loop of 24 edges takes two faces fewer";
   for (std::size_t f = before.size(); f < mesh.faces.size(); ++f)
     for (std::size_t k = 0; k < 3; ++k)
       EXPECT_LE((mesh.positions[mesh.faces[f][k]] - mesh.positions[mesh.faces[f][(k + 1) % 3]]).norm(), 9);
 }
 
 TEST(FillHoles, NoEdgeOfTheSurfaceIsUsedAgain) {
-  // A square hole whose one diagonal is an edge already: a flap stands on it.
+  // A square hole whose one diagonal is an edge already takes the other one; with both taken it stays open.
+  const Index a = 21 * 9 + 9, b = a + 1, c = 21 * 10 + 10, d = c - 1;
+  for (const bool both : {false, true}) {
+    Mesh mesh = grid([](int x, int y) { return x == 9 && y == 9; });
+    mesh.loose_edges = {{a, c}};
+    if (both) mesh.loose_edges.push_back({b, d});
+    rebuild_adjacency(mesh, {});
+    const std::size_t before = mesh.faces.size();
+    EXPECT_EQ(fill_holes(mesh, 2, {}), both ? 0u : 1u);
+    ASSERT_EQ(mesh.faces.size(), before + (both ? 0 : 2));
+    EXPECT_TRUE(check(mesh).empty());
+    for (std::size_t f = before; f < mesh.faces.size(); ++f)
+      EXPECT_FALSE(std::count(mesh.faces[f].begin(), mesh.faces[f].end(), a) == 1 &&
+                   std::count(mesh.faces[f].begin(), mesh.faces[f].end(), c) == 1);
+  }
+}
+
+TEST(FillHoles, ARimThatPassesAVertexTwiceIsLeftAlone) {
   Mesh mesh = grid([](int x, int y) { return x == 9 && y == 9; });
   const Index a = 21 * 9 + 9, c = 21 * 10 + 10;
   mesh.positions.emplace_back(9.5, 9.5, 5);
-  mesh.faces.push_back({a, c, Index(mesh.positions.size() - 1)});
+  mesh.faces.push_back({a, c, Index(mesh.positions.size() - 1)});  // a flap on the diagonal
   rebuild_adjacency(mesh, {});
-  fill_holes(mesh, 2, {});
-  EXPECT_EQ(topology(mesh.positions.size(), mesh.faces).crowded_edges, 0u);
+  const auto before = mesh.faces;
+  EXPECT_EQ(fill_holes(mesh, 2, {}), 0u);
+  EXPECT_EQ(mesh.faces, before);
 }
 
 TEST(FillHoles, AnOpenTetrahedronIsClosed) {

@@ -108,6 +108,7 @@ TEST(Pinches, AnyHeapOfCubesBecomesAManifoldOfTheSameFaces) {
       for (char& cell : full) cell = std::bernoulli_distribution(share)(engine) ? 1 : 0;
       Mesh mesh = boundary_of(full);
       const Mesh before = mesh;
+      ASSERT_FALSE(before.faces.empty());
       const std::size_t copies = pipeline::part_pinches(mesh, {});
       ASSERT_EQ(mesh.positions.size(), before.positions.size() + copies);
       ASSERT_EQ(mesh.faces.size(), before.faces.size());

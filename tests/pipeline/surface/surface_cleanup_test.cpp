@@ -53,6 +53,7 @@ TEST(TrimFarFaces, EverythingIsFar) {
 TEST(NearestPoints, AVertexTakesThePointItLiesOn) {
   const Mesh mesh = grid();
   const std::vector<Index> nearest = nearest_points(mesh, mesh.positions, {});
+  ASSERT_EQ(nearest.size(), mesh.positions.size());
   for (Index v = 0; v < nearest.size(); ++v) EXPECT_EQ(nearest[v], v);
 }
 

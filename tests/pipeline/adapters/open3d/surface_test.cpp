@@ -47,6 +47,7 @@ TEST(Poisson, ASphereComesOutClosedAndWhereItIs) {
   EXPECT_TRUE(found.closed_manifold());
   EXPECT_EQ(found.components, 1u);
   EXPECT_EQ(found.genus, 0);
+  ASSERT_GT(mesh.positions.size(), 100u);
   for (const Eigen::Vector3d& p : mesh.positions) EXPECT_NEAR(p.norm(), 1, 0.3 * cloud.spacing);
   double volume = 0;
   for (const auto& f : mesh.faces)
@@ -63,6 +64,7 @@ TEST(Poisson, WhatItInventsUnderABowlIsTrimmed) {
   const auto farthest = [&] {
     double most = 0;
     const std::vector<Index> nearest = pipeline::nearest_points(mesh, cloud.points, {});
+    EXPECT_EQ(nearest.size(), mesh.positions.size());
     for (std::size_t v = 0; v < nearest.size(); ++v)
       most = std::max(most, (mesh.positions[v] - cloud.points[nearest[v]]).norm());
     return most;
@@ -74,6 +76,7 @@ TEST(Poisson, WhatItInventsUnderABowlIsTrimmed) {
   Mesh points;
   points.positions = cloud.points;
   const std::vector<Index> nearest = pipeline::nearest_points(points, mesh.positions, {});
+  ASSERT_EQ(nearest.size(), cloud.points.size());
   for (std::size_t i = 0; i < nearest.size(); ++i)
     EXPECT_LE((cloud.points[i] - mesh.positions[nearest[i]]).norm(), 1.5 * cloud.spacing);
 }
