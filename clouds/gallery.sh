@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # gallery.sh [BIN]: every flow of the registry on one noisy cloud: a picture each in clouds/pictures/flows, the page clouds/gallery.md, and
-# the table of flows in the README. BIN holds rfsmooth, virtual_scanner and render_cloud. A flow that is added needs no line here.
+# the table of flows in docs/FLOWS.md. BIN holds rfsmooth, virtual_scanner and render_cloud. A flow that is added needs no line here.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 bin=$(realpath "${1:-$here/../build/release/bin}")
@@ -54,6 +54,6 @@ done < <(sed -n 's/^| `\([^`]*\)` | \([^|]*\) |.*/\1 \2/p' "$work/table.md")
 awk -v table="$work/table.md" '
   /^<!-- flows -->/ { print; while ((getline line < table) > 0) print line; skip = 1; next }
   /^<!-- end of flows -->/ { skip = 0 }
-  !skip { print }' "$here/../README.md" > "$work/README.md"
-cat "$work/README.md" > "$here/../README.md"
+  !skip { print }' "$here/../docs/FLOWS.md" > "$work/FLOWS.md"
+cat "$work/FLOWS.md" > "$here/../docs/FLOWS.md"
 echo "clouds/gallery.md"

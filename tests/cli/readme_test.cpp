@@ -3,6 +3,7 @@
 #include <fstream>
 #include <iterator>
 #include <regex>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -26,11 +27,49 @@ std::string text_of(const std::string& name) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-TEST(Readme, ItsTableOfFlowsIsTheRegistrys) {
+TEST(Readme, TheTableOfFlowsIsTheRegistrys) {
   const Ran table = rfsmooth({"flows", "--markdown"});
   ASSERT_EQ(table.code, 0);
-  EXPECT_THAT(text_of("README.md"), HasSubstr("<!-- flows -->\n" + table.out + "<!-- end of flows -->\n"))
+  EXPECT_THAT(text_of("docs/FLOWS.md"), HasSubstr("<!-- flows -->\n" + table.out + "<!-- end of flows -->\n"))
       << kHow;
+}
+
+/// The links of a page to files of the project: [words](file) or [words](file#heading).
+std::vector<std::string> files_linked_in(const std::string& text) {
+  static const std::regex kLink("\\]\\(([^):#]+)(#[^)]*)?\\)");
+  std::vector<std::string> files;
+  for (std::sregex_iterator it(text.begin(), text.end(), kLink), end; it != end; ++it)
+    files.push_back((*it)[1]);
+  return files;
+}
+
+TEST(Readme, LinksOfThePagesLeadToFiles) {
+  const std::filesystem::path source = RFSMOOTH_SOURCE;
+  std::size_t seen = 0;
+  for (const char* page :
+       {"README.md", "CHANGELOG.md", "CONTRIBUTING.md", "clouds/README.md", "clouds/gallery.md",
+        "docs/FIGURES.md", "docs/FLOWS.md", "docs/GLOSSARY.md", "docs/GUARANTEES.md", "docs/STABILITY.md"})
+    for (const std::string& file : files_linked_in(text_of(page))) {
+      EXPECT_TRUE(std::filesystem::exists((source / page).parent_path() / file)) << page << ": " << file;
+      ++seen;
+    }
+  EXPECT_GE(seen, 30u);
+}
+
+TEST(Readme, TheGlossaryNamesHeadersThatExist) {
+  std::set<std::string> headers;
+  for (const char* room : {"base", "include", "rfs_mesh", "smoothing", "pipeline"}) {
+    std::error_code none;  // a room that is not there
+    for (const auto& entry :
+         std::filesystem::recursive_directory_iterator(std::filesystem::path(RFSMOOTH_SOURCE) / room, none))
+      headers.insert(entry.path().filename().string());
+  }
+  const std::string page = text_of("docs/GLOSSARY.md");
+  static const std::regex kHeader("`([a-z0-9_]+\\.h)`");
+  std::size_t seen = 0;
+  for (std::sregex_iterator it(page.begin(), page.end(), kHeader), end; it != end; ++it, ++seen)
+    EXPECT_EQ(headers.count((*it)[1]), 1u) << (*it)[1];
+  EXPECT_GE(seen, 50u);
 }
 
 TEST(Readme, TheGalleryShowsEveryFlowAndItsPicturesAreThere) {
@@ -58,13 +97,11 @@ TEST(Readme, EveryPromiseNamesTestsThatExist) {
   if (kSanitized) GTEST_SKIP() << "with the sanitizers only the core's tests are built";
   const Ran list = run_program("ctest", {"-N", "--test-dir", RFSMOOTH_BINARY});
   ASSERT_EQ(list.code, 0) << list.err;
-  const std::string page = text_of("README.md");
-  const std::size_t from = page.find("## What you can rely on"), to = page.find("\n## ", from + 1);
-  const std::string section = page.substr(from, to - from);
+  const std::string page = text_of("docs/GUARANTEES.md");
   std::size_t promises = 0;
-  for (std::size_t at = section.find("\n- "); at != std::string::npos; ++promises) {
-    const std::size_t next = section.find("\n- ", at + 1);
-    const std::string promise = section.substr(at, next - at);
+  for (std::size_t at = page.find("\n- "); at != std::string::npos; ++promises) {
+    const std::size_t next = page.find("\n- ", at + 1);
+    const std::string promise = page.substr(at, next - at);
     at = next;
     const auto names = tests_named_in(promise);
     EXPECT_FALSE(names.empty()) << "no test keeps this promise:" << promise;
