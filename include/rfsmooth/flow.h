@@ -41,6 +41,7 @@ struct FlowOptions {
   std::optional<double> tangential;    ///< modified curvature flow: weight of the tangential umbrella
   std::optional<int> power;            ///< directional: m of the energy integral H^(2m) dA that falls
   std::optional<std::string> direction;  ///< directional: "auto" or "x,y,z"
+  std::optional<std::string> scheme;     ///< directional: keeps the volume of a step, or as printed
   std::optional<double> eps;             ///< local directional: |K| below it counts as flat, 1/h^2
   std::optional<std::string> chart;      ///< discrete fairing: how neighbours get their parameters
   std::optional<double> tolerance;       ///< implicit flows: residual to stop at, relative
@@ -100,6 +101,9 @@ struct FlowOptions {
           self.tangential);
     visit(OptionInfo{"power", "directional: m of the energy integral H^(2m) dA", "", 0, 8}, self.power);
     visit(OptionInfo{"direction", "directional: auto, or x,y,z", ""}, self.direction);
+    visit(words("scheme", "directional: a step that keeps the volume, or the one the paper prints",
+                {"conserving", "printed"}),
+          self.scheme);
     visit(
         OptionInfo{"eps", "local directional: Gauss curvature that counts as flat", "1/(mean edge)^2", 0, 1},
         self.eps);

@@ -155,9 +155,12 @@ struct EdgeSide {
   bool upward;
 };
 
-/// Turns the faces so that neighbours across edges of two faces agree and parts face outward. `refuse(why)`
-/// is called where the mesh is not closed, manifold at its edges and orientable; if it returns, that place is
-/// left as it is.
+/// What is wrong at a place of a mesh that is not closed, manifold at its edges and orientable.
+enum class Flaw { rim, crowded, one_sided };
+
+/// Turns the faces so that neighbours across edges of two faces agree: closed parts outward, open ones to the
+/// side that most of their faces have. `refuse(flaw, why)` is called for every flaw; if it returns, that
+/// place is left as it is.
 template <class Refuse>
 std::vector<Face> oriented_faces(const Mesh& mesh, Refuse&& refuse) {
   std::vector<Face> faces = mesh.faces;
@@ -186,10 +189,10 @@ std::vector<Face> oriented_faces(const Mesh& mesh, Refuse&& refuse) {
       const bool same = one.upward == two.upward;
       links[one.face][count[one.face]++] = {two.face, same};
       links[two.face][count[two.face]++] = {one.face, same};
-    } else if (end - s > 3 && (end - s) % 2 == 0) {
-      refuse(fmt::format("the edge {}-{} has more than two faces", one.low, one.high));
+    } else if (end - s > 2) {
+      refuse(Flaw::crowded, fmt::format("the edge {}-{} has more than two faces", one.low, one.high));
     } else {
-      refuse(fmt::format("the edge {}-{} has an odd number of faces", one.low, one.high));
+      refuse(Flaw::rim, fmt::format("the edge {}-{} has only one face", one.low, one.high));
     }
     s = end;
   }
@@ -199,10 +202,14 @@ std::vector<Face> oriented_faces(const Mesh& mesh, Refuse&& refuse) {
     if (turn[seed] >= 0) continue;
     part.assign(1, seed);
     turn[seed] = 0;
+    bool closed = true;
+    std::size_t turned = 0;
     Vector3d centre = Vector3d::Zero();
     for (std::size_t at = 0; at < part.size(); ++at) {
       const Index f = part[at];
       for (const Index v : faces[f]) centre += mesh.positions[v] / 3;
+      turned += turn[f] != 0 ? 1 : 0;
+      closed = closed && count[f] == 3;
       for (int k = 0; k < count[f]; ++k) {
         const Link& link = links[f][std::size_t(k)];
         const auto wanted = static_cast<signed char>(turn[f] ^ (link.same ? 1 : 0));
@@ -210,7 +217,7 @@ std::vector<Face> oriented_faces(const Mesh& mesh, Refuse&& refuse) {
           turn[link.face] = wanted;
           part.push_back(link.face);
         } else if (turn[link.face] != wanted) {
-          refuse("it has only one side");
+          refuse(Flaw::one_sided, "it has only one side");
         }
       }
     }
@@ -221,8 +228,9 @@ std::vector<Face> oriented_faces(const Mesh& mesh, Refuse&& refuse) {
                      c = mesh.positions[faces[f][2]] - centre;
       volume += (turn[f] != 0 ? -1 : 1) * a.dot(b.cross(c));
     }
+    const bool others = closed ? volume < 0 : 2 * turned > part.size();
     for (const Index f : part)
-      if ((turn[f] != 0) != (volume < 0)) std::swap(faces[f][1], faces[f][2]);
+      if ((turn[f] != 0) != others) std::swap(faces[f][1], faces[f][2]);
   }
   return faces;
 }
@@ -230,15 +238,22 @@ std::vector<Face> oriented_faces(const Mesh& mesh, Refuse&& refuse) {
 }  // namespace
 
 std::vector<Face> closed_and_oriented(const Mesh& mesh, const char* what) {
-  const auto refuse = [what](const std::string& why) {
+  const auto refuse = [what](Flaw, const std::string& why) {
     throw Failure({ErrorCode::usage, fmt::format("{} needs a closed, orientable mesh; {}", what, why)});
   };
-  if (mesh.faces.empty()) refuse("this one has no faces");
+  if (mesh.faces.empty()) refuse(Flaw::rim, "this one has no faces");
   return oriented_faces(mesh, refuse);
 }
 
-std::vector<Face> oriented_as_far_as_possible(const Mesh& mesh) {
-  return oriented_faces(mesh, [](const std::string&) {});
+std::vector<Face> oriented_as_far_as_possible(const Mesh& mesh, Unclosed* found) {
+  Unclosed flaws;
+  std::vector<Face> faces = oriented_faces(mesh, [&](Flaw flaw, const std::string&) {
+    if (flaw == Flaw::rim) ++flaws.rim;
+    if (flaw == Flaw::crowded) ++flaws.crowded;
+    if (flaw == Flaw::one_sided) flaws.one_sided = true;
+  });
+  if (found != nullptr) *found = flaws;
+  return faces;
 }
 
 }  // namespace rfsmooth::smoothing

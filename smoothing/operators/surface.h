@@ -40,8 +40,16 @@ double angle_deficit(const Mesh& mesh, const Adjacency& vertex_faces, Index i);
 /// what needs it.
 std::vector<Face> closed_and_oriented(const Mesh& mesh, const char* what);
 
+/// What keeps a mesh from being the boundary of a solid.
+struct Unclosed {
+  std::size_t rim = 0;      ///< edges with one face
+  std::size_t crowded = 0;  ///< edges with more than two
+  bool one_sided = false;   ///< somewhere neighbours cannot agree, as on a Moebius strip
+};
+
 /// The same for any mesh, as far as it goes: neighbours agree across edges of two faces, except where the
-/// mesh has only one side; parts face away from their centre.
-std::vector<Face> oriented_as_far_as_possible(const Mesh& mesh);
+/// mesh has only one side. Closed parts face outward, open ones keep the side that most of their faces have.
+/// `found`, if given, is set to what is missing.
+std::vector<Face> oriented_as_far_as_possible(const Mesh& mesh, Unclosed* found = nullptr);
 
 }  // namespace rfsmooth::smoothing
