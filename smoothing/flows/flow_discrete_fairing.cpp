@@ -88,7 +88,7 @@ FlowEntry flow_discrete_fairing() {
   FlowOptions defaults;
   defaults.iterations = 1;
   defaults.dt = 1;
-  defaults.chart = "tangent";
+  defaults.chart = "mixed";
   defaults.tolerance = 1e-5;
   defaults.norm = "l2";
   return {"discrete-fairing", "thin-plate smoothing spline from divided differences in local charts",

@@ -96,15 +96,23 @@ std::vector<Vector2d> chart_of(const Mesh& mesh, const Adjacency& faces, const V
   }
   if (!(total > 0)) return chart;
   const double scale = fan.closed ? 2 * kPi / total : std::min(1.0, 2 * kPi / total);
+  /// The angle of neighbour k in the uniform chart; around a whole fan from wherever one starts to count.
+  const auto even = [&](std::size_t k) {
+    return fan.closed ? 2 * kPi * double(k) / double(m)
+                      : scale * total * double(k) / double(std::max<std::size_t>(1, m - 1));
+  };
+  // Turned to lie on the other chart as well as it can, so that it does not matter where that is.
+  Vector2d lead = Vector2d::Zero();
+  for (std::size_t k = 0; k < m; ++k) {
+    const double ahead = scale * angle[k] - even(k);
+    lead += Vector2d(std::cos(ahead), std::sin(ahead));
+  }
+  const double offset = fan.closed ? std::atan2(lead.y(), lead.x()) : 0;
   chart.resize(m);
   for (std::size_t k = 0; k < m; ++k) {
-    const double a = scale * angle[k];
+    const double a = scale * angle[k], e = offset + even(k);
     Vector2d p = length[k] * Vector2d(std::cos(a), std::sin(a));
-    if (kind == "mixed") {
-      const double even = fan.closed ? 2 * kPi * double(k) / double(m)
-                                     : scale * total * double(k) / double(std::max<std::size_t>(1, m - 1));
-      p = 0.5 * (p + mean * Vector2d(std::cos(even), std::sin(even)));
-    }
+    if (kind == "mixed") p = 0.5 * (p + mean * Vector2d(std::cos(e), std::sin(e)));
     chart[std::size_t(std::lower_bound(row.begin(), row.end(), fan.order[k]) - row.begin())] = p;
   }
   return chart;
@@ -114,7 +122,7 @@ std::vector<Vector2d> chart_of(const Mesh& mesh, const Adjacency& faces, const V
 
 DividedDifferences::DividedDifferences(const Mesh& mesh, std::string_view chart, const Context& context)
     : rows_(mesh.one_ring) {
-  constexpr double kRidge = 1e-4;  // of a fit whose columns are of size one
+  constexpr double kRidge = 1e-6;  // of a fit whose columns are of size one
   constexpr double kTiny = 1e-12;  // keeps the fit of one or two neighbours regular
   const std::size_t n = mesh.positions.size();
   const Fans fans = fans_of(mesh, context);

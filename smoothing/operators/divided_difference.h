@@ -6,9 +6,9 @@
 ///
 /// Kobbelt 1997, section 4. Parameters (u, v) in units of h, the mesh's mean edge length, so E is in world
 /// units squared; E does not depend on how the charts are turned. Charts come from one set of positions and
-/// stay fixed, so E is quadratic. Valence 3 and 4 leave the fit underdetermined: a ridge of 1e-6 picks the
-/// solution of minimum norm. Differs from the paper only there and in the choice of charts (below).
-/// One thread at a time for each object: products share room for intermediate values.
+/// stay fixed, so E is quadratic. Where the neighbours leave the fit open (valence 3 and 4, or all on one
+/// conic with the vertex) a ridge of 1e-6 picks the solution of minimum norm. Differs from the paper only
+/// there and in the choice of charts (below).
 #pragma once
 
 #include <string_view>

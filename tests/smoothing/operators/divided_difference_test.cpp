@@ -61,6 +61,20 @@ TEST(DividedDifferences, SecondDerivativesOfAQuadraticAreExact) {
   EXPECT_NEAR(interior, 39, 0.05 * 39) << "boundary vertices of low valence fall short";
 }
 
+/// Rows added to a regular sheet add interior vertices alone, up to what its rim adds linearly.
+TEST(DividedDifferences, TheRidgeIsNotFeltWhereTheFitIsDetermined) {
+  const auto energy = [](int side) {
+    const Mesh mesh = support::grid(side, side, true);
+    return DividedDifferences(mesh, "tangent", {})
+        .energy(
+            field(mesh,
+                  [](const Vector3d& p) { return 3 * p.x() * p.x() - p.x() * p.y() + 0.5 * p.y() * p.y(); }),
+            {});
+  };
+  const double interior = (energy(12) - 2 * energy(11) + energy(10)) / 2;
+  EXPECT_NEAR(interior, 39 * std::sqrt(0.75), 1e-5 * 39);
+}
+
 TEST(DividedDifferences, TheDiagonalIsTheMatrixs) {
   const Mesh mesh = support::icosphere(1);
   const DividedDifferences d(mesh, "mixed", {});
