@@ -1,8 +1,10 @@
 #include "smoothing/modifiers/preserve.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <Eigen/Geometry>
+#include <fmt/format.h>
 
 #include "base/parallel.h"
 #include "rfs_mesh/measure.h"
@@ -23,6 +25,8 @@ class Preserving : public WrappedFlow {
       : WrappedFlow(std::move(inner)), invariant_(invariant), allowed_(std::move(allowed)) {
     connect(mesh);
     target_ = measure(mesh.positions, context);
+    // Of the terms without their signs: what rounding and "restored" are relative to.
+    size_ = measure(mesh.positions, context, true);
   }
 
   void step(Mesh& mesh, const Context& context) override {
@@ -49,7 +53,7 @@ class Preserving : public WrappedFlow {
                             : 1;
     for (int round = 0; round < 30; ++round) {
       const double gap = target_ - value;
-      if (std::abs(gap) <= 1e-14 * std::abs(target_)) break;
+      if (std::abs(gap) <= 1e-14 * size_) break;
       const double probe = 1e-4 * std::max(span, 1e-300);
       const double slope = (at(t + probe) - at(t - probe)) / (2 * probe);
       const double next = t + gap / slope;
@@ -57,7 +61,8 @@ class Preserving : public WrappedFlow {
       t = next;
       value = at(t);
     }
-    at(t);
+    value = at(t);
+    if (!(std::abs(target_ - value) <= kRestored * size_)) give_up(value, direction);
     for_each_index(context, n, [&](std::size_t i) {
       if (direction[i] != Vector3d::Zero() && moved[i].allFinite()) mesh.positions[i] = moved[i];
     });
@@ -78,18 +83,35 @@ class Preserving : public WrappedFlow {
     if (faces_.empty()) throw Failure({ErrorCode::usage, "keeping an area or a volume needs faces"});
   }
 
-  double measure(const Positions& x, const Context& context) const {
+  /// The invariant, or the sum of its terms' sizes.
+  double measure(const Positions& x, const Context& context, bool sizes = false) const {
+    const auto sized = [sizes](double term) { return sizes ? std::abs(term) : term; };
     const Vector3d origin = x[faces_[0][0]];
     const double scale = invariant_ == Invariant::volume ? 1.0 / 6 : 0.5;
     return scale * sum_over(context, faces_.size(), 0.0, [&](std::size_t f) {
              const Vector3d a = x[faces_[f][0]] - origin, b = x[faces_[f][1]] - origin,
                             c = x[faces_[f][2]] - origin;
-             if (invariant_ == Invariant::volume) return a.dot(b.cross(c));
+             if (invariant_ == Invariant::volume) return sized(a.dot(b.cross(c)));
              const Vector3d cross = (b - a).cross(c - a);
              if (invariant_ == Invariant::area) return cross.norm();
-             return std::abs(cross.z()) * (x[faces_[f][0]].z() + x[faces_[f][1]].z() + x[faces_[f][2]].z()) /
-                    3;
+             return std::abs(cross.z()) *
+                    sized(x[faces_[f][0]].z() + x[faces_[f][1]].z() + x[faces_[f][2]].z()) / 3;
            });
+  }
+
+  /// \throw Failure with the numbers and the reason.
+  [[noreturn]] void give_up(double value, const Positions& direction) const {
+    const auto movable = std::count_if(direction.begin(), direction.end(),
+                                       [](const Vector3d& d) { return d != Vector3d::Zero(); });
+    const char* const what = invariant_ == Invariant::volume ? "volume"
+                             : invariant_ == Invariant::area ? "area"
+                                                             : "volume under the height field";
+    throw Failure(
+        {ErrorCode::usage,
+         fmt::format("the {} cannot be kept: a step takes it from {:.6g} to {:.6g}, and the {} of {} "
+                     "vertices that the boundary rule and the constraints let move cannot bring it "
+                     "back; fix fewer vertices, or do without --preserve",
+                     what, target_, value, movable, direction.size())});
   }
 
   /// The area of the faces seen from above.
@@ -102,7 +124,8 @@ class Preserving : public WrappedFlow {
   Invariant invariant_;
   AllowedMoves allowed_;
   std::vector<Face> faces_;
-  double target_ = 0;
+  static constexpr double kRestored = 1e-9;  // far above rounding, far below what a user could see
+  double target_ = 0, size_ = 0;
 };
 
 }  // namespace

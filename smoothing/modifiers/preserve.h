@@ -8,7 +8,10 @@
 /// Differs from the paper: it scales about the origin, we about the centroid; height fields are shifted,
 /// since scaling them depends on the plane; and constrained vertices stay constrained (d is projected and
 /// scaled with their strength), where the paper's scaling moves them. Faces are oriented first for the
-/// volume; an open, non-manifold or one-sided mesh is refused. A flow is for one thread at a time.
+/// volume; an open, non-manifold or one-sided mesh is refused. A step after which no t restores the
+/// invariant, because of the vertices that may not move, is a Failure (usage) that says so: nothing is kept
+/// only nearly.
+/// A flow is for one thread at a time.
 #pragma once
 
 #include <memory>

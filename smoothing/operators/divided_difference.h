@@ -9,6 +9,7 @@
 /// stay fixed, so E is quadratic. Where the neighbours leave the fit open (valence 3 and 4, or all on one
 /// conic with the vertex) a ridge of 1e-6 picks the solution of minimum norm. Differs from the paper only
 /// there and in the choice of charts (below).
+/// One thread at a time for each object: products share room for intermediate values.
 #pragma once
 
 #include <string_view>

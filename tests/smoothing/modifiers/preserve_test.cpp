@@ -98,4 +98,18 @@ TEST(Preserve, ConstrainedVerticesStayConstrained) {
   EXPECT_NEAR(support::enclosed_volume(mesh) / volume, 1, 1e-12);
 }
 
+TEST(Preserve, WhatTheRulesPreventIsAnErrorThatNamesTheReason) {
+  Mesh sheet = support::grid(9, 9);
+  support::add_noise(sheet, 0.1, 2);
+  const Positions before = sheet.positions;
+  FlowOptions o = laplacian("area");
+  o.boundary = "fixed";  // a sheet in a fixed frame loses the area of its waves for good
+  const auto run = smooth(sheet, o, {});
+  ASSERT_FALSE(run.ok());
+  EXPECT_EQ(run.error().code, ErrorCode::usage);
+  for (const char* part : {"area", "49 of 81 vertices", "boundary", "constraints"})
+    EXPECT_NE(run.error().message.find(part), std::string::npos) << part << " in " << run.error().message;
+  EXPECT_EQ(sheet.positions, before);
+}
+
 }  // namespace
