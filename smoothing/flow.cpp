@@ -93,7 +93,18 @@ FlowOptions modifier_defaults() {
   return o;
 }
 
-/// The flow with its modifiers, innermost first: constraints, push-back, threshold, invariant.
+/// The flow around which the invariant is kept, if one is asked for.
+std::unique_ptr<Flow> preserving(std::unique_ptr<Flow> flow, const Mesh& mesh, const FlowOptions& o,
+                                 const Constraints& constraints, const Context& context) {
+  if (*o.preserve == "none") return flow;
+  const Invariant invariant = *o.preserve == "volume" ? Invariant::volume
+                              : *o.preserve == "area" ? Invariant::area
+                                                      : Invariant::height_field;
+  return make_preserving(std::move(flow), mesh, invariant, AllowedMoves(constraints, mesh.positions.size()),
+                         context);
+}
+
+/// The flow with its modifiers but the invariant, innermost first: constraints, push-back, threshold.
 std::unique_ptr<Flow> compose(const FlowEntry& entry, const Mesh& mesh, const FlowOptions& o,
                               const Constraints& constraints, const Context& context) {
   AllowedMoves allowed(constraints, mesh.positions.size());
@@ -104,17 +115,11 @@ std::unique_ptr<Flow> compose(const FlowEntry& entry, const Mesh& mesh, const Fl
   if (*o.threshold != "none") {
     ThresholdRule rule;
     rule.rings = *o.threshold == "two-ring" ? 2 : *o.threshold == "one-ring" ? 1 : 0;
-    rule.constant = *o.threshold_value;
-    rule.every = *o.threshold_every;
+    rule.constant = o.threshold_value.value_or(0);
+    rule.every = o.threshold_every.value_or(1);
     rule.lambda = o.lambda ? *o.lambda : o.dt ? *o.dt : 1;
     if (!(rule.lambda > 0)) rule.lambda = 1;
     flow = make_threshold(std::move(flow), mesh, rule, context);
-  }
-  if (*o.preserve != "none") {
-    const Invariant invariant = *o.preserve == "volume" ? Invariant::volume
-                                : *o.preserve == "area" ? Invariant::area
-                                                        : Invariant::height_field;
-    flow = make_preserving(std::move(flow), mesh, invariant, std::move(allowed), context);
   }
   return flow;
 }
@@ -159,9 +164,13 @@ Result<std::unique_ptr<Flow>> make_flow(const Mesh& mesh, const FlowOptions& opt
   return guarded([&] {
     const FlowOptions o = value_or_throw(complete(options));
     const FlowEntry& entry = *find_flow(o.flow).value();
-    return with_boundary_rule(
-        *o.boundary, mesh, constraints, context,
-        [&](const Mesh& on, const Constraints& c) { return compose(entry, on, o, c, context); });
+    // Along a curve the boundary moves too, so the invariant is restored after that, by all vertices.
+    const bool outside = *o.boundary == "curve";
+    auto flow = with_boundary_rule(o, mesh, constraints, context, [&](const Mesh& on, const Constraints& c) {
+      auto inner = compose(entry, on, o, c, context);
+      return outside ? std::move(inner) : preserving(std::move(inner), on, o, c, context);
+    });
+    return outside ? preserving(std::move(flow), mesh, o, constraints, context) : std::move(flow);
   });
 }
 

@@ -58,6 +58,9 @@ struct Mesh {
                                   ///< faceless vertices)
   Adjacency one_ring;             ///< n rows; call rebuild_adjacency after changing faces or loose_edges
 
+  Index closing = kNone;  ///< vertices from this one on only close holes for a flow and are no part of the
+                          ///< surface: their edges do not count for lengths (smoothing/boundary.h)
+
   std::size_t edge_count() const { return one_ring.items.size() / 2; }
 };
 

@@ -1,9 +1,12 @@
 #include "smoothing/modifiers/boundary.h"
 
 #include <algorithm>
+#include <array>
 
 #include "base/parallel.h"
+#include "smoothing/integrators/explicit.h"
 #include "smoothing/modifiers/constraint.h"
+#include "smoothing/modifiers/pushback.h"
 #include "smoothing/modifiers/wrapped_flow.h"
 #include "smoothing/operators/operator.h"
 
@@ -48,33 +51,115 @@ Constraints with_fixed_boundary(const Constraints& constraints, const Adjacency&
   return all;
 }
 
-/// The boundary smooths itself as a curve, then the flow moves the rest.
-class BoundaryCurve : public WrappedFlow {
+/// -h^2 L x with L the scale-dependent operator: the speed of flows without an umbrella along a curve.
+class CurveSpeed : public Speed {
  public:
-  BoundaryCurve(std::unique_ptr<Flow> inner, Adjacency curve, AllowedMoves allowed)
-      : WrappedFlow(std::move(inner)), curve_(std::move(curve)), allowed_(std::move(allowed)) {}
+  explicit CurveSpeed(double lambda) : lambda_(lambda) {}
 
-  void step(Mesh& mesh, const Context& context) override {
-    const Positions& x = mesh.positions;
-    const double h = length_unit(mesh, context);
-    Positions next = x;
-    for_each_index(context, x.size(), [&](std::size_t i) {
-      if (curve_.degree(i) != 2) return;
-      const Vector3d back = x[curve_[i][0]] - x[i], on = x[curve_[i][1]] - x[i];
-      const double d = back.norm(), D = on.norm();
-      if (!(d > 0 && D > 0)) return;
-      // The scheme's own limit is d D / 2: a quarter of h^2 beyond it would overshoot at short edges.
-      const double step = std::min(0.25 * h * h, 0.5 * d * D);
-      const Vector3d p = x[i] + allowed_.strength(i) * allowed_(i, step * 2 / (d + D) * (back / d + on / D));
-      if (p.allFinite()) next[i] = p;
+  /// As in curvature_speed.h, a vertex moves by its own explicit limit where that is below the step.
+  void evaluate(const Mesh& curve, Positions& speed, const Context& context) override {
+    const Operator op = scale_dependent(curve, context);
+    apply(curve.one_ring, op, curve.positions, speed, context);
+    const std::vector<double> sums = weight_sums(curve.one_ring, op, context);
+    for_each_index(context, speed.size(), [&](std::size_t i) {
+      speed[i] *= -op.unit / std::max(1.0, lambda_ * op.unit * sums[i] / op.mass[i]);
     });
-    mesh.positions.swap(next);
-    inner_->step(mesh, context);
   }
 
  private:
-  Adjacency curve_;
-  AllowedMoves allowed_;
+  double lambda_;
+};
+
+/// The flow of the options along a curve (a mesh of loose edges).
+std::unique_ptr<Flow> curve_flow(const FlowOptions& o, const Mesh& curve, const Constraints& constraints,
+                                 const Context& context) {
+  constexpr std::array<std::string_view, 5> kOfUmbrellas = {"laplacian", "hc", "hc-limit", "taubin",
+                                                            "bilaplacian"};
+  constexpr double kAutomatic = 0.25;  // a flow without a step of its own: half of what is stable on a curve
+  AllowedMoves allowed(constraints, curve.positions.size());
+  std::unique_ptr<Flow> flow;
+  if (o.dt) {
+    FlowOptions implicit;
+    implicit.flow = "implicit";
+    implicit.dt = o.dt;
+    implicit.order = o.order;
+    implicit.mixture = o.mixture;
+    implicit.op = "scale-dependent";
+    implicit.keep_weights = o.keep_weights;
+    implicit.tolerance = o.tolerance;
+    implicit.norm = o.norm;
+    flow =
+        find_flow("implicit").value()->make(curve, value_or_throw(complete(implicit)), constraints, context);
+  } else if (std::find(kOfUmbrellas.begin(), kOfUmbrellas.end(), o.flow) != kOfUmbrellas.end()) {
+    flow = find_flow(o.flow).value()->make(curve, o, constraints, context);
+  } else {
+    const double lambda = o.lambda.value_or(kAutomatic);
+    flow = make_explicit(std::make_unique<CurveSpeed>(lambda), lambda, Update::simultaneous, allowed);
+  }
+  if (!flow->applies_constraints()) flow = make_constrained(std::move(flow), allowed);
+  if (*o.push_back)
+    flow = make_pushback(std::move(flow), curve, *o.push_alpha, *o.push_beta, std::move(allowed));
+  return flow;
+}
+
+/// The boundary alone, and the constraints on it.
+struct Curve {
+  Mesh mesh;              ///< its vertices, and its edges as loose ones
+  std::vector<Index> of;  ///< the vertices of the whole mesh that they are, ascending
+  Constraints constraints;
+};
+
+Curve curve_of(const Mesh& mesh, const Adjacency& boundary, const Constraints& constraints,
+               const Context& context) {
+  Curve curve;
+  std::vector<Index> place(boundary.size(), kNone);
+  for (Index i = 0; i < boundary.size(); ++i) {
+    if (boundary.degree(i) == 0) continue;
+    place[i] = Index(curve.of.size());
+    curve.of.push_back(i);
+    curve.mesh.positions.push_back(mesh.positions[i]);
+    if (!constraints.strength.empty()) curve.constraints.strength.push_back(constraints.strength.at(i));
+  }
+  for (const Edge& e : rfsmooth::edges_of(boundary, context))
+    curve.mesh.loose_edges.push_back({place[e[0]], place[e[1]]});
+  rebuild_adjacency(curve.mesh, context);
+  std::vector<char> taken(curve.of.size(), 0);
+  for (HardConstraint c : constraints.hard) {
+    if (c.vertex >= place.size() || place[c.vertex] == kNone) continue;
+    if (boundary.degree(c.vertex) != 2) c.kind = HardConstraint::Kind::fixed;
+    c.vertex = place[c.vertex];
+    taken[c.vertex] = 1;
+    curve.constraints.hard.push_back(c);
+  }
+  for (Index k = 0; k < curve.of.size(); ++k)
+    if (taken[k] == 0 && boundary.degree(curve.of[k]) != 2)
+      curve.constraints.hard.push_back({k, HardConstraint::Kind::fixed, Vector3d::Zero()});
+  return curve;
+}
+
+/// The boundary follows its own flow; the flow of the rest sees it as fixed.
+class BoundaryCurve : public WrappedFlow {
+ public:
+  /// \param first whether the rest is to see the boundary where it goes to, not where it was.
+  BoundaryCurve(std::unique_ptr<Flow> inner, std::unique_ptr<Flow> along, Curve curve, bool first)
+      : WrappedFlow(std::move(inner)), along_(std::move(along)), curve_(std::move(curve)), first_(first) {}
+
+  void step(Mesh& mesh, const Context& context) override {
+    for (std::size_t k = 0; k < curve_.of.size(); ++k)
+      curve_.mesh.positions[k] = mesh.positions[curve_.of[k]];
+    along_->step(curve_.mesh, context);
+    if (!first_) inner_->step(mesh, context);
+    for (std::size_t k = 0; k < curve_.of.size(); ++k)
+      mesh.positions[curve_.of[k]] = curve_.mesh.positions[k];
+    if (first_) inner_->step(mesh, context);
+  }
+
+  int solver_iterations() const override { return inner_->solver_iterations() + along_->solver_iterations(); }
+
+ private:
+  std::unique_ptr<Flow> along_;
+  Curve curve_;
+  bool first_;
 };
 
 /// The mesh with a virtual vertex over every boundary loop.
@@ -90,7 +175,7 @@ class VirtualVertices : public WrappedFlow {
   }
 
   void step(Mesh& mesh, const Context& context) override {
-    place(mesh);
+    std::copy(mesh.positions.begin(), mesh.positions.end(), closed_.positions.begin());
     inner_->step(closed_, context);
     std::copy_n(closed_.positions.begin(), mesh.positions.size(), mesh.positions.begin());
   }
@@ -133,13 +218,20 @@ class VirtualVertices : public WrappedFlow {
       loops_[loop_of[r]].push_back(e[1]);
     }
     place(mesh);
+    closed_.closing = Index(n);
     rebuild_adjacency(closed_, context);
   }
 
-  /// Every loop vertex is listed twice, so the mean of the list is the barycentre.
+  /// Every loop vertex is listed twice, so the mean of the list is the barycentre. Virtual vertices that are
+  /// there already stay.
   void place(const Mesh& mesh) {
+    const Positions before = closed_.positions;
     closed_.positions = mesh.positions;
     for (const std::vector<Index>& loop : loops_) {
+      if (closed_.positions.size() < before.size()) {
+        closed_.positions.push_back(before[closed_.positions.size()]);
+        continue;
+      }
       Vector3d sum = Vector3d::Zero();
       for (const Index i : loop) sum += mesh.positions[i];
       closed_.positions.push_back(sum / double(std::max<std::size_t>(1, loop.size())));
@@ -152,16 +244,19 @@ class VirtualVertices : public WrappedFlow {
 
 }  // namespace
 
-std::unique_ptr<Flow> with_boundary_rule(const std::string& rule, const Mesh& mesh,
+std::unique_ptr<Flow> with_boundary_rule(const FlowOptions& options, const Mesh& mesh,
                                          const Constraints& constraints, const Context& context,
                                          const FlowMaker& make) {
+  const std::string& rule = *options.boundary;
   if (rule == "free") return make(mesh, constraints);
-  AllowedMoves allowed(constraints, mesh.positions.size());
   if (rule == "virtual") return std::make_unique<VirtualVertices>(mesh, constraints, make, context);
-  Adjacency curve = rfsmooth::make_adjacency(mesh.positions.size(), boundary_edges(mesh), context);
-  std::unique_ptr<Flow> inner = make(mesh, with_fixed_boundary(constraints, curve));
+  const Adjacency boundary = rfsmooth::make_adjacency(mesh.positions.size(), boundary_edges(mesh), context);
+  std::unique_ptr<Flow> inner = make(mesh, with_fixed_boundary(constraints, boundary));
   if (rule == "fixed") return inner;
-  return std::make_unique<BoundaryCurve>(std::move(inner), std::move(curve), std::move(allowed));
+  Curve curve = curve_of(mesh, boundary, constraints, context);
+  auto along = curve_flow(options, curve.mesh, curve.constraints, context);
+  const bool implicit = options.dt || options.flow == "hc-limit";
+  return std::make_unique<BoundaryCurve>(std::move(inner), std::move(along), std::move(curve), implicit);
 }
 
 }  // namespace rfsmooth::smoothing

@@ -43,8 +43,20 @@ std::vector<double> weight_sums(const Adjacency& rows, const Operator& op, const
 }
 
 double length_unit(const Mesh& mesh, const Context& context) {
-  const double h = rfs_mesh::mean_edge_length(mesh, context);
-  return h > 0 ? h : 1;
+  if (mesh.closing == kNone) {
+    const double h = rfs_mesh::mean_edge_length(mesh, context);
+    return h > 0 ? h : 1;
+  }
+  using Sum = Eigen::Vector2d;  // of lengths, and how many
+  const Sum sum = sum_over(context, std::min<std::size_t>(mesh.closing, mesh.positions.size()),
+                           Sum(Sum::Zero()), [&](std::size_t i) {
+                             Sum own = Sum::Zero();
+                             for (const Index j : mesh.one_ring[i])
+                               if (j < mesh.closing)
+                                 own += Sum((mesh.positions[i] - mesh.positions[j]).norm(), 1);
+                             return own;
+                           });
+  return sum[0] > 0 ? sum[0] / sum[1] : 1;
 }
 
 OperatorSource::OperatorSource(std::string_view name, bool frozen) : name_(name), frozen_(frozen) {

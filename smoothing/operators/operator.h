@@ -36,7 +36,8 @@ void apply(const Adjacency& rows, const Operator& op, const Positions& x, Positi
 /// weight_sums / mass.
 std::vector<double> weight_sums(const Adjacency& rows, const Operator& op, const Context& context);
 
-/// Mean length of the mesh's edges, the h of every flow; 1 if there is none longer than zero. World units.
+/// Mean length of the mesh's edges, those to closing vertices left out: the h of every flow; 1 if there is
+/// none longer than zero. World units.
 double length_unit(const Mesh& mesh, const Context& context);
 
 /// Umbrella, L = I - T: w = 1, m = degree. Vollmer 3.1, Ohtake (3), Desbrun (7) with the sign turned. Unit 1.

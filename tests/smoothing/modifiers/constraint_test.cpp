@@ -75,7 +75,7 @@ std::vector<Index> held(const Mesh& mesh) {
   return all;
 }
 
-Constraints fixed(const std::vector<Index>& vertices) {
+Constraints all_fixed(const std::vector<Index>& vertices) {
   Constraints constraints;
   for (const Index i : vertices)
     constraints.hard.push_back({i, HardConstraint::Kind::fixed, Vector3d::Zero()});
@@ -101,8 +101,8 @@ TEST_P(EveryGraphFlow, WhatFixedVerticesAreJoinedToDoesNotMatter) {
   ASSERT_GT(joined.loose_edges.size(), 10u);
   rebuild_adjacency(joined, {});
   const Positions before = mesh.positions;
-  ASSERT_TRUE(smooth(mesh, options(), {}, fixed(vertices)).ok());
-  ASSERT_TRUE(smooth(joined, options(), {}, fixed(vertices)).ok());
+  ASSERT_TRUE(smooth(mesh, options(), {}, all_fixed(vertices)).ok());
+  ASSERT_TRUE(smooth(joined, options(), {}, all_fixed(vertices)).ok());
   EXPECT_GT(support::rms_distance(mesh.positions, before), 1e-2);
   EXPECT_LT(support::rms_distance(mesh.positions, joined.positions), 1e-14);
 }
@@ -110,7 +110,7 @@ TEST_P(EveryGraphFlow, WhatFixedVerticesAreJoinedToDoesNotMatter) {
 TEST_P(EveryGraphFlow, ALittleStrengthIsNearlyFixed) {
   Mesh mesh = rough_torus(), soft = mesh;
   const std::vector<Index> vertices = held(mesh);
-  ASSERT_TRUE(smooth(mesh, options(), {}, fixed(vertices)).ok());
+  ASSERT_TRUE(smooth(mesh, options(), {}, all_fixed(vertices)).ok());
   ASSERT_TRUE(smooth(soft, options(), {}, with_strength(vertices, 1e-9, mesh.positions.size())).ok());
   EXPECT_LT(support::rms_distance(mesh.positions, soft.positions), 1e-8);
 }
@@ -130,7 +130,7 @@ TEST(Constraints, StrengthZeroIsFixedUnderEveryFlowWithAndWithoutPushBack) {
           continue;
         Mesh hard = rough_torus(), zero = hard;
         const std::vector<Index> vertices = held(hard);
-        ASSERT_TRUE(smooth(hard, o, {}, fixed(vertices)).ok());
+        ASSERT_TRUE(smooth(hard, o, {}, all_fixed(vertices)).ok());
         ASSERT_TRUE(smooth(zero, o, {}, with_strength(vertices, 0, zero.positions.size())).ok());
         EXPECT_LT(support::rms_distance(hard.positions, zero.positions), 1e-13)
             << entry.name << (push_back ? " pushed back, " : ", ") << update;
