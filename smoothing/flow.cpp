@@ -11,6 +11,7 @@
 #include "smoothing/modifiers/preserve.h"
 #include "smoothing/modifiers/pushback.h"
 #include "smoothing/modifiers/threshold.h"
+#include "smoothing/partners.h"
 #include "smoothing/remesh/reorder.h"
 
 namespace rfsmooth::smoothing {
@@ -155,6 +156,7 @@ Result<FlowOptions> complete(const FlowOptions& options) {
     FlowOptions::describe(full, FillEmpty{entry, own.at, true});
     FlowOptions::describe(standard, common);
     FlowOptions::describe(full, FillEmpty{entry, common.at, false});
+    settle_partners(options, full);
     return full;
   });
 }

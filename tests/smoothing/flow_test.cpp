@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <functional>
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
@@ -200,7 +201,7 @@ TEST_P(EveryFlow, EveryModifierWorks) {
         o.iterations = 2;
         o.preserve = preserve;
         o.threshold = threshold;
-        o.threshold_value = 0.01;
+        if (o.threshold == "constant") o.threshold_value = 0.01;
         o.push_back = push_back;
         ASSERT_TRUE(smooth(mesh, o, {}).ok());
         for (const auto& p : mesh.positions) ASSERT_TRUE(p.allFinite());
@@ -239,6 +240,42 @@ TEST(Flows, AParameterTheFlowDoesNotUseIsAnError) {
   const auto result = complete(o);
   ASSERT_FALSE(result.ok());
   EXPECT_NE(result.error().message.find("--beta"), std::string::npos);
+}
+
+TEST(Flows, AnOptionWithoutItsPartnerIsAnErrorThatNamesThePartner) {
+  struct Case {
+    const char* flow;
+    std::function<void(FlowOptions&)> set;
+    const char* option;
+    const char* partner;
+  };
+  const std::vector<Case> cases = {
+      {"laplacian", [](FlowOptions& o) { o.alpha = 0.5; }, "--alpha", "--anchor"},
+      {"directional", [](FlowOptions& o) { o.direction = "0,0,1", o.power = 1; }, "--power",
+       "--direction auto"},
+      {"hc", [](FlowOptions& o) { o.push_alpha = 0.1; }, "--push-alpha", "--push-back"},
+      {"hc", [](FlowOptions& o) { o.push_beta = 0.6; }, "--push-beta", "--push-back"},
+      {"hc", [](FlowOptions& o) { o.threshold_value = 0.1; }, "--threshold-value", "--threshold constant"},
+      {"hc", [](FlowOptions& o) { o.threshold_value = 0.1, o.threshold = "one-ring"; }, "--threshold-value",
+       "--threshold constant"},
+      {"hc", [](FlowOptions& o) { o.threshold_every = 5, o.threshold = "constant"; }, "--threshold-every",
+       "--threshold one-ring"},
+  };
+  for (const Case& c : cases) {
+    FlowOptions o;
+    o.flow = c.flow;
+    c.set(o);
+    const auto result = complete(o);
+    ASSERT_FALSE(result.ok()) << c.option;
+    EXPECT_EQ(result.error().code, ErrorCode::usage);
+    for (const char* word : {c.option, c.partner})
+      EXPECT_NE(result.error().message.find(word), std::string::npos) << result.error().message;
+  }
+}
+
+TEST_P(EveryFlow, CompleteOptionsAreComplete) {
+  const FlowOptions once = complete(options()).value();
+  EXPECT_TRUE(complete(once).ok()) << complete(once).error().message;
 }
 
 TEST(Flows, CompleteFillsTheFlowsOwnDefaults) {

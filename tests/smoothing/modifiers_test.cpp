@@ -27,8 +27,10 @@ std::vector<Modifier> all_modifiers() {
   for (const char* rule : {"constant", "one-ring", "two-ring"})
     all.push_back({rule, [rule](FlowOptions& o) {
                      o.threshold = rule;
-                     o.threshold_value = 0.02;
-                     o.threshold_every = 2;
+                     if (o.threshold == "constant")
+                       o.threshold_value = 0.02;
+                     else
+                       o.threshold_every = 2;
                    }});
   all.push_back({"area", [](FlowOptions& o) { o.preserve = "area"; }});
   all.push_back({"height-field", [](FlowOptions& o) { o.preserve = "height-field"; }, false});

@@ -29,6 +29,16 @@ struct After {
   bool ridges = false;
   double ridge_curvature = 0.1;  // a turn of six degrees from edge to edge
 
+  /// \throw Failure for an option that was typed without the one it belongs to.
+  void check_partners(const Invocation& typed) const {
+    for (const auto& [name, text] : typed.options) {
+      if (refine.levels == 0 && (name == "refine-chart" || name == "refine-pimple" || name == "sharp-angle"))
+        throw Failure({ErrorCode::usage, fmt::format("--{} has no effect without --refine", name)});
+      if (!ridges && name == "ridge-curvature")
+        throw Failure({ErrorCode::usage, "--ridge-curvature has no effect without --ridges"});
+    }
+  }
+
   template <class Self, class Visit>
   static void describe(Self& self, Visit&& visit) {
     visit(OptionInfo{"refine", "levels of refinement after the flow; each multiplies the faces by four", "",
@@ -99,7 +109,7 @@ std::string smooth_file(const SmoothMeshCommandOptions& options, pipeline::io::C
                         const Context& context, Console& console, std::vector<StageTime>& stages,
                         ordered_json& entry) {
   Stopwatch watch(stages, "connect");
-  FileMesh file = file_mesh(cloud, job.input, context);
+  FileMesh file = file_mesh(cloud, job.input, context, options.flow.preserve == "height-field");
   const auto constraints = value_or_fail(guarded([&] {
                                            return constraints_of(options.constraints, cloud, file.of_row,
                                                                  file.before.size(), context);
@@ -160,6 +170,10 @@ std::string smooth_file(const SmoothMeshCommandOptions& options, pipeline::io::C
 
 int run_smooth_mesh(const SmoothMeshCommandOptions& options, const Invocation& typed) {
   value_or_throw(rfsmooth::complete(options.flow));
+  options.after.check_partners(typed);
+  if (const auto& fields = options.constraints; fields.direction && !fields.axis && !fields.plane)
+    throw Failure(
+        {ErrorCode::usage, "--slide-direction has no effect without --axis-field or --plane-field"});
   return run_cloud_jobs(
       "smooth-mesh", options.job, typed,
       {{"read", 1}, {"smooth", 10}, {"refine", options.after.refine.levels > 0 ? 20.0 : 0.0}},

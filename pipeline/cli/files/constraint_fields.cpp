@@ -83,7 +83,7 @@ Constraints constraints_of(const ConstraintFields& fields, const Cloud& cloud,
     if (!field) return;
     const std::vector<double> by_row = values_of(cloud, *field, context);
     std::optional<Directions> direction;
-    if (kind != Kind::fixed) direction.emplace(fields.direction, cloud, context);
+    if (kind != Kind::fixed) direction.emplace(fields.direction.value_or("normals"), cloud, context);
     for (std::size_t row = 0; row < of_row.size(); ++row) {
       const Index v = of_row[row];
       if (v == kNone || std::isnan(by_row[row]) || by_row[row] == 0 || taken[v] != 0) continue;

@@ -18,7 +18,7 @@ namespace rfsmooth::cli {
 
 struct ConstraintFields {
   std::optional<std::string> strength, fixed, axis, plane;
-  std::string direction = "normals";
+  std::optional<std::string> direction;  ///< empty: normals
 
   template <class Self, class Visit>
   static void describe(Self& self, Visit&& visit) {

@@ -35,6 +35,7 @@ TEST(Threshold, StopsByItself) {
     EXPECT_LT(support::rms_distance(settled, mesh.positions), 1e-3 * support::mean_edge(mesh)) << name;
     Mesh free = rough_sphere();
     o.threshold = "none";
+    o.threshold_value.reset();
     o.iterations = 300;
     ASSERT_TRUE(smooth(free, o, {}).ok());
     EXPECT_GT(support::enclosed_volume(mesh), 2 * support::enclosed_volume(free)) << name;
