@@ -31,10 +31,48 @@ std::vector<Edge> face_edges(const Mesh& mesh) {
   return edges;
 }
 
-/// The given vertices and all curve vertices stay.
-AllowedMoves all_but(std::size_t given, const std::vector<Edge>& curve, std::size_t n) {
+/// A copy of the mesh in which the two sides of every curve edge have nothing to do with each other: a vertex
+/// of a curve is there once for every fan of faces between curves. The first keeps its number, copies follow
+/// behind all others.
+Mesh cut_along(const Mesh& mesh, const std::vector<Edge>& curve, const Context& context) {
+  std::vector<Edge> cuts;
+  for (const Edge& e : curve) cuts.push_back(sorted(e[0], e[1]));
+  std::sort(cuts.begin(), cuts.end());
+  const Adjacency around = vertex_faces(mesh, context);
+  Mesh cut = mesh;
+  std::vector<char> done(mesh.positions.size(), 0);
+  for (const Edge& e : cuts)
+    for (const Index v : e) {
+      if (done[v] != 0) continue;
+      done[v] = 1;
+      std::vector<Index> left(around[v].begin(), around[v].end()), fan;
+      for (bool first = true; !left.empty(); first = false) {
+        const Index number = first ? v : Index(cut.positions.size());
+        if (!first) cut.positions.push_back(mesh.positions[v]);
+        fan.assign(1, left.front());
+        left.erase(left.begin());
+        for (std::size_t at = 0; at < fan.size(); ++at)
+          for (const Index u : mesh.faces[fan[at]]) {
+            if (u == v || std::binary_search(cuts.begin(), cuts.end(), sorted(u, v))) continue;
+            const auto beside = std::stable_partition(left.begin(), left.end(), [&](Index f) {
+              const Face& face = mesh.faces[f];
+              return face[0] != u && face[1] != u && face[2] != u;
+            });
+            fan.insert(fan.end(), beside, left.end());
+            left.erase(beside, left.end());
+          }
+        for (const Index f : fan) std::replace(cut.faces[f].begin(), cut.faces[f].end(), v, number);
+      }
+    }
+  rebuild_adjacency(cut, context);
+  return cut;
+}
+
+/// Of the cut mesh: the given vertices, all curve vertices and their copies, from `copies` on, stay.
+AllowedMoves all_but(std::size_t given, const std::vector<Edge>& curve, std::size_t copies, std::size_t n) {
   std::vector<char> still(n, 0);
   std::fill_n(still.begin(), given, 1);
+  std::fill(still.begin() + std::ptrdiff_t(copies), still.end(), 1);
   for (const Edge& e : curve) still[e[0]] = still[e[1]] = 1;
   Constraints constraints;
   for (Index i = 0; i < n; ++i)
@@ -42,12 +80,15 @@ AllowedMoves all_but(std::size_t given, const std::vector<Edge>& curve, std::siz
   return {constraints, n};
 }
 
-/// Moves the free vertices to the least energy: A d = -A x over them.
-void minimise(Mesh& mesh, const AllowedMoves& allowed, const RefineOptions& options, const Context& context) {
-  const std::size_t n = mesh.positions.size();
-  const DividedDifferences differences(mesh, options.chart, context);
+/// Moves the free vertices to the least energy, A d = -A x over them, on either side of a curve by itself.
+void minimise(Mesh& mesh, std::size_t given, const std::vector<Edge>& curve, const RefineOptions& options,
+              const Context& context) {
+  const Mesh cut = cut_along(mesh, curve, context);
+  const std::size_t n = cut.positions.size();
+  const AllowedMoves allowed = all_but(given, curve, mesh.positions.size(), n);
+  const DividedDifferences differences(cut, options.chart, context);
   Positions b, d(n, Vector3d::Zero());
-  differences.apply(mesh.positions, b, context);
+  differences.apply(cut.positions, b, context);
   for_each_index(context, n, [&](std::size_t i) { b[i] = allowed(i, -b[i]); });
   std::vector<double> diagonal = differences.diagonal(context);
   for (double& v : diagonal)
@@ -59,7 +100,7 @@ void minimise(Mesh& mesh, const AllowedMoves& allowed, const RefineOptions& opti
     return sum_over(context, n, 0.0, [&](std::size_t i) { return x[i].dot(y[i]); });
   };
   conjugate_gradients(product, diagonal, diagonal, b, d, allowed, solver, context);
-  for_each_index(context, n, [&](std::size_t i) {
+  for_each_index(context, mesh.positions.size(), [&](std::size_t i) {
     const Vector3d p = mesh.positions[i] + allowed(i, d[i]);
     if (p.allFinite()) mesh.positions[i] = p;
   });
@@ -70,17 +111,19 @@ void take_off_pimples(Mesh& mesh, std::size_t given, const std::vector<Edge>& cu
                       const Context& context) {
   std::vector<char> still(mesh.positions.size(), 0);
   for (const Edge& e : curve) still[e[0]] = still[e[1]] = 1;
-  const Positions before = mesh.positions;
+  const Mesh cut = cut_along(mesh, curve, context);
+  const Positions& before = cut.positions;
+  const Adjacency& ring = cut.one_ring;
   for_each_index(context, given, [&](std::size_t i) {
-    if (still[i] != 0 || mesh.one_ring.degree(i) == 0) return;
+    if (still[i] != 0 || ring.degree(i) == 0) return;
     // The bilaplacian's local minimum: x_i such that L x_i equals the neighbours' mean of L x.
     const auto laplace = [&](std::size_t v) {
       Vector3d sum = Vector3d::Zero();
-      for (const Index j : mesh.one_ring[v]) sum += before[j];
-      return Vector3d(before[v] - sum / double(std::max<std::size_t>(1, mesh.one_ring.degree(v))));
+      for (const Index j : ring[v]) sum += before[j];
+      return Vector3d(before[v] - sum / double(std::max<std::size_t>(1, ring.degree(v))));
     };
     Vector3d mean = Vector3d::Zero();
-    for (const Index j : mesh.one_ring[i]) mean += laplace(j) / double(mesh.one_ring.degree(i));
+    for (const Index j : ring[i]) mean += laplace(j) / double(ring.degree(i));
     Vector3d move = 0.5 * (mean - laplace(i));
     if (move.norm() > longest) move *= longest / move.norm();
     mesh.positions[i] += move;
@@ -150,7 +193,7 @@ Result<Mesh> refine(const Mesh& mesh, const RefineOptions& options, const Contex
           throw Failure(
               {ErrorCode::usage, "the refined mesh would have too many vertices; use fewer levels"});
         fine = split(fine, curve, context);
-        minimise(fine, all_but(mesh.positions.size(), curve, fine.positions.size()), options, context);
+        minimise(fine, mesh.positions.size(), curve, options, context);
       }
       if (options.pimple > 0)
         take_off_pimples(fine, mesh.positions.size(), curve, options.pimple * length_unit(fine, context),

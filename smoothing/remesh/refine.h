@@ -3,7 +3,8 @@
 /// Every level splits each face into four, then the new vertices (all but the given ones) take the places
 /// that minimise the energy of divided_difference.h, coarse to fine. Boundary curves, and edges named sharp,
 /// get their points from the four-point scheme (-1, 9, 9, -1) / 16 along the curve alone and then stay, so
-/// that meshes that share a boundary still do. Kobbelt 1997, sections 4 and 5.
+/// that meshes that share a boundary still do. The two sides of a sharp line share its points and nothing
+/// else: every fit and every term of the energy is one-sided there. Kobbelt 1997, sections 4 and 5.
 ///
 /// Differs from the paper: conjugate gradients instead of Gauss-Seidel sweeps (no visiting order, so the same
 /// bits for any number of threads); charts of a level come from the mesh it starts with.

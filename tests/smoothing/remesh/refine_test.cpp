@@ -118,4 +118,28 @@ TEST(Refine, BrokenMeshesStayFinite) {
   }
 }
 
+/// All edges of a cube are sharp, so its sides are planes with straight rims and stay that.
+TEST(Refine, TheSidesOfASharpEdgeDoNotPullAtEachOther) {
+  for (const char* chart : {"tangent", "exponential", "mixed"})
+    for (const double pimple : {0.0, 0.2}) {
+      const Mesh cube = support::cube(2);
+      std::vector<Edge> sharp;
+      const auto sides = [&](Index i) { return (cube.positions[i].cwiseAbs().array() == 1).count(); };
+      for (const Edge& e : rfsmooth::edges_of(cube.one_ring, {})) {
+        const auto shared = (cube.positions[e[0]].array() == cube.positions[e[1]].array() &&
+                             cube.positions[e[0]].array().abs() == 1)
+                                .count();
+        if (sides(e[0]) >= 2 && sides(e[1]) >= 2 && shared == 2) sharp.push_back(e);
+      }
+      ASSERT_EQ(sharp.size(), 24u);
+      RefineOptions options;
+      options.levels = 2;
+      options.chart = chart;
+      options.pimple = pimple;
+      options.tolerance = 1e-10;
+      const Mesh fine = refine(cube, options, {}, sharp).value();
+      for (const Vector3d& p : fine.positions) EXPECT_NEAR(p.cwiseAbs().maxCoeff(), 1, 1e-8) << chart;
+    }
+}
+
 }  // namespace
