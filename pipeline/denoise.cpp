@@ -149,6 +149,10 @@ DenoiseReport run(double* xyz, std::size_t n, const DenoiseOptions& options, con
     cloud = value_or_throw(rfs_mesh::make_working_cloud(xyz, n, context));
     report.finite = cloud.finite();
     report.distinct = cloud.points.size();
+    if (*options.flow.preserve == "height-field") {  // measured from the caller's own plane z = 0
+      for (Eigen::Vector3d& p : cloud.points) p.z() += cloud.origin.z();
+      cloud.origin.z() = 0;
+    }
     std::vector<Index>().swap(cloud.multiplicity);  // nobody asks
   }
   ConnectOptions connect = options.connect;

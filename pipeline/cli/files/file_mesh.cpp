@@ -8,7 +8,8 @@ namespace io = pipeline::io;
 using Eigen::Vector3d;
 using rfsmooth::Face;
 
-FileMesh file_mesh(const io::Cloud& cloud, const std::string& name, const Context& context) {
+FileMesh file_mesh(const io::Cloud& cloud, const std::string& name, const Context& context,
+                   bool own_heights) {
   const std::vector<Face> faces = io::faces_of(cloud, context);
   if (faces.empty())
     throw Failure({ErrorCode::input_unreadable,
@@ -24,8 +25,9 @@ FileMesh file_mesh(const io::Cloud& cloud, const std::string& name, const Contex
     points.push_back(p);
   }
   if (points.empty()) throw Failure({ErrorCode::no_usable_points, name + ": no vertex is finite"});
-  const Vector3d origin = points.front();
-  for (Vector3d& p : points) p -= origin;
+  out.origin = points.front();
+  if (own_heights) out.origin.z() = 0;
+  for (Vector3d& p : points) p -= out.origin;
   for (const Face& face : faces) {
     const Face f = {out.of_row[face[0]], out.of_row[face[1]], out.of_row[face[2]]};
     const bool whole = f[0] != kNone && f[1] != kNone && f[2] != kNone;
@@ -54,12 +56,8 @@ std::vector<double> FileMesh::moved_rows(bool& any) const {
 void put_refined(io::Cloud& cloud, const FileMesh& file, const std::vector<double>& rows, const Mesh& fine) {
   const std::size_t given = file.before.size(), n = file.of_row.size();
   std::vector<std::size_t> row(fine.positions.size());
-  Vector3d origin = Vector3d::Zero();
-  for (std::size_t i = n; i-- > 0;)
-    if (file.of_row[i] != kNone) {
-      row[file.of_row[i]] = i;
-      origin = Vector3d(file.xyz[3 * i], file.xyz[3 * i + 1], file.xyz[3 * i + 2]);  // of the first at last
-    }
+  for (std::size_t i = 0; i < n; ++i)
+    if (file.of_row[i] != kNone) row[file.of_row[i]] = i;
   std::vector<double> all = rows;
   for (std::size_t v = 0; v < given; ++v)  // taking off pimples moves given vertices too
     for (std::size_t axis = 0; axis < 3; ++axis)
@@ -67,7 +65,7 @@ void put_refined(io::Cloud& cloud, const FileMesh& file, const std::vector<doubl
           fine.positions[v][Eigen::Index(axis)] - file.mesh.positions[v][Eigen::Index(axis)];
   for (std::size_t v = given; v < fine.positions.size(); ++v) {
     row[v] = all.size() / 3;
-    for (const double c : Vector3d(fine.positions[v] + origin)) all.push_back(c);
+    for (const double c : Vector3d(fine.positions[v] + file.origin)) all.push_back(c);
   }
   std::vector<Face> faces = fine.faces;
   for (Face& face : faces)
