@@ -207,6 +207,20 @@ DenoiseReport run(double* xyz, std::size_t n, const DenoiseOptions& options, con
   return report;
 }
 
+/// \throw Failure for what needs a surface without the holes that a rough mesh has between its umbrellas.
+void refuse_for_clouds(const FlowOptions& flow) {
+  if (*flow.boundary != "free")
+    throw Failure(
+        {ErrorCode::usage,
+         "--boundary is for meshes: in the rough mesh of a cloud most edges with one face are holes "
+         "between umbrellas, not the rim of the surface; use smooth-mesh, or --strength-field to "
+         "hold the points of a rim"});
+  if (*flow.preserve == "volume")
+    throw Failure({ErrorCode::usage,
+                   "--preserve volume is for closed meshes: the rough mesh of a cloud has holes between its "
+                   "umbrellas and encloses nothing; use smooth-mesh, or a flow that keeps size (auto, hc)"});
+}
+
 }  // namespace
 
 Result<DenoiseReport> denoise(double* xyz, std::size_t n, const DenoiseOptions& options,
@@ -219,6 +233,7 @@ Result<DenoiseReport> denoise(double* xyz, std::size_t n, const DenoiseOptions& 
     value_or_throw(validate(options));
     DenoiseOptions effective = options;
     effective.flow = value_or_throw(rfsmooth::complete(options.flow));
+    refuse_for_clouds(effective.flow);
     DenoiseReport report;
     in_arena(context, [&] { report = run(xyz, n, effective, context, strength); });
     return report;

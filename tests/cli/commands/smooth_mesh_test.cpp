@@ -1,5 +1,6 @@
 // smooth-mesh beyond the flow: constraints from fields, refinement, ridges.
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 
 #include <gmock/gmock.h>
@@ -137,6 +138,80 @@ TEST_F(SmoothMesh, WrongFieldsAreToldBeforeAnythingIsWritten) {
   EXPECT_EQ(normals.code, 2);
   EXPECT_THAT(normals.err, HasSubstr("nx"));
   EXPECT_FALSE(there("out.ply"));
+}
+
+/// The volume between the grid and the plane z = 0 of the file.
+double volume_under(const std::vector<std::vector<double>>& rows) {
+  double volume = 0;
+  const auto add = [&](int a, int b, int c) {
+    const auto &p = rows[std::size_t(a)], &q = rows[std::size_t(b)], &r = rows[std::size_t(c)];
+    volume +=
+        std::abs((q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0])) * (p[2] + q[2] + r[2]) / 6;
+  };
+  for (int i = 0; i + 1 < kMeshSide; ++i)
+    for (int j = 0; j + 1 < kMeshSide; ++j) {
+      const int a = i * kMeshSide + j, b = a + 1, c = a + kMeshSide, d = c + 1;
+      add(a, c, b);
+      add(b, c, d);
+    }
+  return volume;
+}
+
+TEST_F(SmoothMesh, AHeightFieldStandsOnTheFilesOwnPlaneZero) {
+  for (const double lift : {10.0, -4.0}) {
+    std::string raised;
+    std::istringstream lines(bumpy_grid(""));
+    std::string line;
+    for (int row = -1; std::getline(lines, line); row += row >= 0 || line == "end_header") {
+      double x = 0, y = 0, z = 0;
+      if (row >= 0 && row < kMeshSide * kMeshSide &&
+          std::sscanf(line.c_str(), "%lf %lf %lf", &x, &y, &z) == 3)
+        line = std::to_string(x) + " " + std::to_string(y) + " " + std::to_string(z + lift);
+      raised += line + "\n";
+    }
+    const double before = volume_under(rows_of(raised, kMeshSide * kMeshSide));
+    const auto after =
+        smoothed(raised, {"--flow", "laplacian", "--iterations", "5", "--preserve", "height-field"});
+    EXPECT_NEAR(volume_under(after) / before, 1, 1e-6) << lift;  // the rim shrinks, so the heights grow
+  }
+}
+
+TEST_F(SmoothMesh, AnOptionWithoutItsPartnerIsAnErrorThatNamesThePartner) {
+  put("in.ply", bumpy_grid("property float s\n", [](int, int) { return " 1"; }));
+  const std::vector<std::pair<std::vector<std::string>, std::string>> cases = {
+      {{"--slide-direction", "0,0,1"}, "--axis-field or --plane-field"},
+      {{"--slide-direction", "0,0,1", "--fixed-field", "s"}, "--axis-field or --plane-field"},
+      {{"--sharp-angle", "40"}, "--refine"},
+      {{"--refine-pimple", "0.1"}, "--refine"},
+      {{"--refine-chart", "mixed"}, "--refine"},
+      {{"--ridge-curvature", "0.1"}, "--ridges"},
+      {{"--flow", "laplacian", "--alpha", "0.5"}, "--anchor"},
+      {{"--push-alpha", "0"}, "--push-back"},
+      {{"--threshold-value", "0.1"}, "--threshold constant"},
+  };
+  for (const auto& [options, partner] : cases) {
+    std::vector<std::string> all = {"smooth-mesh", "in.ply", "out.ply"};
+    all.insert(all.end(), options.begin(), options.end());
+    const Ran ran = run(all);
+    EXPECT_EQ(ran.code, 2) << options[0];
+    EXPECT_THAT(ran.err,
+                ::testing::AllOf(HasSubstr(options[options[0] == "--flow" ? 2 : 0]), HasSubstr(partner)));
+    EXPECT_FALSE(there("out.ply"));
+  }
+}
+
+TEST_F(SmoothMesh, WhatNeedsASurfaceWithoutHolesIsRefusedForClouds) {
+  put("in.ply", bumpy_grid(""));
+  for (const std::vector<std::string>& rule : {std::vector<std::string>{"--boundary", "fixed"},
+                                               {"--boundary", "curve"},
+                                               {"--boundary", "virtual"},
+                                               {"--preserve", "volume"}}) {
+    const Ran ran = run({"denoise", "in.ply", "out.ply", rule[0], rule[1]});
+    EXPECT_EQ(ran.code, 2) << rule[1];
+    EXPECT_THAT(ran.err,
+                ::testing::AllOf(HasSubstr(rule[0]), HasSubstr("umbrellas"), HasSubstr("smooth-mesh")));
+    EXPECT_FALSE(there("out.ply"));
+  }
 }
 
 TEST_F(SmoothMesh, RefineQuadruplesTheFacesThroughTheGivenVertices) {
