@@ -159,8 +159,9 @@ struct UmbrellaOptions {
   }
 };
 
-/// How far to connect.
-enum class ConnectUpTo { emst, sdg, mesh };
+/// How far to connect. `emst`: the tree of the points (or of the guide), no noise is measured; `tree`: the
+/// tree that the SDG extends, which stands on the shadow where noise is large.
+enum class ConnectUpTo { emst, tree, sdg, mesh };
 
 /// How to connect.
 struct ConnectOptions {
@@ -169,13 +170,14 @@ struct ConnectOptions {
   SheetsOptions sheets;
   SdgOptions sdg;
   UmbrellaOptions umbrella;
-  /// Whether Connection::emst is wanted where the tests are made on the shadow, on a tree of its own.
+  /// Whether Connection::tree is wanted, and Connection::emst where the tests are made on the shadow, on a
+  /// tree of its own.
   bool tree_of_points = true;
   /// Whether vertices that no face reaches keep their SDG edges (Mesh::loose_edges) and are neighbours by
   /// them.
   bool loose_edges = true;
-  /// The last stage that is wanted; what only later ones make stays empty. `emst` measures no noise and makes
-  /// the tree of the points (or of the guide) even where `tree_of_points` is false.
+  /// The last stage that is wanted; what only later ones make stays empty. Its tree is made even where
+  /// `tree_of_points` is false.
   ConnectUpTo up_to = ConnectUpTo::mesh;
 
   template <class Self, class Visit>
@@ -210,6 +212,8 @@ struct NoiseLevel {
 struct Connection {
   Mesh mesh;                           ///< the RFS-mesh over the points as given
   std::vector<Edge> emst;              ///< n - 1, ascending by length; empty if not wanted and not needed
+  std::vector<Edge> tree;              ///< what the SDG extends, ascending: the EMST, or that of the shadows
+                                       ///< or the guide; empty if no tree is wanted
   std::vector<Edge> sdg;               ///< ascending; without the bridges
   std::vector<Edge> bridges;           ///< tree edges that are not neighbourhood: not in mesh.one_ring
   std::vector<LocalSurface> surfaces;  ///< n; the shadow of point i is surfaces[i].shadow

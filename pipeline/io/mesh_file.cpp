@@ -125,22 +125,25 @@ void set_faces(Cloud& cloud, const std::vector<Face>& faces) {
   put(cloud, std::move(table));
 }
 
-void set_edges(Cloud& cloud, const std::vector<Edge>& edges) {
+void set_edges(Cloud& cloud, const std::vector<Edge>& edges, const std::vector<std::uint8_t>& kind) {
   Table table;
   table.name = "edge";
   table.fields = {{"vertex1", Scalar::int32}, {"vertex2", Scalar::int32}};
+  if (!kind.empty()) table.fields.push_back({"kind", Scalar::uint8});
   table.count = edges.size();
-  table.data.reserve(8 * edges.size());
-  for (const Edge& edge : edges)
-    for (const Index end : edge) append(table.data, std::int32_t(end));
+  table.data.reserve(9 * edges.size());
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    for (const Index end : edges[e]) append(table.data, std::int32_t(end));
+    if (!kind.empty()) append(table.data, kind.at(e));
+  }
   put(cloud, std::move(table));
 }
 
-Cloud make_mesh_file(const Positions& points, const std::vector<Face>& faces,
-                     const std::vector<Edge>& edges) {
+Cloud make_mesh_file(const Positions& points, const std::vector<Face>& faces, const std::vector<Edge>& edges,
+                     const std::vector<std::uint8_t>& kind) {
   Cloud cloud = make_cloud(points.empty() ? nullptr : points.front().data(), points.size(), Scalar::float64);
   if (!faces.empty()) set_faces(cloud, faces);
-  if (!edges.empty()) set_edges(cloud, edges);
+  if (!edges.empty()) set_edges(cloud, edges, kind);
   return cloud;
 }
 

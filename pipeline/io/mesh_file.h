@@ -38,10 +38,11 @@ std::vector<Edge> edges_of(const Cloud& cloud, const Context& context = {});
 /// (int vertex1, int vertex2); replaces what was there under that name. Rows are binary. Only PLY and OFF can
 /// carry faces, only PLY edges: set cloud.format or write with that format.
 void set_faces(Cloud& cloud, const std::vector<Face>& faces);
-/// See `set_faces`.
-void set_edges(Cloud& cloud, const std::vector<Edge>& edges);
+/// See `set_faces`. `kind`: one per edge, written as uchar kind; or empty.
+void set_edges(Cloud& cloud, const std::vector<Edge>& edges, const std::vector<std::uint8_t>& kind = {});
 
 /// A binary PLY of points (float64), triangles and edges; elements without rows are left out.
-Cloud make_mesh_file(const Positions& points, const std::vector<Face>& faces, const std::vector<Edge>& edges);
+Cloud make_mesh_file(const Positions& points, const std::vector<Face>& faces, const std::vector<Edge>& edges,
+                     const std::vector<std::uint8_t>& kind = {});
 
 }  // namespace rfsmooth::pipeline::io

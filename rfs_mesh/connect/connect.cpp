@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <stdexcept>
 
@@ -140,7 +141,12 @@ Ground survey(Cloud cloud, const ConnectOptions& options, const Context& context
   });
 }
 
-/// The tree and nothing else.
+void keep_tree(Ground& ground, Connection& c, const Context& context) {
+  c.tree = std::move(ground.tree);
+  parallel_sort(context, c.tree, std::less<Edge>());
+}
+
+/// The tree of the points and nothing else.
 Connection connect_tree(const Positions& points, std::optional<Cloud> known, const ConnectOptions& options,
                         const Context& context, const Positions* guide) {
   Connection c;
@@ -164,11 +170,16 @@ Connection connect_all(const Positions& points, std::optional<Cloud> known, cons
   Ground ground = survey(std::move(*known), options, context, guide, c, stages);
   known.reset();
   const double noise = guide != nullptr ? 0 : c.on_shadow ? kNoiseLeft * c.noise.sigma : c.noise.sigma;
+  if (options.up_to == ConnectUpTo::tree) {
+    keep_tree(ground, c, context);
+    return c;
+  }
   const Terrain terrain{ground.at, ground.surfaces, ground.near, noise, ground.between};
 
   Sdg sdg = stages.run("sdg", 0.6, [&] { return make_sdg(terrain, ground.tree, options.sdg, context); });
   c.sdg = std::move(sdg.edges);
   c.bridges = std::move(sdg.bridges);
+  if (options.tree_of_points) keep_tree(ground, c, context);
   if (options.up_to == ConnectUpTo::sdg) {
     c.surfaces = std::move(ground.surfaces);
     return c;

@@ -1,5 +1,6 @@
 /// rfsmooth mesh: the connectivity that denoise works on, as a PLY to look at, stage by stage.
 #include <algorithm>
+#include <iterator>
 #include <memory>
 
 #include <fmt/format.h>
@@ -25,8 +26,11 @@ struct MeshOptions {
 
   template <class Self, class Visit>
   static void describe(Self& self, Visit&& visit) {
-    OptionInfo stage{"stage", "what to write: the tree, the surface description graph, the RFS-mesh", ""};
-    stage.choices = {"emst", "sdg", "rfs"};
+    OptionInfo stage{"stage",
+                     "what to write: the tree that is used, the surface description graph made from it, the "
+                     "RFS-mesh; or the tree of the points as they are, noise and all",
+                     ""};
+    stage.choices = {"emst", "sdg", "rfs", "emst-points"};
     visit(stage, self.stage);
     ConnectOptions::describe(self.connect, visit);
   }
@@ -62,24 +66,48 @@ std::vector<Edge> renumbered(std::vector<Edge> edges, const std::vector<Index>& 
 
 /// The options of the stage: what only later ones need is not made.
 ConnectOptions connect_options(const MeshOptions& options) {
-  using rfs_mesh::ConnectUpTo;
   ConnectOptions connect = options.connect;
-  connect.up_to = options.stage == "emst"  ? ConnectUpTo::emst
-                  : options.stage == "sdg" ? ConnectUpTo::sdg
-                                           : ConnectUpTo::mesh;
-  connect.tree_of_points = false;
+  connect.up_to = options.stage == "emst-points" ? ConnectUpTo::emst
+                  : options.stage == "emst"      ? ConnectUpTo::tree
+                  : options.stage == "sdg"       ? ConnectUpTo::sdg
+                                                 : ConnectUpTo::mesh;
+  connect.tree_of_points = options.stage == "sdg";
   return connect;
 }
 
 /// What the stages up to the one that was asked for made.
 ordered_json counts_of(const Connection& connection, const std::string& stage) {
-  if (stage == "emst") return {{"emst_edges", connection.emst.size()}};
+  if (stage == "emst") return {{"emst_edges", connection.tree.size()}};
+  if (stage == "emst-points") return {{"emst_edges", connection.emst.size()}};
   ordered_json counts = {{"sdg_edges", connection.sdg.size()}, {"bridges", connection.bridges.size()}};
   if (stage == "rfs")
     counts.update({{"edges", connection.mesh.edge_count()},
                    {"faces", connection.mesh.faces.size()},
                    {"faceless", connection.faceless}});
   return counts;
+}
+
+/// Edges to write, and what each is: 0 of the tree, 1 added to it, 2 a bridge: of the tree, but no
+/// neighbours.
+struct Graph {
+  std::vector<Edge> edges;
+  std::vector<std::uint8_t> kind;  ///< empty where all are of one kind
+};
+
+Graph graph_of(const std::string& stage, const Connection& connection) {
+  if (stage == "emst") return {connection.tree, {}};
+  if (stage == "emst-points") return {connection.emst, {}};
+  if (stage == "rfs") return {connection.mesh.loose_edges, {}};
+  Graph graph;
+  std::merge(connection.sdg.begin(), connection.sdg.end(), connection.bridges.begin(),
+             connection.bridges.end(), std::back_inserter(graph.edges));
+  for (const Edge& e : graph.edges) {
+    const auto in = [&e](const std::vector<Edge>& all) {
+      return std::binary_search(all.begin(), all.end(), e);
+    };
+    graph.kind.push_back(in(connection.bridges) ? 2 : in(connection.tree) ? 0 : 1);
+  }
+  return graph;
 }
 
 std::string connect_cloud(const MeshCommandOptions& options, pipeline::io::Cloud& cloud, const Job& job,
@@ -99,21 +127,19 @@ std::string connect_cloud(const MeshCommandOptions& options, pipeline::io::Cloud
 
   const FileOrder order = file_order(working, xyz);
   const std::string& stage = options.mesh.stage;
-  const auto edges = renumbered(stage == "emst"  ? connection.emst
-                                : stage == "sdg" ? connection.sdg
-                                                 : connection.mesh.loose_edges,
-                                order.rank);
+  Graph graph = graph_of(stage, connection);
+  const auto edges = renumbered(std::move(graph.edges), order.rank);
   std::vector<Face> faces;
   if (stage == "rfs") faces = connection.mesh.faces;
   for (auto& face : faces)
     for (Index& corner : face) corner = order.rank[corner];
-  cloud = pipeline::io::make_mesh_file(order.points, faces, edges);
+  cloud = pipeline::io::make_mesh_file(order.points, faces, edges, graph.kind);
 
   entry["options"] = effective_options(options.mesh, options.job.files);
   entry["counts"] = {{"points", xyz.size() / 3}, {"vertices", order.points.size()}};
   entry["counts"].update(counts_of(connection, stage));
   entry["spacing"] = connection.noise.spacing;
-  if (stage != "emst") entry["noise"] = connection.noise.sigma;
+  if (stage != "emst-points") entry["noise"] = connection.noise.sigma;
   return fmt::format("{}: {} vertices, {} edges, {} faces", stage, order.points.size(), edges.size(),
                      faces.size());
 }
@@ -121,8 +147,9 @@ std::string connect_cloud(const MeshCommandOptions& options, pipeline::io::Cloud
 /// What is reported until the stage that was asked for is made.
 std::vector<StageShare> stages_up_to(const std::string& stage) {
   std::vector<StageShare> stages = connecting_stages();
+  const std::string_view ends = stage == "emst" ? "shadow" : stage == "emst-points" ? "emst" : stage;
   const auto last =
-      std::find_if(stages.begin(), stages.end(), [&](const StageShare& s) { return s.stage == stage; });
+      std::find_if(stages.begin(), stages.end(), [&](const StageShare& s) { return s.stage == ends; });
   if (last != stages.end()) stages.erase(last + 1, stages.end());
   return stages;
 }
@@ -146,7 +173,12 @@ Command mesh_command() {
       "Euclidean "
       "minimum spanning tree (emst) and the surface description graph (sdg), faces for the RFS-mesh (rfs; "
       "edges of "
-      "points without a face are kept as edges). Points that are not finite are left out, coincident ones "
+      "points without a face are kept as edges). The graph has all edges of the tree; its property kind is 0 "
+      "for "
+      "those, 1 for the added ones, and 2 for edges of the tree that are no neighbourhood (bridges). In "
+      "noise "
+      "both stand on the points' shadows on the surface. Points that are not finite are left out, coincident "
+      "ones "
       "become "
       "one vertex.";
   collect(options->mesh, command.options);

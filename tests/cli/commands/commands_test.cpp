@@ -1,5 +1,9 @@
 /// info, mesh, smooth-mesh and compare.
+#include <algorithm>
 #include <cmath>
+#include <map>
+#include <random>
+#include <sstream>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -63,6 +67,47 @@ TEST_F(Commands, MeshWritesEdgesForTheGraphsAndFacesForTheMesh) {
   EXPECT_GT(count("sdg.ply", "edge"), 399);
   EXPECT_EQ(count("emst.ply", "face"), 0);
   EXPECT_GT(count("rfs.ply", "face"), 400);
+}
+
+/// The edges of an ascii PLY with `points` vertices, and their kind if they have one.
+std::map<std::pair<int, int>, int> edges_in(const std::string& ply, int points) {
+  std::istringstream in(ply.substr(ply.find("end_header\n") + 11));
+  std::string line;
+  for (int i = 0; i < points; ++i) std::getline(in, line);
+  std::map<std::pair<int, int>, int> edges;
+  while (std::getline(in, line)) {
+    std::istringstream words(line);
+    int a = 0, b = 0, kind = -1;
+    words >> a >> b >> kind;
+    edges[std::minmax(a, b)] = kind;
+  }
+  return edges;
+}
+
+/// Noise of a spacing, where connectivity is tested on the points' shadows, and a stray on a bridge.
+TEST_F(Commands, TheGraphHoldsTheTreeItStandsOnAndSaysWhichEdgeIsWhich) {
+  BinaryPly cloud = noisy_plane(20);
+  std::mt19937_64 engine(4);
+  std::normal_distribution<float> noise(0, 0.8f);
+  for (std::size_t i = 2; i < cloud.xyz.size(); i += 3) cloud.xyz[i] += noise(engine);
+  cloud.xyz.insert(cloud.xyz.end(), {60, 10, 0});
+  put("in.ply", cloud.bytes());
+  for (const char* stage : {"emst", "sdg"})
+    ASSERT_EQ(
+        run({"mesh", "in.ply", std::string(stage) + ".ply", "--stage", stage, "--encoding", "ascii"}).code,
+        0);
+  const auto tree = edges_in(take("emst.ply"), 401), graph = edges_in(take("sdg.ply"), 401);
+  ASSERT_EQ(tree.size(), 400u);
+  int of_kind[3] = {0, 0, 0};
+  for (const auto& [edge, kind] : graph) {
+    ASSERT_GE(kind, 0);
+    ASSERT_LE(kind, 2);
+    ++of_kind[kind];
+    EXPECT_EQ(tree.count(edge) > 0, kind != 1) << edge.first << " " << edge.second;
+  }
+  EXPECT_EQ(of_kind[0] + of_kind[2], 400) << "all of the tree, so the graph is in one piece";
+  EXPECT_GT(of_kind[1], 50);
+  EXPECT_GT(of_kind[2], 0);
 }
 
 TEST_F(Commands, SmoothMeshMovesVerticesAndKeepsFaces) {
