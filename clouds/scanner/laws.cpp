@@ -5,7 +5,7 @@
 
 #include <Eigen/Geometry>
 
-#include "clouds/scanner/random.h"
+#include "clouds/shapes/random.h"
 #include "rfs_mesh/search/neighbors.h"
 
 namespace rfsmooth::clouds {

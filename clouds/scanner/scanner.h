@@ -18,7 +18,7 @@
 #include <rfsmooth/context.h>
 #include <rfsmooth/options.h>
 
-#include "clouds/scanner/shapes.h"
+#include "clouds/shapes/shapes.h"
 
 namespace rfsmooth::clouds {
 

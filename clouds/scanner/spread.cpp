@@ -6,8 +6,8 @@
 #include <Eigen/Geometry>
 
 #include "clouds/scanner/laws.h"
-#include "clouds/scanner/random.h"
-#include "clouds/scanner/sampling.h"
+#include "clouds/shapes/random.h"
+#include "clouds/shapes/sampling.h"
 #include "rfs_mesh/search/neighbors.h"
 
 namespace rfsmooth::clouds {

@@ -4,9 +4,9 @@
 
 #include "clouds/scanner/arguments.h"
 #include "clouds/scanner/laws.h"
-#include "clouds/scanner/sampling.h"
 #include "clouds/scanner/scan_files.h"
 #include "clouds/scanner/scanner.h"
+#include "clouds/shapes/sampling.h"
 #include "pipeline/io/io.h"
 #include "pipeline/io/mesh_file.h"
 

@@ -8,7 +8,7 @@
 
 #include <rfsmooth/result.h>
 
-#include "pipeline/cli/console.h"
+#include "pipeline/cli/console/console.h"
 
 namespace rfsmooth::cli {
 

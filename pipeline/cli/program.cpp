@@ -8,11 +8,11 @@
 
 #include <rfsmooth/version.h>
 
-#include "pipeline/cli/console.h"
+#include "pipeline/cli/console/console.h"
+#include "pipeline/cli/console/stop.h"
 #include "pipeline/cli/options/config.h"
 #include "pipeline/cli/options/help.h"
 #include "pipeline/cli/options/parse.h"
-#include "pipeline/cli/stop.h"
 
 namespace rfsmooth::cli {
 

@@ -1,7 +1,7 @@
 /// Which format a file is in, by its first lines.
 #pragma once
 
-#include "pipeline/io/source.h"
+#include "pipeline/io/stream/source.h"
 #include "pipeline/io/table/cloud.h"
 
 namespace rfsmooth::pipeline::io {

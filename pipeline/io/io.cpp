@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 
-#include "pipeline/io/atomic_file.h"
 #include "pipeline/io/convert.h"
 #include "pipeline/io/detect.h"
 #include "pipeline/io/formats/off.h"
@@ -13,6 +12,7 @@
 #include "pipeline/io/formats/ply.h"
 #include "pipeline/io/formats/xyz.h"
 #include "pipeline/io/other_formats.h"
+#include "pipeline/io/stream/atomic_file.h"
 
 namespace rfsmooth::pipeline::io {
 namespace {

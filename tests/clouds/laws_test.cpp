@@ -8,8 +8,8 @@
 
 #include <gtest/gtest.h>
 
-#include "clouds/scanner/sampling.h"
-#include "clouds/scanner/shapes.h"
+#include "clouds/shapes/sampling.h"
+#include "clouds/shapes/shapes.h"
 #include "rfs_mesh/search/neighbors.h"
 
 using namespace rfsmooth;

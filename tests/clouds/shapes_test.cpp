@@ -1,4 +1,4 @@
-#include "clouds/scanner/shapes.h"
+#include "clouds/shapes/shapes.h"
 
 #include <cmath>
 #include <string>

@@ -4,8 +4,8 @@
 
 #include <rfsmooth/denoise.h>
 
-#include "clouds/scanner/sampling.h"
-#include "clouds/scanner/shapes.h"
+#include "clouds/shapes/sampling.h"
+#include "clouds/shapes/shapes.h"
 #include "tests/support/sanitized.h"
 
 using namespace rfsmooth;

@@ -9,8 +9,8 @@
 
 #include <rfsmooth/normals.h>
 
-#include "clouds/scanner/sampling.h"
-#include "clouds/scanner/shapes.h"
+#include "clouds/shapes/sampling.h"
+#include "clouds/shapes/shapes.h"
 #include "tests/support/shapes.h"
 
 namespace rfsmooth::pipeline {

@@ -8,9 +8,9 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-#include "clouds/scanner/sampling.h"
 #include "clouds/scanner/scanner.h"
-#include "clouds/scanner/shapes.h"
+#include "clouds/shapes/sampling.h"
+#include "clouds/shapes/shapes.h"
 #include "rfs_mesh/points.h"
 
 namespace rfsmooth::pipeline {

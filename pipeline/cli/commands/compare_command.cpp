@@ -6,7 +6,7 @@
 #include <rfsmooth/compare.h>
 
 #include "pipeline/cli/commands/command.h"
-#include "pipeline/cli/console.h"
+#include "pipeline/cli/console/console.h"
 #include "pipeline/cli/deviation.h"
 #include "pipeline/cli/files/cloud_files.h"
 #include "pipeline/io/mesh_file.h"

@@ -8,7 +8,7 @@
 
 #include "base/parallel.h"
 #include "pipeline/cli/commands/command.h"
-#include "pipeline/cli/console.h"
+#include "pipeline/cli/console/console.h"
 #include "pipeline/cli/files/cloud_files.h"
 #include "rfs_mesh/fit/local_surface.h"
 #include "rfs_mesh/noise/noise.h"

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "pipeline/cli/commands/command.h"
-#include "pipeline/cli/console.h"
+#include "pipeline/cli/console/console.h"
 
 namespace rfsmooth::cli {
 

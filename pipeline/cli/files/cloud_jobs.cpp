@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "pipeline/cli/console/report.h"
 #include "pipeline/cli/own_files.h"
-#include "pipeline/cli/report.h"
 
 namespace rfsmooth::cli {
 

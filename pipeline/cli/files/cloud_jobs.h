@@ -4,7 +4,7 @@
 #include <functional>
 
 #include "pipeline/cli/commands/command.h"
-#include "pipeline/cli/console.h"
+#include "pipeline/cli/console/console.h"
 #include "pipeline/cli/files/cloud_files.h"
 #include "pipeline/cli/options/json_values.h"
 

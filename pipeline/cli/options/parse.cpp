@@ -6,7 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "pipeline/cli/commands/no_command.h"
+#include "pipeline/cli/no_command.h"
 #include "pipeline/cli/options/suggest.h"
 
 namespace rfsmooth::cli {

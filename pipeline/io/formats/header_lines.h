@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "pipeline/io/source.h"
+#include "pipeline/io/stream/source.h"
 
 namespace rfsmooth::pipeline::io {
 

@@ -1,8 +1,8 @@
 /// OFF, the Object File Format of meshes: ascii, with the prefixes ST (texture), C (colour), N (normals).
 #pragma once
 
-#include "pipeline/io/sink.h"
-#include "pipeline/io/source.h"
+#include "pipeline/io/stream/sink.h"
+#include "pipeline/io/stream/source.h"
 #include "pipeline/io/table/cloud.h"
 
 namespace rfsmooth::pipeline::io {

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "pipeline/io/formats/header_lines.h"
-#include "pipeline/io/sink.h"
-#include "pipeline/io/source.h"
+#include "pipeline/io/stream/sink.h"
+#include "pipeline/io/stream/source.h"
 #include "pipeline/io/table/cloud.h"
 
 namespace rfsmooth::pipeline::io {

@@ -3,8 +3,8 @@
 /// without names the first three are x, y, z and column k is "column_k".
 #pragma once
 
-#include "pipeline/io/sink.h"
-#include "pipeline/io/source.h"
+#include "pipeline/io/stream/sink.h"
+#include "pipeline/io/stream/source.h"
 #include "pipeline/io/table/cloud.h"
 
 namespace rfsmooth::pipeline::io {

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <string_view>
 
-#include "pipeline/io/sink.h"
-#include "pipeline/io/source.h"
+#include "pipeline/io/stream/sink.h"
+#include "pipeline/io/stream/source.h"
 #include "pipeline/io/table/table.h"
 
 namespace rfsmooth::pipeline::io {

@@ -18,7 +18,7 @@
 #include <rfsmooth/normals.h>
 
 #include "base/parallel.h"
-#include "clouds/scanner/sampling.h"
+#include "clouds/shapes/sampling.h"
 #include "rfs_mesh/measure.h"
 #include "rfs_mesh/search/neighbors.h"
 #include "tests/bench/peers/peers.h"

@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "base/parallel.h"
-#include "clouds/scanner/sampling.h"
+#include "clouds/shapes/sampling.h"
 
 namespace rfsmooth::bench {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "clouds/scanner/random.h"
-#include "clouds/scanner/shapes.h"
+#include "clouds/shapes/random.h"
+#include "clouds/shapes/shapes.h"
 #include "tests/bench/quality/data/closest.h"
 #include "tests/bench/quality/data/dataset.h"
 #include "tests/bench/quality/data/measure.h"

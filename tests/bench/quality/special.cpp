@@ -3,8 +3,8 @@
 #include <cstdio>
 #include <cstring>
 
-#include "clouds/scanner/sampling.h"
-#include "clouds/scanner/shapes.h"
+#include "clouds/shapes/sampling.h"
+#include "clouds/shapes/shapes.h"
 #include "tests/bench/quality/goals.h"
 
 namespace rfsmooth::bench {

@@ -1,7 +1,7 @@
 #include "tests/bench/reconstruct/surface_error.h"
 
 #include "base/parallel.h"
-#include "clouds/scanner/sampling.h"
+#include "clouds/shapes/sampling.h"
 #include "tests/bench/quality/data/closest.h"
 
 namespace rfsmooth::bench {

@@ -5,8 +5,8 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-#include "clouds/scanner/sampling.h"
-#include "clouds/scanner/shapes.h"
+#include "clouds/shapes/sampling.h"
+#include "clouds/shapes/shapes.h"
 
 namespace rfsmooth::bench {
 namespace {

@@ -7,7 +7,7 @@
 
 #include <Eigen/Core>
 
-#include "clouds/scanner/random.h"
+#include "clouds/shapes/random.h"
 #include "rfs_mesh/points.h"
 
 namespace rfsmooth::bench {

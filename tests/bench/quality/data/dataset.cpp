@@ -11,9 +11,9 @@
 #include <Eigen/Geometry>
 #include <unistd.h>
 
-#include "clouds/scanner/random.h"
-#include "clouds/scanner/sampling.h"
-#include "clouds/scanner/shapes.h"
+#include "clouds/shapes/random.h"
+#include "clouds/shapes/sampling.h"
+#include "clouds/shapes/shapes.h"
 #include "tests/bench/quality/data/closest.h"
 
 namespace rfsmooth::bench {

@@ -7,8 +7,8 @@
 
 #include <rfsmooth/cgal/advancing_front.h>
 
-#include "clouds/scanner/sampling.h"
-#include "clouds/scanner/shapes.h"
+#include "clouds/shapes/sampling.h"
+#include "clouds/shapes/shapes.h"
 #include "pipeline/surface/surface_cleanup.h"
 #include "pipeline/surface/topology.h"
 

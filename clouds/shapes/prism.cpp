@@ -4,8 +4,8 @@
 #include <limits>
 #include <string>
 
-#include "clouds/scanner/grid_mesh.h"
-#include "clouds/scanner/shapes.h"
+#include "clouds/shapes/grid_mesh.h"
+#include "clouds/shapes/shapes.h"
 
 namespace rfsmooth::clouds {
 

@@ -12,7 +12,7 @@
 
 #include <rfsmooth/mesh.h>
 
-#include "clouds/scanner/random.h"
+#include "clouds/shapes/random.h"
 #include "rfs_mesh/points.h"
 
 namespace rfsmooth::clouds {

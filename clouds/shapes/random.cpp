@@ -1,4 +1,4 @@
-#include "clouds/scanner/random.h"
+#include "clouds/shapes/random.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "pipeline/io/source.h"
+#include "pipeline/io/stream/source.h"
 
 #include <algorithm>
 #include <cerrno>

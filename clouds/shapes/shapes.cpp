@@ -1,4 +1,4 @@
-#include "clouds/scanner/shapes.h"
+#include "clouds/shapes/shapes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 
 #include <Eigen/Geometry>
 
-#include "clouds/scanner/grid_mesh.h"
+#include "clouds/shapes/grid_mesh.h"
 
 namespace rfsmooth::clouds {
 

@@ -11,7 +11,7 @@
 #include <rfsmooth/options.h>
 
 #include "base/thread_limit.h"
-#include "pipeline/cli/progress.h"
+#include "pipeline/cli/console/progress.h"
 
 namespace rfsmooth::cli {
 

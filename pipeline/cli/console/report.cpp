@@ -1,4 +1,4 @@
-#include "pipeline/cli/report.h"
+#include "pipeline/cli/console/report.h"
 
 #include <fmt/format.h>
 

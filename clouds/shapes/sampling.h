@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "clouds/scanner/shapes.h"
+#include "clouds/shapes/shapes.h"
 #include "rfs_mesh/points.h"
 
 namespace rfsmooth::clouds {

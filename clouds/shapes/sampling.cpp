@@ -1,4 +1,4 @@
-#include "clouds/scanner/sampling.h"
+#include "clouds/shapes/sampling.h"
 
 #include <algorithm>
 #include <cmath>

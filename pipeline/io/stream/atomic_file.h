@@ -7,7 +7,7 @@
 #include <rfsmooth/context.h>
 #include <rfsmooth/result.h>
 
-#include "pipeline/io/sink.h"
+#include "pipeline/io/stream/sink.h"
 
 namespace rfsmooth::pipeline::io {
 

@@ -1,4 +1,4 @@
-#include "pipeline/cli/commands/no_command.h"
+#include "pipeline/cli/no_command.h"
 
 #include <algorithm>
 #include <filesystem>

@@ -1,4 +1,4 @@
-#include "pipeline/io/atomic_file.h"
+#include "pipeline/io/stream/atomic_file.h"
 
 #include <algorithm>
 #include <cerrno>

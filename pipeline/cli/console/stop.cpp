@@ -1,4 +1,4 @@
-#include "pipeline/cli/stop.h"
+#include "pipeline/cli/console/stop.h"
 
 #include <csignal>
 

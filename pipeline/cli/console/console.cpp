@@ -1,4 +1,4 @@
-#include "pipeline/cli/console.h"
+#include "pipeline/cli/console/console.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -8,7 +8,7 @@
 #include <poll.h>
 #include <unistd.h>
 
-#include "pipeline/cli/stop.h"
+#include "pipeline/cli/console/stop.h"
 
 namespace rfsmooth::cli {
 
