@@ -19,7 +19,7 @@ constexpr int kSeeds = 400;              // places where a plane is looked for
 constexpr int kAround = 600;             // nearest points of a seed ...
 constexpr int kFarAround = 2400;         // ... and where these lie on one step of the depth
 constexpr double kLeastDeviation = 0.2;  // spacings: calm and loud places of one plane are one plane
-constexpr double kWhole = 0.9;           // filled cells of a patch and its border: one row in twelve may lack
+constexpr double kWhole = 0.95;          // filled cells of a patch and its border: less than a row may lack
 constexpr int kDraws =
     150;  // with half of the points on the plane one draw in eight is, so all fail with 2e-9
 constexpr double kCell = 3;         // side of a cell in spacings: nine points

@@ -27,7 +27,9 @@ double deviation_of(const Plane& plane, const Positions& points, const std::vect
 }  // namespace
 
 std::array<Eigen::Vector3d, 2> Plane::axes() const {
-  const Eigen::Vector3d u = normal.unitOrthogonal();
+  Eigen::Index least = 0;
+  normal.cwiseAbs().minCoeff(&least);
+  const Eigen::Vector3d u = normal.cross(Eigen::Vector3d::Unit(least)).normalized();
   return {u, normal.cross(u)};
 }
 

@@ -16,7 +16,7 @@ struct Plane {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< unit
   double height(const Eigen::Vector3d& p) const { return normal.dot(p - point); }
-  /// Two unit vectors that make a right-handed frame with the normal.
+  /// Two unit vectors that make a right-handed frame with the normal; one lies in a plane of the coordinates.
   std::array<Eigen::Vector3d, 2> axes() const;
 };
 

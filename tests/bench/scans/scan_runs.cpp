@@ -84,15 +84,42 @@ std::vector<Index> places_of(const Scan& scan, const Cleaned& cleaned) {
   return place;
 }
 
-struct Mean {
-  double sum = 0;
+/// Collects one figure of every place.
+struct GeometricMean {
+  double logs = 0;
   std::size_t count = 0;
   void add(double x) {
-    sum += x;
+    logs += std::log(std::max(x, kLeastRough));
     ++count;
   }
-  double value() const { return count == 0 ? 0 : sum / double(count); }
+  double value() const { return count == 0 ? 0 : std::exp(logs / double(count)); }
 };
+
+/// The rms of `distance(point)` over the rows that are still there.
+template <class Distance>
+double rms(const std::vector<Index>& rows, const std::vector<Index>& place, const Positions& points,
+           Distance&& distance) {
+  double squares = 0, count = 0;
+  for (const Index row : rows) {
+    if (place[row] == kNone) continue;
+    squares += std::pow(distance(points[place[row]]), 2);
+    ++count;
+  }
+  return count == 0 ? 0 : std::sqrt(squares / count);
+}
+
+/// The mean error of normals at every fourth row.
+double mean_angle(const rfs_mesh::SpatialIndex& index, const Patch& patch, const std::vector<Index>& place,
+                  const Positions& points) {
+  double sum = 0, count = 0;
+  for (std::size_t r = 0; r < patch.rows.size(); r += 4) {
+    const Index at = place[patch.rows[r]];
+    if (at == kNone) continue;
+    sum += normal_error(index, points[at], patch.plane.normal);
+    ++count;
+  }
+  return count == 0 ? 0 : sum / count;
+}
 
 }  // namespace
 
@@ -107,36 +134,27 @@ Scan read_scan(const std::filesystem::path& file, std::size_t most) {
 }
 
 FlatError measure_flats(const Flats& flats, const Scan& scan, const Cleaned& cleaned, int threads) {
-  constexpr std::size_t kAngleEvery = 4;  // rows of a patch to one whose normal is measured
   const std::vector<Index> place = places_of(scan, cleaned);
-  Mean plane, crease, angle;
-  std::vector<std::pair<Index, const Patch*>> asked;
+  const Positions& points = cleaned.points;
+  GeometricMean plane, angle, crease;
   for (const Patch& patch : flats.patches)
-    for (std::size_t r = 0; r < patch.rows.size(); ++r) {
-      const Index at = place[patch.rows[r]];
-      if (at == kNone) continue;
-      plane.add(std::pow(patch.plane.height(cleaned.points[at]) / patch.spacing, 2));
-      if (r % kAngleEvery == 0) asked.emplace_back(at, &patch);
-    }
+    plane.add(rms(patch.rows, place, points, [&](const Vector3d& p) { return patch.plane.height(p); }) /
+              patch.spacing);
   for (const Crease& c : flats.creases)
-    for (const Index row : c.rows) {
-      if (place[row] == kNone) continue;
-      crease.add(std::pow(c.distance(cleaned.points[place[row]]) / c.spacing, 2));
-    }
+    crease.add(rms(c.rows, place, points, [&](const Vector3d& p) { return c.distance(p); }) / c.spacing);
   Context context;
   context.threads = threads;
   Positions finite;
-  for (const Vector3d& p : cleaned.points)
+  for (const Vector3d& p : points)
     if (p.allFinite()) finite.push_back(p);
-  std::vector<double> degrees(asked.size());
+  std::vector<double> degrees(flats.patches.size());
   in_arena(context, [&] {
     const rfs_mesh::SpatialIndex index(finite, context);
-    for_each_index(context, asked.size(), [&](std::size_t k) {
-      degrees[k] = normal_error(index, cleaned.points[asked[k].first], asked[k].second->plane.normal);
-    });
+    for_each_index(context, degrees.size(),
+                   [&](std::size_t k) { degrees[k] = mean_angle(index, flats.patches[k], place, points); });
   });
   for (const double d : degrees) angle.add(d);
-  return {std::sqrt(plane.value()), angle.value(), std::sqrt(crease.value()), plane.count, crease.count};
+  return {plane.value(), angle.value(), crease.value()};
 }
 
 Cleaned run_peer(const Scan& scan, const std::string& setting, const std::filesystem::path& cache,

@@ -27,13 +27,16 @@ struct Cleaned {
   std::vector<Index> source;  ///< row of the scan of each point; empty: the same
 };
 
-/// Root mean squares, each length in the spacings of its own place.
+/// Geometric means over the places, so that each counts the same and the ratio of two tools' is the mean of
+/// their ratios; lengths in the spacings of each place. 0: there is no such place.
 struct FlatError {
-  double plane = 0;   ///< distance to the patch's plane
-  double normal = 0;  ///< degrees: mean angle of the plane through the 12 nearest points to the patch's
-  double crease = 0;  ///< distance to the nearer of the two planes
-  std::size_t plane_rows = 0, crease_rows = 0;
+  double plane = 0;  ///< of a patch: rms distance to its plane, at least kLeastRough
+  double normal =
+      0;  ///< of a patch: degrees between the plane through the 12 nearest points and its own, mean
+  double crease = 0;  ///< of a crease: rms distance to the nearer of its planes
 };
+
+inline constexpr double kLeastRough = 0.01;  ///< spacings, and degrees: nobody asks for less
 
 FlatError measure_flats(const Flats& flats, const Scan& scan, const Cleaned& cleaned, int threads);
 

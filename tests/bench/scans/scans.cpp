@@ -17,6 +17,8 @@ using namespace rfsmooth;
 using namespace rfsmooth::bench;
 namespace fs = std::filesystem;
 
+constexpr std::size_t kLeastPoints = 1000;  // smaller clouds have no room for a patch
+
 struct Settings {
   std::vector<fs::path> inputs = {RFSMOOTH_SCANS_DIR};
   std::vector<std::string> only;
@@ -107,9 +109,10 @@ void print_figure(const Judged& judged, double FlatError::*figure, const char* f
 
 void print_head() {
   std::printf(
-      "Planes: rms distance in spacings; normals: mean error in degrees; creases: rms distance to the nearer "
-      "plane in "
-      "spacings; then ours over MLS's and jet's\n%-34s %7s %3s %4s %4s | %-37s | %-37s | %-37s | "
+      "Geometric means over the places. Planes: rms distance in spacings; normals: mean error in degrees; "
+      "creases: "
+      "rms distance to the nearer plane in spacings; then ours over MLS's and jet's\n%-34s %7s %3s %4s %4s | "
+      "%-37s | %-37s | %-37s | "
       "%-20s\n%-56s |",
       "scan", "points", "pl", "pat", "crs", "planes", "normals", "creases", "report, spacings", "");
   for (int block = 0; block < 3; ++block)
@@ -175,7 +178,9 @@ int run(int argc, char** argv) {
   print_head();
   for (const auto& file : files_of(settings)) {
     try {
-      scans.push_back(judge(settings, read_scan(file, settings.most)));
+      const Scan scan = read_scan(file, settings.most);
+      if (scan.points.size() < kLeastPoints) continue;
+      scans.push_back(judge(settings, scan));
       print(scans.back());
     } catch (const std::invalid_argument&) {
       throw;  // an option that does not exist
