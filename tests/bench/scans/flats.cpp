@@ -256,6 +256,7 @@ void add_crease(const Positions& points, const std::vector<int>& owner, const st
   crease.one = fit_plane_trimmed(points, one);
   crease.other = fit_plane_trimmed(points, other);
   if (crease.one.normal.cross(crease.other.normal).norm() < kLeastSine) return;
+  if (!is_flat(crease.one, points, one) || !is_flat(crease.other, points, other)) return;
   crease.spacing = spacing;
   const Line here = meet(crease.one, crease.other, points[one.front()]);
   for (const Index i : near)

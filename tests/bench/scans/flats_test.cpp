@@ -1,5 +1,3 @@
-#include "tests/bench/scans/flats.h"
-
 #include <cmath>
 
 #include <Eigen/Geometry>
@@ -7,6 +5,7 @@
 
 #include "clouds/shapes/sampling.h"
 #include "clouds/shapes/shapes.h"
+#include "tests/bench/scans/measure_flats.h"
 
 namespace rfsmooth::bench {
 namespace {
@@ -61,6 +60,48 @@ TEST(Flats, ABallHasNone) {
   Positions ball = clouds::sample(*clouds::make_sphere(), 20000, 1, clouds::Sampling::uniform);
   clouds::add_noise(ball, 0.1 * std::sqrt(4 * 3.1416 / 20000), 2);
   EXPECT_TRUE(find_flats(ball, 3).patches.empty());
+}
+
+/// A square of unit spacing on z = 0 with a patch of all its points, and a crease that a wall would make.
+struct Square {
+  Positions points;
+  Flats flats;
+  Square() {
+    Patch patch;
+    patch.spacing = 1;
+    for (int x = 0; x < 20; ++x)
+      for (int y = 0; y < 20; ++y) {
+        patch.rows.push_back(Index(points.size()));
+        points.emplace_back(x, y, 0);
+      }
+    Crease crease;
+    crease.spacing = 2;
+    crease.other.normal = Vector3d::UnitX();
+    crease.rows = {0, 1, 25};
+    flats.patches = {patch};
+    flats.creases = {crease};
+  }
+};
+
+TEST(MeasureFlats, ALiftedSquareIsOffByItsLift) {
+  const Square square;
+  Positions lifted = square.points;
+  for (Vector3d& p : lifted) p[2] += 0.5;
+  const FlatError error = measure_flats(square.flats, 400, {lifted, {}}, {});
+  EXPECT_DOUBLE_EQ(error.plane, 0.5);
+  EXPECT_DOUBLE_EQ(error.normal, kLeastRough) << "it is flat";
+  // Points 0 and 1 lie on the wall, point 25 is a spacing away from it and half a one above the floor.
+  EXPECT_DOUBLE_EQ(error.crease, std::sqrt(0.25 / 3) / 2);
+}
+
+TEST(MeasureFlats, RowsMayComeInAnotherOrderAndMayLack) {
+  const Square square;
+  Cleaned cleaned;
+  for (Index i = 400; i-- > 1;) {
+    cleaned.points.push_back(square.points[i] + Vector3d(0, 0, 0.25));
+    cleaned.source.push_back(i);
+  }
+  EXPECT_DOUBLE_EQ(measure_flats(square.flats, 400, cleaned, {}).plane, 0.25);
 }
 
 TEST(PlaneFit, FindsThePlaneUnderManyStrays) {

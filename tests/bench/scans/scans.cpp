@@ -85,8 +85,10 @@ Judged judge(const Settings& settings, const Scan& scan) {
   const std::array<Cleaned, 4> tools = {Cleaned{scan.points, {}}, Cleaned{ours.points, {}},
                                         run_peer(scan, kFixedMls, settings.cache, settings.threads),
                                         run_peer(scan, kFixedJet, settings.cache, settings.threads)};
+  Context context;
+  context.threads = settings.threads;
   for (std::size_t tool = 0; tool < tools.size(); ++tool)
-    judged.errors[tool] = measure_flats(flats, scan, tools[tool], settings.threads);
+    judged.errors[tool] = measure_flats(flats, scan.points.size(), tools[tool], context);
   if (!settings.write.empty()) write_clouds(settings.write, scan.name, tools);
   return judged;
 }
@@ -101,10 +103,15 @@ std::array<double, 2> ratios(const Judged& judged, double FlatError::*figure) {
   return over;
 }
 
-void print_figure(const Judged& judged, double FlatError::*figure, const char* format) {
-  for (const FlatError& error : judged.errors) std::printf(format, error.*figure);
+/// Raw, ours, MLS, jet and the two ratios.
+void print_figure(const Judged& judged, double FlatError::*figure, int decimals) {
+  if (!(judged.errors[0].*figure > 0)) {
+    std::printf(" %-37s |", "-");
+    return;
+  }
+  for (const FlatError& error : judged.errors) std::printf(" %5.*f", decimals, error.*figure);
   const auto over = ratios(judged, figure);
-  std::printf(" %5.2f %5.2f |", over[0], over[1]);
+  std::printf(" %5.2f %5.2f  |", over[0], over[1]);
 }
 
 void print_head() {
@@ -123,9 +130,9 @@ void print_head() {
 void print(const Judged& judged) {
   std::printf("%-34s %7zu %3zu %4zu %4zu |", judged.name.c_str(), judged.points, judged.planes,
               judged.patches, judged.creases);
-  print_figure(judged, &FlatError::plane, " %5.3f");
-  print_figure(judged, &FlatError::normal, " %5.2f");
-  print_figure(judged, &FlatError::crease, " %5.3f");
+  print_figure(judged, &FlatError::plane, 3);
+  print_figure(judged, &FlatError::normal, 2);
+  print_figure(judged, &FlatError::crease, 3);
   std::printf(" %6.3f %6.3f %6.3f\n", judged.noise, judged.left, judged.moved);
   std::fflush(stdout);
 }
