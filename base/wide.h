@@ -5,7 +5,7 @@
 /// depends on the processor. What they call must be inline, else it is compiled for all processors only.
 #pragma once
 
-#if defined(__x86_64__) && defined(__ELF__)
+#if defined(__x86_64__) && defined(__ELF__) && !defined(__SANITIZE_THREAD__)  // the choice runs before it
 #define RFSMOOTH_WIDE __attribute__((target_clones("avx2", "default")))
 #else
 #define RFSMOOTH_WIDE
