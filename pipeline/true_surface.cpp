@@ -8,6 +8,8 @@
 
 #include <Eigen/Geometry>
 
+#include "rfs_mesh/edge_faces.h"
+
 namespace rfsmooth::pipeline {
 
 using Eigen::Vector3d;
@@ -175,13 +177,6 @@ void TrueSurface::weld() {
 }
 
 void TrueSurface::make_pseudo_normals() {
-  struct Side {
-    Index a, b;  // a < b
-    Index face, corner;
-    int direction;
-  };
-  std::vector<Side> sides;
-  sides.reserve(3 * faces_.size());
   vertex_normals_.assign(vertices_.size(), Vector3d::Zero());
   edge_normals_.resize(faces_.size());
   for (std::size_t f = 0; f < faces_.size(); ++f) {
@@ -191,26 +186,17 @@ void TrueSurface::make_pseudo_normals() {
       const Vector3d u = (t[(k + 1) % 3] - t[k]).normalized(), v = (t[(k + 2) % 3] - t[k]).normalized();
       const double angle = std::atan2(u.cross(v).norm(), u.dot(v));
       if (std::isfinite(angle)) vertex_normals_[faces_[f][k]] += angle * normal;
-      const Index a = faces_[f][(k + 1) % 3], b = faces_[f][(k + 2) % 3];
-      if (a == b) continue;
-      sides.push_back({std::min(a, b), std::max(a, b), Index(f), Index(k), a < b ? 1 : -1});
     }
   }
-  std::sort(sides.begin(), sides.end(), [](const Side& p, const Side& q) {
-    return std::array{p.a, p.b, p.face, p.corner} < std::array{q.a, q.b, q.face, q.corner};
-  });
   closed_ = true;
-  for (std::size_t first = 0, last = 0; first < sides.size(); first = last) {
+  using rfs_mesh::EdgeFace;
+  rfs_mesh::for_each_edge(rfs_mesh::edge_faces(faces_), [&](const EdgeFace* first, const EdgeFace* last) {
+    if (first->a == first->b) return;
     Vector3d sum = Vector3d::Zero();
-    int balance = 0;
-    for (; last < sides.size() && sides[last].a == sides[first].a && sides[last].b == sides[first].b;
-         ++last) {
-      sum += face_normal(sides[last].face);
-      balance += sides[last].direction;
-    }
-    if (last - first != 2 || balance != 0) closed_ = false;
-    for (std::size_t k = first; k < last; ++k) edge_normals_[sides[k].face][sides[k].corner] = sum;
-  }
+    for (const EdgeFace* e = first; e != last; ++e) sum += face_normal(e->face);
+    if (last - first != 2 || first[0].forward == first[1].forward) closed_ = false;
+    for (const EdgeFace* e = first; e != last; ++e) edge_normals_[e->face][(e->corner + 2) % 3] = sum;
+  });
 }
 
 Triangle TrueSurface::corners(std::size_t face) const {

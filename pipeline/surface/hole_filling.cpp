@@ -7,7 +7,7 @@
 
 #include <Eigen/Geometry>
 
-#include "pipeline/surface/face_sides.h"
+#include "rfs_mesh/edge_faces.h"
 
 namespace rfsmooth::pipeline {
 
@@ -24,7 +24,8 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 std::vector<std::vector<Index>> rims_of(const Mesh& mesh) {
   std::vector<Index> next(mesh.positions.size(), kNone);
   std::vector<char> branches(next.size(), 0);
-  for_each_edge(face_sides(mesh.faces), [&](const FaceSide* first, const FaceSide* last) {
+  rfs_mesh::for_each_edge(rfs_mesh::edge_faces(mesh.faces), [&](const rfs_mesh::EdgeFace* first,
+                                                                const rfs_mesh::EdgeFace* last) {
     if (last - first != 1) return;
     // The face runs from..to, so the face across the rim runs to..from.
     const auto [from, to] = first->forward ? std::pair(first->a, first->b) : std::pair(first->b, first->a);

@@ -7,7 +7,8 @@
 
 #include <Eigen/Geometry>
 
-#include "pipeline/surface/face_sides.h"
+#include "base/groups.h"
+#include "rfs_mesh/edge_faces.h"
 
 namespace rfsmooth::pipeline {
 
@@ -19,7 +20,7 @@ namespace {
 
 class Parting {
  public:
-  explicit Parting(const Mesh& mesh) : mesh_(mesh), sides_(face_sides(mesh.faces)) {}
+  explicit Parting(const Mesh& mesh) : mesh_(mesh), sides_(rfs_mesh::edge_faces(mesh.faces)) {}
 
   /// The surface with its corners renamed, vertices from n on being copies of `copied`.
   std::vector<Face> renamed(std::vector<Index>& copied) {
@@ -35,11 +36,11 @@ class Parting {
  private:
   std::vector<Face> rename(std::vector<Index>& copied) const {
     const std::size_t n = mesh_.positions.size();
-    Groups fans(3 * mesh_.faces.size());
-    for_each_edge(sides_, [&](const FaceSide* first, const FaceSide* last) {
-      for_each_pair(first, last, [&](const FaceSide& s, const FaceSide& t) {
+    Groups<Index> fans(3 * mesh_.faces.size());
+    rfs_mesh::for_each_edge(sides_, [&](const rfs_mesh::EdgeFace* first, const rfs_mesh::EdgeFace* last) {
+      for_each_pair(first, last, [&](const rfs_mesh::EdgeFace& s, const rfs_mesh::EdgeFace& t) {
         for (const Index v : {s.a, s.b})
-          fans.join(corner_of(mesh_.faces, s.face, v), corner_of(mesh_.faces, t.face, v));
+          fans.join(rfs_mesh::corner_of(mesh_.faces, s.face, v), rfs_mesh::corner_of(mesh_.faces, t.face, v));
       });
     });
     copied.clear();
@@ -63,14 +64,14 @@ class Parting {
 
   /// Calls visit(side, side) for the faces that stay together at an edge.
   template <class Visit>
-  void for_each_pair(const FaceSide* first, const FaceSide* last, Visit&& visit) const {
+  void for_each_pair(const rfs_mesh::EdgeFace* first, const rfs_mesh::EdgeFace* last, Visit&& visit) const {
     if (last - first < 2) return;
     if (last - first == 2) {
       if (first[0].forward != first[1].forward) visit(first[0], first[1]);
       return;
     }
     const bool fronts = std::binary_search(fronts_.begin(), fronts_.end(), Edge{first->a, first->b});
-    std::vector<const FaceSide*> turn = around(first, last), open;
+    std::vector<const rfs_mesh::EdgeFace*> turn = around(first, last), open;
     // Going round, the inside begins at a face that runs backward and ends at one that runs forward. Twice
     // round, because it may begin anywhere.
     const std::size_t count = turn.size();
@@ -90,12 +91,13 @@ class Parting {
   }
 
   /// The faces at an edge by the angle at which they stand off it.
-  std::vector<const FaceSide*> around(const FaceSide* first, const FaceSide* last) const {
+  std::vector<const rfs_mesh::EdgeFace*> around(const rfs_mesh::EdgeFace* first,
+                                                const rfs_mesh::EdgeFace* last) const {
     const auto& at = mesh_.positions;
     const Eigen::Vector3d axis = (at[first->b] - at[first->a]).normalized(), x = axis.unitOrthogonal(),
                           y = axis.cross(x);
-    std::vector<std::pair<double, const FaceSide*>> turn;
-    for (const FaceSide* s = first; s != last; ++s) {
+    std::vector<std::pair<double, const rfs_mesh::EdgeFace*>> turn;
+    for (const rfs_mesh::EdgeFace* s = first; s != last; ++s) {
       const Face& f = mesh_.faces[s->face];
       const Index c = f[0] != s->a && f[0] != s->b ? f[0] : f[1] != s->a && f[1] != s->b ? f[1] : f[2];
       const Eigen::Vector3d d = at[c] - at[s->a];
@@ -103,7 +105,7 @@ class Parting {
     }
     std::stable_sort(turn.begin(), turn.end(),
                      [](const auto& s, const auto& t) { return s.first < t.first; });
-    std::vector<const FaceSide*> out;
+    std::vector<const rfs_mesh::EdgeFace*> out;
     for (const auto& t : turn) out.push_back(t.second);
     return out;
   }
@@ -112,18 +114,19 @@ class Parting {
   bool turn_crowded(const std::vector<Face>& faces, const std::vector<Index>& copied) {
     const std::size_t n = mesh_.positions.size(), before = fronts_.size();
     const auto was = [&](Index v) { return v < n ? v : copied[v - n]; };
-    for_each_edge(face_sides(faces), [&](const FaceSide* first, const FaceSide* last) {
-      if (last - first < 3) return;
-      const Index a = was(first->a), b = was(first->b);
-      fronts_.push_back({std::min(a, b), std::max(a, b)});
-    });
+    rfs_mesh::for_each_edge(rfs_mesh::edge_faces(faces),
+                            [&](const rfs_mesh::EdgeFace* first, const rfs_mesh::EdgeFace* last) {
+                              if (last - first < 3) return;
+                              const Index a = was(first->a), b = was(first->b);
+                              fronts_.push_back({std::min(a, b), std::max(a, b)});
+                            });
     std::sort(fronts_.begin(), fronts_.end());
     fronts_.erase(std::unique(fronts_.begin(), fronts_.end()), fronts_.end());
     return fronts_.size() > before;
   }
 
   const Mesh& mesh_;
-  std::vector<FaceSide> sides_;
+  std::vector<rfs_mesh::EdgeFace> sides_;
   std::vector<Edge> fronts_;  ///< ascending: crowded edges whose faces stay together front to front
 };
 

@@ -1,6 +1,7 @@
 #include "pipeline/surface/topology.h"
 
-#include "pipeline/surface/face_sides.h"
+#include "base/groups.h"
+#include "rfs_mesh/edge_faces.h"
 
 namespace rfsmooth::pipeline {
 
@@ -9,8 +10,8 @@ using rfsmooth::Face;
 Topology topology(std::size_t n, const std::vector<Face>& faces) {
   Topology found;
   found.faces = faces.size();
-  const std::vector<FaceSide> sides = face_sides(faces);
-  Groups pieces(n), rims(n);
+  const std::vector<rfs_mesh::EdgeFace> sides = rfs_mesh::edge_faces(faces);
+  Groups<Index> pieces(n), rims(n);
   std::vector<char> used(n, 0), on_rim(n, 0);
   for (const Face& f : faces) {
     for (const Index v : f) used[v] = 1;
@@ -18,8 +19,8 @@ Topology topology(std::size_t n, const std::vector<Face>& faces) {
     pieces.join(f[1], f[2]);
   }
   // Two corners of a vertex belong to one fan if their faces share an edge at it.
-  Groups fans(3 * faces.size());
-  for_each_edge(sides, [&](const FaceSide* first, const FaceSide* last) {
+  Groups<Index> fans(3 * faces.size());
+  rfs_mesh::for_each_edge(sides, [&](const rfs_mesh::EdgeFace* first, const rfs_mesh::EdgeFace* last) {
     ++found.edges;
     const auto count = last - first;
     if (count == 1) {
@@ -31,9 +32,9 @@ Topology topology(std::size_t n, const std::vector<Face>& faces) {
     } else if (first->forward == first[1].forward) {
       ++found.disagreeing_edges;
     }
-    for (const FaceSide* s = first + 1; s < last; ++s)
+    for (const rfs_mesh::EdgeFace* s = first + 1; s < last; ++s)
       for (const Index v : {s->a, s->b})
-        fans.join(corner_of(faces, first->face, v), corner_of(faces, s->face, v));
+        fans.join(rfs_mesh::corner_of(faces, first->face, v), rfs_mesh::corner_of(faces, s->face, v));
   });
   std::vector<Index> fan_count(n, 0);
   for (std::size_t f = 0; f < faces.size(); ++f)

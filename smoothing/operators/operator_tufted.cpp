@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 
 #include "base/parallel.h"
+#include "rfs_mesh/edge_faces.h"
 #include "smoothing/operators/operator.h"
 
 namespace rfsmooth::smoothing {
@@ -102,42 +103,34 @@ class Cover {
   /// Around every edge the faces are sorted by angle; the side of each that looks at the next is glued to the
   /// side of the next that looks back.
   void glue(const Mesh& mesh) {
-    struct Incidence {
-      Edge edge;
-      double angle = 0;
-      Side up, down;  ///< the copies whose side runs from edge[0] to edge[1], and back
-    };
-    std::vector<Incidence> all;
-    for (Index f = 0; f < mesh.faces.size(); ++f)
-      for (int s = 0; s < 3; ++s) {
-        const Index a = corner(2 * f, s), b = corner(2 * f, s + 1);
-        const Side front{2 * f, s}, back{2 * f + 1, 2 - s};
-        all.push_back({{std::min(a, b), std::max(a, b)}, 0, a < b ? front : back, a < b ? back : front});
-      }
-    const auto by_face = [](const Incidence& x, const Incidence& y) {
-      return x.edge != y.edge ? x.edge < y.edge : x.up.triangle < y.up.triangle;
-    };
-    std::sort(all.begin(), all.end(), by_face);
-    for (std::size_t first = 0; first < all.size();) {
-      std::size_t end = first;
-      while (end < all.size() && all[end].edge == all[first].edge) ++end;
-      if (end - first > 2) sort_by_angle(mesh, &all[first], &all[0] + end);
-      for (std::size_t k = first; k < end; ++k) join(all[k].up, all[k + 1 < end ? k + 1 : first].down);
-      first = end;
-    }
+    using rfs_mesh::EdgeFace;
+    std::vector<EdgeFace> all = rfs_mesh::edge_faces(mesh.faces);
+    rfs_mesh::for_each_edge(all, [&](const EdgeFace* begin, const EdgeFace* end) {
+      EdgeFace* const first = all.data() + (begin - all.data());
+      const std::ptrdiff_t count = end - begin;
+      if (count > 2) sort_by_angle(mesh, first, first + count);
+      for (std::ptrdiff_t k = 0; k < count; ++k) join(up(first[k]), down(first[(k + 1) % count]));
+    });
   }
 
-  template <class Incidence>
-  void sort_by_angle(const Mesh& mesh, Incidence* first, Incidence* end) const {
-    const Vector3d from = mesh.positions[first->edge[0]];
-    const Vector3d axis = (mesh.positions[first->edge[1]] - from).normalized();
+  /// The copy of the face whose side runs from a to b, and the one whose side runs back.
+  static Side up(const rfs_mesh::EdgeFace& e) { return copy(e, e.forward); }
+  static Side down(const rfs_mesh::EdgeFace& e) { return copy(e, !e.forward); }
+  static Side copy(const rfs_mesh::EdgeFace& e, bool front) {
+    return front ? Side{2 * e.face, int(e.corner)} : Side{2 * e.face + 1, 2 - int(e.corner)};
+  }
+
+  void sort_by_angle(const Mesh& mesh, rfs_mesh::EdgeFace* first, rfs_mesh::EdgeFace* end) const {
+    const Vector3d from = mesh.positions[first->a];
+    const Vector3d axis = (mesh.positions[first->b] - from).normalized();
     const Vector3d x = axis.unitOrthogonal(), y = axis.cross(x);
-    for (Incidence* i = first; i != end; ++i) {
-      const Vector3d out = mesh.positions[corner(i->up.triangle, i->up.side + 2)] - from;
-      i->angle = std::atan2(y.dot(out), x.dot(out));
-    }
-    std::sort(first, end, [](const Incidence& a, const Incidence& b) {
-      return a.angle != b.angle ? a.angle < b.angle : a.up.triangle < b.up.triangle;
+    const auto angle = [&](const rfs_mesh::EdgeFace& e) {
+      const Vector3d out = mesh.positions[mesh.faces[e.face][(e.corner + 2) % 3]] - from;
+      return std::atan2(y.dot(out), x.dot(out));
+    };
+    std::sort(first, end, [&](const rfs_mesh::EdgeFace& p, const rfs_mesh::EdgeFace& q) {
+      const double at_p = angle(p), at_q = angle(q);
+      return at_p != at_q ? at_p < at_q : p.face < q.face;
     });
   }
 

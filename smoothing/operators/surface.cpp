@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <tuple>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
@@ -11,6 +10,7 @@
 #include <rfsmooth/result.h>
 
 #include "base/parallel.h"
+#include "rfs_mesh/edge_faces.h"
 #include "rfs_mesh/measure.h"
 
 namespace rfsmooth::smoothing {
@@ -149,12 +149,6 @@ double angle_deficit(const Mesh& mesh, const Adjacency& vertex_faces, Index i) {
 
 namespace {
 
-/// One side of a face: the edge low-high, and whether the face runs along it upward.
-struct EdgeSide {
-  Index low, high, face;
-  bool upward;
-};
-
 /// What is wrong at a place of a mesh that is not closed, manifold at its edges and orientable.
 enum class Flaw { rim, crowded, one_sided };
 
@@ -164,38 +158,25 @@ enum class Flaw { rim, crowded, one_sided };
 template <class Refuse>
 std::vector<Face> oriented_faces(const Mesh& mesh, Refuse&& refuse) {
   std::vector<Face> faces = mesh.faces;
-  std::vector<EdgeSide> sides;
-  sides.reserve(3 * faces.size());
-  for (Index f = 0; f < faces.size(); ++f)
-    for (int k = 0; k < 3; ++k) {
-      const Index a = faces[f][k], b = faces[f][(k + 1) % 3];
-      sides.push_back({std::min(a, b), std::max(a, b), f, a < b});
-    }
-  std::sort(sides.begin(), sides.end(), [](const EdgeSide& x, const EdgeSide& y) {
-    return std::tie(x.low, x.high, x.face) < std::tie(y.low, y.high, y.face);
-  });
   struct Link {
     Index face;
     bool same;  ///< both run along the edge the same way, so one must turn
   };
   std::vector<std::array<Link, 3>> links(faces.size());
   std::vector<int> count(faces.size(), 0);
-  for (std::size_t s = 0; s < sides.size();) {
-    const EdgeSide& one = sides[s];
-    std::size_t end = s + 1;
-    while (end < sides.size() && sides[end].low == one.low && sides[end].high == one.high) ++end;
-    if (end - s == 2) {
-      const EdgeSide& two = sides[s + 1];
-      const bool same = one.upward == two.upward;
+  using rfs_mesh::EdgeFace;
+  rfs_mesh::for_each_edge(rfs_mesh::edge_faces(faces), [&](const EdgeFace* first, const EdgeFace* last) {
+    const EdgeFace &one = first[0], &two = last[-1];
+    if (last - first == 2) {
+      const bool same = one.forward == two.forward;
       links[one.face][count[one.face]++] = {two.face, same};
       links[two.face][count[two.face]++] = {one.face, same};
-    } else if (end - s > 2) {
-      refuse(Flaw::crowded, fmt::format("the edge {}-{} has more than two faces", one.low, one.high));
+    } else if (last - first > 2) {
+      refuse(Flaw::crowded, fmt::format("the edge {}-{} has more than two faces", one.a, one.b));
     } else {
-      refuse(Flaw::rim, fmt::format("the edge {}-{} has only one face", one.low, one.high));
+      refuse(Flaw::rim, fmt::format("the edge {}-{} has only one face", one.a, one.b));
     }
-    s = end;
-  }
+  });
   std::vector<signed char> turn(faces.size(), -1);  // -1 unseen, 0 as it is, 1 turned
   std::vector<Index> part;
   for (Index seed = 0; seed < faces.size(); ++seed) {

@@ -6,10 +6,11 @@
 
 #include <rfsmooth/cgal/advancing_front.h>
 
+#include "base/groups.h"
 #include "pipeline/adapters/cgal/front_types.h"
 #include "pipeline/adapters/cgal/solid.h"
-#include "pipeline/surface/face_sides.h"
 #include "pipeline/surface/pinches.h"
+#include "rfs_mesh/edge_faces.h"
 
 namespace rfsmooth::cgal {
 
@@ -77,7 +78,7 @@ void drop_long(std::vector<FrontFace>& front, const Positions& points, double lo
 /// Turns each piece of the front to the side of the normals; without normals, so that the least of its faces
 /// (by sorted corners) has its corners ascending: CGAL's side depends on where its nodes lie in memory.
 void turn(std::vector<FrontFace>& front, const Positions& points, const Positions& normals) {
-  pipeline::Groups pieces(points.size());
+  pipeline::Groups<Index> pieces(points.size());
   for (const FrontFace& f : front) {
     pieces.join(f.corners[0], f.corners[1]);
     pieces.join(f.corners[1], f.corners[2]);
@@ -111,16 +112,17 @@ double least_invented(const std::vector<FrontFace>& front, const Positions& poin
     whole += 0.5 * (points[b] - points[a]).cross(points[c] - points[a]).norm();
     faces.push_back(f.corners);
   }
-  pipeline::Groups rims(points.size());
-  std::vector<pipeline::FaceSide> sides;
-  pipeline::for_each_edge(pipeline::face_sides(faces),
-                          [&](const pipeline::FaceSide* first, const pipeline::FaceSide* last) {
-                            if (last - first != 1) return;
-                            rims.join(first->a, first->b);
-                            sides.push_back(*first);
-                          });
+  pipeline::Groups<Index> rims(points.size());
+  std::vector<pipeline::rfs_mesh::EdgeFace> sides;
+  pipeline::for_each_edge(
+      pipeline::rfs_mesh::edge_faces(faces),
+      [&](const pipeline::rfs_mesh::EdgeFace* first, const pipeline::rfs_mesh::EdgeFace* last) {
+        if (last - first != 1) return;
+        rims.join(first->a, first->b);
+        sides.push_back(*first);
+      });
   Positions area(points.size(), Eigen::Vector3d::Zero());
-  for (const pipeline::FaceSide& s : sides)
+  for (const pipeline::rfs_mesh::EdgeFace& s : sides)
     area[rims.of(s.a)] += (s.forward ? 0.5 : -0.5) * points[s.a].cross(points[s.b]);
   double sum = 0;
   for (const Eigen::Vector3d& a : area) sum += a.norm();

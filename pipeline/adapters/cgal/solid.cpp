@@ -10,7 +10,8 @@
 #include <boost/graph/adjacency_list.hpp>
 #include <boost/graph/boykov_kolmogorov_max_flow.hpp>
 
-#include "pipeline/surface/face_sides.h"
+#include "base/groups.h"
+#include "rfs_mesh/edge_faces.h"
 
 namespace rfsmooth::cgal {
 
@@ -180,7 +181,7 @@ class Builder {
       if (longest_square(f) > longest * longest) far.push_back(f);
     });
     if (all > 0) solid.disagreeing /= all;
-    pipeline::Groups gaps(points_.size());
+    pipeline::Groups<Index> gaps(points_.size());
     for (const Face& f : far) {
       gaps.join(f[0], f[1]);
       gaps.join(f[1], f[2]);
