@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -14,15 +13,19 @@ std::optional<Error> check_range(const OptionInfo& info, double value) {
                             : below        ? fmt::format("at least {}", info.min)
                             : above        ? fmt::format("at most {}", info.max)
                                            : std::string("a number");
-  return Error{ErrorCode::usage, fmt::format("--{} is {}; it must be {}", info.name, value, range)};
+  return Error{ErrorCode::usage, fmt::format("`{}` is {}; it must be {}", info.name, value, range)};
 }
 
-std::optional<Error> check_choice(const OptionInfo& info, const std::string& value) {
-  if (info.choices.empty() ||
-      std::find(info.choices.begin(), info.choices.end(), value) != info.choices.end())
-    return std::nullopt;
-  return Error{ErrorCode::usage, fmt::format("--{} is '{}'; it must be one of: {}", info.name, value,
-                                             fmt::join(info.choices, ", "))};
+std::optional<Error> check_choice(const OptionInfo& info, std::size_t value) {
+  if (value < info.choices.size()) return std::nullopt;
+  return Error{ErrorCode::usage,
+               fmt::format("`{}` must be one of: {}", info.name, fmt::join(info.choices, ", "))};
+}
+
+std::optional<Error> check_direction(const OptionInfo& info, const Eigen::Vector3d& value) {
+  if (value.allFinite() && value.norm() > 0) return std::nullopt;
+  return Error{ErrorCode::usage, fmt::format("`{}` is {},{},{}; it must be finite and not all zero",
+                                             info.name, value.x(), value.y(), value.z())};
 }
 
 }  // namespace rfsmooth::detail

@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <stdexcept>
+#include <variant>
 
 #include <fmt/format.h>
 
@@ -14,6 +16,7 @@
 #include "rfs_mesh/connect/connect.h"
 #include "rfs_mesh/connect/edge_swap.h"
 #include "rfs_mesh/points.h"
+#include "smoothing/automatic/flow_auto.h"
 
 namespace rfsmooth {
 
@@ -21,39 +24,54 @@ using namespace pipeline;
 
 namespace {
 
-/// Smooths the mesh, alternating steps and swaps.
-void alternate(Flow& flow, Mesh& mesh, const DenoiseOptions& options, DenoiseReport& report,
-               const Context& context) {
-  const int steps = *options.flow.iterations;
-  // The positions after the last step are the result: connectivity no longer matters.
+/// Takes over what the automatic smoother measured and chose.
+void enter(const AutomaticReport& found, DenoiseReport& report) {
+  report.noise = found.noise;
+  report.noise_left = found.left;
+  std::get<AutomaticOptions>(report.effective.flow.flow).noise = Length{found.noise, false};
+  report.stranded = found.stranded;
+  report.guide_strength = found.guide_strength;
+  report.equalized_rms = found.equalized;
+  report.equalized_largest = found.equalized_most;
+}
+
+/// Smooths the mesh, alternating steps and swaps. What is left of it are its positions.
+void alternate(Mesh& mesh, const Constraints& constraints, const DenoiseOptions& options,
+               DenoiseReport& report, const Context& context) {
+  const int steps = iterations(options.flow.flow);
   const bool swap = options.swap && steps > 1;
+  const auto* automatic = std::get_if<AutomaticOptions>(&options.flow.flow);
+  std::optional<AutomaticReport> found;
+  std::unique_ptr<Flow> flow;  // none where the automatic smoother has nothing around it
+  if (automatic == nullptr)
+    flow = value_or_throw(make_flow(mesh, options.flow, context, constraints));
+  else if (options.flow.modifiers.any() || !constraints.strength.empty())
+    flow = value_or_throw(make_flow([&](auto&&...) { return smoothing::make_automatic(*automatic, found); },
+                                    mesh, options.flow, context, constraints));
   for (int step = 0; step < steps; ++step) {
+    const bool last = step + 1 == steps;
     context.report("smooth", double(step) / steps);
     {
       const Stopwatch watch(report.seconds, "smooth");
-      step + 1 < steps ? flow.step(mesh, context) : flow.last_step(mesh, context);
+      if (flow)
+        flow->step(mesh, context);
+      else
+        found = smooth_automatically(mesh, *automatic, context,
+                                     last ? smoothing::Connectivity::used_up : smoothing::Connectivity::kept);
     }
-    if (!swap || step + 1 == steps) continue;
+    if (!swap || last) continue;
     const Stopwatch watch(report.seconds, "swap");
     const std::size_t swaps = rfs_mesh::swap_edges(mesh, options.swaps, context);
     report.swaps += swaps;
-    if (swaps > 0) flow.connectivity_changed(mesh, context);
+    if (swaps > 0 && flow) flow->connectivity_changed(mesh, context);
   }
   context.report("smooth", 1);
-  if (const auto chosen = flow.automatic()) {
-    report.noise = chosen->noise;
-    report.noise_left = chosen->left;
-    report.effective.flow.noise = Length{chosen->noise, false};
-    report.stranded = chosen->stranded;
-    report.guide_strength = chosen->guide_strength;
-    report.equalized_rms = chosen->equalized;
-    report.equalized_largest = chosen->equalized_most;
-  }
+  if (found) enter(*found, report);
 }
 
-/// The median edge length around each vertex: as far as it may move. A noisy point is at least as far from
-/// its neighbours as from the surface, so this does not stop a flow from taking noise away; it stops a vertex
-/// beside a hole or a stray, whose ring is lopsided, from being dragged out of its neighbourhood.
+/// The median edge length around each vertex: as far as a flow may move it. A noisy point is at least as far
+/// from its neighbours as from the surface, so this does not stop a flow from taking noise away; it stops a
+/// vertex beside a hole or a stray, whose ring is lopsided, from being dragged out of its neighbourhood.
 std::vector<double> reaches(const Mesh& mesh, const Context& context) {
   std::vector<double> reach(mesh.positions.size(), 0);
   for_blocks(context, reach.size(), 4096, [&](std::size_t begin, std::size_t end) {
@@ -75,7 +93,7 @@ void check_finite(const Positions& points, const DenoiseOptions& options, const 
       throw Failure(
           {ErrorCode::usage, fmt::format("the flow '{}' diverges with these options; smaller steps or "
                                          "fewer iterations are needed",
-                                         options.flow.flow)});
+                                         name_of(options.flow.flow))});
   });
 }
 
@@ -149,7 +167,8 @@ DenoiseReport run(double* xyz, std::size_t n, const DenoiseOptions& options, con
     cloud = value_or_throw(rfs_mesh::make_working_cloud(xyz, n, context));
     report.finite = cloud.finite();
     report.distinct = cloud.points.size();
-    if (*options.flow.preserve == "height-field") {  // measured from the caller's own plane z = 0
+    if (options.flow.modifiers.preserve ==
+        Preserve::height_field) {  // measured from the caller's own plane z = 0
       for (Eigen::Vector3d& p : cloud.points) p.z() += cloud.origin.z();
       cloud.origin.z() = 0;
     }
@@ -173,7 +192,7 @@ DenoiseReport run(double* xyz, std::size_t n, const DenoiseOptions& options, con
     context.report("neighbours", 0);
     near = index->nearest(connect.neighbours, context);
   }
-  if (options.outliers != "smooth") {
+  if (options.outliers != Outliers::smooth) {
     const Stopwatch watch(report.seconds, "outliers");
     const std::vector<char> outlier = find_outliers(*index, near, context);
     if (std::find(outlier.begin(), outlier.end(), 1) != outlier.end()) {
@@ -197,10 +216,9 @@ DenoiseReport run(double* xyz, std::size_t n, const DenoiseOptions& options, con
   report.edges = mesh.edge_count();
 
   report.noise_left = report.noise;
-  const auto flow = value_or_throw(rfsmooth::make_flow(
-      mesh, options.flow, context, {{}, working_strengths(strength, cloud, mesh.positions.size())}));
-  const std::vector<double> reach = flow->limits_moves() ? std::vector<double>() : reaches(mesh, context);
-  alternate(*flow, mesh, options, report, context);
+  std::vector<double> reach;  // the automatic smoother keeps to its own
+  if (!std::holds_alternative<AutomaticOptions>(options.flow.flow)) reach = reaches(mesh, context);
+  alternate(mesh, {{}, working_strengths(strength, cloud, mesh.positions.size())}, options, report, context);
   check_finite(mesh.positions, options, context);
   context.check_stop();
   commit(xyz, cloud, mesh.positions, reach, report);
@@ -208,16 +226,16 @@ DenoiseReport run(double* xyz, std::size_t n, const DenoiseOptions& options, con
 }
 
 /// \throw Failure for what needs a surface without the holes that a rough mesh has between its umbrellas.
-void refuse_for_clouds(const FlowOptions& flow) {
-  if (*flow.boundary != "free")
+void refuse_for_clouds(const Modifiers& modifiers) {
+  if (modifiers.boundary != Boundary::free)
     throw Failure(
         {ErrorCode::usage,
-         "--boundary is for meshes: in the rough mesh of a cloud most edges with one face are holes "
-         "between umbrellas, not the rim of the surface; use smooth-mesh, or --strength-field to "
+         "`boundary` is for meshes: in the rough mesh of a cloud most edges with one face are holes "
+         "between umbrellas, not the rim of the surface; use smooth-mesh, or `strength-field` to "
          "hold the points of a rim"});
-  if (*flow.preserve == "volume")
+  if (modifiers.preserve == Preserve::volume)
     throw Failure({ErrorCode::usage,
-                   "--preserve volume is for closed meshes: the rough mesh of a cloud has holes between its "
+                   "`preserve` volume is for closed meshes: the rough mesh of a cloud has holes between its "
                    "umbrellas and encloses nothing; use smooth-mesh, or a flow that keeps size (auto, hc)"});
 }
 
@@ -231,11 +249,10 @@ Result<DenoiseReport> denoise(double* xyz, std::size_t n, const DenoiseOptions& 
     if (!(s >= 0 && s <= 1)) throw std::invalid_argument("a strength is outside [0, 1]");
   return guarded([&] {
     value_or_throw(validate(options));
-    DenoiseOptions effective = options;
-    effective.flow = value_or_throw(rfsmooth::complete(options.flow));
-    refuse_for_clouds(effective.flow);
+    value_or_throw(validate(options.flow));
+    refuse_for_clouds(options.flow.modifiers);
     DenoiseReport report;
-    in_arena(context, [&] { report = run(xyz, n, effective, context, strength); });
+    in_arena(context, [&] { report = run(xyz, n, options, context, strength); });
     return report;
   });
 }

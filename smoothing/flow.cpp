@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <numeric>
 
 #include <fmt/format.h>
 
@@ -14,111 +13,64 @@
 #include "smoothing/partners.h"
 #include "smoothing/remesh/reorder.h"
 
-namespace rfsmooth::smoothing {
-#define RFSMOOTH_FLOW(name) FlowEntry flow_##name();
-#include "smoothing/flows/flows.inc"
-#undef RFSMOOTH_FLOW
-}  // namespace rfsmooth::smoothing
-
 namespace rfsmooth {
 
 using namespace smoothing;
 
-const std::vector<FlowEntry>& flows() {
-  static const std::vector<FlowEntry> all = {
-#define RFSMOOTH_FLOW(name) flow_##name(),
-#include "smoothing/flows/flows.inc"
-#undef RFSMOOTH_FLOW
-  };
-  return all;
-}
-
 namespace {
 
-/// Levenshtein distance, for "did you mean".
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0]++;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t up = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, diagonal + (a[i - 1] == b[j - 1] ? 0 : 1)});
-      diagonal = up;
-    }
-  }
-  return row.back();
+template <class... Options>
+std::vector<AnyFlow> one_of_each(const std::variant<Options...>*) {
+  return {Options{}...};
 }
 
-/// The addresses of the optional fields in the table's order, to walk two structs side by side.
-struct Fields {
-  std::vector<const void*> at;
-  template <class T>
-  void operator()(const OptionInfo&, const std::optional<T>& value) {
-    at.push_back(&value);
-  }
-  template <class T>
-  void operator()(const OptionInfo&, const T&) {}
-};
+/// The length of an explicit flow's step or the time of an implicit one's; 1 for flows that have neither.
+template <class Options>
+auto step_length(const Options& options, int) -> decltype(options.lambda) {
+  return options.lambda;
+}
+template <class Options>
+auto step_length(const Options& options, long) -> decltype(options.dt) {
+  return options.dt;
+}
+template <class Options>
+double step_length(const Options&, ...) {
+  return 1;
+}
 
-struct FillEmpty {
-  const FlowEntry& entry;
-  std::vector<const void*> defaults;
-  bool checking = true;
-  std::size_t next = 0;
-  template <class T>
-  void operator()(const OptionInfo& info, std::optional<T>& value) {
-    const auto& standard = *static_cast<const std::optional<T>*>(defaults[next++]);
-    const auto& used = entry.parameters;
-    const auto& any = modifiers();
-    if (checking && value && std::find(used.begin(), used.end(), info.name) == used.end() &&
-        std::find(any.begin(), any.end(), info.name) == any.end())
-      throw Failure({ErrorCode::usage, fmt::format("--{} has no meaning for the flow '{}', which uses: {}",
-                                                   info.name, entry.name, fmt::join(used, ", "))});
-    if (!value) value = standard;
-  }
-  template <class T>
-  void operator()(const OptionInfo&, T&) {}
-};
-
-FlowOptions modifier_defaults() {
-  FlowOptions o;
-  o.push_back = false;
-  o.push_alpha = 0;
-  o.push_beta = 0.6;  // HC's own defaults
-  o.threshold = "none";
-  o.threshold_value = 0.1;
-  o.threshold_every = 5;
-  o.preserve = "none";
-  o.boundary = "free";
-  return o;
+/// Whether the order of the vertices matters.
+template <class Options>
+auto is_sequential(const Options& options, int) -> decltype(options.update == Update::sequential) {
+  return options.update == Update::sequential;
+}
+template <class Options>
+bool is_sequential(const Options&, ...) {
+  return false;
 }
 
 /// The flow around which the invariant is kept, if one is asked for.
-std::unique_ptr<Flow> preserving(std::unique_ptr<Flow> flow, const Mesh& mesh, const FlowOptions& o,
+std::unique_ptr<Flow> preserving(std::unique_ptr<Flow> flow, const Mesh& mesh, Preserve invariant,
                                  const Constraints& constraints, const Context& context) {
-  if (*o.preserve == "none") return flow;
-  const Invariant invariant = *o.preserve == "volume" ? Invariant::volume
-                              : *o.preserve == "area" ? Invariant::area
-                                                      : Invariant::height_field;
+  if (invariant == Preserve::none) return flow;
   return make_preserving(std::move(flow), mesh, invariant, AllowedMoves(constraints, mesh.positions.size()),
                          context);
 }
 
 /// The flow with its modifiers but the invariant, innermost first: constraints, push-back, threshold.
-std::unique_ptr<Flow> compose(const FlowEntry& entry, const Mesh& mesh, const FlowOptions& o,
+std::unique_ptr<Flow> compose(const FlowMaker& make, const Mesh& mesh, const FlowOptions& options,
                               const Constraints& constraints, const Context& context) {
+  const Modifiers& m = options.modifiers;
   AllowedMoves allowed(constraints, mesh.positions.size());
-  std::unique_ptr<Flow> flow = entry.make(mesh, o, constraints, context);
+  std::unique_ptr<Flow> flow = make(mesh, constraints);
   const bool constrained = !constraints.hard.empty() || !constraints.strength.empty();
   if (constrained && !flow->applies_constraints()) flow = make_constrained(std::move(flow), allowed);
-  if (*o.push_back) flow = make_pushback(std::move(flow), mesh, *o.push_alpha, *o.push_beta, allowed);
-  if (*o.threshold != "none") {
+  if (m.push_back) flow = make_pushback(std::move(flow), mesh, m.push_alpha, m.push_beta, allowed);
+  if (m.threshold != ThresholdKind::none) {
     ThresholdRule rule;
-    rule.rings = *o.threshold == "two-ring" ? 2 : *o.threshold == "one-ring" ? 1 : 0;
-    rule.constant = o.threshold_value.value_or(0);
-    rule.every = o.threshold_every.value_or(1);
-    rule.lambda = o.lambda ? *o.lambda : o.dt ? *o.dt : 1;
+    rule.rings = m.threshold == ThresholdKind::two_ring ? 2 : m.threshold == ThresholdKind::one_ring ? 1 : 0;
+    rule.constant = m.threshold_value;
+    rule.every = m.threshold_every;
+    rule.lambda = std::visit([](const auto& o) { return step_length(o, 0); }, options.flow);
     if (!(rule.lambda > 0)) rule.lambda = 1;
     flow = make_threshold(std::move(flow), mesh, rule, context);
   }
@@ -127,53 +79,51 @@ std::unique_ptr<Flow> compose(const FlowEntry& entry, const Mesh& mesh, const Fl
 
 }  // namespace
 
-const std::vector<std::string_view>& modifiers() {
-  static const std::vector<std::string_view> all = {"push-back", "push-alpha",      "push-beta",
-                                                    "threshold", "threshold-value", "threshold-every",
-                                                    "preserve",  "boundary"};
+const std::vector<AnyFlow>& flows() {
+  static const std::vector<AnyFlow> all = one_of_each(static_cast<AnyFlow*>(nullptr));
   return all;
 }
 
-Result<const FlowEntry*> find_flow(std::string_view name) {
-  const FlowEntry* nearest = &flows().front();
-  for (const FlowEntry& entry : flows()) {
-    if (entry.name == name) return &entry;
-    if (edit_distance(entry.name, name) < edit_distance(nearest->name, name)) nearest = &entry;
+Result<AnyFlow> find_flow(std::string_view name) {
+  std::vector<std::string_view> names;
+  for (const AnyFlow& flow : flows()) {
+    if (name_of(flow) == name) return flow;
+    names.push_back(name_of(flow));
   }
   return Error{ErrorCode::usage,
-               fmt::format("there is no flow '{}'; did you mean '{}'? `rfsmooth flows` lists them all", name,
-                           nearest->name)};
+               fmt::format("there is no flow '{}'; there are {}", name, fmt::join(names, ", "))};
 }
 
-Result<FlowOptions> complete(const FlowOptions& options) {
+Result<Done> validate(const FlowOptions& options) {
+  if (auto ranges = validate<FlowOptions>(options); !ranges.ok()) return ranges;
+  for (const Partner& p : partners(options))
+    if (!p.on && p.set)
+      return Error{ErrorCode::usage, fmt::format("`{}` has no effect without {}", p.option, p.partner)};
+  return Done{};
+}
+
+Result<std::unique_ptr<Flow>> make_flow(const FlowMaker& make, const Mesh& mesh, const FlowOptions& options,
+                                        const Context& context, const Constraints& constraints) {
   return guarded([&] {
-    const FlowEntry& entry = *value_or_throw(find_flow(options.flow));
     value_or_throw(validate(options));
-    FlowOptions full = options;
-    const FlowOptions standard = modifier_defaults();
-    Fields own, common;
-    FlowOptions::describe(entry.defaults, own);
-    FlowOptions::describe(full, FillEmpty{entry, own.at, true});
-    FlowOptions::describe(standard, common);
-    FlowOptions::describe(full, FillEmpty{entry, common.at, false});
-    settle_partners(options, full);
-    return full;
+    // Along a curve the boundary moves too, so the invariant is restored after that, by all vertices.
+    const Preserve invariant = options.modifiers.preserve;
+    const bool outside = options.modifiers.boundary == Boundary::curve;
+    auto flow =
+        with_boundary_rule(options, mesh, constraints, context, [&](const Mesh& on, const Constraints& c) {
+          auto inner = compose(make, on, options, c, context);
+          return outside ? std::move(inner) : preserving(std::move(inner), on, invariant, c, context);
+        });
+    return outside ? preserving(std::move(flow), mesh, invariant, constraints, context) : std::move(flow);
   });
 }
 
 Result<std::unique_ptr<Flow>> make_flow(const Mesh& mesh, const FlowOptions& options, const Context& context,
                                         const Constraints& constraints) {
-  return guarded([&] {
-    const FlowOptions o = value_or_throw(complete(options));
-    const FlowEntry& entry = *find_flow(o.flow).value();
-    // Along a curve the boundary moves too, so the invariant is restored after that, by all vertices.
-    const bool outside = *o.boundary == "curve";
-    auto flow = with_boundary_rule(o, mesh, constraints, context, [&](const Mesh& on, const Constraints& c) {
-      auto inner = compose(entry, on, o, c, context);
-      return outside ? std::move(inner) : preserving(std::move(inner), on, o, c, context);
-    });
-    return outside ? preserving(std::move(flow), mesh, o, constraints, context) : std::move(flow);
-  });
+  const FlowMaker start = [&](const Mesh& on, const Constraints& c) {
+    return std::visit([&](const auto& flow) { return flow.start(on, c, context); }, options.flow);
+  };
+  return make_flow(start, mesh, options, context, constraints);
 }
 
 namespace {
@@ -182,9 +132,9 @@ FlowReport run(Mesh& mesh, const FlowOptions& options, const Context& context,
                const Constraints& constraints) {
   FlowReport report;
   const auto flow = value_or_throw(make_flow(mesh, options, context, constraints));
-  const int steps = *options.iterations;
+  const int steps = iterations(options.flow);
   for (; report.steps < steps; ++report.steps) {
-    context.report(options.flow, double(report.steps) / steps);
+    context.report(name_of(options.flow), double(report.steps) / steps);
     flow->step(mesh, context);
   }
   report.solver_iterations = flow->solver_iterations();
@@ -213,14 +163,14 @@ Result<FlowReport> smooth(Mesh& mesh, const FlowOptions& options, const Context&
                           const Constraints& constraints) {
   Positions original;
   auto result = guarded([&] {
-    const FlowOptions o = value_or_throw(complete(options));
+    value_or_throw(validate(options));
     original = mesh.positions;
     FlowReport report;
     in_arena(context, [&] {
-      const bool any_order = !o.update || *o.update == "simultaneous";
-      report = any_order && *o.iterations > 0 && is_scattered(mesh, context)
-                   ? run_reordered(mesh, o, context, constraints)
-                   : run(mesh, o, context, constraints);
+      const bool any_order = !std::visit([](const auto& o) { return is_sequential(o, 0); }, options.flow);
+      report = any_order && iterations(options.flow) > 0 && is_scattered(mesh, context)
+                   ? run_reordered(mesh, options, context, constraints)
+                   : run(mesh, options, context, constraints);
       report.largest_move = reduce_blocks(
           context, original.size(), 0.0,
           [&](std::size_t begin, std::size_t end) {

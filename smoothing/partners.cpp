@@ -1,33 +1,23 @@
 #include "smoothing/partners.h"
 
-#include <fmt/format.h>
-
 namespace rfsmooth::smoothing {
 
-namespace {
-
-/// One option and whether its partner is on.
-template <class T>
-void settle(const std::optional<T>& given, std::optional<T>& full, bool on, const char* name,
-            const char* partner) {
-  if (on) return;
-  if (given) throw Failure({ErrorCode::usage, fmt::format("--{} has no effect without {}", name, partner)});
-  full.reset();
-}
-
-}  // namespace
-
-void settle_partners(const FlowOptions& given, FlowOptions& full) {
-  settle(given.alpha, full.alpha, !full.anchor || *full.anchor != "none", "alpha",
-         "--anchor centre or --anchor original");
-  settle(given.power, full.power, !full.direction || *full.direction == "auto", "power", "--direction auto");
-  settle(given.push_alpha, full.push_alpha, *full.push_back, "push-alpha", "--push-back");
-  settle(given.push_beta, full.push_beta, *full.push_back, "push-beta", "--push-back");
-  settle(given.threshold_value, full.threshold_value, *full.threshold == "constant", "threshold-value",
-         "--threshold constant");
-  settle(given.threshold_every, full.threshold_every,
-         *full.threshold == "one-ring" || *full.threshold == "two-ring", "threshold-every",
-         "--threshold one-ring or --threshold two-ring");
+std::vector<Partner> partners(const FlowOptions& options) {
+  std::vector<Partner> all;
+  if (const auto* o = std::get_if<LaplacianOptions>(&options.flow))
+    all.push_back({"alpha", "`anchor` centre or `anchor` original", o->anchor != Anchor::none,
+                   o->alpha != LaplacianOptions().alpha});
+  if (const auto* o = std::get_if<DirectionalOptions>(&options.flow))
+    all.push_back({"power", "`direction` auto", !o->direction, o->power != DirectionalOptions().power});
+  const Modifiers standard, &m = options.modifiers;
+  all.push_back({"push-alpha", "`push-back`", m.push_back, m.push_alpha != standard.push_alpha});
+  all.push_back({"push-beta", "`push-back`", m.push_back, m.push_beta != standard.push_beta});
+  all.push_back({"threshold-value", "`threshold` constant", m.threshold == ThresholdKind::constant,
+                 m.threshold_value != standard.threshold_value});
+  all.push_back({"threshold-every", "`threshold` one-ring or `threshold` two-ring",
+                 m.threshold == ThresholdKind::one_ring || m.threshold == ThresholdKind::two_ring,
+                 m.threshold_every != standard.threshold_every});
+  return all;
 }
 
 }  // namespace rfsmooth::smoothing

@@ -1,12 +1,22 @@
 /// Options that mean something only beside another one.
 #pragma once
 
-#include <rfsmooth/flow.h>
+#include <string_view>
+#include <vector>
+
+#include <rfsmooth/flow_options.h>
 
 namespace rfsmooth::smoothing {
 
-/// Clears those of the `full` (completed) options whose partner is not on, so that completing them again
-/// gives the same. \throw Failure (usage) naming the partner if one of them was `given`.
-void settle_partners(const FlowOptions& given, FlowOptions& full);
+/// One of them, and what it needs.
+struct Partner {
+  std::string_view option;   ///< its name in the tables
+  std::string_view partner;  ///< what it needs, as messages say it
+  bool on;                   ///< whether that is so
+  bool set;                  ///< whether the option has another value than its default
+};
+
+/// Those of the flow that is chosen and of the modifiers. Thread safe.
+std::vector<Partner> partners(const FlowOptions& options);
 
 }  // namespace rfsmooth::smoothing

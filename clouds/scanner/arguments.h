@@ -42,6 +42,8 @@ void bind(CLI::App& app, Options& options) {
   Options::describe(options, Binder(app));
 }
 
+constexpr int kWrongUsage = 2;  ///< exit code; 1 for all else that fails
+
 /// Reads the arguments. \return the exit code if the program ends here: help was asked for, or a wrong
 /// argument told.
 inline std::optional<int> parse(CLI::App& app, int argc, char** argv) {
@@ -49,7 +51,7 @@ inline std::optional<int> parse(CLI::App& app, int argc, char** argv) {
     app.parse(argc, argv);
     return {};
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : int(ErrorCode::usage);
+    return app.exit(error) == 0 ? 0 : kWrongUsage;
   }
 }
 
@@ -60,7 +62,7 @@ inline int tell_failures(const char* name, int (*run)(int, char**), int argc, ch
     return run(argc, argv);
   } catch (const Failure& failure) {
     std::fprintf(stderr, "%s: %s\n", name, failure.what());
-    return int(failure.error.code);
+    return failure.error.code == ErrorCode::usage ? kWrongUsage : 1;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s: %s\n", name, error.what());
     return 1;

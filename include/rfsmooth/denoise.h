@@ -6,13 +6,14 @@
 /// Vollmer, Mencl, Mueller 1999, section 7: "after each smoothing step" the dihedral angles are improved by
 /// edge swaps, so that the rough mesh and the smooth positions find each other.
 ///
-/// Differs from the paper: a point moves at most the median length of its edges in the RFS-mesh, and points
-/// that no face reaches stay where they are, as do outliers (outliers.h), which are not connected at all.
+/// That is how flows run; the default, the automatic smoother, takes one step of its own.
+///
+/// Differs from the paper: points that no face reaches stay where they are, as do outliers (outliers.h),
+/// which are not connected at all; and a point moves only so far: four times the noise around it (more with
+/// a strength above 1), or under a flow, which knows of no noise, the median length of its edges.
 #pragma once
 
 #include <cstddef>
-#include <optional>
-#include <string>
 #include <vector>
 
 #include <rfsmooth/connect.h>
@@ -22,13 +23,15 @@
 
 namespace rfsmooth {
 
+/// What becomes of outliers: left in place, marked, removed, or smoothed like all others. Those found stay
+/// where they are and pull nobody, whichever of the first three it is: the rows of an array stay, and marking
+/// or removing is for the caller, who reads DenoiseReport::outlier. smooth: none are looked for.
+enum class Outliers { keep, mark, remove, smooth };
+
 /// How to denoise: the flow, the swaps between its steps, the rough mesh.
 struct DenoiseOptions {
   FlowOptions flow;
-  /// What to do about outliers. Those found stay where they are and pull nobody, whichever of the first three
-  /// it is: the rows of an array stay, and removing or marking is for the caller, who reads
-  /// DenoiseReport::outlier (the command does). smooth: none are looked for.
-  std::string outliers = "keep";
+  Outliers outliers = Outliers::keep;
   bool swap = true;  ///< alternate each step with a pass of dihedral edge swaps (Vollmer 7)
   ConnectOptions connect;
   SwapOptions swaps;
@@ -36,12 +39,11 @@ struct DenoiseOptions {
   template <class Self, class Visit>
   static void describe(Self& self, Visit&& visit) {
     FlowOptions::describe(self.flow, visit);
-    OptionInfo found{"outliers",
-                     "points with no surface near: left in place and out of the smoothing, marked in a field "
-                     "'outlier', removed, or smoothed like all others",
-                     ""};
-    found.choices = {"keep", "mark", "remove", "smooth"};
-    visit(found, self.outliers);
+    visit(words("outliers",
+                "points with no surface near: left in place and out of the smoothing, marked in a field "
+                "'outlier', removed, or smoothed like all others",
+                {"keep", "mark", "remove", "smooth"}),
+          self.outliers);
     visit(OptionInfo{"swap", "alternate each step with dihedral edge swaps", ""}, self.swap);
     ConnectOptions::describe(self.connect, visit);
     SwapOptions::describe(self.swaps, visit);
@@ -60,12 +62,12 @@ struct DenoiseReport {
   std::vector<char> outlier;  ///< n: which; empty if there are none
   double spacing = 0;     ///< mean distance to the nearest neighbour, world units; 0 with fewer than 2 points
   double noise = 0;       ///< standard deviation along the normal, as measured before; world units
-  double noise_left = 0;  ///< estimate of what is left of it; as before where the flow cannot tell
+  double noise_left = 0;  ///< estimate of what is left of it; as before under flows, which cannot tell
   double equalized_rms = 0;  ///< how far points went along the surface to lie evenly, root mean square, world
                              ///< units; 0 for flows that do not even them out
   double equalized_largest = 0;  ///< the farthest
-  double guide_strength = 0;     ///< of the automatic flow's guide, dimensionless; 0 for other flows
-  std::size_t stranded = 0;      ///< points that the automatic flow's fairing had left beside the surface
+  double guide_strength = 0;     ///< of the automatic smoother's guide, dimensionless; 0 for flows
+  std::size_t stranded = 0;      ///< points that its fairing had left beside the surface
   double largest_move = 0;       ///< world units
   double rms_move = 0;           ///< over the finite rows, world units
   std::size_t faces = 0, edges = 0, sdg_edges = 0, bridges = 0, faceless = 0, swaps = 0;

@@ -1,5 +1,5 @@
 /// One table for every option. An options struct is a plain struct whose `describe` names each field once;
-/// `--help`, the README's tables, the JSON report, `--config` and validation are all made by visiting it.
+/// help texts, the README's tables, reports and validation are all made by visiting it.
 ///
 ///     struct HcOptions {
 ///       double alpha = 0.0;
@@ -9,8 +9,11 @@
 ///       }
 ///     };
 ///
-/// Field types: bool, int, double, std::string, Length, and std::optional of them (empty = "auto": chosen
-/// from the data or by the flow). An option with a fixed set of words lists them in `choices`.
+/// Field types: bool, int, double, std::string, Length, Eigen::Vector3d (a direction of any length but zero),
+/// enumerations, and std::optional of them (empty = chosen from the data). The words of an enumeration are
+/// the `choices`: its values are their indices.
+///
+/// Errors name an option as the table does, between backticks: "`alpha` is 2; it must be between 0 and 1".
 /// Thread safe: no state is kept.
 #pragma once
 
@@ -18,7 +21,11 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
+#include <utility>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include <rfsmooth/result.h>
 
@@ -26,13 +33,20 @@ namespace rfsmooth {
 
 /// What the tables of `describe` say of an option.
 struct OptionInfo {
-  std::string_view name;  ///< long option without the dashes, words joined by '-'
+  std::string_view name;  ///< words joined by '-'
   std::string_view help;  ///< one line: what it means
   std::string_view unit;  ///< "", "steps", "x spacing", "world units or x spacing", ...
   double min = -std::numeric_limits<double>::infinity();  ///< inclusive
   double max = std::numeric_limits<double>::infinity();   ///< inclusive
-  std::vector<std::string_view> choices = {};             ///< for words: the legal ones
+  std::vector<std::string_view> choices = {};             ///< of an enumeration: the word of each value
 };
+
+/// The table's entry of an enumeration.
+inline OptionInfo words(std::string_view name, std::string_view help, std::vector<std::string_view> choices) {
+  OptionInfo info{name, help, ""};
+  info.choices = std::move(choices);
+  return info;
+}
 
 /// A length: absolute in world units ("0.02") or a multiple of the mean spacing ("2x").
 struct Length {
@@ -41,7 +55,7 @@ struct Length {
   double resolve(double spacing) const { return times_spacing ? value * spacing : value; }
 };
 
-/// Checks every field of `options` against its range or choices; call once at a front door.
+/// Checks every field of `options` against its range; call once at a front door.
 /// The error (ErrorCode::usage) names the field, its value and the legal range.
 template <class Options>
 Result<Done> validate(const Options& options);
@@ -49,8 +63,10 @@ Result<Done> validate(const Options& options);
 namespace detail {
 /// What is wrong with the value of that option, if anything.
 std::optional<Error> check_range(const OptionInfo& info, double value);
-/// The same for a name.
-std::optional<Error> check_choice(const OptionInfo& info, const std::string& value);
+/// The same for a value of an enumeration.
+std::optional<Error> check_choice(const OptionInfo& info, std::size_t value);
+/// The same for a direction.
+std::optional<Error> check_direction(const OptionInfo& info, const Eigen::Vector3d& value);
 
 /// Visits an option table and keeps the first thing that is wrong.
 struct Validator {
@@ -62,7 +78,14 @@ struct Validator {
   void operator()(const OptionInfo& info, int value) { note(check_range(info, value)); }
   void operator()(const OptionInfo& info, double value) { note(check_range(info, value)); }
   void operator()(const OptionInfo& info, const Length& value) { note(check_range(info, value.value)); }
-  void operator()(const OptionInfo& info, const std::string& value) { note(check_choice(info, value)); }
+  void operator()(const OptionInfo& info, const Eigen::Vector3d& value) {
+    note(check_direction(info, value));
+  }
+  void operator()(const OptionInfo&, const std::string&) {}
+  template <class Enumeration, std::enable_if_t<std::is_enum_v<Enumeration>, int> = 0>
+  void operator()(const OptionInfo& info, Enumeration value) {
+    note(check_choice(info, std::size_t(value)));
+  }
   template <class T>
   void operator()(const OptionInfo& info, const std::optional<T>& value) {
     if (value) (*this)(info, *value);

@@ -11,16 +11,16 @@
 
 namespace rfsmooth {
 
-/// Why something could not be done. The numbers are the exit codes of the command (README, "Exit codes").
+/// Why something could not be done.
 enum class ErrorCode {
-  internal = 1,          ///< a bug of ours
-  usage = 2,             ///< an option or argument outside its range
-  input_unreadable = 3,  ///< a file that is not what it says it is
-  no_usable_points = 4,  ///< no finite point to work on
-  cannot_write = 5,      ///< the target cannot be created, replaced or completed
-  out_of_memory = 6,     ///< not enough memory, estimated before starting or met on the way
-  not_installed = 127,   ///< a program or library that the work needs is not there
-  cancelled = 130,       ///< the caller asked to stop
+  internal,          ///< a bug of ours
+  usage,             ///< an option or argument outside its range
+  input_unreadable,  ///< a file that is not what it says it is
+  no_usable_points,  ///< no finite point to work on
+  cannot_write,      ///< the target cannot be created, replaced or completed
+  out_of_memory,     ///< not enough memory, estimated before starting or met on the way
+  not_installed,     ///< a program or library that the work needs is not there
+  cancelled,         ///< the caller asked to stop
 };
 
 /// One clear line: what is wrong, where (file, byte or line, point index), and what to do about it.

@@ -7,6 +7,7 @@
 #include <rfsmooth/context.h>
 #include <rfsmooth/denoise.h>
 #include <rfsmooth/flow.h>
+#include <rfsmooth/flow_options.h>
 #include <rfsmooth/mesh.h>
 #include <rfsmooth/normals.h>
 #include <rfsmooth/options.h>

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "pipeline/cli/exit_code.h"
 #include "pipeline/io/io.h"
 
 namespace rfsmooth::cli {
@@ -94,9 +95,9 @@ int run_jobs(const std::vector<Job>& jobs, Console& console,
     const bool reader_left =
         job.output == "-" && error->code == ErrorCode::cannot_write && stdout_reader_is_gone();
     if (!reader_left) console.error(error->message);
-    code = !code || *code == int(error->code) ? int(error->code) : int(ErrorCode::internal);
+    code = !code || *code == exit_code(error->code) ? exit_code(error->code) : exit_code(ErrorCode::internal);
     if (error->code == ErrorCode::cancelled) {
-      code = int(ErrorCode::cancelled);
+      code = exit_code(ErrorCode::cancelled);
       break;
     }
   }

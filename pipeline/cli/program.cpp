@@ -10,9 +10,11 @@
 
 #include "pipeline/cli/console/console.h"
 #include "pipeline/cli/console/stop.h"
+#include "pipeline/cli/exit_code.h"
 #include "pipeline/cli/options/config.h"
 #include "pipeline/cli/options/help.h"
 #include "pipeline/cli/options/parse.h"
+#include "pipeline/cli/options/text_values.h"
 
 namespace rfsmooth::cli {
 
@@ -24,7 +26,7 @@ int close_stdout(int code) {
   const bool failed = std::ferror(stdout) != 0, gone = stdout_reader_is_gone();
   if ((std::fclose(stdout) == 0 && !failed) || code != 0) return code;
   if (!gone) Console({}).error("cannot write to standard output");
-  return int(ErrorCode::cannot_write);
+  return exit_code(ErrorCode::cannot_write);
 }
 
 /// What shows more of the sub-command that was typed, or of all.
@@ -56,6 +58,8 @@ Invocation with_config(const Command& command, Invocation typed) {
     if (typed.arguments.empty() && !output_typed) typed.arguments = std::move(config.arguments);
   }
   assign_all(typed.options);
+  for (const CommandOption& option : options)
+    if (option.finish) option.finish();
   return typed;
 }
 
@@ -66,28 +70,28 @@ int run(int argc, const char* const* argv, const std::vector<Command>& commands)
     if (typed.version) return print(std::string("rfsmooth ") + kVersion + "\n");
     if (typed.short_help || typed.long_help) return print(overview(commands, typed.long_help));
     fmt::print(stderr, "{}", overview(commands, false));
-    return int(ErrorCode::usage);
+    return exit_code(ErrorCode::usage);
   }
   const Command& command = *parsed.command;
   if (typed.short_help || typed.long_help) return print(help_of(command, typed.long_help));
   const int code = command.run(with_config(command, typed));
-  if (code == int(ErrorCode::usage)) fmt::print(stderr, "{}", help_line(argc, argv, commands));
+  if (code == exit_code(ErrorCode::usage)) fmt::print(stderr, "{}", help_line(argc, argv, commands));
   return code;
 }
 
 }  // namespace
 
 int run_program(int argc, const char* const* argv, const std::vector<Command>& commands) {
-  int code = int(ErrorCode::internal);
+  int code = exit_code(ErrorCode::internal);
   try {
     catch_signals();
     code = run(argc, argv, commands);
   } catch (const Failure& failure) {
-    code = int(failure.error.code);
-    Console({}).error(failure.error.message);
+    code = exit_code(failure.error.code);
+    Console({}).error(with_dashes(failure.error.message));
     if (failure.error.code == ErrorCode::usage) fmt::print(stderr, "{}", help_line(argc, argv, commands));
   } catch (const std::bad_alloc&) {
-    code = int(ErrorCode::out_of_memory);
+    code = exit_code(ErrorCode::out_of_memory);
     Console({}).error("not enough memory");
   } catch (const std::exception& bug) {
     if (std::ferror(stdout) != 0)  // fmt::print throws

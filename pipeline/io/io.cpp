@@ -53,7 +53,7 @@ void write(const Cloud& cloud, Format format, const WriteOptions& options, Sink&
     for (const std::string& loss : losses) list += (list.empty() ? "" : ", ") + loss;
     if (!losses.empty())
       throw Failure(
-          {ErrorCode::usage, fmt::format("{} ({}) cannot carry {}; --drop-unsupported leaves that out",
+          {ErrorCode::usage, fmt::format("{} ({}) cannot carry {}; `drop-unsupported` leaves that out",
                                          name_of(format), name_of(encoding), list)});
   }
   if (is_writable_as_is(cloud, format)) return write_as_is(cloud, encoding, sink, context);
@@ -70,7 +70,7 @@ Format target_format(const Cloud& cloud, const std::filesystem::path& path, cons
                                path.string(), other->name)});
   throw Failure({ErrorCode::usage,
                  fmt::format("{}: the extension '{}' stands for no format we write (ply, pcd, xyz, off); "
-                             "choose one with --format",
+                             "choose one with `format`",
                              path.string(), path.extension().string())});
 }
 

@@ -1,23 +1,16 @@
-/// The automatic flow (automatic.h): strength chosen at every point from the data.
+#include "smoothing/automatic/flow_auto.h"
+
 #include <algorithm>
 #include <utility>
-
-#include <rfsmooth/flow.h>
 
 #include "base/parallel.h"
 #include "rfs_mesh/fit/local_surface.h"
 #include "rfs_mesh/noise/noise.h"
-#include "smoothing/automatic/automatic.h"
 #include "smoothing/automatic/equalize.h"
 
 namespace rfsmooth::smoothing {
 
 namespace {
-
-/// Sigma of a point's own neighbourhood: no point moves farther, whatever the figure for the whole cloud
-/// says. Six is the goal, and two measurements of the field differ by a third; 4 costs the development shapes
-/// nothing.
-constexpr double kMostLocalSigma = 4;
 
 /// Where most of the scatter is shape, a little noise cannot be told from detail: better leave a clean cloud
 /// alone. Both numbers from the development shapes, clean and with noise of 0.1 spacings.
@@ -33,88 +26,80 @@ rfs_mesh::NoiseField scaled(rfs_mesh::NoiseField noise, double sigma) {
   return noise;
 }
 
+/// Takes back what a move has beyond kFarthestMove. `local`: the noise around each point times `strength`.
+void limit(const Positions& before, const std::vector<double>& local, double strength, Positions& points,
+           const Context& context) {
+  for_each_index(context, points.size(), [&](std::size_t i) {
+    const double most = kFarthestMove * std::max(1.0, 1 / strength) * local[i];
+    const Eigen::Vector3d move = points[i] - before[i];
+    if (const double length = move.norm(); length > most) points[i] = before[i] + most / length * move;
+  });
+}
+
 class AutomaticFlow : public Flow {
  public:
-  explicit AutomaticFlow(const FlowOptions& options)
-      : noise_(options.noise), strength_(*options.strength), equalize_(*options.equalize) {}
+  AutomaticFlow(const AutomaticOptions& options, std::optional<AutomaticReport>* report)
+      : options_(options), report_(report) {}
 
-  void step(Mesh& mesh, const Context& context) override { advance(mesh, true, context); }
-  void last_step(Mesh& mesh, const Context& context) override {
-    std::vector<Face>().swap(mesh.faces);
-    advance(mesh, false, context);
+  void step(Mesh& mesh, const Context& context) override {
+    const auto report = smooth_automatically(mesh, options_, context);
+    if (report_ != nullptr) *report_ = report;
   }
-
-  bool limits_moves() const override { return true; }
-  std::optional<AutomaticReport> automatic() const override { return report_; }
 
  private:
-  void advance(Mesh& mesh, bool keep_rings, const Context& context) {
-    if (mesh.positions.size() < 2) return;
-    double spacing = 0;
-    rfs_mesh::NoiseField noise;
-    {
-      const rfs_mesh::SpatialIndex index(mesh.positions, context);
-      spacing = rfs_mesh::mean_spacing(index, context);
-      noise = rfs_mesh::measure_noise(index, context);
-    }
-    const double sigma = noise_ ? noise_->resolve(spacing) : measured(noise, spacing);
-    noise = scaled(std::move(noise), strength_ * sigma);
-    report_.emplace();
-    rfs_mesh::NeighborTable near;
-    Positions smooth = automatic_smoothing(mesh, keep_rings, noise, spacing, *report_, near, context);
-    mesh.positions.swap(smooth);
-    const Positions before = std::move(smooth);
-    report_->noise = sigma;
-    if (report_->guide_strength > 0)
-      move_along_surface(before, sigma, spacing, std::move(near), mesh.positions, context);
-    if (strength_ > 0) limit(before, noise.local, mesh.positions, context);
-  }
-
-  /// Evens the points out; or takes back what the guide moved them, so that they move along normals only.
-  void move_along_surface(const Positions& before, double sigma, double spacing, rfs_mesh::NeighborTable near,
-                          Positions& points, const Context& context) {
-    if (equalize_) {
-      const Equalized moved = equalize(points, before, strength_ * sigma, spacing, std::move(near), context);
-      report_->equalized = moved.rms;
-      report_->equalized_most = moved.largest;
-    } else {
-      slide_back(points, before, 1, std::move(near), context);
-    }
-  }
-
-  /// `local`: sigma times strength.
-  void limit(const Positions& before, const std::vector<double>& local, Positions& points,
-             const Context& context) const {
-    for_each_index(context, points.size(), [&](std::size_t i) {
-      const double most = kMostLocalSigma * std::max(1.0, 1 / strength_) * local[i];
-      const Eigen::Vector3d move = points[i] - before[i];
-      if (const double length = move.norm(); length > most) points[i] = before[i] + most / length * move;
-    });
-  }
-
-  std::optional<Length> noise_;
-  double strength_;
-  bool equalize_;
-  std::optional<AutomaticReport> report_;
+  AutomaticOptions options_;
+  std::optional<AutomaticReport>* report_;
 };
-
-std::unique_ptr<Flow> make_auto(const Mesh&, const FlowOptions& options, const Constraints&, const Context&) {
-  return std::make_unique<AutomaticFlow>(options);
-}
 
 }  // namespace
 
-FlowEntry flow_auto() {
-  FlowOptions defaults;
-  defaults.iterations = 1;
-  defaults.strength = 1;
-  defaults.equalize = true;
-  return {"auto",
-          "strength chosen at every point from the measured noise; the default",
-          "Desbrun 2.6, Kobbelt, Stein 1981",
-          {"iterations", "strength", "noise", "equalize"},
-          defaults,
-          make_auto};
+std::optional<AutomaticReport> smooth_automatically(Mesh& mesh, const AutomaticOptions& options,
+                                                    const Context& context, Connectivity connectivity) {
+  if (connectivity == Connectivity::used_up) std::vector<Face>().swap(mesh.faces);
+  if (mesh.positions.size() < 2) return {};
+  double spacing = 0;
+  rfs_mesh::NoiseField noise;
+  {
+    const rfs_mesh::SpatialIndex index(mesh.positions, context);
+    spacing = rfs_mesh::mean_spacing(index, context);
+    noise = rfs_mesh::measure_noise(index, context);
+  }
+  const double sigma = options.noise ? options.noise->resolve(spacing) : measured(noise, spacing);
+  const double used = options.strength * sigma;
+  noise = scaled(std::move(noise), used);
+  AutomaticReport report;
+  rfs_mesh::NeighborTable near;
+  Positions smooth =
+      automatic_smoothing(mesh, connectivity == Connectivity::kept, noise, spacing, report, near, context);
+  mesh.positions.swap(smooth);
+  const Positions before = std::move(smooth);
+  report.noise = sigma;
+  if (report.guide_strength > 0) {
+    if (options.equalize) {
+      const Equalized moved = equalize(mesh.positions, before, used, spacing, std::move(near), context);
+      report.equalized = moved.rms;
+      report.equalized_most = moved.largest;
+    } else {  // back to where the guide took them from, so that they move along normals only
+      slide_back(mesh.positions, before, 1, std::move(near), context);
+    }
+  }
+  if (options.strength > 0) limit(before, noise.local, options.strength, mesh.positions, context);
+  return report;
+}
+
+std::unique_ptr<Flow> make_automatic(const AutomaticOptions& options,
+                                     std::optional<AutomaticReport>& report) {
+  return std::make_unique<AutomaticFlow>(options, &report);
 }
 
 }  // namespace rfsmooth::smoothing
+
+namespace rfsmooth {
+
+using namespace smoothing;
+
+std::unique_ptr<Flow> AutomaticOptions::start(const Mesh&, const Constraints&, const Context&) const {
+  return std::make_unique<AutomaticFlow>(*this, nullptr);
+}
+
+}  // namespace rfsmooth

@@ -24,24 +24,20 @@ class BilaplacianSpeed : public Speed {
   void connectivity_changed(const Mesh&, const Context&) override { source_.connectivity_changed(); }
 
  private:
-  OperatorSource source_{"umbrella", false};
+  OperatorSource source_{OperatorKind::umbrella, false};
   Positions scratch_;
 };
 
-std::unique_ptr<Flow> make_bilaplacian(const Mesh&, const FlowOptions& options, const Constraints&,
-                                       const Context&) {
-  return make_explicit(std::make_unique<BilaplacianSpeed>(), *options.lambda, Update::simultaneous);
-}
-
 }  // namespace
 
-FlowEntry flow_bilaplacian() {
-  FlowOptions defaults;
-  defaults.iterations = 10;
-  defaults.lambda = 0.4;
-  return {"bilaplacian", "descends the thin-plate energy; shrinks little",
-          "Ohtake 2",    {"iterations", "lambda"},
-          defaults,      make_bilaplacian};
+}  // namespace rfsmooth::smoothing
+
+namespace rfsmooth {
+
+using namespace smoothing;
+
+std::unique_ptr<Flow> BilaplacianOptions::start(const Mesh&, const Constraints&, const Context&) const {
+  return make_explicit(std::make_unique<BilaplacianSpeed>(), lambda, Update::simultaneous);
 }
 
-}  // namespace rfsmooth::smoothing
+}  // namespace rfsmooth

@@ -27,7 +27,6 @@
 /// smoothed too, and the log says so. lambda in units of h^2.
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
@@ -43,13 +42,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// How one step is made: conserves the volume to first order, or as the paper prints it.
-enum class Scheme { conserving, printed };
-
 class DirectionalSpeed : public Speed {
  public:
-  DirectionalSpeed(const Mesh& mesh, int power, const Vector3d& direction, Scheme scheme, double lambda,
-                   const Context& context)
+  DirectionalSpeed(const Mesh& mesh, int power, const Vector3d& direction, DirectionalScheme scheme,
+                   double lambda, const Context& context)
       : power_(power), direction_(direction), scheme_(scheme), lambda_(lambda) {
     connectivity_changed(mesh, context);
     warn(context);
@@ -61,10 +57,11 @@ class DirectionalSpeed : public Speed {
     const Vector3d a = choose(mesh, grad, h, context);
     speed.resize(grad.area.size());
     for_each_index(context, speed.size(), [&](std::size_t i) {
-      const Vector3d v = h * (scheme_ == Scheme::printed ? printed(grad, i, a) : conserving(grad, i, a));
+      const Vector3d v =
+          h * (scheme_ == DirectionalScheme::printed ? printed(grad, i, a) : conserving(grad, i, a));
       speed[i] = v.allFinite() ? v : Vector3d(Vector3d::Zero());
     });
-    if (scheme_ == Scheme::conserving) restore_volume(grad, a, h, speed, context);
+    if (scheme_ == DirectionalScheme::conserving) restore_volume(grad, a, h, speed, context);
   }
 
   void connectivity_changed(const Mesh& mesh, const Context& context) override {
@@ -136,7 +133,7 @@ class DirectionalSpeed : public Speed {
   /// The unit direction; zero on shapes too symmetric to have one.
   Vector3d choose(const Mesh& mesh, const Gradients& grad, double h, const Context& context) const {
     if (direction_ != Vector3d::Zero()) return direction_;
-    const bool area = power_ == 0 && scheme_ == Scheme::conserving;
+    const bool area = power_ == 0 && scheme_ == DirectionalScheme::conserving;
     const Positions terms = area ? area_terms(grad, context) : bending_terms(mesh, grad, h, context);
     const Vector3d a =
         sum_over(context, terms.size(), Vector3d(Vector3d::Zero()), [&](std::size_t i) { return terms[i]; });
@@ -165,7 +162,7 @@ class DirectionalSpeed : public Speed {
     for_each_index(context, n, [&](std::size_t i) {
       share[i] = op.mass[i] / (2 * h * h);
       H[i] = -h * Hn[i].dot(grad.volume[i].normalized());
-      if (scheme_ == Scheme::printed) H[i] *= share[i] / std::max(grad.ring[i], share[i]);
+      if (scheme_ == DirectionalScheme::printed) H[i] *= share[i] / std::max(grad.ring[i], share[i]);
       K[i] = angle_deficit(mesh, around_, Index(i)) / share[i];
       field[i] = Vector3d(std::pow(H[i], 2 * power_ - 1), 0, 0);
     });
@@ -173,7 +170,7 @@ class DirectionalSpeed : public Speed {
     for_each_index(context, n, [&](std::size_t i) {
       const double m = power_, H2 = H[i] * H[i];
       const double lap = -2 * h * h * laplacian[i].x();  // the operator is -Lap/2
-      const double inside = scheme_ == Scheme::printed
+      const double inside = scheme_ == DirectionalScheme::printed
                                 ? -std::pow(4 * H2, m) * (6 * m * (2 * H2 - K[i]) + 2 * H2)
                                 : m * H[i] * lap + std::pow(H2, m) * (2 * m * (2 * H2 - K[i]) - 2 * H2);
       const Vector3d t = -inside * share[i] * grad.volume[i].normalized();
@@ -196,7 +193,7 @@ class DirectionalSpeed : public Speed {
 
   int power_;
   Vector3d direction_;
-  Scheme scheme_;
+  DirectionalScheme scheme_;
   double lambda_;
   Unclosed unclosed_;
   std::vector<Face> faces_;
@@ -204,43 +201,19 @@ class DirectionalSpeed : public Speed {
   std::vector<char> interior_;
 };
 
-/// "x,y,z" to a unit vector; empty = zero.
-Vector3d parse_direction(const std::string& text) {
-  if (text == "auto") return Vector3d::Zero();
-  Vector3d d;
-  char rest = 0;
-  if (std::sscanf(text.c_str(), "%lf,%lf,%lf%c", &d.x(), &d.y(), &d.z(), &rest) != 3 || !d.allFinite() ||
-      !(d.norm() > 0))
-    throw Failure({ErrorCode::usage, fmt::format("--direction is '{}'; it must be auto or three numbers "
-                                                 "x,y,z, not all zero",
-                                                 text)});
-  return d.normalized();
-}
-
-std::unique_ptr<Flow> make_directional(const Mesh& mesh, const FlowOptions& options, const Constraints&,
-                                       const Context& context) {
-  const Scheme scheme = *options.scheme == "printed" ? Scheme::printed : Scheme::conserving;
-  return make_explicit(
-      std::make_unique<DirectionalSpeed>(mesh, options.power.value_or(0), parse_direction(*options.direction),
-                                         scheme, *options.lambda, context),
-      *options.lambda, Update::simultaneous);
-}
-
 }  // namespace
 
-FlowEntry flow_directional() {
-  FlowOptions defaults;
-  defaults.iterations = 4;
-  defaults.lambda = 0.05;
-  defaults.power = 0;
-  defaults.direction = "auto";
-  defaults.scheme = "conserving";
-  return {"directional",
-          "curvature flow along one direction; keeps the volume of closed meshes",
-          "Zhao-Xu (3), (33)",
-          {"iterations", "lambda", "power", "direction", "scheme"},
-          defaults,
-          make_directional};
+}  // namespace rfsmooth::smoothing
+
+namespace rfsmooth {
+
+using namespace smoothing;
+
+std::unique_ptr<Flow> DirectionalOptions::start(const Mesh& mesh, const Constraints&,
+                                                const Context& context) const {
+  const Eigen::Vector3d unit = direction ? direction->normalized() : Eigen::Vector3d(Eigen::Vector3d::Zero());
+  return make_explicit(std::make_unique<DirectionalSpeed>(mesh, power, unit, scheme, lambda, context), lambda,
+                       Update::simultaneous);
 }
 
-}  // namespace rfsmooth::smoothing
+}  // namespace rfsmooth

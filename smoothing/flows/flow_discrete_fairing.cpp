@@ -18,14 +18,15 @@ using Eigen::Vector3d;
 
 class DiscreteFairing : public Flow {
  public:
-  DiscreteFairing(const Mesh& mesh, const FlowOptions& options, AllowedMoves allowed, const Context& context)
-      : chart_(*options.chart),
-        dt_(*options.dt),
+  DiscreteFairing(const Mesh& mesh, const DiscreteFairingOptions& options, AllowedMoves allowed,
+                  const Context& context)
+      : chart_(options.chart),
+        dt_(options.dt),
         allowed_(std::move(allowed)),
         first_(mesh.positions),
         differences_(mesh, chart_, context) {
-    solver_.tolerance = *options.tolerance;
-    solver_.linf = *options.norm == "linf";
+    solver_.tolerance = options.tolerance;
+    solver_.linf = options.norm == Norm::linf;
   }
 
   void step(Mesh& mesh, const Context& context) override {
@@ -67,7 +68,7 @@ class DiscreteFairing : public Flow {
   bool applies_constraints() const override { return true; }
 
  private:
-  std::string chart_;
+  Chart chart_;
   double dt_;
   AllowedMoves allowed_;
   Positions first_;
@@ -76,24 +77,18 @@ class DiscreteFairing : public Flow {
   int iterations_ = 0;
 };
 
-std::unique_ptr<Flow> make_discrete_fairing(const Mesh& mesh, const FlowOptions& options,
-                                            const Constraints& constraints, const Context& context) {
-  return std::make_unique<DiscreteFairing>(mesh, options, AllowedMoves(constraints, mesh.positions.size()),
+}  // namespace
+
+}  // namespace rfsmooth::smoothing
+
+namespace rfsmooth {
+
+using namespace smoothing;
+
+std::unique_ptr<Flow> DiscreteFairingOptions::start(const Mesh& mesh, const Constraints& constraints,
+                                                    const Context& context) const {
+  return std::make_unique<DiscreteFairing>(mesh, *this, AllowedMoves(constraints, mesh.positions.size()),
                                            context);
 }
 
-}  // namespace
-
-FlowEntry flow_discrete_fairing() {
-  FlowOptions defaults;
-  defaults.iterations = 1;
-  defaults.dt = 1;
-  defaults.chart = "mixed";
-  defaults.tolerance = 1e-5;
-  defaults.norm = "l2";
-  return {"discrete-fairing", "thin-plate smoothing spline from divided differences in local charts",
-          "Kobbelt 4",        {"iterations", "dt", "chart", "tolerance", "norm"},
-          defaults,           make_discrete_fairing};
-}
-
-}  // namespace rfsmooth::smoothing
+}  // namespace rfsmooth

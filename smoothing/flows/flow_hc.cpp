@@ -53,27 +53,21 @@ class SimultaneousHc : public Flow {
   Positions original_, difference_;
 };
 
-std::unique_ptr<Flow> make_hc(const Mesh& mesh, const FlowOptions& options, const Constraints& constraints,
-                              const Context&) {
-  const Update update = *options.update == "sequential" ? Update::sequential : Update::simultaneous;
-  if (update == Update::simultaneous && constraints.hard.empty() && constraints.strength.empty())
-    return std::make_unique<SimultaneousHc>(mesh, *options.alpha, *options.beta);
-  const AllowedMoves allowed(constraints, mesh.positions.size());
-  return make_pushback(make_explicit(make_umbrella_speed(false), 1, update, allowed), mesh, *options.alpha,
-                       *options.beta, allowed);
-}
-
 }  // namespace
 
-FlowEntry flow_hc() {
-  FlowOptions defaults;
-  defaults.iterations = 10;
-  defaults.alpha = 0;   // ten steps are then as strong as 10 (1 - beta) L^2
-  defaults.beta = 0.6;  // the paper's bound for convergence is 0.5
-  defaults.update = "simultaneous";
-  return {"hc",        "Laplacian steps pushed back by the mean difference; keeps size and shape",
-          "Vollmer 4", {"iterations", "alpha", "beta", "update"},
-          defaults,    make_hc};
+}  // namespace rfsmooth::smoothing
+
+namespace rfsmooth {
+
+using namespace smoothing;
+
+std::unique_ptr<Flow> HcOptions::start(const Mesh& mesh, const Constraints& constraints,
+                                       const Context&) const {
+  if (update == Update::simultaneous && constraints.hard.empty() && constraints.strength.empty())
+    return std::make_unique<SimultaneousHc>(mesh, alpha, beta);
+  const AllowedMoves allowed(constraints, mesh.positions.size());
+  return make_pushback(make_explicit(make_umbrella_speed(false), 1, update, allowed), mesh, alpha, beta,
+                       allowed);
 }
 
-}  // namespace rfsmooth::smoothing
+}  // namespace rfsmooth

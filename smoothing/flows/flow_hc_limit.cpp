@@ -18,10 +18,10 @@ using Eigen::Vector3d;
 
 class HcLimit : public Flow {
  public:
-  HcLimit(const Mesh& mesh, const FlowOptions& options, const Constraints& constraints)
-      : beta_(*options.beta), c_((1 - beta_) / *options.alpha), original_(mesh.positions) {
-    solver_.tolerance = *options.tolerance;
-    solver_.linf = *options.norm == "linf";
+  HcLimit(const Mesh& mesh, const HcLimitOptions& options, const Constraints& constraints)
+      : beta_(options.beta), c_((1 - beta_) / options.alpha), original_(mesh.positions) {
+    solver_.tolerance = options.tolerance;
+    solver_.linf = options.norm == Norm::linf;
     fixed_.assign(mesh.positions.size(), 0);
     for (const HardConstraint& constraint : constraints.hard) fixed_.at(constraint.vertex) = 1;
   }
@@ -96,10 +96,18 @@ class HcLimit : public Flow {
   int iterations_ = 0;
 };
 
-std::unique_ptr<Flow> make_hc_limit(const Mesh& mesh, const FlowOptions& options,
-                                    const Constraints& constraints, const Context&) {
-  if (!(*options.alpha > 0 && *options.beta > 0.5))
-    throw Failure({ErrorCode::usage, "HC has a limit for --alpha above 0 and --beta above 0.5 only"});
+}  // namespace
+
+}  // namespace rfsmooth::smoothing
+
+namespace rfsmooth {
+
+using namespace smoothing;
+
+std::unique_ptr<Flow> HcLimitOptions::start(const Mesh& mesh, const Constraints& constraints,
+                                            const Context&) const {
+  if (!(alpha > 0 && beta > 0.5))
+    throw Failure({ErrorCode::usage, "HC has a limit for `alpha` above 0 and `beta` above 0.5 only"});
   for (const HardConstraint& constraint : constraints.hard)
     if (constraint.kind != HardConstraint::Kind::fixed)
       throw Failure({ErrorCode::usage, "hc-limit takes fixed vertices only; use hc, or implicit"});
@@ -111,24 +119,7 @@ std::unique_ptr<Flow> make_hc_limit(const Mesh& mesh, const FlowOptions& options
     if (constraints.strength[i] == 0)
       fixed.hard.push_back({i, HardConstraint::Kind::fixed, Vector3d::Zero()});
   fixed.strength.clear();
-  return std::make_unique<HcLimit>(mesh, options, fixed);
+  return std::make_unique<HcLimit>(mesh, *this, fixed);
 }
 
-}  // namespace
-
-FlowEntry flow_hc_limit() {
-  FlowOptions defaults;
-  defaults.iterations = 1;
-  defaults.alpha = 0.04;  // c = 10
-  defaults.beta = 0.6;
-  defaults.tolerance = 1e-5;
-  defaults.norm = "l2";
-  return {"hc-limit",
-          "what HC converges to, in one solve",
-          "Vollmer 4, theorem 5.2; our derivation",
-          {"iterations", "alpha", "beta", "tolerance", "norm"},
-          defaults,
-          make_hc_limit};
-}
-
-}  // namespace rfsmooth::smoothing
+}  // namespace rfsmooth

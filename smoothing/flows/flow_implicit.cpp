@@ -19,13 +19,13 @@ namespace {
 
 class ImplicitFlow : public Flow {
  public:
-  ImplicitFlow(const FlowOptions& options, AllowedMoves allowed)
-      : source_(*options.op, *options.keep_weights), allowed_(std::move(allowed)) {
-    const double dt = *options.dt, m = *options.mixture;
-    a_[*options.order - 1] = dt * (1 - m);
+  ImplicitFlow(const ImplicitOptions& options, AllowedMoves allowed)
+      : source_(options.op, options.keep_weights), allowed_(std::move(allowed)) {
+    const double dt = options.dt, m = options.mixture;
+    a_[options.order - 1] = dt * (1 - m);
     a_[0] += dt * m;
-    solver_.tolerance = *options.tolerance;
-    solver_.linf = *options.norm == "linf";
+    solver_.tolerance = options.tolerance;
+    solver_.linf = options.norm == Norm::linf;
   }
 
   void step(Mesh& mesh, const Context& context) override {
@@ -54,42 +54,30 @@ class ImplicitFlow : public Flow {
 };
 
 /// The least value of 1 + dt [(1 - m) k^order + m k] over eigenvalues k >= 0.
-double least_eigenvalue(const FlowOptions& options) {
-  const double dt = *options.dt, m = *options.mixture;
-  const int order = *options.order;
+double least_eigenvalue(const ImplicitOptions& options) {
+  const double dt = options.dt, m = options.mixture;
+  const int order = options.order;
   if (m >= 0) return 1;
   if (order == 1) return 1 + dt * ((1 - m) + m);  // the mixture of L with itself
   const double k = std::pow(-m / (order * (1 - m)), 1.0 / (order - 1));
   return 1 + dt * ((1 - m) * std::pow(k, order) + m * k);
 }
 
-std::unique_ptr<Flow> make_implicit(const Mesh& mesh, const FlowOptions& options,
-                                    const Constraints& constraints, const Context&) {
-  if (!(least_eigenvalue(options) > 0))
-    throw Failure({ErrorCode::usage,
-                   "--mixture is too negative for this --dt and --order: the system has no "
-                   "stable solution; bring it nearer to zero or shorten dt"});
-  return std::make_unique<ImplicitFlow>(options, AllowedMoves(constraints, mesh.positions.size()));
-}
-
 }  // namespace
 
-FlowEntry flow_implicit() {
-  FlowOptions defaults;
-  defaults.iterations = 1;
-  defaults.dt = 10;
-  defaults.op = "umbrella";
-  defaults.order = 2;  // the paper's recommendation (2.6)
-  defaults.mixture = 0;
-  defaults.keep_weights = false;
-  defaults.tolerance = 1e-5;
-  defaults.norm = "l2";
-  return {"implicit",
-          "one stable linear solve per step, of first to fourth order",
-          "Desbrun 2.3-2.7, 4, 5",
-          {"iterations", "dt", "operator", "order", "mixture", "keep-weights", "tolerance", "norm"},
-          defaults,
-          make_implicit};
+}  // namespace rfsmooth::smoothing
+
+namespace rfsmooth {
+
+using namespace smoothing;
+
+std::unique_ptr<Flow> ImplicitOptions::start(const Mesh& mesh, const Constraints& constraints,
+                                             const Context&) const {
+  if (!(least_eigenvalue(*this) > 0))
+    throw Failure({ErrorCode::usage,
+                   "`mixture` is too negative for this `dt` and `order`: the system has no "
+                   "stable solution; bring it nearer to zero or shorten dt"});
+  return std::make_unique<ImplicitFlow>(*this, AllowedMoves(constraints, mesh.positions.size()));
 }
 
-}  // namespace rfsmooth::smoothing
+}  // namespace rfsmooth

@@ -38,33 +38,21 @@ class AnchoredSpeed : public Speed {
   Positions original_;  ///< empty: the anchor is the centre
 };
 
-std::unique_ptr<Flow> make_laplacian(const Mesh& mesh, const FlowOptions& options,
-                                     const Constraints& constraints, const Context&) {
-  auto speed = make_umbrella_speed(*options.weights == "inverse-distance");
-  if (*options.anchor != "none")
-    speed = std::make_unique<AnchoredSpeed>(std::move(speed), *options.alpha,
-                                            *options.anchor == "original" ? mesh.positions : Positions{});
-  const Update update = *options.update == "sequential" ? Update::sequential : Update::simultaneous;
-  return make_explicit(std::move(speed), *options.lambda, update,
-                       AllowedMoves(constraints, mesh.positions.size()));
-}
-
 }  // namespace
 
-FlowEntry flow_laplacian() {
-  FlowOptions defaults;
-  defaults.iterations = 10;
-  defaults.lambda = 1;
-  defaults.alpha = 0.5;
-  defaults.anchor = "none";
-  defaults.weights = "equal";
-  defaults.update = "simultaneous";
-  return {"laplacian",
-          "each vertex to the mean of its neighbours; fast, shrinks",
-          "Vollmer 3; Ohtake (1)-(4)",
-          {"iterations", "lambda", "alpha", "anchor", "weights", "update"},
-          defaults,
-          make_laplacian};
+}  // namespace rfsmooth::smoothing
+
+namespace rfsmooth {
+
+using namespace smoothing;
+
+std::unique_ptr<Flow> LaplacianOptions::start(const Mesh& mesh, const Constraints& constraints,
+                                              const Context&) const {
+  auto speed = make_umbrella_speed(weights == UmbrellaWeights::inverse_distance);
+  if (anchor != Anchor::none)
+    speed = std::make_unique<AnchoredSpeed>(std::move(speed), alpha,
+                                            anchor == Anchor::original ? mesh.positions : Positions{});
+  return make_explicit(std::move(speed), lambda, update, AllowedMoves(constraints, mesh.positions.size()));
 }
 
-}  // namespace rfsmooth::smoothing
+}  // namespace rfsmooth

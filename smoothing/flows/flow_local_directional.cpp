@@ -82,25 +82,16 @@ class LocalDirectionalSpeed : public Speed {
   std::vector<char> interior_;
 };
 
-std::unique_ptr<Flow> make_local_directional(const Mesh&, const FlowOptions& options, const Constraints&,
-                                             const Context&) {
-  return make_explicit(std::make_unique<LocalDirectionalSpeed>(*options.eps, *options.lambda),
-                       *options.lambda, Update::simultaneous);
-}
-
 }  // namespace
 
-FlowEntry flow_local_directional() {
-  FlowOptions defaults;
-  defaults.iterations = 8;
-  defaults.lambda = 0.005;  // the paper's figure 3
-  defaults.eps = 0.05;
-  return {"local-directional",
-          "diffusion weighted by Gauss curvature on each one-ring; keeps corners and saddles",
-          "Zhao-Xu (34)-(36)",
-          {"iterations", "lambda", "eps"},
-          defaults,
-          make_local_directional};
+}  // namespace rfsmooth::smoothing
+
+namespace rfsmooth {
+
+using namespace smoothing;
+
+std::unique_ptr<Flow> LocalDirectionalOptions::start(const Mesh&, const Constraints&, const Context&) const {
+  return make_explicit(std::make_unique<LocalDirectionalSpeed>(eps, lambda), lambda, Update::simultaneous);
 }
 
-}  // namespace rfsmooth::smoothing
+}  // namespace rfsmooth

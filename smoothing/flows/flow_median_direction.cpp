@@ -56,24 +56,16 @@ class MedianDirectionSpeed : public Speed {
   Positions median_;
 };
 
-std::unique_ptr<Flow> make_median_direction(const Mesh&, const FlowOptions& options, const Constraints&,
-                                            const Context&) {
-  return make_explicit(std::make_unique<MedianDirectionSpeed>(*options.lambda), *options.lambda,
-                       Update::simultaneous);
-}
-
 }  // namespace
 
-FlowEntry flow_median_direction() {
-  FlowOptions defaults;
-  defaults.iterations = 10;
-  defaults.lambda = 0.25;
-  return {"median-direction",
-          "curvature flow moving towards the neighbours' mean; smooths and evens edges",
-          "Ohtake (12), (13)",
-          {"iterations", "lambda"},
-          defaults,
-          make_median_direction};
+}  // namespace rfsmooth::smoothing
+
+namespace rfsmooth {
+
+using namespace smoothing;
+
+std::unique_ptr<Flow> MedianDirectionOptions::start(const Mesh&, const Constraints&, const Context&) const {
+  return make_explicit(std::make_unique<MedianDirectionSpeed>(lambda), lambda, Update::simultaneous);
 }
 
-}  // namespace rfsmooth::smoothing
+}  // namespace rfsmooth

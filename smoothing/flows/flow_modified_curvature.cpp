@@ -46,25 +46,17 @@ class ModifiedCurvatureSpeed : public Speed {
   Positions even_;
 };
 
-std::unique_ptr<Flow> make_modified_curvature(const Mesh&, const FlowOptions& options, const Constraints&,
-                                              const Context&) {
-  return make_explicit(std::make_unique<ModifiedCurvatureSpeed>(*options.lambda, *options.tangential),
-                       *options.lambda, Update::simultaneous);
-}
-
 }  // namespace
 
-FlowEntry flow_modified_curvature() {
-  FlowOptions defaults;
-  defaults.iterations = 10;
-  defaults.lambda = 0.25;
-  defaults.tangential = 1;
-  return {"modified-curvature",
-          "curvature flow that evens the sampling by the umbrella's tangential part",
-          "Ohtake (11)",
-          {"iterations", "lambda", "tangential"},
-          defaults,
-          make_modified_curvature};
+}  // namespace rfsmooth::smoothing
+
+namespace rfsmooth {
+
+using namespace smoothing;
+
+std::unique_ptr<Flow> ModifiedCurvatureOptions::start(const Mesh&, const Constraints&, const Context&) const {
+  return make_explicit(std::make_unique<ModifiedCurvatureSpeed>(lambda, tangential), lambda,
+                       Update::simultaneous);
 }
 
-}  // namespace rfsmooth::smoothing
+}  // namespace rfsmooth

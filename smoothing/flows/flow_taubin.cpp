@@ -28,28 +28,20 @@ class TaubinFlow : public Flow {
   std::unique_ptr<Flow> shrink_, inflate_;
 };
 
-std::unique_ptr<Flow> make_taubin(const Mesh& mesh, const FlowOptions& options,
-                                  const Constraints& constraints, const Context&) {
-  if (!(*options.mu > *options.lambda))
-    throw Failure({ErrorCode::usage, "--mu must be greater than --lambda: the second step inflates"});
-  return std::make_unique<TaubinFlow>(*options.weights == "inverse-distance", *options.lambda, *options.mu,
+}  // namespace
+
+}  // namespace rfsmooth::smoothing
+
+namespace rfsmooth {
+
+using namespace smoothing;
+
+std::unique_ptr<Flow> TaubinOptions::start(const Mesh& mesh, const Constraints& constraints,
+                                           const Context&) const {
+  if (!(mu > lambda))
+    throw Failure({ErrorCode::usage, "`mu` must be greater than `lambda`: the second step inflates"});
+  return std::make_unique<TaubinFlow>(weights == UmbrellaWeights::inverse_distance, lambda, mu,
                                       AllowedMoves(constraints, mesh.positions.size()));
 }
 
-}  // namespace
-
-FlowEntry flow_taubin() {
-  FlowOptions defaults;
-  defaults.iterations = 10;
-  defaults.lambda = 0.6307;  // Desbrun's figure 4; pass band 0.1
-  defaults.mu = 0.6732;
-  defaults.weights = "equal";
-  return {"taubin",
-          "alternates shrinking and inflating steps; keeps volume, may leave waves",
-          "Ohtake (6); Desbrun 2.1",
-          {"iterations", "lambda", "mu", "weights"},
-          defaults,
-          make_taubin};
-}
-
-}  // namespace rfsmooth::smoothing
+}  // namespace rfsmooth

@@ -10,7 +10,8 @@ namespace {
 class CurvatureSpeed : public Speed {
  public:
   CurvatureSpeed(bool normalised, double lambda)
-      : source_(normalised ? "curvature-normalised" : "curvature", false), lambda_(lambda) {}
+      : source_(normalised ? OperatorKind::curvature_normalised : OperatorKind::curvature, false),
+        lambda_(lambda) {}
 
   void evaluate(const Mesh& mesh, Positions& speed, const Context& context) override {
     const Operator& op = source_.on(mesh, context);

@@ -27,9 +27,6 @@ class Speed {
   virtual void connectivity_changed(const Mesh&, const Context&) {}
 };
 
-/// Whether a step reads the positions before it or those already moved.
-enum class Update { simultaneous, sequential };
-
 /// A flow that adds lambda F. Positions that would not be finite stay where they are.
 std::unique_ptr<Flow> make_explicit(std::unique_ptr<Speed> speed, double lambda, Update update);
 

@@ -1,7 +1,7 @@
 #include "smoothing/modifiers/boundary.h"
 
 #include <algorithm>
-#include <array>
+#include <variant>
 
 #include "base/parallel.h"
 #include "smoothing/integrators/explicit.h"
@@ -70,35 +70,63 @@ class CurveSpeed : public Speed {
   double lambda_;
 };
 
-/// The flow of the options along a curve (a mesh of loose edges).
-std::unique_ptr<Flow> curve_flow(const FlowOptions& o, const Mesh& curve, const Constraints& constraints,
-                                 const Context& context) {
-  constexpr std::array<std::string_view, 5> kOfUmbrellas = {"laplacian", "hc", "hc-limit", "taubin",
-                                                            "bilaplacian"};
-  constexpr double kAutomatic = 0.25;  // a flow without a step of its own: half of what is stable on a curve
-  AllowedMoves allowed(constraints, curve.positions.size());
-  std::unique_ptr<Flow> flow;
-  if (o.dt) {
-    FlowOptions implicit;
-    implicit.flow = "implicit";
-    implicit.dt = o.dt;
-    implicit.order = o.order;
-    implicit.mixture = o.mixture;
-    implicit.op = "scale-dependent";
-    implicit.keep_weights = o.keep_weights;
-    implicit.tolerance = o.tolerance;
-    implicit.norm = o.norm;
-    flow =
-        find_flow("implicit").value()->make(curve, value_or_throw(complete(implicit)), constraints, context);
-  } else if (std::find(kOfUmbrellas.begin(), kOfUmbrellas.end(), o.flow) != kOfUmbrellas.end()) {
-    flow = find_flow(o.flow).value()->make(curve, o, constraints, context);
-  } else {
-    const double lambda = o.lambda.value_or(kAutomatic);
-    flow = make_explicit(std::make_unique<CurveSpeed>(lambda), lambda, Update::simultaneous, allowed);
+/// Flows that solve a system for each step.
+bool is_implicit(const AnyFlow& flow) {
+  return std::holds_alternative<ImplicitOptions>(flow) ||
+         std::holds_alternative<DiscreteFairingOptions>(flow) || std::holds_alternative<HcLimitOptions>(flow);
+}
+
+/// The flow along a curve (a mesh of loose edges) that belongs to each flow of a surface.
+struct AlongCurve {
+  const Mesh& curve;
+  const Constraints& constraints;
+  const Context& context;
+
+  /// Flows of umbrellas, as they are.
+  template <class Umbrellas>
+  std::unique_ptr<Flow> start(const Umbrellas& flow) const {
+    return flow.start(curve, constraints, context);
   }
+  std::unique_ptr<Flow> operator()(const LaplacianOptions& flow) const { return start(flow); }
+  std::unique_ptr<Flow> operator()(const HcOptions& flow) const { return start(flow); }
+  std::unique_ptr<Flow> operator()(const HcLimitOptions& flow) const { return start(flow); }
+  std::unique_ptr<Flow> operator()(const TaubinOptions& flow) const { return start(flow); }
+  std::unique_ptr<Flow> operator()(const BilaplacianOptions& flow) const { return start(flow); }
+
+  std::unique_ptr<Flow> operator()(ImplicitOptions flow) const {
+    flow.op = OperatorKind::scale_dependent;
+    return start(flow);
+  }
+  std::unique_ptr<Flow> operator()(const DiscreteFairingOptions& flow) const {
+    ImplicitOptions implicit;
+    implicit.dt = flow.dt;
+    implicit.tolerance = flow.tolerance;
+    implicit.norm = flow.norm;
+    return (*this)(implicit);
+  }
+
+  std::unique_ptr<Flow> operator()(const AutomaticOptions&) const {
+    return by_speed(0.25);  // no step of its own: half of what is stable on a curve
+  }
+  template <class Explicit>
+  std::unique_ptr<Flow> operator()(const Explicit& flow) const {
+    return by_speed(flow.lambda);
+  }
+  std::unique_ptr<Flow> by_speed(double lambda) const {
+    return make_explicit(std::make_unique<CurveSpeed>(lambda), lambda, Update::simultaneous,
+                         AllowedMoves(constraints, curve.positions.size()));
+  }
+};
+
+/// The flow of the options along a curve (a mesh of loose edges).
+std::unique_ptr<Flow> curve_flow(const FlowOptions& options, const Mesh& curve,
+                                 const Constraints& constraints, const Context& context) {
+  AllowedMoves allowed(constraints, curve.positions.size());
+  std::unique_ptr<Flow> flow = std::visit(AlongCurve{curve, constraints, context}, options.flow);
   if (!flow->applies_constraints()) flow = make_constrained(std::move(flow), allowed);
-  if (*o.push_back)
-    flow = make_pushback(std::move(flow), curve, *o.push_alpha, *o.push_beta, std::move(allowed));
+  const Modifiers& m = options.modifiers;
+  if (m.push_back)
+    flow = make_pushback(std::move(flow), curve, m.push_alpha, m.push_beta, std::move(allowed));
   return flow;
 }
 
@@ -247,16 +275,17 @@ class VirtualVertices : public WrappedFlow {
 std::unique_ptr<Flow> with_boundary_rule(const FlowOptions& options, const Mesh& mesh,
                                          const Constraints& constraints, const Context& context,
                                          const FlowMaker& make) {
-  const std::string& rule = *options.boundary;
-  if (rule == "free") return make(mesh, constraints);
-  if (rule == "virtual") return std::make_unique<VirtualVertices>(mesh, constraints, make, context);
+  const Boundary rule = options.modifiers.boundary;
+  if (rule == Boundary::free) return make(mesh, constraints);
+  if (rule == Boundary::virtual_vertices)
+    return std::make_unique<VirtualVertices>(mesh, constraints, make, context);
   const Adjacency boundary = rfsmooth::make_adjacency(mesh.positions.size(), boundary_edges(mesh), context);
   std::unique_ptr<Flow> inner = make(mesh, with_fixed_boundary(constraints, boundary));
-  if (rule == "fixed") return inner;
+  if (rule == Boundary::fixed) return inner;
   Curve curve = curve_of(mesh, boundary, constraints, context);
   auto along = curve_flow(options, curve.mesh, curve.constraints, context);
-  const bool implicit = options.dt || options.flow == "hc-limit";
-  return std::make_unique<BoundaryCurve>(std::move(inner), std::move(along), std::move(curve), implicit);
+  return std::make_unique<BoundaryCurve>(std::move(inner), std::move(along), std::move(curve),
+                                         is_implicit(options.flow));
 }
 
 }  // namespace rfsmooth::smoothing

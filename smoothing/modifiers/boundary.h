@@ -17,17 +17,14 @@
 /// A flow is for one thread at a time; the free functions are thread safe.
 #pragma once
 
-#include <functional>
 #include <memory>
 
 #include <rfsmooth/flow.h>
 
 namespace rfsmooth::smoothing {
 
-/// Makes a flow on a mesh (perhaps the closed one) under constraints (perhaps with the boundary fixed).
-using FlowMaker = std::function<std::unique_ptr<Flow>(const Mesh&, const Constraints&)>;
-
-/// The flow that `make` makes, with the rule `*options.boundary`; `options` are complete.
+/// The flow that `make` makes (perhaps on the closed mesh, perhaps with the boundary fixed), with the rule of
+/// the options.
 std::unique_ptr<Flow> with_boundary_rule(const FlowOptions& options, const Mesh& mesh,
                                          const Constraints& constraints, const Context& context,
                                          const FlowMaker& make);

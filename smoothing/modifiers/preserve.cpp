@@ -20,7 +20,7 @@ namespace {
 
 class Preserving : public WrappedFlow {
  public:
-  Preserving(std::unique_ptr<Flow> inner, const Mesh& mesh, Invariant invariant, AllowedMoves allowed,
+  Preserving(std::unique_ptr<Flow> inner, const Mesh& mesh, Preserve invariant, AllowedMoves allowed,
              const Context& context)
       : WrappedFlow(std::move(inner)), invariant_(invariant), allowed_(std::move(allowed)) {
     connect(mesh);
@@ -38,7 +38,7 @@ class Preserving : public WrappedFlow {
     Positions direction(n), moved(n);
     for_each_index(context, n, [&](std::size_t i) {
       const Vector3d d =
-          invariant_ == Invariant::height_field ? Vector3d(Vector3d::UnitZ()) : mesh.positions[i] - centre;
+          invariant_ == Preserve::height_field ? Vector3d(Vector3d::UnitZ()) : mesh.positions[i] - centre;
       direction[i] = allowed_.strength(i) * allowed_(i, d);
     });
     const auto at = [&](double t) {
@@ -48,7 +48,7 @@ class Preserving : public WrappedFlow {
     // Newton with a numerical slope; the invariant is a cubic (volume), nearly quadratic (area) or linear
     // function of t, and steps change it little, so this ends at rounding within a few rounds.
     double t = 0, value = at(0);
-    const double span = invariant_ == Invariant::height_field
+    const double span = invariant_ == Preserve::height_field
                             ? std::abs(target_ - value) / std::max(flat_area(mesh.positions), 1e-300)
                             : 1;
     for (int round = 0; round < 30; ++round) {
@@ -57,7 +57,7 @@ class Preserving : public WrappedFlow {
       const double probe = 1e-4 * std::max(span, 1e-300);
       const double slope = (at(t + probe) - at(t - probe)) / (2 * probe);
       const double next = t + gap / slope;
-      if (!std::isfinite(next) || (invariant_ != Invariant::height_field && std::abs(next) > 0.9)) break;
+      if (!std::isfinite(next) || (invariant_ != Preserve::height_field && std::abs(next) > 0.9)) break;
       t = next;
       value = at(t);
     }
@@ -76,7 +76,7 @@ class Preserving : public WrappedFlow {
 
  private:
   void connect(const Mesh& mesh) {
-    if (invariant_ == Invariant::volume)
+    if (invariant_ == Preserve::volume)
       faces_ = closed_and_oriented(mesh, "keeping the volume");
     else
       faces_ = mesh.faces;
@@ -87,13 +87,13 @@ class Preserving : public WrappedFlow {
   double measure(const Positions& x, const Context& context, bool sizes = false) const {
     const auto sized = [sizes](double term) { return sizes ? std::abs(term) : term; };
     const Vector3d origin = x[faces_[0][0]];
-    const double scale = invariant_ == Invariant::volume ? 1.0 / 6 : 0.5;
+    const double scale = invariant_ == Preserve::volume ? 1.0 / 6 : 0.5;
     return scale * sum_over(context, faces_.size(), 0.0, [&](std::size_t f) {
              const Vector3d a = x[faces_[f][0]] - origin, b = x[faces_[f][1]] - origin,
                             c = x[faces_[f][2]] - origin;
-             if (invariant_ == Invariant::volume) return sized(a.dot(b.cross(c)));
+             if (invariant_ == Preserve::volume) return sized(a.dot(b.cross(c)));
              const Vector3d cross = (b - a).cross(c - a);
-             if (invariant_ == Invariant::area) return cross.norm();
+             if (invariant_ == Preserve::area) return cross.norm();
              return std::abs(cross.z()) *
                     sized(x[faces_[f][0]].z() + x[faces_[f][1]].z() + x[faces_[f][2]].z()) / 3;
            });
@@ -103,9 +103,9 @@ class Preserving : public WrappedFlow {
   [[noreturn]] void give_up(double value, const Positions& direction) const {
     const auto movable = std::count_if(direction.begin(), direction.end(),
                                        [](const Vector3d& d) { return d != Vector3d::Zero(); });
-    const char* const what = invariant_ == Invariant::volume ? "volume"
-                             : invariant_ == Invariant::area ? "area"
-                                                             : "volume under the height field";
+    const char* const what = invariant_ == Preserve::volume ? "volume"
+                             : invariant_ == Preserve::area ? "area"
+                                                            : "volume under the height field";
     throw Failure(
         {ErrorCode::usage,
          fmt::format("the {} cannot be kept: a step takes it from {:.6g} to {:.6g}, and the {} of {} "
@@ -121,7 +121,7 @@ class Preserving : public WrappedFlow {
     return area;
   }
 
-  Invariant invariant_;
+  Preserve invariant_;
   AllowedMoves allowed_;
   std::vector<Face> faces_;
   static constexpr double kRestored = 1e-9;  // far above rounding, far below what a user could see
@@ -130,7 +130,7 @@ class Preserving : public WrappedFlow {
 
 }  // namespace
 
-std::unique_ptr<Flow> make_preserving(std::unique_ptr<Flow> inner, const Mesh& mesh, Invariant invariant,
+std::unique_ptr<Flow> make_preserving(std::unique_ptr<Flow> inner, const Mesh& mesh, Preserve invariant,
                                       AllowedMoves allowed, const Context& context) {
   return std::make_unique<Preserving>(std::move(inner), mesh, invariant, std::move(allowed), context);
 }

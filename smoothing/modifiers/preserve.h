@@ -20,11 +20,8 @@
 
 namespace rfsmooth::smoothing {
 
-/// What a flow keeps: the enclosed volume, the area, or the volume under a height field.
-enum class Invariant { volume, area, height_field };
-
-/// Wraps a flow so that the mesh keeps the invariant.
-std::unique_ptr<Flow> make_preserving(std::unique_ptr<Flow> inner, const Mesh& mesh, Invariant invariant,
+/// Wraps a flow so that the mesh keeps the invariant (one, not none).
+std::unique_ptr<Flow> make_preserving(std::unique_ptr<Flow> inner, const Mesh& mesh, Preserve invariant,
                                       AllowedMoves allowed, const Context& context);
 
 }  // namespace rfsmooth::smoothing

@@ -6,7 +6,6 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <utility>
 
 #include <rfsmooth/flow.h>
@@ -22,8 +21,6 @@ class WrappedFlow : public Flow {
     inner_->connectivity_changed(mesh, context);
   }
   int solver_iterations() const override { return inner_->solver_iterations(); }
-  bool limits_moves() const override { return inner_->limits_moves(); }
-  std::optional<AutomaticReport> automatic() const override { return inner_->automatic(); }
 
  protected:
   std::unique_ptr<Flow> inner_;

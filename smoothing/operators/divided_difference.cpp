@@ -71,11 +71,11 @@ Fan fan_of(const Mesh& mesh, const Adjacency& faces, Index i) {
 
 /// (u, v) of each neighbour in row order; empty where the vertex has no tangent plane.
 std::vector<Vector2d> chart_of(const Mesh& mesh, const Adjacency& faces, const Vector3d& n, Index i,
-                               std::string_view kind) {
+                               Chart kind) {
   const Positions& x = mesh.positions;
   const auto row = mesh.one_ring[i];
   std::vector<Vector2d> chart;
-  const Fan fan = kind == "tangent" ? Fan{} : fan_of(mesh, faces, i);
+  const Fan fan = kind == Chart::tangent ? Fan{} : fan_of(mesh, faces, i);
   if (fan.order.empty()) {
     if (n == Vector3d::Zero()) return chart;
     const Vector3d e1 = n.unitOrthogonal(), e2 = n.cross(e1);
@@ -112,7 +112,7 @@ std::vector<Vector2d> chart_of(const Mesh& mesh, const Adjacency& faces, const V
   for (std::size_t k = 0; k < m; ++k) {
     const double a = scale * angle[k], e = offset + even(k);
     Vector2d p = length[k] * Vector2d(std::cos(a), std::sin(a));
-    if (kind == "mixed") p = 0.5 * (p + mean * Vector2d(std::cos(e), std::sin(e)));
+    if (kind == Chart::mixed) p = 0.5 * (p + mean * Vector2d(std::cos(e), std::sin(e)));
     chart[std::size_t(std::lower_bound(row.begin(), row.end(), fan.order[k]) - row.begin())] = p;
   }
   return chart;
@@ -120,7 +120,7 @@ std::vector<Vector2d> chart_of(const Mesh& mesh, const Adjacency& faces, const V
 
 }  // namespace
 
-DividedDifferences::DividedDifferences(const Mesh& mesh, std::string_view chart, const Context& context)
+DividedDifferences::DividedDifferences(const Mesh& mesh, Chart chart, const Context& context)
     : rows_(mesh.one_ring) {
   constexpr double kRidge = 1e-6;  // of a fit whose columns are of size one
   constexpr double kTiny = 1e-12;  // keeps the fit of one or two neighbours regular

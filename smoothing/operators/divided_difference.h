@@ -12,9 +12,9 @@
 /// One thread at a time for each object: products share room for intermediate values.
 #pragma once
 
-#include <string_view>
 #include <vector>
 
+#include <rfsmooth/flow_options.h>
 #include <rfsmooth/mesh.h>
 
 namespace rfsmooth::smoothing {
@@ -22,10 +22,8 @@ namespace rfsmooth::smoothing {
 /// The second derivatives at every vertex, from its neighbours.
 class DividedDifferences {
  public:
-  /// Charts from mesh.positions. \param chart "tangent": neighbours projected to the tangent plane;
-  /// "exponential": edge lengths, angles between neighbours scaled to a full turn; "mixed": the mean of that
-  /// and the uniform chart. Where the faces do not go around a vertex once, all are "tangent".
-  DividedDifferences(const Mesh& mesh, std::string_view chart, const Context& context);
+  /// Charts from mesh.positions; where the faces do not go around a vertex once, all are Chart::tangent.
+  DividedDifferences(const Mesh& mesh, Chart chart, const Context& context);
 
   /// y = A x, A the Hessian of E / 2: E(x) = x . A x.
   void apply(const Positions& x, Positions& y, const Context& context) const;

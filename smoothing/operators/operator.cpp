@@ -1,9 +1,7 @@
 #include "smoothing/operators/operator.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <stdexcept>
 
 #include "base/parallel.h"
 #include "rfs_mesh/measure.h"
@@ -59,28 +57,23 @@ double length_unit(const Mesh& mesh, const Context& context) {
   return sum[0] > 0 ? sum[0] / sum[1] : 1;
 }
 
-OperatorSource::OperatorSource(std::string_view name, bool frozen) : name_(name), frozen_(frozen) {
-  const std::array<std::string_view, 6> known = {"umbrella",  "inverse-distance",     "scale-dependent",
-                                                 "curvature", "curvature-normalised", "tufted"};
-  if (std::find(known.begin(), known.end(), name) == known.end())
-    throw std::invalid_argument("unknown operator " + name_);
-}
+OperatorSource::OperatorSource(OperatorKind kind, bool frozen) : kind_(kind), frozen_(frozen) {}
 
 const Operator& OperatorSource::on(const Mesh& mesh, const Context& context) {
-  const bool fixed_weights = frozen_ || name_ == "umbrella";
+  const bool fixed_weights = frozen_ || kind_ == OperatorKind::umbrella;
   if (ready_ && fixed_weights) return op_;
-  if (name_ == "umbrella") {
+  if (kind_ == OperatorKind::umbrella) {
     op_ = umbrella(mesh, context);
-  } else if (name_ == "inverse-distance") {
+  } else if (kind_ == OperatorKind::inverse_distance) {
     op_ = inverse_distance(mesh, context);
-  } else if (name_ == "scale-dependent") {
+  } else if (kind_ == OperatorKind::scale_dependent) {
     op_ = scale_dependent(mesh, context);
-  } else if (name_ == "tufted") {
+  } else if (kind_ == OperatorKind::tufted) {
     op_ = tufted(mesh, context);
   } else {
     if (!ready_) faces_ = vertex_faces(mesh, context);
     op_ = curvature(mesh, faces_, context);
-    if (name_ == "curvature-normalised") op_ = normalised(mesh.one_ring, std::move(op_), context);
+    if (kind_ == OperatorKind::curvature_normalised) op_ = normalised(mesh.one_ring, std::move(op_), context);
   }
   ready_ = true;
   return op_;

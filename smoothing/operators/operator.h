@@ -10,10 +10,9 @@
 #pragma once
 
 #include <optional>
-#include <string>
-#include <string_view>
 #include <vector>
 
+#include <rfsmooth/flow_options.h>
 #include <rfsmooth/mesh.h>
 
 namespace rfsmooth::smoothing {
@@ -85,13 +84,11 @@ void apply_thin_plate(const Adjacency& rows, const Operator& op, const Positions
 double thin_plate_energy(const Adjacency& rows, const Operator& op, const Positions& x,
                          const Context& context);
 
-/// Builds an operator by its option name, on the current positions or once for all steps.
+/// Builds an operator of a kind, on the current positions or once for all steps.
 class OperatorSource {
  public:
-  /// \param name "umbrella", "inverse-distance", "scale-dependent", "curvature", "curvature-normalised",
-  /// "tufted".
   /// \param frozen keep the weights of the first mesh (Desbrun 4.3, "relative to the initial mesh").
-  OperatorSource(std::string_view name, bool frozen);
+  OperatorSource(OperatorKind kind, bool frozen);
 
   /// The operator on mesh's positions now (or, frozen, on those of the first call).
   const Operator& on(const Mesh& mesh, const Context& context);
@@ -99,7 +96,7 @@ class OperatorSource {
   void connectivity_changed();
 
  private:
-  std::string name_;
+  OperatorKind kind_;
   bool frozen_;
   bool ready_ = false;
   Adjacency faces_;

@@ -11,27 +11,24 @@
 /// Thread safe: no state is kept.
 #pragma once
 
-#include <string>
 #include <vector>
 
+#include <rfsmooth/flow_options.h>
 #include <rfsmooth/mesh.h>
-#include <rfsmooth/options.h>
 
 namespace rfsmooth::smoothing {
 
 /// How to refine.
 struct RefineOptions {
-  int levels = 1;               ///< each multiplies the faces by four
-  std::string chart = "mixed";  ///< how neighbours get their parameters
-  double pimple = 0;            ///< how far given vertices may move at the end, to take off pimples
-  double tolerance = 1e-4;      ///< of each level's solve, relative
+  int levels = 1;              ///< each multiplies the faces by four
+  Chart chart = Chart::mixed;  ///< how neighbours get their parameters
+  double pimple = 0;           ///< how far given vertices may move at the end, to take off pimples
+  double tolerance = 1e-4;     ///< of each level's solve, relative
 
   template <class Self, class Visit>
   static void describe(Self& self, Visit&& visit) {
     visit(OptionInfo{"levels", "each multiplies the faces by four", "", 0, 10}, self.levels);
-    OptionInfo chart{"chart", "how neighbours get their parameters", ""};
-    chart.choices = {"tangent", "exponential", "mixed"};
-    visit(chart, self.chart);
+    visit(words("chart", "how neighbours get their parameters", Shared::kCharts), self.chart);
     visit(OptionInfo{"pimple", "how far given vertices may move at the end", "x mean edge", 0, 10},
           self.pimple);
     visit(OptionInfo{"tolerance", "relative residual of each level", "", 1e-14, 1}, self.tolerance);

@@ -62,6 +62,12 @@ INSTANTIATE_TEST_SUITE_P(
                       Mistake{"MissingValue", {"--beta"}, "--beta"},
                       Mistake{"GivenTwice", {"--beta", "0.6", "--beta", "0.7"}, "--beta"},
                       Mistake{"OptionOfAnotherFlow", {"--flow", "laplacian", "--beta", "0.6"}, "--beta"},
+                      Mistake{
+                          "Contradiction", {"--flow", "taubin", "--mu", "0.1"}, "--mu must be greater than"},
+                      Mistake{"WordOfNoChoice", {"--boundary", "fixd"}, "did you mean 'fixed'?"},
+                      Mistake{"DirectionOfTwo", {"--direction", "1,2"}, "three numbers x,y,z"},
+                      Mistake{"DirectionOfFour", {"--direction", "1,2,3,4"}, "three numbers x,y,z"},
+                      Mistake{"ZeroDirection", {"--direction", "0,0,0"}, "not all zero"},
                       Mistake{"FlagWithValue", {"--force=maybe"}, "--force"},
                       Mistake{"UnknownShort", {"-z"}, "unknown option -z"}),
     [](const auto& test) { return test.param.name; });

@@ -12,6 +12,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include <rfsmooth/denoise.h>
@@ -47,25 +48,17 @@ class Reader {
 /// Visits a `describe` table and sets what the bytes say.
 class SetOptions {
  public:
-  SetOptions(Reader& reader, const FlowEntry& flow) : reader_(reader), flow_(flow) {}
+  explicit SetOptions(Reader& reader) : reader_(reader) {}
 
   template <class T>
   void operator()(const OptionInfo& info, T& value) {
-    if (info.name == "flow" || !wanted(info.name)) return;
+    if (info.name == "outliers" || info.name.rfind("sheets-", 0) == 0) return;
     const std::uint8_t byte = reader_.byte();
     if (byte < 128) return;
     set(info, (byte - 128) / 127.0, value);
   }
 
  private:
-  bool wanted(std::string_view name) const {
-    for (const char* family : {"connect-", "sdg-", "umbrella-", "swap"})
-      if (name.rfind(family, 0) == 0) return true;
-    const auto has = [&](const auto& names) {
-      return std::find(names.begin(), names.end(), name) != names.end();
-    };
-    return has(flow_.parameters) || has(rfsmooth::modifiers());
-  }
   /// A share of the legal range; of wide ones evenly by magnitude.
   static double between(double low, double high, double share) {
     if (!(high - low > 1000)) return low + share * (high - low);
@@ -85,12 +78,12 @@ class SetOptions {
   static void set(const OptionInfo& info, double share, Length& value) {
     value = {between(info.min, info.max, share), share < 0.75};
   }
-  static void set(const OptionInfo& info, double share, std::string& value) {
-    if (!info.choices.empty())
-      value = std::string(
-          info.choices[std::min(std::size_t(share * double(info.choices.size())), info.choices.size() - 1)]);
-    else
-      value = share < 0.5 ? "1,0.5,-0.25" : "auto";
+  template <class Enumeration, std::enable_if_t<std::is_enum_v<Enumeration>, int> = 0>
+  static void set(const OptionInfo& info, double share, Enumeration& value) {
+    value = Enumeration(std::min(std::size_t(share * double(info.choices.size())), info.choices.size() - 1));
+  }
+  static void set(const OptionInfo&, double share, std::optional<Eigen::Vector3d>& value) {
+    if (share < 0.5) value = Eigen::Vector3d(1, 0.5, -0.25);
   }
   template <class T>
   static void set(const OptionInfo& info, double share, std::optional<T>& value) {
@@ -100,7 +93,6 @@ class SetOptions {
   }
 
   Reader& reader_;
-  const FlowEntry& flow_;
 };
 
 inline std::vector<double> read_points(Reader& reader, std::uint8_t kind) {
@@ -168,11 +160,13 @@ inline void check_result(const std::vector<double>& before, const std::vector<do
 inline void cloud_to_flow(const std::uint8_t* data, std::size_t size) {
   Reader reader(data, size);
   const std::uint8_t kind = reader.byte();
-  const FlowEntry& flow = rfsmooth::flows()[reader.byte() % rfsmooth::flows().size()];
   DenoiseOptions options;
-  options.flow.flow = std::string(flow.name);
-  DenoiseOptions::describe(options, SetOptions(reader, flow));
-  if (!options.flow.iterations && *flow.defaults.iterations > 4) options.flow.iterations = 4;
+  options.flow.flow = rfsmooth::flows()[reader.byte() % rfsmooth::flows().size()];
+  DenoiseOptions::describe(options, SetOptions(reader));
+  // Most bytes give some modifier without the one it needs, which is refused before anything is done.
+  if (!validate(options.flow).ok()) options.flow.modifiers = {};
+  int& steps = iterations(options.flow.flow);
+  steps = std::min(steps, 4);
   const std::vector<double> before = read_points(reader, kind);
   const std::size_t n = before.size() / 3;
   Context one;

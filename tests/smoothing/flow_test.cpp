@@ -1,11 +1,14 @@
 #include <algorithm>
-#include <functional>
+#include <map>
+#include <typeinfo>
 
 #include <Eigen/Geometry>
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <rfsmooth/flow.h>
 
+#include "smoothing/automatic/flow_auto.h"
 #include "tests/support/meshes.h"
 
 using namespace rfsmooth;
@@ -14,33 +17,25 @@ using rfsmooth::Mesh;
 
 namespace {
 
-std::vector<std::string_view> names() {
-  std::vector<std::string_view> all;
-  for (const FlowEntry& entry : flows()) all.push_back(entry.name);
-  return all;
-}
-
-class EveryFlow : public testing::TestWithParam<std::string_view> {
+class EveryFlow : public testing::TestWithParam<AnyFlow> {
  protected:
-  FlowOptions options() const {
-    FlowOptions o;
-    o.flow = GetParam();
-    return o;
-  }
+  static FlowOptions options() { return {GetParam()}; }
 
   /// With every solve down to rounding, so that what is left over is not the solver's tolerance.
-  FlowOptions exact_options() const {
+  static FlowOptions exact_options() {
     FlowOptions o = options();
-    const auto& used = find_flow(o.flow).value()->parameters;
-    if (std::find(used.begin(), used.end(), "tolerance") != used.end()) o.tolerance = 1e-12;
+    FlowOptions::describe(o, [](const OptionInfo& info, auto& value) {
+      if constexpr (std::is_same_v<decltype(value), double&>)
+        if (info.name == "tolerance") value = 1e-12;
+    });
     return o;
   }
 
   /// Of the move: what rounding may change. The automatic flow sums its quadrics in single precision.
-  double rounding() const { return options().flow == "auto" ? 1e-5 : 1e-8; }
+  static double rounding() { return name_of(GetParam()) == "auto" ? 1e-5 : 1e-8; }
 };
-INSTANTIATE_TEST_SUITE_P(Flows, EveryFlow, testing::ValuesIn(names()), [](const auto& flow) {
-  std::string name(flow.param);
+INSTANTIATE_TEST_SUITE_P(Flows, EveryFlow, testing::ValuesIn(flows()), [](const auto& flow) {
+  std::string name(name_of(flow.param));
   for (char& c : name)
     if (c == '-') c = '_';
   return name;
@@ -50,7 +45,7 @@ TEST_P(EveryFlow, ZeroStepsAreTheIdentity) {
   for (Mesh& mesh : support::all_small()) {
     const Positions before = mesh.positions;
     FlowOptions o = options();
-    o.iterations = 0;
+    iterations(o.flow) = 0;
     const auto run = smooth(mesh, o, {});
     if (!run.ok()) {
       EXPECT_EQ(run.error().code, ErrorCode::usage) << run.error().message;
@@ -99,13 +94,14 @@ double disagreement(const Positions& start, const Positions& a, const Positions&
   return support::rms_distance(mapped, b) / (scale * std::max(move, 1e-9));
 }
 
-TEST_P(EveryFlow, TheLastStepGivesThePositionsOfAnyOther) {
-  Mesh mesh = lumpy(), last = mesh;
-  const auto flow = make_flow(mesh, options(), {}), other = make_flow(last, options(), {});
-  ASSERT_TRUE(flow.ok() && other.ok());
-  flow.value()->step(mesh, {});
-  other.value()->last_step(last, {});
-  EXPECT_EQ(mesh.positions, last.positions);
+TEST(AutomaticFlow, UsingUpTheMeshGivesThePositionsThatKeepingItGives) {
+  Mesh kept = lumpy(), used_up = kept;
+  const auto report = smooth_automatically(kept, {}, {});
+  ASSERT_TRUE(report.has_value());
+  EXPECT_GT(report->noise, 0);
+  ASSERT_TRUE(smooth_automatically(used_up, {}, {}, Connectivity::used_up).has_value());
+  EXPECT_EQ(kept.positions, used_up.positions);
+  EXPECT_TRUE(check(kept).empty());
 }
 
 TEST_P(EveryFlow, MovesSomething) {
@@ -170,7 +166,7 @@ TEST_P(EveryFlow, HardConstraintsHold) {
                                  {90, HardConstraint::Kind::plane, direction}},
                                 {}};
   FlowOptions o = options();
-  if (o.flow == "hc-limit") {
+  if (name_of(o.flow) == "hc-limit") {
     EXPECT_FALSE(smooth(mesh, o, {}, constraints).ok()) << "axes and planes are refused";
     return;
   }
@@ -192,80 +188,130 @@ TEST_P(EveryFlow, StrengthZeroStaysAndOneIsTheFreeFlow) {
 }
 
 TEST_P(EveryFlow, EveryModifierWorks) {
-  for (const char* preserve : {"none", "volume", "area", "height-field"})
-    for (const char* threshold : {"none", "constant", "two-ring"})
+  for (const Preserve preserve : {Preserve::none, Preserve::volume, Preserve::area, Preserve::height_field})
+    for (const ThresholdKind threshold :
+         {ThresholdKind::none, ThresholdKind::constant, ThresholdKind::two_ring})
       for (const bool push_back : {false, true}) {
         Mesh mesh = lumpy();
         const double volume = support::enclosed_volume(mesh);
         FlowOptions o = options();
-        o.iterations = 2;
-        o.preserve = preserve;
-        o.threshold = threshold;
-        if (o.threshold == "constant") o.threshold_value = 0.01;
-        o.push_back = push_back;
+        iterations(o.flow) = 2;
+        o.modifiers.preserve = preserve;
+        o.modifiers.threshold = threshold;
+        if (threshold == ThresholdKind::constant) o.modifiers.threshold_value = 0.01;
+        o.modifiers.push_back = push_back;
         ASSERT_TRUE(smooth(mesh, o, {}).ok());
         for (const auto& p : mesh.positions) ASSERT_TRUE(p.allFinite());
-        if (o.preserve == "volume") {
+        if (preserve == Preserve::volume) {
           EXPECT_NEAR(support::enclosed_volume(mesh) / volume, 1, 1e-12);
         }
       }
 }
 
 TEST_P(EveryFlow, EveryBoundaryRuleWorks) {
-  for (const char* rule : {"free", "fixed", "curve", "virtual"}) {
+  for (const Boundary rule : {Boundary::free, Boundary::fixed, Boundary::curve, Boundary::virtual_vertices}) {
     Mesh mesh = support::cylinder(24, 8, 0.25);
     support::add_noise(mesh, 0.02, 3);
     const Positions before = mesh.positions;
     FlowOptions o = options();
-    o.boundary = rule;
+    o.modifiers.boundary = rule;
     ASSERT_TRUE(smooth(mesh, o, {}).ok());
     for (const auto& p : mesh.positions) ASSERT_TRUE(p.allFinite());
-    if (o.boundary == "fixed") {
+    if (rule == Boundary::fixed) {
       for (std::size_t i = 0; i < 24; ++i) EXPECT_EQ(mesh.positions[i], before[i]);
     }
   }
 }
 
-TEST(Flows, UnknownNameSuggestsTheNearest) {
+TEST_P(EveryFlow, IsFoundByItsNameAndOptionsOutOfRangeAreNamed) {
+  EXPECT_EQ(find_flow(name_of(GetParam())).value().index(), GetParam().index());
+  Mesh mesh = lumpy();
+  const Positions before = mesh.positions;
+  FlowOptions o = options();
+  iterations(o.flow) = -1;
+  const auto result = smooth(mesh, o, {});
+  ASSERT_FALSE(result.ok());
+  EXPECT_EQ(result.error().code, ErrorCode::usage);
+  EXPECT_NE(result.error().message.find("`iterations` is -1"), std::string::npos);
+  EXPECT_EQ(mesh.positions, before);
+}
+
+/// What a table says of an option, as text.
+using Table = std::map<std::string_view, std::string>;
+struct Collect {
+  Table& table;
+  template <class T>
+  void operator()(const OptionInfo& info, const T&) const {
+    table[info.name] = fmt::format("{} {} {} {} {} {}", info.help, info.unit, info.min, info.max,
+                                   fmt::join(info.choices, ","), typeid(T).name());
+  }
+};
+
+TEST(Flows, OptionsOfOneNameMeanTheSameInEveryFlow) {
+  Table all;
+  for (const AnyFlow& flow : flows()) {
+    Table own;
+    const FlowOptions options{flow};
+    FlowOptions::describe(options, Collect{own});
+    ASSERT_GT(own.size(), 8u) << name_of(flow);
+    for (const auto& [name, text] : own)
+      EXPECT_EQ(all.emplace(name, text).first->second, text) << name << " of " << name_of(flow);
+  }
+}
+
+TEST(Flows, AnUnknownNameIsAnErrorThatSaysTheNames) {
   const auto result = find_flow("laplcian");
   ASSERT_FALSE(result.ok());
   EXPECT_EQ(result.error().code, ErrorCode::usage);
-  EXPECT_NE(result.error().message.find("'laplacian'"), std::string::npos);
+  for (const AnyFlow& flow : flows())
+    EXPECT_NE(result.error().message.find(name_of(flow)), std::string::npos) << name_of(flow);
 }
 
-TEST(Flows, AParameterTheFlowDoesNotUseIsAnError) {
-  FlowOptions o;
-  o.flow = "laplacian";
-  o.beta = 0.3;
-  const auto result = complete(o);
+TEST(Flows, AnEnumerationsValueWithoutAWordIsAnError) {
+  ImplicitOptions o;
+  o.op = OperatorKind::curvature_normalised;
+  const auto result = validate(FlowOptions{o});
   ASSERT_FALSE(result.ok());
-  EXPECT_NE(result.error().message.find("--beta"), std::string::npos);
+  EXPECT_NE(result.error().message.find("`operator`"), std::string::npos);
 }
 
 TEST(Flows, AnOptionWithoutItsPartnerIsAnErrorThatNamesThePartner) {
   struct Case {
-    const char* flow;
-    std::function<void(FlowOptions&)> set;
+    FlowOptions options;
     const char* option;
     const char* partner;
   };
-  const std::vector<Case> cases = {
-      {"laplacian", [](FlowOptions& o) { o.alpha = 0.5; }, "--alpha", "--anchor"},
-      {"directional", [](FlowOptions& o) { o.direction = "0,0,1", o.power = 1; }, "--power",
-       "--direction auto"},
-      {"hc", [](FlowOptions& o) { o.push_alpha = 0.1; }, "--push-alpha", "--push-back"},
-      {"hc", [](FlowOptions& o) { o.push_beta = 0.6; }, "--push-beta", "--push-back"},
-      {"hc", [](FlowOptions& o) { o.threshold_value = 0.1; }, "--threshold-value", "--threshold constant"},
-      {"hc", [](FlowOptions& o) { o.threshold_value = 0.1, o.threshold = "one-ring"; }, "--threshold-value",
-       "--threshold constant"},
-      {"hc", [](FlowOptions& o) { o.threshold_every = 5, o.threshold = "constant"; }, "--threshold-every",
-       "--threshold one-ring"},
+  std::vector<Case> cases;
+  const auto refused = [&](const char* option, const char* partner, const FlowOptions& options) {
+    cases.push_back({options, option, partner});
   };
+  const auto with_modifiers = [](const auto& set) {
+    FlowOptions options{HcOptions()};
+    set(options.modifiers);
+    return options;
+  };
+  LaplacianOptions laplacian;
+  laplacian.alpha = 0.4;
+  refused("`alpha`", "`anchor`", {laplacian});
+  DirectionalOptions directional;
+  directional.direction = Eigen::Vector3d(0, 0, 1);
+  directional.power = 1;
+  refused("`power`", "`direction` auto", {directional});
+  refused("`push-alpha`", "`push-back`", with_modifiers([](Modifiers& m) { m.push_alpha = 0.1; }));
+  refused("`push-beta`", "`push-back`", with_modifiers([](Modifiers& m) { m.push_beta = 0.7; }));
+  refused("`threshold-value`", "`threshold` constant",
+          with_modifiers([](Modifiers& m) { m.threshold_value = 0.2; }));
+  refused("`threshold-value`", "`threshold` constant", with_modifiers([](Modifiers& m) {
+            m.threshold_value = 0.2;
+            m.threshold = ThresholdKind::one_ring;
+          }));
+  refused("`threshold-every`", "`threshold` one-ring", with_modifiers([](Modifiers& m) {
+            m.threshold_every = 6;
+            m.threshold = ThresholdKind::constant;
+          }));
+  Mesh mesh = lumpy();
   for (const Case& c : cases) {
-    FlowOptions o;
-    o.flow = c.flow;
-    c.set(o);
-    const auto result = complete(o);
+    const auto result = smooth(mesh, c.options, {});
     ASSERT_FALSE(result.ok()) << c.option;
     EXPECT_EQ(result.error().code, ErrorCode::usage);
     for (const char* word : {c.option, c.partner})
@@ -273,18 +319,9 @@ TEST(Flows, AnOptionWithoutItsPartnerIsAnErrorThatNamesThePartner) {
   }
 }
 
-TEST_P(EveryFlow, CompleteOptionsAreComplete) {
-  const FlowOptions once = complete(options()).value();
-  EXPECT_TRUE(complete(once).ok()) << complete(once).error().message;
-}
-
-TEST(Flows, CompleteFillsTheFlowsOwnDefaults) {
-  FlowOptions o;
-  o.flow = "hc";
-  o.beta = 0.7;
-  const FlowOptions full = complete(o).value();
-  EXPECT_TRUE(full.iterations.has_value());
-  EXPECT_EQ(*full.beta, 0.7);
+TEST_P(EveryFlow, ItsDefaultsAreValid) {
+  const auto result = validate(options());
+  EXPECT_TRUE(result.ok()) << (result.ok() ? "" : result.error().message);
 }
 
 TEST(Flows, CancelLeavesTheMesh) {

@@ -19,8 +19,8 @@ using rfsmooth::Mesh;
 
 namespace {
 
-Mesh after(Mesh mesh, const FlowOptions& options) {
-  EXPECT_TRUE(smooth(mesh, options, {}).ok());
+Mesh after(Mesh mesh, const AnyFlow& flow) {
+  EXPECT_TRUE(smooth(mesh, {flow}, {}).ok());
   return mesh;
 }
 
@@ -46,18 +46,16 @@ TEST(Bilaplacian, ThePrintedPlusAmplifiesOursDamps) {
   Positions printed = noisy.positions;
   for (std::size_t i = 0; i < printed.size(); ++i) printed[i] += 0.4 * second[i];
   EXPECT_GT(energy(printed), energy(noisy.positions));
-  FlowOptions o;
-  o.flow = "bilaplacian";
+  BilaplacianOptions o;
   o.iterations = 1;
   EXPECT_LT(energy(after(noisy, o).positions), 0.5 * energy(noisy.positions));
 }
 
 TEST(Bilaplacian, IsHcWithoutTheOriginalPoint) {
   const Mesh noisy = noisy_unit_sphere();
-  FlowOptions bilaplacian, hc;
-  bilaplacian.flow = "bilaplacian";
+  BilaplacianOptions bilaplacian;
+  HcOptions hc;
   bilaplacian.lambda = 0.3;
-  hc.flow = "hc";
   hc.alpha = 0;
   hc.beta = 0.7;
   bilaplacian.iterations = hc.iterations = 5;
@@ -74,8 +72,7 @@ TEST(Taubin, IsOhtakesSixNotDesbrunsSign) {
     six[i] += (mu - lambda) * first[i] - mu * lambda * second[i];
     turned[i] += (mu - lambda) * first[i] + mu * lambda * second[i];
   }
-  FlowOptions o;
-  o.flow = "taubin";
+  TaubinOptions o;
   o.iterations = 1;
   const Mesh ours = after(noisy, o);
   EXPECT_LT(support::rms_distance(ours.positions, six), 1e-14);
@@ -89,8 +86,7 @@ TEST(ModifiedCurvature, ThePrintedBracketIsNotTangentialOursIs) {
   // On a sphere whose sampling is uneven: U0 - (U0 . n) U0 keeps nearly all of U0's normal part.
   const Mesh sphere = support::two_density_sphere(32);
   const Positions first = umbrella_of(sphere, sphere.positions);
-  FlowOptions with, without;
-  with.flow = without.flow = "modified-curvature";
+  ModifiedCurvatureOptions with, without;
   with.iterations = without.iterations = 1;
   with.tangential = 1;
   without.tangential = 0;

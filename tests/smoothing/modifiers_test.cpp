@@ -18,36 +18,48 @@ namespace {
 
 struct Modifier {
   const char* name;
-  std::function<void(FlowOptions&)> set;
-  bool turns = true;  ///< commutes with rotations
+  Modifiers modifiers;
+  bool turns;  ///< commutes with rotations
 };
 
 std::vector<Modifier> all_modifiers() {
-  std::vector<Modifier> all = {{"push_back", [](FlowOptions& o) { o.push_back = true; }}};
-  for (const char* rule : {"constant", "one-ring", "two-ring"})
-    all.push_back({rule, [rule](FlowOptions& o) {
-                     o.threshold = rule;
-                     if (o.threshold == "constant")
-                       o.threshold_value = 0.02;
-                     else
-                       o.threshold_every = 2;
-                   }});
-  all.push_back({"area", [](FlowOptions& o) { o.preserve = "area"; }});
-  all.push_back({"height-field", [](FlowOptions& o) { o.preserve = "height-field"; }, false});
-  for (const char* rule : {"fixed", "curve", "virtual"})
-    all.push_back({rule, [rule](FlowOptions& o) { o.boundary = rule; }});
+  std::vector<Modifier> all;
+  const auto add = [&](const char* name, bool turns, const auto& set) {
+    Modifiers modifiers;
+    set(modifiers);
+    all.push_back({name, modifiers, turns});
+  };
+  const auto add_threshold = [&](const char* name, ThresholdKind kind) {
+    add(name, true, [kind](Modifiers& m) {
+      m.threshold = kind;
+      if (kind == ThresholdKind::constant)
+        m.threshold_value = 0.02;
+      else
+        m.threshold_every = 2;
+    });
+  };
+  const auto add_boundary = [&](const char* name, Boundary rule) {
+    add(name, true, [rule](Modifiers& m) { m.boundary = rule; });
+  };
+  add("push_back", true, [](Modifiers& m) { m.push_back = true; });
+  add_threshold("constant", ThresholdKind::constant);
+  add_threshold("one-ring", ThresholdKind::one_ring);
+  add_threshold("two-ring", ThresholdKind::two_ring);
+  add("area", true, [](Modifiers& m) { m.preserve = Preserve::area; });
+  add("height-field", false, [](Modifiers& m) { m.preserve = Preserve::height_field; });
+  add_boundary("fixed", Boundary::fixed);
+  add_boundary("curve", Boundary::curve);
+  add_boundary("virtual", Boundary::virtual_vertices);
   return all;
 }
 
 class EveryModifier : public testing::TestWithParam<Modifier> {
  protected:
   FlowOptions options() const {
-    FlowOptions o;
-    o.flow = "laplacian";
-    o.iterations = 6;
-    o.lambda = 0.5;
-    GetParam().set(o);
-    return o;
+    LaplacianOptions laplacian;
+    laplacian.iterations = 6;
+    laplacian.lambda = 0.5;
+    return {laplacian, GetParam().modifiers};
   }
 };
 INSTANTIATE_TEST_SUITE_P(Modifiers, EveryModifier, testing::ValuesIn(all_modifiers()),
@@ -116,19 +128,17 @@ TEST_P(EveryModifier, ConstrainedVerticesStayExactlyWhereTheyMustUnderEveryFlow)
                                  {102, HardConstraint::Kind::plane, direction}},
                                 {}};
   int ran = 0;
-  for (const FlowEntry& entry : flows()) {
+  for (AnyFlow flow : flows()) {
     Mesh mesh = tube();
     const Positions before = mesh.positions;
-    FlowOptions o;
-    o.flow = entry.name;
-    o.iterations = 2;
-    GetParam().set(o);
-    if (!smooth(mesh, o, {}, constraints).ok()) continue;  // refused with a reason; see flow_test.cpp
+    iterations(flow) = 2;
+    if (!smooth(mesh, {flow, GetParam().modifiers}, {}, constraints).ok())
+      continue;  // refused with a reason; see flow_test.cpp
     ++ran;
-    EXPECT_EQ(mesh.positions[3], before[3]) << entry.name;
-    EXPECT_EQ(mesh.positions[100], before[100]) << entry.name;
-    EXPECT_LT((mesh.positions[101] - before[101]).cross(direction).norm(), 1e-13) << entry.name;
-    EXPECT_LT(std::abs((mesh.positions[102] - before[102]).dot(direction)), 1e-13) << entry.name;
+    EXPECT_EQ(mesh.positions[3], before[3]) << name_of(flow);
+    EXPECT_EQ(mesh.positions[100], before[100]) << name_of(flow);
+    EXPECT_LT((mesh.positions[101] - before[101]).cross(direction).norm(), 1e-13) << name_of(flow);
+    EXPECT_LT(std::abs((mesh.positions[102] - before[102]).dot(direction)), 1e-13) << name_of(flow);
   }
   EXPECT_GE(ran, 10);
 }

@@ -17,14 +17,15 @@ using rfsmooth::Mesh;
 
 namespace {
 
-FlowOptions flow(const char* name, int iterations) {
-  FlowOptions o;
-  o.flow = name;
+template <class Options>
+Options flow(int iterations, Options o = {}) {
   o.iterations = iterations;
   return o;
 }
 
-Mesh run(Mesh mesh, const FlowOptions& options) {
+Mesh run(Mesh mesh, const AnyFlow& any, Boundary boundary = Boundary::free) {
+  FlowOptions options{any};
+  options.modifiers.boundary = boundary;
   const auto result = smooth(mesh, options, {});
   EXPECT_TRUE(result.ok()) << (result.ok() ? "" : result.error().message);
   return mesh;
@@ -63,7 +64,7 @@ double edge_unevenness(const Mesh& mesh) {
 
 TEST(Desbrun, ImplicitIsStableAtAHundredWhereExplicitBlowsUp) {
   const Mesh noisy = noisy_sphere(4, 0.3);
-  FlowOptions o = flow("implicit", 3);
+  auto o = flow<ImplicitOptions>(3);
   o.dt = 100;
   o.order = 1;
   const Mesh calm = run(noisy, o);
@@ -78,11 +79,11 @@ TEST(Desbrun, ImplicitIsStableAtAHundredWhereExplicitBlowsUp) {
 
 TEST(Desbrun, OneImplicitStepOfTenLooksLikeTenExplicitOfOne) {
   const Mesh noisy = noisy_sphere(4, 0.3);
-  FlowOptions o = flow("implicit", 1);
+  auto o = flow<ImplicitOptions>(1);
   o.dt = 10;
   o.order = 1;
   const Mesh implicit = run(noisy, o);
-  FlowOptions e = flow("laplacian", 10);
+  auto e = flow<LaplacianOptions>(10);
   const Mesh stepped = run(noisy, e);
   EXPECT_LT(support::rms_distance(implicit.positions, stepped.positions),
             0.25 * support::rms_distance(noisy.positions, stepped.positions));
@@ -90,12 +91,12 @@ TEST(Desbrun, OneImplicitStepOfTenLooksLikeTenExplicitOfOne) {
 
 TEST(Desbrun, CurvatureFlowKeepsATwoDensitySphereASphereTheUmbrellaDoesNot) {
   const Mesh sphere = support::two_density_sphere(48);
-  FlowOptions c = flow("implicit", 1);
-  c.op = "curvature";
+  auto c = flow<ImplicitOptions>(1);
+  c.op = OperatorKind::curvature;
   c.order = 1;
   c.dt = 5;
-  FlowOptions u = c;
-  u.op = "umbrella";
+  auto u = c;
+  u.op = OperatorKind::umbrella;
   const double curvature = radius_spread(run(sphere, c)), umbrella = radius_spread(run(sphere, u));
   EXPECT_LT(curvature, 1e-3);
   EXPECT_GT(umbrella, 10 * curvature);
@@ -105,15 +106,15 @@ TEST(Desbrun, CurvatureFlowDoesNotSlidePointsInAPlaneTheUmbrellaDoes) {
   Mesh plane = support::grid(12, 12);
   support::add_noise(plane, 0.15, 2);
   for (Vector3d& p : plane.positions) p.z() = 0;
-  FlowOptions c = flow("curvature", 5), u = flow("laplacian", 5);
-  c.boundary = u.boundary = "fixed";
-  EXPECT_LT(support::rms_distance(run(plane, c).positions, plane.positions), 1e-12);
-  EXPECT_GT(support::rms_distance(run(plane, u).positions, plane.positions), 0.03);
+  const auto c = flow<CurvatureOptions>(5);
+  const auto u = flow<LaplacianOptions>(5);
+  EXPECT_LT(support::rms_distance(run(plane, c, Boundary::fixed).positions, plane.positions), 1e-12);
+  EXPECT_GT(support::rms_distance(run(plane, u, Boundary::fixed).positions, plane.positions), 0.03);
 }
 
 TEST(Desbrun, SecondOrderKeepsMoreOfTheShapeThanFirst) {
   const Mesh noisy = noisy_sphere(4, 0.3);
-  FlowOptions o = flow("implicit", 1);
+  auto o = flow<ImplicitOptions>(1);
   o.order = 1;
   const double first = support::rms_off_unit_sphere(run(noisy, o).positions);
   o.order = 2;
@@ -123,17 +124,17 @@ TEST(Desbrun, SecondOrderKeepsMoreOfTheShapeThanFirst) {
 TEST(Vollmer, HcAndTaubinKeepTheVolumeTheLaplacianLoses) {
   const Mesh noisy = noisy_sphere(4, 0.2);
   const double volume = support::enclosed_volume(noisy);
-  EXPECT_NEAR(support::enclosed_volume(run(noisy, flow("hc", 10))) / volume, 1, 0.01);
-  EXPECT_NEAR(support::enclosed_volume(run(noisy, flow("taubin", 10))) / volume, 1, 0.01);
-  EXPECT_LT(support::enclosed_volume(run(noisy, flow("laplacian", 10))) / volume, 0.95);
+  EXPECT_NEAR(support::enclosed_volume(run(noisy, flow<HcOptions>(10))) / volume, 1, 0.01);
+  EXPECT_NEAR(support::enclosed_volume(run(noisy, flow<TaubinOptions>(10))) / volume, 1, 0.01);
+  EXPECT_LT(support::enclosed_volume(run(noisy, flow<LaplacianOptions>(10))) / volume, 0.95);
 }
 
 TEST(Vollmer, HcConvergesToTheOneSolveLimit) {
   Mesh noisy = noisy_sphere(2, 0.3);
-  FlowOptions o = flow("hc", 4000);
+  auto o = flow<HcOptions>(4000);
   o.alpha = 0.1;
   o.beta = 0.7;
-  FlowOptions limit = flow("hc-limit", 1);
+  auto limit = flow<HcLimitOptions>(1);
   limit.alpha = o.alpha;
   limit.beta = o.beta;
   limit.tolerance = 1e-13;
@@ -145,30 +146,30 @@ TEST(Vollmer, HcWithFixedVerticesConvergesToItsLimitToo) {
   const Constraints fixed{{{0, HardConstraint::Kind::fixed, Vector3d::Zero()},
                            {17, HardConstraint::Kind::fixed, Vector3d::Zero()}},
                           {}};
-  FlowOptions o = flow("hc", 4000);
+  auto o = flow<HcOptions>(4000);
   o.alpha = 0.1;
   o.beta = 0.7;
-  FlowOptions l = flow("hc-limit", 1);
+  auto l = flow<HcLimitOptions>(1);
   l.alpha = o.alpha;
   l.beta = o.beta;
   l.tolerance = 1e-13;
-  ASSERT_TRUE(smooth(noisy, o, {}, fixed).ok());
-  ASSERT_TRUE(smooth(limit, l, {}, fixed).ok());
+  ASSERT_TRUE(smooth(noisy, {o}, {}, fixed).ok());
+  ASSERT_TRUE(smooth(limit, {l}, {}, fixed).ok());
   EXPECT_LT(support::rms_distance(noisy.positions, limit.positions), 1e-10);
 }
 
 TEST(Vollmer, TheLaplacianWithTheOriginalPointIsOneImplicitSolveForBothUpdates) {
   const Mesh noisy = noisy_sphere(2, 0.3);
-  FlowOptions o = flow("laplacian", 2000);
-  o.anchor = "original";
+  auto o = flow<LaplacianOptions>(2000);
+  o.anchor = Anchor::original;
   o.alpha = 0.2;
-  FlowOptions solve = flow("implicit", 1);
+  auto solve = flow<ImplicitOptions>(1);
   solve.order = 1;
   solve.dt = (1 - 0.2) / 0.2;
   solve.tolerance = 1e-13;
   const Positions limit = run(noisy, solve).positions;
   EXPECT_LT(support::rms_distance(run(noisy, o).positions, limit), 1e-10);
-  o.update = "sequential";
+  o.update = Update::sequential;
   EXPECT_LT(support::rms_distance(run(noisy, o).positions, limit), 1e-10);
 }
 
@@ -177,31 +178,30 @@ TEST(Vollmer, OnTwoVerticesTheSimultaneousLaplacianAlternates) {
   pair.positions = {{0, 0, 0}, {1, 0, 0}};
   pair.loose_edges = {{0, 1}};
   rebuild_adjacency(pair, {});
-  const Mesh once = run(pair, flow("laplacian", 1));
+  const Mesh once = run(pair, flow<LaplacianOptions>(1));
   EXPECT_EQ(once.positions[0], pair.positions[1]);
-  EXPECT_EQ(run(pair, flow("laplacian", 2)).positions, pair.positions);
+  EXPECT_EQ(run(pair, flow<LaplacianOptions>(2)).positions, pair.positions);
 }
 
 TEST(Ohtake, UmbrellaEvensTheSamplingInverseDistanceDoesLess) {
   Mesh plane = support::grid(16, 16, true);
   support::add_noise(plane, 0.15, 4);
   for (Vector3d& p : plane.positions) p.z() = 0;
-  FlowOptions equal = flow("laplacian", 5), inverse = equal;
-  equal.boundary = inverse.boundary = "fixed";
-  inverse.weights = "inverse-distance";
-  const double before = edge_unevenness(plane), after = edge_unevenness(run(plane, equal));
+  auto equal = flow<LaplacianOptions>(5), inverse = equal;
+  inverse.weights = UmbrellaWeights::inverse_distance;
+  const double before = edge_unevenness(plane), after = edge_unevenness(run(plane, equal, Boundary::fixed));
   EXPECT_LT(after, 0.7 * before);
-  EXPECT_GT(edge_unevenness(run(plane, inverse)), after);
+  EXPECT_GT(edge_unevenness(run(plane, inverse, Boundary::fixed)), after);
 }
 
 TEST(Ohtake, MedianDirectionMakesEdgesMoreEvenThanCurvatureFlowAtEqualSmoothing) {
   const Mesh noisy = noisy_sphere(4, 0.2);
-  const Mesh median = run(noisy, flow("median-direction", 10));
+  const Mesh median = run(noisy, flow<MedianDirectionOptions>(10));
   // Curvature flow until it is as smooth as that, judged by the normal part of the noise.
   Mesh curvature = noisy;
   int steps = 0;
   while (radius_spread(curvature) > radius_spread(median) && steps < 200) {
-    curvature = run(curvature, flow("curvature", 1));
+    curvature = run(curvature, flow<CurvatureOptions>(1));
     ++steps;
   }
   ASSERT_LT(steps, 200);
@@ -210,8 +210,8 @@ TEST(Ohtake, MedianDirectionMakesEdgesMoreEvenThanCurvatureFlowAtEqualSmoothing)
 
 TEST(Ohtake, ModifiedCurvatureFlowEvensTheSampling) {
   const Mesh noisy = noisy_sphere(4, 0.2);
-  EXPECT_LT(edge_unevenness(run(noisy, flow("modified-curvature", 10))),
-            0.8 * edge_unevenness(run(noisy, flow("curvature", 10))));
+  EXPECT_LT(edge_unevenness(run(noisy, flow<ModifiedCurvatureOptions>(10))),
+            0.8 * edge_unevenness(run(noisy, flow<CurvatureOptions>(10))));
 }
 
 }  // namespace

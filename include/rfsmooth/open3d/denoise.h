@@ -6,7 +6,7 @@
 /// has them, describe the surface, which has moved: they are made anew from the smoothed points, normals on
 /// the side they were on (normals that had no common side, as EstimateNormals leaves them, outward:
 /// rfsmooth/normals.h). A cloud that comes back as it was keeps all of them bit for bit. With the option
-/// outliers = "remove" the points that have no surface near them go, with all they have.
+/// Outliers::remove the points that have no surface near them go, with all they have.
 ///
 /// Works in double, as Open3D does. Open3D's headers stay in the .cpp: include its own beside this one.
 #pragma once

@@ -10,9 +10,9 @@
 /// order and count stay. Coordinates are computed in double around a local origin and rounded once, to
 /// nearest. Points outside the indices influence nothing.
 ///
-/// Only `setOutliers("remove")` takes points away, by PCL's rules: the rest closes up to height 1, or, with
-/// `setKeepOrganized(true)`, the removed ones stay as NaN (`setUserFilterValue`) and is_dense becomes false.
-/// A filter made with `true` tells which: `getRemovedIndices()`.
+/// Only `setOutliers(Outliers::remove)` takes points away, by PCL's rules: the rest closes up to height 1,
+/// or, with `setKeepOrganized(true)`, the removed ones stay as NaN (`setUserFilterValue`) and is_dense
+/// becomes false. A filter made with `true` tells which: `getRemovedIndices()`.
 ///
 /// Nothing throws through `filter` and nothing aborts: an unusable input (none set, no finite point, an index
 /// out of range, an option out of range) gives a PCL_ERROR, an empty output and a line in `getStatus()`.
@@ -36,23 +36,22 @@ namespace rfsmooth::pcl {
 class DenoiseSettings {
  public:
   /// All options at once; the defaults need no setting.
-  void setOptions(const DenoiseOptions& options) { options_ = options; }
+  void setOptions(const DenoiseOptions& options);
   const DenoiseOptions& getOptions() const { return options_; }
 
-  /// The flow by name ("auto", "hc", ...; see `rfsmooth flows`).
-  void setFlow(const std::string& name) { options_.flow.flow = name; }
-  const std::string& getFlow() const { return options_.flow.flow; }
+  /// The flow by name ("auto", "hc", ...: rfsmooth::flows() has all), with its own defaults.
+  void setFlow(const std::string& name);
+  std::string getFlow() const { return std::string(name_of(options_.flow.flow)); }
 
-  /// Times the strength that the measured noise asks for (default 1; 0 = nothing moves).
-  void setStrength(double strength) { options_.flow.strength = strength; }
+  /// Flow "auto": times the strength that the measured noise asks for (default 1; 0 = nothing moves).
+  void setStrength(double strength);
 
-  /// The standard deviation of the noise along the normal, world units, instead of measuring it.
-  void setNoise(double sigma) { options_.flow.noise = Length{sigma, false}; }
+  /// Flow "auto": the standard deviation of the noise along the normal, world units, instead of measuring it.
+  void setNoise(double sigma);
 
-  /// What becomes of points with no surface near: "keep" (default: left in place, pulling nobody), "remove",
-  /// "smooth" (none are looked for).
-  void setOutliers(const std::string& what) { options_.outliers = what; }
-  const std::string& getOutliers() const { return options_.outliers; }
+  /// What becomes of points with no surface near (default: left in place, pulling nobody).
+  void setOutliers(Outliers what) { options_.outliers = what; }
+  Outliers getOutliers() const { return options_.outliers; }
 
   /// Whether removed points stay in the cloud with their coordinates set to the filter value (default: NaN).
   void setKeepOrganized(bool keep) { keep_organized_ = keep; }
@@ -82,13 +81,16 @@ class DenoiseSettings {
   bool seen_from_origin(const double* xyz, std::size_t width, std::size_t height) const;
   bool fail(const std::string& why);
 
+  /// The options of the flow "auto"; null, and a mistake, if another is set.
+  AutomaticOptions* automatic(const char* option);
+
   /// Those of `indices`, the rows of the last run, that are to be removed: ascending, each once.
   ::pcl::Indices removed(const ::pcl::Indices& indices) const;
 
   DenoiseOptions options_;
   DenoiseReport report_;
   Context context_;
-  std::string status_;
+  std::string status_, mistake_;  ///< the last run's; and the setters', told by every run until it is mended
   bool keep_organized_ = false;
   float user_filter_value_ = std::numeric_limits<float>::quiet_NaN();
 };

@@ -9,10 +9,10 @@
 /// where there is one, else outward. The other fields of the output are those of the same name in the input
 /// (PCL's copyPointCloud); the rest, `curvature` say, is what the point type begins with.
 ///
-/// The output has all points of the input but those that `setOutliers("remove")` takes away, in order, unlike
-/// that of MovingLeastSquares, which has those in the indices. Points without a normal (not finite, or
-/// outside the indices and without one in the input) have NaN there, and `is_dense` is then false, as after
-/// PCL's NormalEstimation.
+/// The output has all points of the input but those that `setOutliers(Outliers::remove)` takes away, in
+/// order, unlike that of MovingLeastSquares, which has those in the indices. Points without a normal (not
+/// finite, or outside the indices and without one in the input) have NaN there, and `is_dense` is then false,
+/// as after PCL's NormalEstimation.
 ///
 /// Nothing throws and nothing aborts: see denoise.h. `output` may be the input cloud if In = Out. Compiled
 /// for the pairs below; for others, your own types too, include "rfsmooth/pcl/impl/denoise_surface.hpp".

@@ -72,7 +72,7 @@ DenoiseReport run(PointCloud& cloud, const DenoiseOptions& options, const Contex
   const std::size_t n = made.points_.size();
   const DenoiseReport done =
       value_or_throw(rfsmooth::denoise(n == 0 ? nullptr : made.points_.front().data(), n, options, context));
-  const bool removes = options.outliers == "remove" && done.outliers > 0;
+  const bool removes = options.outliers == Outliers::remove && done.outliers > 0;
   if (done.moved == 0 && !removes) return done;
   if (removes) {
     close_up(made.normals_, done.outlier);

@@ -25,9 +25,35 @@ bool DenoiseSettings::fail(const std::string& why) {
   return false;
 }
 
+void DenoiseSettings::setOptions(const DenoiseOptions& options) {
+  options_ = options;
+  mistake_.clear();
+}
+
+void DenoiseSettings::setFlow(const std::string& name) {
+  const auto flow = rfsmooth::find_flow(name);
+  mistake_ = flow.ok() ? "" : flow.error().message;
+  if (flow.ok()) options_.flow.flow = flow.value();
+}
+
+AutomaticOptions* DenoiseSettings::automatic(const char* option) {
+  auto* const options = std::get_if<AutomaticOptions>(&options_.flow.flow);
+  if (options == nullptr) mistake_ = std::string(option) + " has no meaning for the flow '" + getFlow() + "'";
+  return options;
+}
+
+void DenoiseSettings::setStrength(double strength) {
+  if (auto* const options = automatic("strength")) options->strength = strength;
+}
+
+void DenoiseSettings::setNoise(double sigma) {
+  if (auto* const options = automatic("noise")) options->noise = Length{sigma, false};
+}
+
 bool DenoiseSettings::run(double* xyz, std::size_t n) {
   status_.clear();
   report_ = {};
+  if (!mistake_.empty()) return fail(mistake_);
   try {
     Result<DenoiseReport> result = rfsmooth::denoise(xyz, n, options_, context_);
     if (!result.ok()) return fail(result.error().message);
@@ -40,7 +66,7 @@ bool DenoiseSettings::run(double* xyz, std::size_t n) {
 
 ::pcl::Indices DenoiseSettings::removed(const ::pcl::Indices& indices) const {
   ::pcl::Indices gone;
-  if (options_.outliers != "remove") return gone;
+  if (options_.outliers != Outliers::remove) return gone;
   for (std::size_t row = 0; row < report_.outlier.size(); ++row)
     if (report_.outlier[row] != 0) gone.push_back(indices[row]);
   std::sort(gone.begin(), gone.end());

@@ -40,7 +40,7 @@ Command flows_command();
 Command man_command();
 Command completion_command();
 
-/// Gives options their one-letter names and --flow its words.
+/// Gives options their one-letter names.
 void polish(Command& command);
 
 /// All of them, in the order of the overview.

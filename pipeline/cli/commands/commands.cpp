@@ -1,5 +1,3 @@
-#include <rfsmooth/flow.h>
-
 #include "pipeline/cli/commands/command.h"
 #include "pipeline/cli/commands/reconstruct_command.h"
 #include "pipeline/cli/commands/render_command.h"
@@ -10,8 +8,6 @@ void polish(Command& command) {
   for (CommandOption& option : command.options) {
     for (const auto& [name, letter] : {std::pair("output", 'o'), {"quiet", 'q'}, {"verbose", 'v'}})
       if (option.name == name) option.short_name = letter;
-    if (option.name == "flow")
-      for (const auto& flow : rfsmooth::flows()) option.choices.emplace_back(flow.name);
   }
 }
 

@@ -42,8 +42,8 @@ struct DenoiseCommandOptions {
     NormalsFields::describe(self.normals, visit);
   }
 
-  bool marks() const { return mark_outliers || denoise.outliers == "mark"; }
-  bool removes() const { return denoise.outliers == "remove"; }
+  bool marks() const { return mark_outliers || denoise.outliers == Outliers::mark; }
+  bool removes() const { return denoise.outliers == Outliers::remove; }
 };
 
 void enter(const DenoiseReport& done, const DenoiseCommandOptions& options, ordered_json& entry) {
@@ -124,7 +124,8 @@ std::string said_of_outliers(const DenoiseReport& done, const DenoiseCommandOpti
 
 /// What came in, its noise, and how far it moved: a line each.
 std::string summary(const DenoiseReport& done, const DenoiseCommandOptions& options) {
-  const bool clean = done.effective.flow.flow == "auto" && done.guide_strength == 0;
+  const bool clean =
+      std::holds_alternative<AutomaticOptions>(done.effective.flow.flow) && done.guide_strength == 0;
   const std::string left = clean ? ", too little to smooth"
                            : done.noise_left < done.noise
                                ? fmt::format(", about {:.3g} left", done.noise_left)
@@ -172,9 +173,7 @@ std::string denoise_cloud(const DenoiseCommandOptions& options, pipeline::io::Cl
 }
 
 int run_denoise(const DenoiseCommandOptions& options, const Invocation& typed) {
-  // Wrong options are told before any file is touched.
-  value_or_throw(rfsmooth::complete(options.denoise.flow));
-  if (options.mark_outliers && options.denoise.outliers == "smooth")
+  if (options.mark_outliers && options.denoise.outliers == Outliers::smooth)
     throw Failure({ErrorCode::usage, "--mark-outliers has nothing to mark with --outliers smooth"});
   check(options.normals);
   return run_cloud_jobs(

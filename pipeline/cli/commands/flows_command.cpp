@@ -21,25 +21,24 @@ struct FlowsOptions {
   template <class Self, class Visit>
   static void describe(Self& self, Visit&& visit) {
     visit(OptionInfo{"json", "print JSON", ""}, self.json);
-    visit(OptionInfo{"markdown", "print the table of the README", ""}, self.markdown);
+    visit(OptionInfo{"markdown", "print the table of docs/FLOWS.md", ""}, self.markdown);
   }
 };
 
 /// The flow's own values, by option name, as they would be typed.
-std::vector<std::pair<std::string, std::string>> defaults_of(const FlowEntry& flow) {
-  FlowOptions values = flow.defaults;
+std::vector<std::pair<std::string, std::string>> defaults_of(AnyFlow flow) {
   std::vector<CommandOption> options;
-  collect(values, options);
+  std::visit([&](auto& values) { collect(values, options); }, flow);
   std::vector<std::pair<std::string, std::string>> defaults;
-  for (const auto parameter : flow.parameters)
-    if (const CommandOption* option = find_option(options, std::string(parameter)))
-      defaults.emplace_back(option->name, option->get().value_or("auto"));
+  for (const CommandOption& option : options)
+    defaults.emplace_back(option.name, option.get().value_or("auto"));
   return defaults;
 }
 
 void print_table() {
-  for (const FlowEntry& flow : rfsmooth::flows()) {
-    fmt::print("{:<18} {} ({})\n{:18}", flow.name, flow.summary, flow.source, "");
+  for (const AnyFlow& flow : rfsmooth::flows()) {
+    const FlowInfo& info = info_of(flow);
+    fmt::print("{:<18} {} ({})\n{:18}", info.name, info.summary, info.source, "");
     for (const auto& [name, value] : defaults_of(flow)) fmt::print(" --{} {}", name, value);
     fmt::print("\n");
   }
@@ -47,17 +46,20 @@ void print_table() {
 
 void print_markdown() {
   fmt::print("| flow | what it does | source |\n|---|---|---|\n");
-  for (const FlowEntry& flow : rfsmooth::flows())
-    fmt::print("| `{}` | {} | {} |\n", flow.name, flow.summary, flow.source);
+  for (const AnyFlow& flow : rfsmooth::flows()) {
+    const FlowInfo& info = info_of(flow);
+    fmt::print("| `{}` | {} | {} |\n", info.name, info.summary, info.source);
+  }
 }
 
 void print_json() {
   auto list = nlohmann::ordered_json::array();
-  for (const FlowEntry& flow : rfsmooth::flows()) {
+  for (const AnyFlow& flow : rfsmooth::flows()) {
+    const FlowInfo& info = info_of(flow);
     auto defaults = nlohmann::ordered_json::object();
     for (const auto& [name, value] : defaults_of(flow)) defaults[name] = json_value(value);
     list.push_back(
-        {{"name", flow.name}, {"summary", flow.summary}, {"source", flow.source}, {"options", defaults}});
+        {{"name", info.name}, {"summary", info.summary}, {"source", info.source}, {"options", defaults}});
   }
   fmt::print("{}\n", list.dump(2));
 }

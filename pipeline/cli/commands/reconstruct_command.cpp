@@ -134,7 +134,6 @@ Command reconstruct_command() {
   const auto options = std::make_shared<ReconstructCommandOptions>();
   Command command = table(options);
   command.run = [options, known = command.options](const Invocation& typed) {
-    value_or_throw(rfsmooth::complete(options->reconstruct.denoising.flow));
     return become_program("rfsmooth-reconstruct", as_typed(typed, known));
   };
   return command;
@@ -144,7 +143,6 @@ Command reconstruct_command(std::vector<SurfaceMethod> methods) {
   const auto options = std::make_shared<ReconstructCommandOptions>();
   Command command = table(options);
   command.run = [options, methods = std::move(methods)](const Invocation& typed) {
-    value_or_throw(rfsmooth::complete(options->reconstruct.denoising.flow));
     const SurfaceMethod& method = find_method(methods, options->reconstruct.method);
     return run_cloud_jobs("reconstruct", options->job, typed, reconstructing_stages(*options),
                           [&](auto&&... all) {

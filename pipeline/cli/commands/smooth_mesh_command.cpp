@@ -24,7 +24,7 @@ using nlohmann::ordered_json;
 
 /// What may follow the flow.
 struct After {
-  smoothing::RefineOptions refine{0, "mixed", 0, 1e-4};
+  smoothing::RefineOptions refine{0, Chart::mixed, 0, 1e-4};
   std::optional<double> sharp_angle;
   bool ridges = false;
   double ridge_curvature = 0.1;  // a turn of six degrees from edge to edge
@@ -44,9 +44,8 @@ struct After {
     visit(OptionInfo{"refine", "levels of refinement after the flow; each multiplies the faces by four", "",
                      0, 10},
           self.refine.levels);
-    OptionInfo chart{"refine-chart", "refinement: how neighbours get their parameters", ""};
-    chart.choices = {"tangent", "exponential", "mixed"};
-    visit(chart, self.refine.chart);
+    visit(words("refine-chart", "refinement: how neighbours get their parameters", Shared::kCharts),
+          self.refine.chart);
     visit(OptionInfo{"refine-pimple", "refinement: how far given vertices may move at the end", "x mean edge",
                      0, 10},
           self.refine.pimple);
@@ -109,7 +108,8 @@ std::string smooth_file(const SmoothMeshCommandOptions& options, pipeline::io::C
                         const Context& context, Console& console, std::vector<StageTime>& stages,
                         ordered_json& entry) {
   Stopwatch watch(stages, "connect");
-  FileMesh file = file_mesh(cloud, job.input, context, options.flow.preserve == "height-field");
+  FileMesh file =
+      file_mesh(cloud, job.input, context, options.flow.modifiers.preserve == Preserve::height_field);
   const auto constraints = value_or_fail(guarded([&] {
                                            return constraints_of(options.constraints, cloud, file.of_row,
                                                                  file.before.size(), context);
@@ -152,9 +152,7 @@ std::string smooth_file(const SmoothMeshCommandOptions& options, pipeline::io::C
     pipeline::io::set_field(cloud, "ridge", pipeline::io::Scalar::int8, field, context);
   }
 
-  SmoothMeshCommandOptions used = options;
-  used.flow = rfsmooth::complete(options.flow).value();
-  entry["options"] = effective_options(used, options.job.files);
+  entry["options"] = effective_options(options, options.job.files);
   entry["counts"] = {{"points", points},
                      {"finite", file.before.size()},
                      {"faces", faces},
@@ -169,7 +167,6 @@ std::string smooth_file(const SmoothMeshCommandOptions& options, pipeline::io::C
 }
 
 int run_smooth_mesh(const SmoothMeshCommandOptions& options, const Invocation& typed) {
-  value_or_throw(rfsmooth::complete(options.flow));
   options.after.check_partners(typed);
   if (const auto& fields = options.constraints; fields.direction && !fields.axis && !fields.plane)
     throw Failure(

@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 
 #include "pipeline/cli/console/report.h"
+#include "pipeline/cli/exit_code.h"
+#include "pipeline/cli/options/text_values.h"
 #include "pipeline/cli/own_files.h"
 
 namespace rfsmooth::cli {
@@ -65,8 +67,8 @@ int run_cloud_jobs(const std::string& command, const JobOptions& options, const 
     });
     std::optional<Error> error;
     if (!done.ok()) {
-      error = done.error();
-      entry["error"] = {{"code", int(error->code)}, {"message", error->message}};
+      error = Error{done.error().code, with_dashes(done.error().message)};
+      entry["error"] = {{"code", exit_code(error->code)}, {"message", error->message}};
     }
     report.add(std::move(entry));
     return error;

@@ -24,9 +24,9 @@ constexpr Names kPly = {"nx", "ny", "nz"}, kPcd = {"normal_x", "normal_y", "norm
 
 /// "x,y,z" strictly. \throw Failure (usage).
 Vector3d parse_point(const std::string& text) {
-  const auto point = read_three(text);
+  const auto point = read_point(text);
   if (!point) throw Failure({ErrorCode::usage, fmt::format("--viewpoint: expected x,y,z; found '{}'", text)});
-  return {(*point)[0], (*point)[1], (*point)[2]};
+  return *point;
 }
 
 bool complete(const io::Cloud& cloud, const Names& names) {

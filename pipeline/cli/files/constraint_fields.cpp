@@ -2,9 +2,10 @@
 
 #include <array>
 #include <cmath>
-#include <cstdio>
 
 #include <fmt/format.h>
+
+#include "pipeline/cli/options/text_values.h"
 
 namespace rfsmooth::cli {
 
@@ -36,9 +37,8 @@ class Directions {
         normal_[k] = values_of(cloud, std::array{"nx", "ny", "nz"}[k], context);
       return;
     }
-    char rest = 0;
-    const int read = std::sscanf(text.c_str(), "%lf,%lf,%lf%c", &all_[0], &all_[1], &all_[2], &rest);
-    if (read != 3 || !all_.allFinite() || all_ == Vector3d::Zero())
+    all_ = read_point(text).value_or(Vector3d::Zero());
+    if (all_ == Vector3d::Zero())
       throw Failure(
           {ErrorCode::usage,
            fmt::format("--slide-direction: expected x,y,z, not all zero, or normals; found '{}'", text)});

@@ -57,6 +57,10 @@ T parse_as(const CommandOption& option, const OptionInfo& info, const std::strin
     if (!value) refuse_value(option, text, "a length such as 0.02 (world units) or 2x (times the spacing)");
     need(rfsmooth::detail::check_range(info, value->value));
     return *value;
+  } else if constexpr (std::is_same_v<T, Eigen::Vector3d>) {
+    const auto value = read_point(text);
+    if (!value || value->isZero(0)) refuse_value(option, text, "three numbers x,y,z, not all zero,");
+    return *value;
   } else {
     if (option.kind == ValueKind::file && text.empty())
       refuse_value(fmt::format("--{} needs a name", option.name));
@@ -74,6 +78,9 @@ std::string text_of(double value) {
   return to_text(value);
 }
 std::string text_of(const Length& value) {
+  return to_text(value);
+}
+std::string text_of(const Eigen::Vector3d& value) {
   return to_text(value);
 }
 std::string text_of(const std::string& value) {
@@ -106,7 +113,9 @@ void add(std::vector<CommandOption>& out, const OptionInfo& info, T& field) {
   CommandOption o = describe_option<T>(info);
   o.default_text = text_of(field);
   if constexpr (std::is_same_v<T, bool>) o.on_by_default = field;
-  o.set = [&field, seen = o, info](const std::string& text) { field = parse_as<T>(seen, info, text); };
+  o.set = [&field, info](const CommandOption& option, const std::string& text) {
+    field = parse_as<T>(option, info, text);
+  };
   o.get = [&field] { return std::optional<std::string>(text_of(field)); };
   out.push_back(std::move(o));
 }
@@ -135,11 +144,11 @@ void OptionCollector::operator()(const OptionInfo& info, std::optional<T>& field
   o.optional = true;
   const bool file = o.kind == ValueKind::file;
   o.default_text = field ? text_of(*field) : file ? "" : "auto";
-  o.set = [&field, file, seen = o, info](const std::string& text) {
+  o.set = [&field, file, info](const CommandOption& option, const std::string& text) {
     if (text == "auto" && !file)
       field.reset();
     else
-      field = parse_as<T>(seen, info, text);
+      field = parse_as<T>(option, info, text);
   };
   o.get = [&field]() -> std::optional<std::string> {
     if (!field) return std::nullopt;
@@ -153,6 +162,18 @@ template void OptionCollector::operator()(const OptionInfo&, std::optional<int>&
 template void OptionCollector::operator()(const OptionInfo&, std::optional<double>&);
 template void OptionCollector::operator()(const OptionInfo&, std::optional<Length>&);
 template void OptionCollector::operator()(const OptionInfo&, std::optional<std::string>&);
+template void OptionCollector::operator()(const OptionInfo&, std::optional<Eigen::Vector3d>&);
+
+void OptionCollector::add_words(const OptionInfo& info, const std::function<std::size_t()>& get,
+                                const std::function<void(std::size_t)>& set) {
+  CommandOption o = describe_option<std::string>(info);
+  o.default_text = info.choices.at(get());
+  o.set = [set](const CommandOption& option, const std::string& text) {
+    set(std::size_t(std::find(option.choices.begin(), option.choices.end(), text) - option.choices.begin()));
+  };
+  o.get = [get, choices = o.choices] { return std::optional(choices.at(get())); };
+  out_.push_back(std::move(o));
+}
 
 std::string value_name(const CommandOption& option) {
   switch (option.kind) {
@@ -189,7 +210,7 @@ void assign(const CommandOption& option, const std::string& text) {
       std::find(option.choices.begin(), option.choices.end(), text) == option.choices.end())
     refuse_value(fmt::format("--{} is '{}'; it must be one of: {}{}", option.name, text,
                              fmt::join(option.choices, ", "), did_you_mean(text, option.choices)));
-  option.set(text);
+  option.set(option, text);
 }
 
 CommandOption* find_option(std::vector<CommandOption>& options, const std::string& name) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include <rfsmooth/flow_options.h>
 #include <rfsmooth/options.h>
 
 namespace rfsmooth::cli {
@@ -25,9 +26,12 @@ struct CommandOption {
   std::string range;           ///< "0 to 1", "at least 0", ""
   std::vector<std::string> choices;
 
-  std::function<void(const std::string& text)> set;  ///< use `assign`
+  /// Stores `text`, read strictly for this option; use `assign`.
+  std::function<void(const CommandOption& option, const std::string& text)> set;
   /// The value as it would be typed; nothing if it is auto or left out.
   std::function<std::optional<std::string>()> get;
+  /// To be called, if there is one, when every option has its value. \throw Failure (usage).
+  std::function<void()> finish;
 };
 
 /// Reads `text` strictly and stores it. \throw Failure (usage) naming the option, the text and what is legal.
@@ -55,8 +59,18 @@ class OptionCollector {
   void operator()(const OptionInfo& info, std::string& field);
   template <class T>
   void operator()(const OptionInfo& info, std::optional<T>& field);
+  template <class Enumeration, std::enable_if_t<std::is_enum_v<Enumeration>, int> = 0>
+  void operator()(const OptionInfo& info, Enumeration& field) {
+    add_words(
+        info, [&field] { return std::size_t(field); }, [&field](std::size_t k) { field = Enumeration(k); });
+  }
+  /// --flow, and the options of every flow and modifier: all auto, which leaves them to the flow.
+  void operator()(FlowOptions& field);
 
  private:
+  void add_words(const OptionInfo& info, const std::function<std::size_t()>& get,
+                 const std::function<void(std::size_t)>& set);
+
   std::vector<CommandOption>& out_;
 };
 

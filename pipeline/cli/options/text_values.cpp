@@ -2,6 +2,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <regex>
 
 #include <fmt/format.h>
 
@@ -36,16 +37,16 @@ std::optional<Length> read_length(std::string_view text) {
   return Length{*value, times_spacing};
 }
 
-std::optional<std::array<double, 3>> read_three(std::string_view text) {
-  std::array<double, 3> values{};
-  for (std::size_t k = 0; k < 3; ++k) {
+std::optional<Eigen::Vector3d> read_point(std::string_view text) {
+  Eigen::Vector3d point;
+  for (int axis = 0; axis < 3; ++axis) {
     const std::size_t comma = text.find(',');
     const auto value = read_number(text.substr(0, comma));
-    if (!value || (comma == std::string_view::npos) != (k == 2)) return std::nullopt;
-    values[k] = *value;
-    text.remove_prefix(k == 2 ? text.size() : comma + 1);
+    if (!value || (comma == text.npos) != (axis == 2)) return std::nullopt;
+    point[axis] = *value;
+    text.remove_prefix(axis == 2 ? 0 : comma + 1);
   }
-  return values;
+  return point;
 }
 
 std::string to_text(double value) {
@@ -54,6 +55,15 @@ std::string to_text(double value) {
 
 std::string to_text(const Length& value) {
   return to_text(value.value) + (value.times_spacing ? "x" : "");
+}
+
+std::string to_text(const Eigen::Vector3d& value) {
+  return fmt::format("{},{},{}", value.x(), value.y(), value.z());
+}
+
+std::string with_dashes(const std::string& message) {
+  static const std::regex option("`([a-z-]+)`");
+  return std::regex_replace(message, option, "--$1");
 }
 
 }  // namespace rfsmooth::cli

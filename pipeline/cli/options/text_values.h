@@ -2,7 +2,6 @@
 /// errors), and numbers print with as many digits as bring back the same bits.
 #pragma once
 
-#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -20,10 +19,15 @@ std::optional<int> read_integer(std::string_view text);
 /// "0.02" (world units) or "2x" (times the mean spacing); nothing otherwise.
 std::optional<Length> read_length(std::string_view text);
 
-/// "x,y,z": three finite numbers; nothing otherwise.
-std::optional<std::array<double, 3>> read_three(std::string_view text);
+/// The three finite numbers "x,y,z"; nothing otherwise.
+std::optional<Eigen::Vector3d> read_point(std::string_view text);
 
 std::string to_text(double value);
 std::string to_text(const Length& value);
+std::string to_text(const Eigen::Vector3d& value);
+
+/// A message of the library as the command says it: options, which it puts between backticks, as they are
+/// typed ("`alpha`" becomes "--alpha").
+std::string with_dashes(const std::string& message);
 
 }  // namespace rfsmooth::cli

@@ -13,20 +13,14 @@ namespace {
 
 using rfsmooth::cli::RenderOptions;
 
-std::optional<std::array<double, 3>> three(const char* option, const std::optional<std::string>& text) {
+std::optional<Eigen::Vector3d> three(const char* option, const std::optional<std::string>& text) {
   if (!text) return std::nullopt;
-  const auto values = rfsmooth::cli::read_three(*text);
+  const auto values = rfsmooth::cli::read_point(*text);
   if (!values)
     throw rfsmooth::Failure(
         {rfsmooth::ErrorCode::usage,
          fmt::format("--{}: expected three numbers as 1,0,0; found '{}'", option, *text)});
   return values;
-}
-
-std::optional<Eigen::Vector3d> direction(const char* option, const std::optional<std::string>& text) {
-  const auto values = three(option, text);
-  if (!values) return std::nullopt;
-  return Eigen::Vector3d((*values)[0], (*values)[1], (*values)[2]);
 }
 
 /// What stands between the commas.
@@ -49,9 +43,9 @@ rfsmooth::render::PictureOptions picture_options(const RenderOptions& options,
     throw rfsmooth::Failure({rfsmooth::ErrorCode::usage, fmt::format("--labels has {} texts for {} inputs",
                                                                      out.labels.size(), inputs.size())});
   out.title = options.title.value_or("");
-  out.direction = direction("direction", options.direction);
-  out.up = direction("up", options.up);
-  out.zoom = three("zoom", options.zoom);
+  out.direction = three("direction", options.direction);
+  out.up = three("up", options.up);
+  if (const auto zoom = three("zoom", options.zoom)) out.zoom = {zoom->x(), zoom->y(), zoom->z()};
   out.width = options.width;
   out.height = options.height;
   out.neighbors = options.neighbors;

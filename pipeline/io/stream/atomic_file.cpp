@@ -64,7 +64,7 @@ std::optional<struct stat> check(const std::filesystem::path& shown, const std::
   const auto present = status_of(target);
   if (!present && errno != ENOENT) refuse(shown, fmt::format("cannot write: {}", std::strerror(errno)));
   if (present && S_ISDIR(present->st_mode)) refuse(shown, "cannot write: is a folder, expected a file name");
-  if (present && S_ISREG(present->st_mode) && !replace) refuse(shown, "exists already; --force replaces it");
+  if (present && S_ISREG(present->st_mode) && !replace) refuse(shown, "exists already; `force` replaces it");
   if ((!present || S_ISREG(present->st_mode)) && ::access(folder_of(target).c_str(), W_OK) != 0)
     refuse(shown, fmt::format("cannot write: the folder '{}': {}", folder_of(target).string(),
                               std::strerror(errno)));
@@ -137,12 +137,12 @@ void AtomicFile::commit(bool sync) {
   } else if (::renameat2(AT_FDCWD, temporary_.c_str(), AT_FDCWD, target_.c_str(), RENAME_NOREPLACE) == 0) {
     temporary_.clear();
   } else if (errno == EEXIST) {
-    refuse(shown_, "exists already; --force replaces it");
+    refuse(shown_, "exists already; `force` replaces it");
   } else {
     // File systems without that call: a hard link refuses an existing name as well; some have neither.
     if (::link(temporary_.c_str(), target_.c_str()) != 0) {
-      if (errno == EEXIST) refuse(shown_, "exists already; --force replaces it");
-      if (status_of(target_)) refuse(shown_, "exists already; --force replaces it");
+      if (errno == EEXIST) refuse(shown_, "exists already; `force` replaces it");
+      if (status_of(target_)) refuse(shown_, "exists already; `force` replaces it");
       if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail("cannot write", errno);
       temporary_.clear();
     }

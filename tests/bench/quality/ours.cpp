@@ -4,49 +4,24 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "pipeline/cli/options/option.h"
+
 namespace rfsmooth::bench {
-namespace {
-
-/// Sets the one option called `name`.
-struct Setter {
-  const std::string& name;
-  const std::string& text;
-  bool found = false;
-
-  void set(bool& field) const { field = text.empty() || text == "true"; }
-  void set(int& field) const { field = std::stoi(text); }
-  void set(double& field) const { field = std::stod(text); }
-  void set(std::string& field) const { field = text; }
-  void set(Length& field) const {
-    field.value = std::stod(text);
-    field.times_spacing = text.back() == 'x';
-  }
-  template <class T>
-  void set(std::optional<T>& field) const {
-    set(field.emplace());
-  }
-  template <class T>
-  void operator()(const OptionInfo& info, T& field) {
-    if (info.name != name) return;
-    found = true;
-    set(field);
-  }
-};
-
-}  // namespace
 
 DenoiseOptions make_options(const std::vector<std::string>& words) {
   DenoiseOptions options;
+  std::vector<cli::CommandOption> known;
+  cli::collect(options, known);
   for (const auto& word : words) {
     const auto equals = word.find('=');
     const bool off = word.rfind("no-", 0) == 0;
-    const std::string name =
-        word.substr(off ? 3 : 0, equals == std::string::npos ? equals : equals - (off ? 3 : 0));
-    const std::string text = off ? "false" : equals == std::string::npos ? "" : word.substr(equals + 1);
-    Setter setter{name, text};
-    DenoiseOptions::describe(options, setter);
-    if (!setter.found) throw std::invalid_argument("denoise has no option \"" + name + "\"");
+    const std::string name = word.substr(0, equals).substr(off ? 3 : 0);
+    const cli::CommandOption* const option = cli::find_option(known, name);
+    if (option == nullptr) throw std::invalid_argument("denoise has no option \"" + name + "\"");
+    cli::assign(*option, off ? "false" : equals == std::string::npos ? "true" : word.substr(equals + 1));
   }
+  for (const auto& option : known)
+    if (option.finish) option.finish();
   return options;
 }
 

@@ -16,8 +16,8 @@ struct Variant {
   std::vector<std::string> options;
 };
 
-/// Sets options by their names in DenoiseOptions' table. \throw std::invalid_argument for a name or value
-/// that it does not have.
+/// The options that the command makes of such words. \throw std::invalid_argument for a name, Failure for a
+/// value that it does not have.
 DenoiseOptions make_options(const std::vector<std::string>& words);
 
 struct OurResult {

@@ -14,7 +14,6 @@
 // is isotropic, 0.2 mean edge lengths per coordinate. Times are the least of several rounds.
 #include <algorithm>
 #include <chrono>
-#include <cstring>
 #include <functional>
 #include <limits>
 #include <random>
@@ -96,11 +95,13 @@ void steps() {
   };
   fmt::print("steps: {} vertices, {} edges; copy-and-gather {:.1f} ms\n", mesh.positions.size(),
              mesh.edge_count(), 1e3 * unit);
-  for (const char* name : {"laplacian", "hc", "taubin", "bilaplacian", "curvature", "modified-curvature",
-                           "median-direction", "directional", "local-directional"}) {
+  for (const AnyFlow& any : flows()) {
+    const std::string_view name = name_of(any);
+    if (std::holds_alternative<AutomaticOptions>(any) || std::holds_alternative<ImplicitOptions>(any) ||
+        std::holds_alternative<HcLimitOptions>(any) || std::holds_alternative<DiscreteFairingOptions>(any))
+      continue;  // not explicit
     Mesh moving = mesh;
-    FlowOptions o;
-    o.flow = name;
+    const FlowOptions o{any};
     const auto flow = make_flow(moving, o, context);
     flow.value()->step(moving, context);
     const bool cheap = seconds([&] { flow.value()->step(moving, context); }) < 0.05;
@@ -108,9 +109,7 @@ void steps() {
     fmt::print("  {:20} {:8.1f} ms  {:6.2f} gathers\n", name, 1e3 * t, t / unit);
   }
   Mesh moving = mesh;
-  FlowOptions o;
-  o.flow = "laplacian";
-  const auto laplacian = make_flow(moving, o, context);
+  const auto laplacian = make_flow(moving, {LaplacianOptions()}, context);
   laplacian.value()->step(moving, context);
   const double step = least(21, [&] { laplacian.value()->step(moving, context); });
   const Operator op = umbrella(mesh, context);
@@ -166,19 +165,20 @@ void beside_peers(int levels, bool cgal) {
   fmt::print("peers: sphere of {} vertices, time to 30 % of the noise\n", n);
   double ours = std::numeric_limits<double>::infinity(), ours_connected = ours;
 
-  for (const char* name : {"laplacian", "taubin", "hc", "bilaplacian", "implicit"}) {
-    const bool implicit = std::strcmp(name, "implicit") == 0;
+  ImplicitOptions by_time;
+  by_time.tolerance = 1e-3;
+  for (AnyFlow any : {AnyFlow(LaplacianOptions()), AnyFlow(TaubinOptions()), AnyFlow(HcOptions()),
+                      AnyFlow(BilaplacianOptions()), AnyFlow(by_time)}) {
+    const std::string_view name = name_of(any);
+    auto* const implicit = std::get_if<ImplicitOptions>(&any);
     bool reached = false;
     for (const int count : {1, 2, 3, 4, 5, 6, 8, 10, 15, 20, 30, 50}) {
-      FlowOptions o;
-      o.flow = name;
-      o.iterations = implicit ? 1 : count;
-      if (implicit) {
-        o.dt = count;
-        o.tolerance = 1e-3;
-      }
+      if (implicit != nullptr)
+        implicit->dt = count;
+      else
+        iterations(any) = count;
       Mesh moving = mesh;
-      const auto run = [&] { (void)smooth(moving, o, {}); };
+      const auto run = [&] { (void)smooth(moving, {any}, {}); };
       run();
       if (support::rms_off_unit_sphere(moving.positions) > goal) continue;
       const double connect = least(5, [&] { rebuild_adjacency(moving, {}); });
@@ -190,7 +190,7 @@ void beside_peers(int levels, bool cgal) {
       ours = std::min(ours, t);
       ours_connected = std::min(ours_connected, t + connect);
       fmt::print("  rfsmooth {:12} {:4} {} {:9.2f} ms, {:.2f} with the adjacency\n", name,
-                 implicit ? "dt" : "", count, 1e3 * t, 1e3 * (t + connect));
+                 implicit != nullptr ? "dt" : "", count, 1e3 * t, 1e3 * (t + connect));
       reached = true;
       break;
     }

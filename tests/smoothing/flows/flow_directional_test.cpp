@@ -27,14 +27,13 @@ Mesh egg(int levels) {
   return mesh;
 }
 
-Mesh stepped(Mesh mesh, double lambda, const char* direction, int power = 0, int steps = 1) {
-  FlowOptions o;
-  o.flow = "directional";
+Mesh stepped(Mesh mesh, double lambda, std::optional<Vector3d> direction, int power = 0, int steps = 1) {
+  DirectionalOptions o;
   o.iterations = steps;
   o.lambda = lambda;
   o.direction = direction;
-  if (o.direction == "auto") o.power = power;
-  const auto result = smooth(mesh, o, {});
+  if (!direction) o.power = power;
+  const auto result = smooth(mesh, {o}, {});
   EXPECT_TRUE(result.ok()) << (result.ok() ? "" : result.error().message);
   return mesh;
 }
@@ -52,10 +51,10 @@ TEST(Directional, VolumeChangeIsSecondOrderInTheStepForAnyDirection) {
   Mesh mesh = egg(3);
   support::add_noise(mesh, 0.01, 1);
   const double volume = support::enclosed_volume(mesh);
-  for (const char* direction : {"auto", "1,0,0", "0.3,-1,2"}) {
+  for (const auto& direction : {std::optional<Vector3d>(), {Vector3d(1, 0, 0)}, {Vector3d(0.3, -1, 2)}}) {
     const double half = support::enclosed_volume(stepped(mesh, 0.05, direction)) - volume;
     const double whole = support::enclosed_volume(stepped(mesh, 0.1, direction)) - volume;
-    EXPECT_NEAR(whole / half, 4, 0.5) << direction;
+    EXPECT_NEAR(whole / half, 4, 0.5) << direction.value_or(Vector3d::Zero()).transpose();
     EXPECT_LT(std::abs(whole), 1e-3 * volume);
   }
 }
@@ -63,11 +62,11 @@ TEST(Directional, VolumeChangeIsSecondOrderInTheStepForAnyDirection) {
 TEST(Directional, TheAreaFallsAlongItsOwnDirectionAndGrowsAgainstIt) {
   const Mesh mesh = egg(3);
   const double area = rfs_mesh::surface_area(mesh, {});
-  const Mesh after = stepped(mesh, 0.05, "auto");
+  const Mesh after = stepped(mesh, 0.05, {});
   EXPECT_LT(rfs_mesh::surface_area(after, {}), area);
   // The egg is symmetric about z up to its two widths: its own direction is along z, one of the two signs.
-  const double up = rfs_mesh::surface_area(stepped(mesh, 0.05, "0,0,1"), {}) - area;
-  const double down = rfs_mesh::surface_area(stepped(mesh, 0.05, "0,0,-1"), {}) - area;
+  const double up = rfs_mesh::surface_area(stepped(mesh, 0.05, Vector3d(0, 0, 1)), {}) - area;
+  const double down = rfs_mesh::surface_area(stepped(mesh, 0.05, Vector3d(0, 0, -1)), {}) - area;
   EXPECT_LT(std::min(up, down), 0);
   EXPECT_GT(std::max(up, down), 0) << "why one of the paper's two minus signs alone is wrong";
   EXPECT_NEAR(rfs_mesh::surface_area(after, {}) - area, std::min(up, down), 0.05 * std::abs(up));
@@ -76,13 +75,13 @@ TEST(Directional, TheAreaFallsAlongItsOwnDirectionAndGrowsAgainstIt) {
 TEST(Directional, TheBendingEnergyOfEveryPowerFalls) {
   for (const int power : {1, 2}) {
     const Mesh mesh = egg(4);
-    EXPECT_LT(bending(stepped(mesh, 0.02, "auto", power), power), bending(mesh, power)) << power;
+    EXPECT_LT(bending(stepped(mesh, 0.02, {}, power), power), bending(mesh, power)) << power;
   }
 }
 
 TEST(Directional, ASphereHasNoDirection) {
   const Mesh mesh = support::icosphere(3);
-  EXPECT_LT(support::rms_distance(stepped(mesh, 0.05, "auto").positions, mesh.positions), 1e-12);
+  EXPECT_LT(support::rms_distance(stepped(mesh, 0.05, {}).positions, mesh.positions), 1e-12);
 }
 
 TEST(Directional, OnAnOpenMeshTheBoundaryStaysAndOrientationDoesNotMatter) {
@@ -91,10 +90,10 @@ TEST(Directional, OnAnOpenMeshTheBoundaryStaysAndOrientationDoesNotMatter) {
   Mesh turned = sheet;
   for (std::size_t f = 0; f < turned.faces.size(); f += 3) std::swap(turned.faces[f][0], turned.faces[f][1]);
   rebuild_adjacency(turned, {});
-  const Mesh after = stepped(sheet, 0.05, "0,0,1");
+  const Mesh after = stepped(sheet, 0.05, Vector3d(0, 0, 1));
   for (std::size_t i = 0; i < 9; ++i) EXPECT_EQ(after.positions[i], sheet.positions[i]);
   EXPECT_GT(support::rms_distance(after.positions, sheet.positions), 1e-3);
-  EXPECT_EQ(stepped(turned, 0.05, "0,0,1").positions, after.positions);
+  EXPECT_EQ(stepped(turned, 0.05, Vector3d(0, 0, 1)).positions, after.positions);
 }
 
 /// A bowl bends towards the direction, a dome away from it; both are open, with all faces up as the file has
@@ -112,7 +111,8 @@ TEST(Directional, AnOpenMeshKeepsItsSide) {
         sum += std::pow(one.positions[i].z() - other.positions[i].z(), 2);
       return std::sqrt(sum / double(one.positions.size()));
     };
-    EXPECT_LT(heights_apart(stepped(mesh, 0.05, "0,0,1", 0, 8), stepped(clean, 0.05, "0,0,1", 0, 8)),
+    EXPECT_LT(heights_apart(stepped(mesh, 0.05, Vector3d(0, 0, 1), 0, 8),
+                            stepped(clean, 0.05, Vector3d(0, 0, 1), 0, 8)),
               0.9 * heights_apart(mesh, clean))
         << bend;
   }
@@ -124,7 +124,7 @@ TEST(Directional, DoesNotRunAwayOnIrregularNoise) {
   const double h = support::mean_edge(mesh);
   support::add_noise(mesh, 0.6 * h, 3);
   const double volume = support::enclosed_volume(mesh);
-  const Mesh once = stepped(mesh, 0.05, "auto"), often = stepped(mesh, 0.05, "auto", 0, 40);
+  const Mesh once = stepped(mesh, 0.05, {}), often = stepped(mesh, 0.05, {}, 0, 40);
   double largest = 0;
   for (std::size_t i = 0; i < mesh.positions.size(); ++i)
     largest = std::max(largest, (once.positions[i] - mesh.positions[i]).norm());
@@ -161,13 +161,12 @@ TEST(Directional, ThePrintedSchemeIsThePapers) {
     a += 0.5 * op.mass[i] * 2 * std::pow(Hn[i].dot(normal[i]), 2) * normal[i];
   }
   a.normalize();
-  FlowOptions o;
-  o.flow = "directional";
-  o.scheme = "printed";
+  DirectionalOptions o;
+  o.scheme = DirectionalScheme::printed;
   o.iterations = 1;
   o.lambda = 0.05;
   Mesh after = mesh;
-  ASSERT_TRUE(smooth(after, o, {}).ok());
+  ASSERT_TRUE(smooth(after, {o}, {}).ok());
   const double h = support::mean_edge(mesh);
   for (std::size_t i = 0; i < n; ++i)
     EXPECT_LT((after.positions[i] - x[i] - 0.05 * h * h * a.dot(normal[i]) * Hn[i]).norm(), 1e-13);
@@ -178,9 +177,7 @@ TEST(Directional, SaysWhatAMeshIsMissing) {
     std::string all;
     Context context;
     context.log = [&](LogLevel, const std::string& text) { all += text; };
-    FlowOptions o;
-    o.flow = "directional";
-    EXPECT_TRUE(smooth(mesh, o, context).ok());
+    EXPECT_TRUE(smooth(mesh, {DirectionalOptions()}, context).ok());
     return all;
   };
   EXPECT_EQ(said(egg(2)), "");
@@ -191,12 +188,11 @@ TEST(Directional, SaysWhatAMeshIsMissing) {
 }
 
 TEST(Directional, BadDirectionsAreRefused) {
-  FlowOptions o;
-  o.flow = "directional";
+  DirectionalOptions o;
   Mesh sphere = support::icosphere(1);
-  for (const char* bad : {"up", "1,2", "0,0,0", "1,2,3,4", "1,nan,0"}) {
+  for (const Vector3d& bad : {Vector3d(0, 0, 0), Vector3d(1, std::nan(""), 0)}) {
     o.direction = bad;
-    EXPECT_FALSE(smooth(sphere, o, {}).ok()) << bad;
+    EXPECT_FALSE(smooth(sphere, {o}, {}).ok()) << bad.transpose();
   }
 }
 
@@ -207,10 +203,9 @@ TEST(LocalDirectional, SaddlesAndBoundariesNeverMove) {
     p.z() = 0.25 * (x * x - y * y);
   }
   const Positions before = saddle.positions;
-  FlowOptions o;
-  o.flow = "local-directional";
+  LocalDirectionalOptions o;
   o.iterations = 1;
-  ASSERT_TRUE(smooth(saddle, o, {}).ok());
+  ASSERT_TRUE(smooth(saddle, {o}, {}).ok());
   EXPECT_EQ(saddle.positions[60], before[60]);  // the middle: K well below -eps
   EXPECT_EQ(saddle.positions[0], before[0]);
 }
@@ -219,10 +214,9 @@ TEST(LocalDirectional, SmoothsNoiseOfASphere) {
   Mesh mesh = support::icosphere(4);
   support::add_noise(mesh, 0.15 * support::mean_edge(mesh), 2);
   const double before = support::rms_off_unit_sphere(mesh.positions);
-  FlowOptions o;
-  o.flow = "local-directional";
+  LocalDirectionalOptions o;
   o.iterations = 20;
-  ASSERT_TRUE(smooth(mesh, o, {}).ok());
+  ASSERT_TRUE(smooth(mesh, {o}, {}).ok());
   EXPECT_LT(support::rms_off_unit_sphere(mesh.positions), 0.9 * before);
 }
 

@@ -32,12 +32,11 @@ TEST(Hc, IsThePapersListing) {
     const Positions o = mesh.positions;
     Positions expected = o;
     for (int step = 0; step < 3; ++step) hc_listing(mesh, o, expected, 0.2, 0.7);
-    FlowOptions options;
-    options.flow = "hc";
+    HcOptions options;
     options.iterations = 3;
     options.alpha = 0.2;
     options.beta = 0.7;
-    ASSERT_TRUE(smooth(mesh, options, {}).ok());
+    ASSERT_TRUE(smooth(mesh, {options}, {}).ok());
     EXPECT_LT(support::rms_distance(mesh.positions, expected), 1e-13);
   }
 }
@@ -48,12 +47,8 @@ TEST(Hc, KeepsTheVolumeThatTheLaplacianLoses) {
   support::add_noise(hc, 0.2 * support::mean_edge(clean), 1);
   Mesh laplacian = hc;
   const double volume = support::enclosed_volume(hc);
-  FlowOptions options;
-  options.flow = "hc";
-  options.iterations = 10;
-  ASSERT_TRUE(smooth(hc, options, {}).ok());
-  options.flow = "laplacian";
-  ASSERT_TRUE(smooth(laplacian, options, {}).ok());
+  ASSERT_TRUE(smooth(hc, {HcOptions()}, {}).ok());
+  ASSERT_TRUE(smooth(laplacian, {LaplacianOptions()}, {}).ok());
   EXPECT_NEAR(support::enclosed_volume(hc) / volume, 1, 0.01);
   EXPECT_LT(support::rms_off_unit_sphere(hc.positions), 0.1 * support::mean_edge(clean));
   EXPECT_LT(support::enclosed_volume(laplacian) / volume, 0.99);

@@ -45,8 +45,9 @@ MatrixXd diagonal(const std::vector<double>& d) {
 TEST(Solver, EqualsADenseFactorisationForEveryTerm) {
   Mesh mesh = support::torus(12, 8, 0.4);
   support::add_noise(mesh, 0.05, 1);
-  for (const char* name : {"umbrella", "scale-dependent", "curvature"}) {
-    OperatorSource source(name, false);
+  for (const OperatorKind kind :
+       {OperatorKind::umbrella, OperatorKind::scale_dependent, OperatorKind::curvature}) {
+    OperatorSource source(kind, false);
     const Operator& op = source.on(mesh, {});
     const Dense d = dense(mesh, op);
     const MatrixXd L = d.M.inverse() * d.S;
@@ -64,8 +65,8 @@ TEST(Solver, EqualsADenseFactorisationForEveryTerm) {
       SolverOptions options;
       options.tolerance = 1e-13;
       const SolverReport report = solve(system, mesh.positions, x, {}, options, {});
-      EXPECT_TRUE(report.converged) << name << order;
-      EXPECT_LT((rows_of(x) - expected).norm(), 1e-9 * expected.norm()) << name << order;
+      EXPECT_TRUE(report.converged) << int(kind) << order;
+      EXPECT_LT((rows_of(x) - expected).norm(), 1e-9 * expected.norm()) << int(kind) << order;
     }
   }
 }

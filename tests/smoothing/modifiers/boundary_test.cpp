@@ -49,9 +49,10 @@ Eigen::MatrixXd rim_of(const Mesh& mesh) {
   return x;
 }
 
-Mesh after_one_step(Mesh mesh, FlowOptions o, const char* rule) {
-  o.boundary = rule;
-  o.iterations = 1;
+Mesh after_one_step(Mesh mesh, const AnyFlow& flow, Boundary rule) {
+  FlowOptions o{flow};
+  o.modifiers.boundary = rule;
+  iterations(o.flow) = 1;
   const auto run = smooth(mesh, o, {});
   EXPECT_TRUE(run.ok()) << (run.ok() ? "" : run.error().message);
   return mesh;
@@ -60,40 +61,40 @@ Mesh after_one_step(Mesh mesh, FlowOptions o, const char* rule) {
 TEST(BoundaryCurve, SolvesAlongTheRimWithTheTimeStepAndOrderOfTheFlow) {
   const Mesh start = rough_tube();
   const Eigen::MatrixXd L = rim_operator(start), I = Eigen::MatrixXd::Identity(kAround, kAround);
-  for (const char* op : {"umbrella", "curvature"})
+  for (const OperatorKind op : {OperatorKind::umbrella, OperatorKind::curvature})
     for (const int order : {1, 2})
       for (const double dt : {0.5, 20.0}) {
-        FlowOptions o;
-        o.flow = "implicit";
+        ImplicitOptions o;
         o.op = op;
         o.order = order;
         o.dt = dt;
         o.tolerance = 1e-13;
         const Eigen::MatrixXd expected =
             (I + dt * (order == 1 ? L : Eigen::MatrixXd(L * L))).partialPivLu().solve(rim_of(start));
-        EXPECT_LT((rim_of(after_one_step(start, o, "curve")) - expected).norm(), 1e-8) << op << order << dt;
+        EXPECT_LT((rim_of(after_one_step(start, o, Boundary::curve)) - expected).norm(), 1e-8)
+            << int(op) << order << dt;
       }
 }
 
 TEST(BoundaryCurve, StepsAlongTheRimWithTheStepOfTheFlow) {
   const Mesh start = rough_tube();
   const Eigen::MatrixXd L = rim_operator(start);
-  for (const char* name : {"curvature", "median-direction"})
-    for (const double lambda : {0.01, 0.1}) {
-      FlowOptions o;
-      o.flow = name;
-      o.lambda = lambda;
-      const Eigen::MatrixXd expected = rim_of(start) - lambda * L * rim_of(start);
-      EXPECT_LT((rim_of(after_one_step(start, o, "curve")) - expected).norm(), 1e-12) << name << lambda;
-    }
+  for (const double lambda : {0.01, 0.1}) {
+    CurvatureOptions curvature;
+    MedianDirectionOptions median;
+    curvature.lambda = median.lambda = lambda;
+    const Eigen::MatrixXd expected = rim_of(start) - lambda * L * rim_of(start);
+    for (const AnyFlow& flow : {AnyFlow(curvature), AnyFlow(median)})
+      EXPECT_LT((rim_of(after_one_step(start, flow, Boundary::curve)) - expected).norm(), 1e-12)
+          << name_of(flow) << lambda;
+  }
 }
 
 TEST(BoundaryCurve, UmbrellaFlowsTakeTheTwoNeighboursAlongTheRim) {
   const Mesh start = rough_tube();
-  FlowOptions o;
-  o.flow = "laplacian";
+  LaplacianOptions o;
   o.lambda = 0.7;
-  const Mesh after = after_one_step(start, o, "curve");
+  const Mesh after = after_one_step(start, o, Boundary::curve);
   for (Index i = 0; i < kAround; ++i) {
     const Vector3d mean =
         0.5 * (start.positions[(i + 1) % kAround] + start.positions[(i + kAround - 1) % kAround]);
@@ -104,10 +105,9 @@ TEST(BoundaryCurve, UmbrellaFlowsTakeTheTwoNeighboursAlongTheRim) {
 TEST(BoundaryCurve, TheInvariantIsRestoredAfterTheRimHasMoved) {
   Mesh mesh = rough_tube();
   const double area = support::area(mesh);
-  FlowOptions o;
-  o.flow = "implicit";
-  o.boundary = "curve";
-  o.preserve = "area";
+  FlowOptions o{ImplicitOptions()};
+  o.modifiers.boundary = Boundary::curve;
+  o.modifiers.preserve = Preserve::area;
   ASSERT_TRUE(smooth(mesh, o, {}).ok());
   EXPECT_NEAR(support::area(mesh) / area, 1, 1e-9);
 }
@@ -131,12 +131,12 @@ Mesh closed_by_hand(const Mesh& tube) {
 
 TEST(VirtualVertex, MovesWithTheFlowFromTheBarycentreOn) {
   Mesh mesh = rough_tube(), closed = closed_by_hand(mesh);
-  FlowOptions o;
-  o.flow = "laplacian";
-  o.lambda = 0.3;
-  o.iterations = 6;
+  LaplacianOptions laplacian;
+  laplacian.lambda = 0.3;
+  laplacian.iterations = 6;
+  FlowOptions o{laplacian};
   ASSERT_TRUE(smooth(closed, o, {}).ok());
-  o.boundary = "virtual";
+  o.modifiers.boundary = Boundary::virtual_vertices;
   ASSERT_TRUE(smooth(mesh, o, {}).ok());
   closed.positions.resize(mesh.positions.size());
   EXPECT_LT(support::rms_distance(mesh.positions, closed.positions), 1e-13);
@@ -144,15 +144,15 @@ TEST(VirtualVertex, MovesWithTheFlowFromTheBarycentreOn) {
 
 TEST(VirtualVertex, DoesNotLengthenTheMeanEdgeInWhichStepsAreMeasured) {
   const Mesh start = support::bowl(6);
-  for (const char* name : {"curvature", "modified-curvature", "median-direction"}) {
-    FlowOptions o;
-    o.flow = name;
-    const Mesh free = after_one_step(start, o, "free"), closed = after_one_step(start, o, "virtual");
+  for (const AnyFlow& flow : {AnyFlow(CurvatureOptions()), AnyFlow(ModifiedCurvatureOptions()),
+                              AnyFlow(MedianDirectionOptions())}) {
+    const Mesh free = after_one_step(start, flow, Boundary::free),
+               closed = after_one_step(start, flow, Boundary::virtual_vertices);
     int inner = 0;
     for (Index i = 0; i < start.positions.size(); ++i) {
       const Vector3d& p = start.positions[i];
       if (std::max(std::abs(p.x()), std::abs(p.y())) > 4.5) continue;  // no virtual vertex within two rings
-      EXPECT_LT((free.positions[i] - closed.positions[i]).norm(), 1e-14) << name;
+      EXPECT_LT((free.positions[i] - closed.positions[i]).norm(), 1e-14) << name_of(flow);
       ++inner;
     }
     EXPECT_GT(inner, 50);

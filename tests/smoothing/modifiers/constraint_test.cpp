@@ -2,7 +2,8 @@
 #include "smoothing/modifiers/constraint.h"
 
 #include <algorithm>
-#include <functional>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -20,46 +21,40 @@ namespace {
 /// A flow made of umbrellas, in which several part steps or an order of vertices could let a fixed one move.
 struct GraphFlow {
   const char* name;
-  std::function<void(FlowOptions&)> set;
+  FlowOptions options;
 };
 
-FlowOptions graph_flow(const GraphFlow& flow) {
-  FlowOptions o;
-  o.iterations = 3;
-  flow.set(o);
+template <class Flow>
+Flow in_order() {
+  Flow flow;
+  flow.update = Update::sequential;
+  return flow;
+}
+
+FlowOptions pushed_back(const AnyFlow& flow, double alpha) {
+  FlowOptions o{flow};
+  o.modifiers.push_back = true;
+  o.modifiers.push_alpha = alpha;
   return o;
 }
 
 class EveryGraphFlow : public testing::TestWithParam<GraphFlow> {
  protected:
-  FlowOptions options() const { return graph_flow(GetParam()); }
+  FlowOptions options() const {
+    FlowOptions o = GetParam().options;
+    iterations(o.flow) = 3;
+    return o;
+  }
 };
-INSTANTIATE_TEST_SUITE_P(Flows, EveryGraphFlow,
-                         testing::Values(GraphFlow{"laplacian", [](FlowOptions& o) { o.flow = "laplacian"; }},
-                                         GraphFlow{"laplacian_in_order",
-                                                   [](FlowOptions& o) {
-                                                     o.flow = "laplacian";
-                                                     o.update = "sequential";
-                                                   }},
-                                         GraphFlow{"hc", [](FlowOptions& o) { o.flow = "hc"; }},
-                                         GraphFlow{"hc_in_order",
-                                                   [](FlowOptions& o) {
-                                                     o.flow = "hc";
-                                                     o.update = "sequential";
-                                                   }},
-                                         GraphFlow{"taubin", [](FlowOptions& o) { o.flow = "taubin"; }},
-                                         GraphFlow{"pushed_back_laplacian",
-                                                   [](FlowOptions& o) {
-                                                     o.flow = "laplacian";
-                                                     o.push_back = true;
-                                                   }},
-                                         GraphFlow{"pushed_back_taubin",
-                                                   [](FlowOptions& o) {
-                                                     o.flow = "taubin";
-                                                     o.push_back = true;
-                                                     o.push_alpha = 0.1;
-                                                   }}),
-                         [](const auto& flow) { return std::string(flow.param.name); });
+INSTANTIATE_TEST_SUITE_P(
+    Flows, EveryGraphFlow,
+    testing::Values(GraphFlow{"laplacian", {LaplacianOptions()}},
+                    GraphFlow{"laplacian_in_order", {in_order<LaplacianOptions>()}},
+                    GraphFlow{"hc", {HcOptions()}}, GraphFlow{"hc_in_order", {in_order<HcOptions>()}},
+                    GraphFlow{"taubin", {TaubinOptions()}},
+                    GraphFlow{"pushed_back_laplacian", pushed_back(LaplacianOptions(), 0)},
+                    GraphFlow{"pushed_back_taubin", pushed_back(TaubinOptions(), 0.1)}),
+    [](const auto& flow) { return std::string(flow.param.name); });
 
 Mesh rough_torus() {
   Mesh mesh = support::torus(24, 12, 0.4);
@@ -115,26 +110,27 @@ TEST_P(EveryGraphFlow, ALittleStrengthIsNearlyFixed) {
   EXPECT_LT(support::rms_distance(mesh.positions, soft.positions), 1e-8);
 }
 
+/// All at once, and where the flow has an order, one after the other.
+std::vector<AnyFlow> every_flow_and_order() {
+  std::vector<AnyFlow> all = flows();
+  all.emplace_back(in_order<LaplacianOptions>());
+  all.emplace_back(in_order<HcOptions>());
+  return all;
+}
+
 TEST(Constraints, StrengthZeroIsFixedUnderEveryFlowWithAndWithoutPushBack) {
-  for (const FlowEntry& entry : flows())
-    for (const bool push_back : {false, true})
-      for (const char* update : {"simultaneous", "sequential"}) {
-        FlowOptions o;
-        o.flow = entry.name;
-        o.iterations = 2;
-        o.push_back = push_back;
-        const auto& used = entry.parameters;
-        if (std::find(used.begin(), used.end(), "update") != used.end())
-          o.update = update;
-        else if (std::string(update) == "sequential")
-          continue;
-        Mesh hard = rough_torus(), zero = hard;
-        const std::vector<Index> vertices = held(hard);
-        ASSERT_TRUE(smooth(hard, o, {}, all_fixed(vertices)).ok());
-        ASSERT_TRUE(smooth(zero, o, {}, with_strength(vertices, 0, zero.positions.size())).ok());
-        EXPECT_LT(support::rms_distance(hard.positions, zero.positions), 1e-13)
-            << entry.name << (push_back ? " pushed back, " : ", ") << update;
-      }
+  for (const AnyFlow& flow : every_flow_and_order())
+    for (const bool push_back : {false, true}) {
+      FlowOptions o{flow};
+      iterations(o.flow) = 2;
+      o.modifiers.push_back = push_back;
+      Mesh hard = rough_torus(), zero = hard;
+      const std::vector<Index> vertices = held(hard);
+      ASSERT_TRUE(smooth(hard, o, {}, all_fixed(vertices)).ok());
+      ASSERT_TRUE(smooth(zero, o, {}, with_strength(vertices, 0, zero.positions.size())).ok());
+      EXPECT_LT(support::rms_distance(hard.positions, zero.positions), 1e-13)
+          << name_of(flow) << (push_back ? " pushed back" : "");
+    }
 }
 
 }  // namespace

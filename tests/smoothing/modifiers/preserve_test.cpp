@@ -14,11 +14,9 @@ using rfsmooth::Mesh;
 
 namespace {
 
-FlowOptions laplacian(const char* preserve) {
-  FlowOptions o;
-  o.flow = "laplacian";
-  o.iterations = 10;
-  o.preserve = preserve;
+FlowOptions laplacian(Preserve preserve) {
+  FlowOptions o{LaplacianOptions()};
+  o.modifiers.preserve = preserve;
   return o;
 }
 
@@ -27,11 +25,11 @@ TEST(Preserve, VolumeIsKeptAndItIsAScalingAboutTheCentroid) {
   support::add_noise(mesh, 0.03, 1);
   Mesh plain = mesh;
   const double volume = support::enclosed_volume(mesh);
-  FlowOptions o = laplacian("volume");
-  o.iterations = 1;
+  FlowOptions o = laplacian(Preserve::volume);
+  iterations(o.flow) = 1;
   ASSERT_TRUE(smooth(mesh, o, {}).ok());
   EXPECT_NEAR(support::enclosed_volume(mesh) / volume, 1, 1e-13);
-  o.preserve = "none";
+  o.modifiers.preserve = Preserve::none;
   ASSERT_TRUE(smooth(plain, o, {}).ok());
   const double beta = std::cbrt(volume / support::enclosed_volume(plain));
   Vector3d centre = Vector3d::Zero();
@@ -45,14 +43,14 @@ TEST(Preserve, FacesThatDisagreeAreOrientedFirst) {
   support::add_noise(mesh, 0.02, 1);
   Mesh mixed = mesh;
   for (std::size_t f = 0; f < mixed.faces.size(); f += 3) std::swap(mixed.faces[f][0], mixed.faces[f][1]);
-  ASSERT_TRUE(smooth(mesh, laplacian("volume"), {}).ok());
-  ASSERT_TRUE(smooth(mixed, laplacian("volume"), {}).ok());
+  ASSERT_TRUE(smooth(mesh, laplacian(Preserve::volume), {}).ok());
+  ASSERT_TRUE(smooth(mixed, laplacian(Preserve::volume), {}).ok());
   EXPECT_LT(support::rms_distance(mesh.positions, mixed.positions), 1e-12);
 }
 
 TEST(Preserve, VolumeOfAnOpenMeshIsRefusedWithAReason) {
   Mesh sheet = support::grid(5, 5);
-  const auto result = smooth(sheet, laplacian("volume"), {});
+  const auto result = smooth(sheet, laplacian(Preserve::volume), {});
   ASSERT_FALSE(result.ok());
   EXPECT_EQ(result.error().code, ErrorCode::usage);
   EXPECT_NE(result.error().message.find("closed"), std::string::npos);
@@ -62,15 +60,15 @@ TEST(Preserve, AreaOfAnOpenMesh) {
   Mesh mesh = support::cylinder(24, 8, 0.25);
   support::add_noise(mesh, 0.02, 1);
   const double area = rfs_mesh::surface_area(mesh, {});
-  ASSERT_TRUE(smooth(mesh, laplacian("area"), {}).ok());
+  ASSERT_TRUE(smooth(mesh, laplacian(Preserve::area), {}).ok());
   EXPECT_NEAR(rfs_mesh::surface_area(mesh, {}) / area, 1, 1e-12);
 }
 
 TEST(Preserve, VolumeUnderAHeightField) {
   Mesh mesh = support::grid(12, 10);
   for (Vector3d& p : mesh.positions) p.z() = 5 + std::sin(p.x()) * std::cos(0.7 * p.y());
-  FlowOptions o = laplacian("height-field");
-  o.boundary = "fixed";
+  FlowOptions o = laplacian(Preserve::height_field);
+  o.modifiers.boundary = Boundary::fixed;
   const auto under = [](const Mesh& m) {
     double volume = 0;
     for (const Face& f : m.faces) {
@@ -92,8 +90,9 @@ TEST(Preserve, ConstrainedVerticesStayConstrained) {
   support::add_noise(mesh, 0.03, 1);
   const Positions before = mesh.positions;
   const double volume = support::enclosed_volume(mesh);
-  ASSERT_TRUE(
-      smooth(mesh, laplacian("volume"), {}, {{{5, HardConstraint::Kind::fixed, Vector3d::Zero()}}, {}}).ok());
+  ASSERT_TRUE(smooth(mesh, laplacian(Preserve::volume), {},
+                     {{{5, HardConstraint::Kind::fixed, Vector3d::Zero()}}, {}})
+                  .ok());
   EXPECT_EQ(mesh.positions[5], before[5]);
   EXPECT_NEAR(support::enclosed_volume(mesh) / volume, 1, 1e-12);
 }
@@ -102,8 +101,8 @@ TEST(Preserve, WhatTheRulesPreventIsAnErrorThatNamesTheReason) {
   Mesh sheet = support::grid(9, 9);
   support::add_noise(sheet, 0.1, 2);
   const Positions before = sheet.positions;
-  FlowOptions o = laplacian("area");
-  o.boundary = "fixed";  // a sheet in a fixed frame loses the area of its waves for good
+  FlowOptions o = laplacian(Preserve::area);
+  o.modifiers.boundary = Boundary::fixed;  // a sheet in a fixed frame loses the area of its waves for good
   const auto run = smooth(sheet, o, {});
   ASSERT_FALSE(run.ok());
   EXPECT_EQ(run.error().code, ErrorCode::usage);

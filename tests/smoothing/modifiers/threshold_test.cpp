@@ -21,12 +21,13 @@ Mesh rough_sphere() {
 }
 
 TEST(Threshold, StopsByItself) {
-  for (const char* name : {"laplacian", "curvature", "median-direction"}) {
+  for (const AnyFlow& any :
+       {AnyFlow(LaplacianOptions()), AnyFlow(CurvatureOptions()), AnyFlow(MedianDirectionOptions())}) {
+    const std::string_view name = name_of(any);
     Mesh mesh = rough_sphere();
-    FlowOptions o;
-    o.flow = name;
-    o.threshold = "constant";
-    o.threshold_value = 0.3;  // above what a sphere of 16 edges around moves by itself
+    FlowOptions o{any};
+    o.modifiers.threshold = ThresholdKind::constant;
+    o.modifiers.threshold_value = 0.3;  // above what a sphere of 16 edges around moves by itself
     const auto flow = make_flow(mesh, o, {});
     ASSERT_TRUE(flow.ok());
     for (int step = 0; step < 300; ++step) flow.value()->step(mesh, {});
@@ -34,9 +35,8 @@ TEST(Threshold, StopsByItself) {
     for (int step = 0; step < 50; ++step) flow.value()->step(mesh, {});
     EXPECT_LT(support::rms_distance(settled, mesh.positions), 1e-3 * support::mean_edge(mesh)) << name;
     Mesh free = rough_sphere();
-    o.threshold = "none";
-    o.threshold_value.reset();
-    o.iterations = 300;
+    o.modifiers = {};
+    iterations(o.flow) = 300;
     ASSERT_TRUE(smooth(free, o, {}).ok());
     EXPECT_GT(support::enclosed_volume(mesh), 2 * support::enclosed_volume(free)) << name;
   }
@@ -45,12 +45,11 @@ TEST(Threshold, StopsByItself) {
 TEST(Threshold, RingMeansLeaveAnEvenSphereNearlyStill) {
   Mesh mesh = support::icosphere(3), free = mesh;
   const Positions before = mesh.positions;
-  FlowOptions o;
-  o.flow = "curvature";
+  FlowOptions o{CurvatureOptions()};
   ASSERT_TRUE(smooth(free, o, {}).ok());
-  for (const char* rings : {"one-ring", "two-ring"}) {
+  for (const ThresholdKind rings : {ThresholdKind::one_ring, ThresholdKind::two_ring}) {
     mesh.positions = before;
-    o.threshold = rings;
+    o.modifiers.threshold = rings;
     ASSERT_TRUE(smooth(mesh, o, {}).ok());
     EXPECT_LT(support::rms_distance(before, mesh.positions),
               0.25 * support::rms_distance(before, free.positions));
@@ -75,22 +74,23 @@ double ring_threshold(const Mesh& mesh, Index i, int rings) {
 }
 
 TEST(Threshold, OfTheRingsIsTheirMeanCurvatureUnderEveryFlow) {
-  for (const char* name : {"laplacian", "curvature"})
+  LaplacianOptions laplacian;
+  CurvatureOptions curvature;
+  laplacian.lambda = curvature.lambda = 0.2;
+  laplacian.iterations = curvature.iterations = 1;
+  for (const AnyFlow& flow : {AnyFlow(laplacian), AnyFlow(curvature)})
     for (const int rings : {1, 2}) {
       Mesh mesh = rough_sphere(), free = mesh;
       const Mesh before = mesh;
-      FlowOptions o;
-      o.flow = name;
-      o.lambda = 0.2;
-      o.iterations = 1;
+      FlowOptions o{flow};
       ASSERT_TRUE(smooth(free, o, {}).ok());
-      o.threshold = rings == 1 ? "one-ring" : "two-ring";
+      o.modifiers.threshold = rings == 1 ? ThresholdKind::one_ring : ThresholdKind::two_ring;
       ASSERT_TRUE(smooth(mesh, o, {}).ok());
       for (Index i = 0; i < mesh.positions.size(); i += 17) {
         const double F = (free.positions[i] - before.positions[i]).norm() / 0.2;
         const double T = ring_threshold(before, i, rings);
         EXPECT_NEAR((mesh.positions[i] - before.positions[i]).norm(), F > T ? 0.2 * (F - T) : 0, 1e-12)
-            << name;
+            << name_of(flow);
       }
     }
 }
@@ -98,13 +98,13 @@ TEST(Threshold, OfTheRingsIsTheirMeanCurvatureUnderEveryFlow) {
 TEST(Threshold, MovesByTheExcess) {
   Mesh mesh = rough_sphere(), free = mesh;
   const Positions before = mesh.positions;
-  FlowOptions o;
-  o.flow = "laplacian";
-  o.lambda = 0.5;
-  o.iterations = 1;
+  LaplacianOptions laplacian;
+  laplacian.lambda = 0.5;
+  laplacian.iterations = 1;
+  FlowOptions o{laplacian};
   ASSERT_TRUE(smooth(free, o, {}).ok());
-  o.threshold = "constant";
-  o.threshold_value = 0.1;
+  o.modifiers.threshold = ThresholdKind::constant;
+  o.modifiers.threshold_value = 0.1;
   const double T = 0.1 * support::mean_edge(mesh);
   ASSERT_TRUE(smooth(mesh, o, {}).ok());
   int moved = 0, stayed = 0;

@@ -21,8 +21,9 @@ Positions field(const Mesh& mesh, F&& f) {
   return y;
 }
 
-class EveryChart : public testing::TestWithParam<const char*> {};
-INSTANTIATE_TEST_SUITE_P(Charts, EveryChart, testing::Values("tangent", "exponential", "mixed"));
+class EveryChart : public testing::TestWithParam<Chart> {};
+INSTANTIATE_TEST_SUITE_P(Charts, EveryChart,
+                         testing::Values(Chart::tangent, Chart::exponential, Chart::mixed));
 
 TEST_P(EveryChart, ConstantsHaveNoEnergyAndNothingIsNegative) {
   for (Mesh& mesh : support::all_small()) {
@@ -50,7 +51,7 @@ TEST(DividedDifferences, SecondDerivativesOfAQuadraticAreExact) {
   Mesh mesh = support::grid(60, 50);
   support::add_noise(mesh, 0.1, 3);
   for (Vector3d& p : mesh.positions) p.z() = 0;
-  const DividedDifferences d(mesh, "tangent", {});
+  const DividedDifferences d(mesh, Chart::tangent, {});
   const Positions x =
       field(mesh, [](const Vector3d& p) { return 3 * p.x() * p.x() - p.x() * p.y() + 0.5 * p.y() * p.y(); });
   // |f_uu|^2 + 2 |f_uv|^2 + |f_vv|^2 = 36 + 2 + 1, in units of the mean edge: h^4 times that over area / h^2.
@@ -65,7 +66,7 @@ TEST(DividedDifferences, SecondDerivativesOfAQuadraticAreExact) {
 TEST(DividedDifferences, TheRidgeIsNotFeltWhereTheFitIsDetermined) {
   const auto energy = [](int side) {
     const Mesh mesh = support::grid(side, side, true);
-    return DividedDifferences(mesh, "tangent", {})
+    return DividedDifferences(mesh, Chart::tangent, {})
         .energy(
             field(mesh,
                   [](const Vector3d& p) { return 3 * p.x() * p.x() - p.x() * p.y() + 0.5 * p.y() * p.y(); }),
@@ -77,7 +78,7 @@ TEST(DividedDifferences, TheRidgeIsNotFeltWhereTheFitIsDetermined) {
 
 TEST(DividedDifferences, TheDiagonalIsTheMatrixs) {
   const Mesh mesh = support::icosphere(1);
-  const DividedDifferences d(mesh, "mixed", {});
+  const DividedDifferences d(mesh, Chart::mixed, {});
   const std::vector<double> diagonal = d.diagonal({});
   for (const std::size_t i : {0u, 5u, 20u, 41u}) {
     Positions unit(mesh.positions.size(), Vector3d::Zero()), y;

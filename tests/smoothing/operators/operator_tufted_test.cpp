@@ -24,8 +24,8 @@ Mesh needle_book() {
   return mesh;
 }
 
-double least_weight(const Mesh& mesh, const char* name) {
-  OperatorSource source(name, false);
+double least_weight(const Mesh& mesh, OperatorKind kind) {
+  OperatorSource source(kind, false);
   const auto& weight = source.on(mesh, {}).weight;
   return *std::min_element(weight.begin(), weight.end());
 }
@@ -33,16 +33,16 @@ double least_weight(const Mesh& mesh, const char* name) {
 TEST(Tufted, HasNoNegativeWeightWhereTheCurvatureOperatorDoes) {
   for (Mesh& mesh : support::all_small()) {
     support::add_noise(mesh, 0.1 * support::mean_edge(mesh), 1);
-    EXPECT_GE(least_weight(mesh, "tufted"), 0);
+    EXPECT_GE(least_weight(mesh, OperatorKind::tufted), 0);
   }
-  EXPECT_LT(least_weight(needle_book(), "curvature"), -0.1);
-  EXPECT_GE(least_weight(needle_book(), "tufted"), 0);
+  EXPECT_LT(least_weight(needle_book(), OperatorKind::curvature), -0.1);
+  EXPECT_GE(least_weight(needle_book(), OperatorKind::tufted), 0);
 }
 
 TEST(Tufted, IsTheCurvatureOperatorOnAClosedDelaunayMesh) {
   const Mesh mesh = support::icosphere(3);
-  ASSERT_GT(least_weight(mesh, "curvature"), 0) << "else it is not Delaunay";
-  OperatorSource curvature("curvature", false), tufted("tufted", false);
+  ASSERT_GT(least_weight(mesh, OperatorKind::curvature), 0) << "else it is not Delaunay";
+  OperatorSource curvature(OperatorKind::curvature, false), tufted(OperatorKind::tufted, false);
   Positions expected, y;
   const Operator& c = curvature.on(mesh, {});
   const Operator& t = tufted.on(mesh, {});
@@ -56,7 +56,7 @@ TEST(Tufted, OfASphereOfBadTrianglesIsOneOverItsRadius) {
   Mesh mesh = support::icosphere(4);
   support::add_noise(mesh, 0.25 * support::mean_edge(mesh), 5);
   for (Vector3d& p : mesh.positions) p.normalize();
-  OperatorSource source("tufted", false);
+  OperatorSource source(OperatorKind::tufted, false);
   const Operator& op = source.on(mesh, {});
   Positions y;
   apply(op.rows(mesh), op, mesh.positions, y, {});
@@ -86,32 +86,30 @@ double excursion(const Positions& before, const Positions& after) {
 }
 
 TEST(Tufted, AnImplicitStepStaysInTheBoundingBoxOfANonManifoldMeshTheCurvatureOperatorDoesNot) {
-  const auto out = [](const char* op) {
+  const auto out = [](OperatorKind op) {
     Mesh mesh = spiked_grid();
-    FlowOptions o;
-    o.flow = "implicit";
+    ImplicitOptions o;
     o.op = op;
     o.order = 1;
     o.dt = 3;
     o.tolerance = 1e-12;
     const Positions before = mesh.positions;
-    EXPECT_TRUE(smooth(mesh, o, {}).ok());
+    EXPECT_TRUE(smooth(mesh, {o}, {}).ok());
     return excursion(before, mesh.positions);
   };
-  EXPECT_LT(out("tufted"), 1e-9);
-  EXPECT_GT(out("curvature"), 1e-3);
+  EXPECT_LT(out(OperatorKind::tufted), 1e-9);
+  EXPECT_GT(out(OperatorKind::curvature), 1e-3);
 }
 
 // Signed weights keep the energy of the operator positive, and every vertex is limited to its own stable
 // step: what explicit curvature flow rests on where meshes are not manifold.
 TEST(SignedCotangents, CurvatureFlowLowersTheAreaOfANonManifoldMesh) {
   Mesh mesh = needle_book();
-  FlowOptions o;
-  o.flow = "curvature";
+  CurvatureOptions o;
   o.iterations = 1;
   double before = support::area(mesh);
   for (int step = 0; step < 20; ++step) {
-    ASSERT_TRUE(smooth(mesh, o, {}).ok());
+    ASSERT_TRUE(smooth(mesh, {o}, {}).ok());
     EXPECT_LT(support::area(mesh), before);
     before = support::area(mesh);
   }

@@ -35,7 +35,9 @@ std::vector<Mesh> oriented_parts() {
 
 TEST(UnsignedNormals, AreTheNormalsOfTheFileWhereItsFacesAgree) {
   for (const Mesh& mesh : oriented_parts())
-    EXPECT_LT(largest_angle(unsigned_normals(mesh, fans_of(mesh, {}), {}), vertex_normals(mesh, {})), 1e-12);
+    EXPECT_LT(
+        largest_angle(unsigned_normals(mesh, fans_of(mesh, {}), {}), rfs_mesh::vertex_normals(mesh, {})),
+        1e-12);
 }
 
 TEST(UnsignedNormals, DoNotDependOnTheOrderOfTheCornersOfAnyFace) {
@@ -65,26 +67,27 @@ TEST(UnsignedNormals, TheSidesOfTheFacesTellWhichNormalsAreOnOneSide) {
   }
 }
 
-class EveryFlowOnParts : public testing::TestWithParam<std::string_view> {};
+class EveryFlowOnParts : public testing::TestWithParam<AnyFlow> {};
 INSTANTIATE_TEST_SUITE_P(Flows, EveryFlowOnParts, testing::ValuesIn([] {
-                           std::vector<std::string_view> names;
-                           for (const FlowEntry& entry : flows())
-                             if (entry.name != "auto") names.push_back(entry.name);
-                           return names;
+                           std::vector<AnyFlow> all;
+                           for (const AnyFlow& any : flows())
+                             if (!std::holds_alternative<AutomaticOptions>(any)) all.push_back(any);
+                           return all;
                          }()),
                          [](const auto& flow) {
-                           std::string name(flow.param);
+                           std::string name(name_of(flow.param));
                            for (char& c : name)
                              if (c == '-') c = '_';
                            return name;
                          });
 
 /// The flow's defaults, with every solve down to rounding.
-FlowOptions exact(std::string_view name) {
-  FlowOptions o;
-  o.flow = name;
-  const auto& used = find_flow(name).value()->parameters;
-  if (std::find(used.begin(), used.end(), "tolerance") != used.end()) o.tolerance = 1e-12;
+FlowOptions exact(const AnyFlow& flow) {
+  FlowOptions o{flow};
+  FlowOptions::describe(o, [](const OptionInfo& info, auto& value) {
+    if constexpr (std::is_same_v<decltype(value), double&>)
+      if (info.name == "tolerance") value = 1e-12;
+  });
   return o;
 }
 

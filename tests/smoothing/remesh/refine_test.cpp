@@ -26,7 +26,7 @@ Mesh subdivided(Mesh mesh, int levels) {
 }
 
 TEST(Refine, InterpolatesExactlyWithLessThinPlateEnergyThanTheSubdividedInput) {
-  for (const char* chart : {"tangent", "exponential", "mixed"})
+  for (const Chart chart : {Chart::tangent, Chart::exponential, Chart::mixed})
     for (const Mesh& coarse : {support::icosphere(1), support::torus(10, 8, 0.4)}) {
       RefineOptions options;
       options.levels = 2;
@@ -39,9 +39,9 @@ TEST(Refine, InterpolatesExactlyWithLessThinPlateEnergyThanTheSubdividedInput) {
       const Operator op = umbrella(fine, {});
       EXPECT_LT(thin_plate_energy(fine.one_ring, op, fine.positions, {}),
                 0.7 * thin_plate_energy(flat.one_ring, op, flat.positions, {}))
-          << chart;
+          << int(chart);
       const DividedDifferences d(flat, chart, {});
-      EXPECT_LT(d.energy(fine.positions, {}), d.energy(flat.positions, {})) << chart;
+      EXPECT_LT(d.energy(fine.positions, {}), d.energy(flat.positions, {})) << int(chart);
     }
 }
 
@@ -120,7 +120,7 @@ TEST(Refine, BrokenMeshesStayFinite) {
 
 /// All edges of a cube are sharp, so its sides are planes with straight rims and stay that.
 TEST(Refine, TheSidesOfASharpEdgeDoNotPullAtEachOther) {
-  for (const char* chart : {"tangent", "exponential", "mixed"})
+  for (const Chart chart : {Chart::tangent, Chart::exponential, Chart::mixed})
     for (const double pimple : {0.0, 0.2}) {
       const Mesh cube = support::cube(2);
       std::vector<Edge> sharp;
@@ -138,7 +138,7 @@ TEST(Refine, TheSidesOfASharpEdgeDoNotPullAtEachOther) {
       options.pimple = pimple;
       options.tolerance = 1e-10;
       const Mesh fine = refine(cube, options, {}, sharp).value();
-      for (const Vector3d& p : fine.positions) EXPECT_NEAR(p.cwiseAbs().maxCoeff(), 1, 1e-8) << chart;
+      for (const Vector3d& p : fine.positions) EXPECT_NEAR(p.cwiseAbs().maxCoeff(), 1, 1e-8) << int(chart);
     }
 }
 

@@ -53,12 +53,11 @@ TEST(Reorder, ALargeShuffledMeshIsSmoothedLikeAnOrderedOneAndComesBackInItsOwnOr
   const Constraints fixed{{{7, HardConstraint::Kind::fixed, Eigen::Vector3d::Zero()}},
                           std::vector<double>(place.size(), 0.5)};
   Constraints fixed_mixed = reorder(fixed, place);
-  FlowOptions o;
-  o.flow = "hc";
+  HcOptions o;
   o.iterations = 2;
   const Eigen::Vector3d still = ordered.positions[7];
-  ASSERT_TRUE(smooth(ordered, o, {}, fixed).ok());
-  ASSERT_TRUE(smooth(mixed, o, {}, fixed_mixed).ok());
+  ASSERT_TRUE(smooth(ordered, {o}, {}, fixed).ok());
+  ASSERT_TRUE(smooth(mixed, {o}, {}, fixed_mixed).ok());
   EXPECT_EQ(mixed.positions[place[7]], still);
   Positions back(place.size());
   for (std::size_t i = 0; i < place.size(); ++i) back[i] = mixed.positions[place[i]];

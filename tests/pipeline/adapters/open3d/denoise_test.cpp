@@ -204,7 +204,7 @@ TEST(Open3dDenoise, OutliersGoWithAllTheyHaveWhereAskedFor) {
 
   PointCloud removed = cloud;
   DenoiseOptions options;
-  options.outliers = "remove";
+  options.outliers = Outliers::remove;
   ASSERT_TRUE(denoise(removed, options).ok());
   ASSERT_EQ(removed.points_.size(), 1499u);
   EXPECT_TRUE(removed.HasNormals() && removed.HasColors() && removed.HasCovariances());
@@ -222,7 +222,7 @@ TEST(Open3dDenoise, ErrorsAndCancellingLeaveTheCloudAsItWas) {
   const PointCloud before = noisy_sphere();
   PointCloud cloud = before;
   DenoiseOptions options;
-  options.flow.flow = "no such flow";
+  iterations(options.flow.flow) = -1;
   EXPECT_EQ(denoise(cloud, options).error().code, ErrorCode::usage);
   expect_same(cloud, before);
 

@@ -217,7 +217,7 @@ TEST(PclDenoiseSurfaceOutliers, GoOrStayWithoutANormal) {
   (*cloud)[1300].z += 30;
   DenoiseSurface<::pcl::PointXYZ, ::pcl::PointNormal> denoise;
   denoise.setInputCloud(cloud);
-  denoise.setOutliers("remove");
+  denoise.setOutliers(rfsmooth::Outliers::remove);
   ::pcl::PointCloud<::pcl::PointNormal> out;
   denoise.process(out);
   EXPECT_EQ(out.size(), 2999u);

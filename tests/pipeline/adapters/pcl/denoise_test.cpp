@@ -141,7 +141,7 @@ TYPED_TEST(PclDenoise, RemovedPointsFollowPclsRules) {
   ::pcl::PointCloud<TypeParam> all, out;
   denoise.filter(all);
 
-  denoise.setOutliers("remove");
+  denoise.setOutliers(rfsmooth::Outliers::remove);
   denoise.filter(out);
   EXPECT_EQ(*denoise.getRemovedIndices(), strays);
   ASSERT_EQ(out.size(), cloud->size() - 3);
@@ -171,7 +171,7 @@ TYPED_TEST(PclDenoise, RemovedPointsFollowPclsRules) {
 
   Denoise<TypeParam> unasked;  // made without `true`: like every PCL filter it keeps no list
   unasked.setInputCloud(sheet_with_strays<TypeParam>(strays));
-  unasked.setOutliers("remove");
+  unasked.setOutliers(rfsmooth::Outliers::remove);
   unasked.filter(out);
   EXPECT_EQ(out.size(), 2997u);
   EXPECT_TRUE(unasked.getRemovedIndices()->empty());
@@ -332,13 +332,13 @@ TEST(PclDenoiseCloud2, RemovesAsTheTypedFilterDoes) {
   ::pcl::toPCLPointCloud2(*cloud, *message);
   for (const bool keep : {false, true}) {
     Denoise<TimedPoint> typed;
-    typed.setOutliers("remove");
+    typed.setOutliers(rfsmooth::Outliers::remove);
     typed.setKeepOrganized(keep);
     typed.setInputCloud(cloud);
     ::pcl::PointCloud<TimedPoint> expected, got;
     typed.filter(expected);
     Denoise<::pcl::PCLPointCloud2> untyped(true);
-    untyped.setOutliers("remove");
+    untyped.setOutliers(rfsmooth::Outliers::remove);
     untyped.setKeepOrganized(keep);
     untyped.setInputCloud(message);
     ::pcl::PCLPointCloud2 out;
@@ -414,29 +414,29 @@ TEST(PclDenoiseCloud2, WithoutCoordinatesIsAStatus) {
 
 TEST(PclDenoiseSettings, WhatIsSetIsWhatOneGets) {
   Denoise<::pcl::PointXYZ> denoise;
-  EXPECT_EQ(denoise.getFlow(), rfsmooth::DenoiseOptions().flow.flow);
+  EXPECT_EQ(denoise.getFlow(), "auto");
   EXPECT_EQ(denoise.getOutliers(), rfsmooth::DenoiseOptions().outliers);
   EXPECT_FALSE(denoise.getKeepOrganized());
   EXPECT_EQ(denoise.getNumberOfThreads(), 0);
 
   denoise.setFlow("hc");
-  denoise.setOutliers("remove");
+  denoise.setOutliers(rfsmooth::Outliers::remove);
   denoise.setKeepOrganized(true);
   denoise.setNumberOfThreads(3);
   EXPECT_EQ(denoise.getFlow(), "hc");
-  EXPECT_EQ(denoise.getOutliers(), "remove");
+  EXPECT_EQ(denoise.getOutliers(), rfsmooth::Outliers::remove);
   EXPECT_TRUE(denoise.getKeepOrganized());
   EXPECT_EQ(denoise.getNumberOfThreads(), 3);
-  EXPECT_EQ(denoise.getOptions().flow.flow, "hc") << "one set of options behind all setters";
-  EXPECT_EQ(denoise.getOptions().outliers, "remove");
+  EXPECT_EQ(name_of(denoise.getOptions().flow.flow), "hc") << "one set of options behind all setters";
+  EXPECT_EQ(denoise.getOptions().outliers, rfsmooth::Outliers::remove);
 
   rfsmooth::DenoiseOptions options;
-  options.flow.flow = "taubin";
-  options.outliers = "off";
+  options.flow.flow = rfsmooth::TaubinOptions();
+  options.outliers = rfsmooth::Outliers::smooth;
   denoise.setOptions(options);
   EXPECT_EQ(denoise.getFlow(), "taubin");
-  EXPECT_EQ(denoise.getOutliers(), "off");
-  EXPECT_EQ(denoise.getOptions().flow.flow, "taubin");
+  EXPECT_EQ(denoise.getOutliers(), rfsmooth::Outliers::smooth);
+  EXPECT_EQ(name_of(denoise.getOptions().flow.flow), "taubin");
 }
 
 TEST(PclDenoiseSettings, OptionsSetAsAWholeAreTheOnesThatRun) {
@@ -446,7 +446,7 @@ TEST(PclDenoiseSettings, OptionsSetAsAWholeAreTheOnesThatRun) {
   other.setInputCloud(cloud);
   one.setFlow("taubin");
   rfsmooth::DenoiseOptions options;
-  options.flow.flow = "taubin";
+  options.flow.flow = rfsmooth::TaubinOptions();
   other.setOptions(options);
   ::pcl::PointCloud<::pcl::PointXYZ> a, b;
   one.filter(a);

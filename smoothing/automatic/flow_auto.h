@@ -1,0 +1,37 @@
+/// The automatic smoother on a mesh: measures the noise, smooths as strongly as it asks for at every point
+/// (automatic.h), evens the points out along the surface (equalize.h).
+///
+/// How far a point may move in a step: at most kFarthestMove times the noise around it, measured or stated;
+/// strength times that where the strength is above one. Strays, which would go farther still (automatic.h),
+/// stay.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include <rfsmooth/flow.h>
+
+#include "smoothing/automatic/automatic.h"
+
+namespace rfsmooth::smoothing {
+
+/// In units of the noise's standard deviation around the point. Gaussian noise goes beyond it in one point of
+/// 16,000, and on the development shapes the limit costs nothing.
+constexpr double kFarthestMove = 4;
+
+/// Whether anybody will read more of the mesh than its positions; if not, its faces and rings are used up,
+/// which saves memory.
+enum class Connectivity { kept, used_up };
+
+/// One step: moves mesh.positions. What was measured and chosen; nothing for fewer than two points, which
+/// stay. `options.iterations` is the caller's loop. O(n log n), about 500 bytes a point. Parallel, the same
+/// bits for any number of threads. Thread safe on distinct meshes.
+std::optional<AutomaticReport> smooth_automatically(Mesh& mesh, const AutomaticOptions& options,
+                                                    const Context& context,
+                                                    Connectivity connectivity = Connectivity::kept);
+
+/// The same as the steps of a flow, for modifiers and constraints to go around. Each step writes `report`,
+/// which must outlive the flow.
+std::unique_ptr<Flow> make_automatic(const AutomaticOptions& options, std::optional<AutomaticReport>& report);
+
+}  // namespace rfsmooth::smoothing
