@@ -7,7 +7,7 @@ cd "$(dirname "$0")/.."
 install_missing $core_packages libcgal-demo
 
 cmake --preset release > /dev/null
-cmake --build --preset release
+cmake --build --preset release --target rfsmooth_command rfsmooth_render_program
 bin=build/release/bin
 out=clouds/out
 mkdir -p "$out"
@@ -17,7 +17,7 @@ tar -xzf "$archive" -C "$out" --strip-components=2 --wildcards '*/points_3/build
 
 for cloud in clouds/l_part_scan.ply "$out/building.ply"; do
   name=$(basename "$cloud" .ply)
-  "$bin/rfsmooth" denoise "$cloud" "$out/${name}_clean.ply" --force --report "$out/${name}_report.json"
-  "$bin/render_cloud" "$cloud" "$out/${name}_clean.ply" -o "$out/$name.png" --label before after --title "$name" --force > /dev/null
+  "$bin/rfsmooth" denoise "$cloud" -o "$out/${name}_clean.ply" --force --report "$out/${name}_report.json"
+  "$bin/rfsmooth" render "$cloud" "$out/${name}_clean.ply" -o "$out/$name.png" --labels before,after --title "$name" --force --quiet
   echo "  see $out/${name}_clean.ply and $out/$name.png"
 done

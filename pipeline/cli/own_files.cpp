@@ -49,12 +49,19 @@ bool holds_cloud(const std::string& path) {
   return holds.ok() ? holds.value() : holds.error().code == ErrorCode::out_of_memory;
 }
 
-void need_own_target(const Job& job) {
-  if (job.output == "-" || job.output == job.input || is_own(job.output) || !holds_cloud(job.output)) return;
+void need_own_target(const Job& job, const std::optional<std::string>& named) {
+  if (job.output == "-" || named == job.output) return;
+  std::error_code unknown;
+  const bool meant =
+      named ? !std::filesystem::equivalent(job.input, job.output, unknown) : job.output == job.input;
+  if (meant || is_own(job.output) || !holds_cloud(job.output)) return;
   throw Failure({ErrorCode::cannot_write,
-                 fmt::format("{1}: is a cloud that rfsmooth did not write; it stays as it is. To replace it: "
-                             "--force {0} -o {1}; to work on both: {0} {1} -o FOLDER",
-                             job.input, job.output)});
+                 named ? fmt::format("{0}: is the scan itself; it stays as it is. Name another folder, or to "
+                                     "replace it: --force {0} -o {0}",
+                                     job.input)
+                       : fmt::format("{1}: is a cloud that rfsmooth did not write; it stays as it is. To "
+                                     "replace it: --force {0} -o {1}; to work on both: {0} {1} -o FOLDER",
+                                     job.input, job.output)});
 }
 
 void need_no_cloud(const std::string& path, const char* what) {

@@ -1,6 +1,7 @@
 /// What --force may replace: nothing that somebody else's work is in.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "pipeline/cli/jobs.h"
@@ -18,10 +19,10 @@ bool is_own(const std::string& path);
 /// Whether a regular file is there that begins as a PLY, PCD or OFF file does, or that reads as points.
 bool holds_cloud(const std::string& path);
 
-/// Refuses an OUT that was not named with -o and is a cloud without the mark: `*.ply` in a folder of two
-/// scans names the second one. OUT written as IN is, letter by letter, is meant. \throw Failure
-/// (cannot_write).
-void need_own_target(const Job& job);
+/// Refuses an OUT that is a cloud without the mark: `*.ply` in a folder of two scans names the second one.
+/// `named` is what -o says. OUT is meant if that names it, or if it is written as IN is, letter by letter; in
+/// a folder that -o names, only the inputs themselves are kept. \throw Failure (cannot_write).
+void need_own_target(const Job& job, const std::optional<std::string>& named);
 
 /// Refuses a file that is no cloud, a report say, in the place of one. \throw Failure (cannot_write).
 void need_no_cloud(const std::string& path, const char* what);

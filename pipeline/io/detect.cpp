@@ -27,7 +27,7 @@ void refuse(const Source& source, const OtherFormat* other) {
 
 // Refuses by name a text or unknown bytes in a file that is called as somebody else's are, or an OBJ file.
 void refuse_other_name(const Source& source, std::string_view word) {
-  refuse(source, other_format_of_extension(is_obj_word(word) ? ".obj" : source.name()));
+  refuse(source, other_format_of_extension(is_obj_word(word) ? "any.obj" : source.name()));
 }
 
 }  // namespace

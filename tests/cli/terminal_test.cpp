@@ -1,4 +1,5 @@
 /// What is shown on a terminal only, and Ctrl-C at every stage.
+#include <algorithm>
 #include <cctype>
 
 #include <gmock/gmock.h>
@@ -50,6 +51,36 @@ TEST_F(Terminal, ShowsABarWithStageRateAndTimeLeft) {
   EXPECT_THAT(ran.err, HasSubstr("s left"));
   // The bar is wiped before anything else is said.
   EXPECT_THAT(ran.err, HasSubstr("\r\x1b[Krfsmooth: in.ply -> out.ply"));
+}
+
+/// The numbers before each " %", in order.
+std::vector<int> percents(const std::string& text) {
+  std::vector<int> found;
+  for (std::size_t at = text.find("] "); at != std::string::npos; at = text.find("] ", at + 1))
+    found.push_back(std::stoi(text.substr(at + 2)));
+  return found;
+}
+
+TEST_F(Terminal, TheBarGoesOnceFromNothingToAHundred) {
+  put("a.ply", noisy_plane(60).bytes());
+  put("b.ply", noisy_plane(50).bytes());
+  RunSetup setup;
+  setup.terminal = true;
+  setup.environment = {"TERM=xterm"};
+  for (const auto& typed :
+       std::vector<std::vector<std::string>>{{"denoise", "a.ply", "out.ply"},
+                                             {"denoise", "--normals", "a.ply", "with.ply"},
+                                             {"denoise", "a.ply", "b.ply", "-o", "out"},
+                                             {"mesh", "a.ply", "mesh.ply"},
+                                             {"mesh", "--stage", "emst", "a.ply", "emst.ply"}}) {
+    const Ran ran = run(typed, setup);
+    ASSERT_EQ(ran.code, 0) << ran.err;
+    const std::vector<int> shown = percents(ran.err);
+    ASSERT_GE(shown.size(), 5u);
+    EXPECT_EQ(shown.front(), 0);
+    EXPECT_EQ(shown.back(), 100);
+    EXPECT_TRUE(std::is_sorted(shown.begin(), shown.end())) << ran.err;
+  }
 }
 
 TEST_F(Terminal, QuietAndDumbTerminalsShowNoBar) {

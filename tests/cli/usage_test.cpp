@@ -43,5 +43,57 @@ TEST(Usage, NothingNearGivesNoSuggestion) {
   EXPECT_THAT(ran.err, ::testing::Not(HasSubstr("did you mean")));
 }
 
+struct Slip {
+  std::vector<std::string> typed;
+  const char* meant;
+};
+
+TEST(Usage, WordsWithoutACommandSuggestTheOneThatIsMeant) {
+  for (const Slip& slip :
+       {Slip{{"smooth", "a", "b"}, "did you mean 'rfsmooth denoise a b'?"},
+        Slip{{"a.ply", "b.ply"}, "did you mean 'rfsmooth denoise a.ply b.ply'?"},
+        Slip{{"scans/x.PCD"}, "did you mean 'rfsmooth denoise scans/x.PCD'?"},
+        Slip{{"--strength", "2", "a.ply", "b.ply"},
+             "did you mean 'rfsmooth denoise --strength 2 a.ply b.ply'?"},
+        Slip{{"polish", "a.ply", "b.ply"}, "did you mean 'rfsmooth denoise a.ply b.ply'?"},
+        Slip{{"surface", "a.ply", "b.ply"}, "did you mean 'rfsmooth reconstruct a.ply b.ply'?"},
+        Slip{{"denose", "a.ply", "b.ply"}, "did you mean 'denoise'?"},
+        Slip{{"--strength", "2", "denoise", "a.ply", "b.ply"}, "rfsmooth denoise --strength"}}) {
+    const Ran ran = rfsmooth(slip.typed);
+    EXPECT_EQ(ran.code, 2);
+    EXPECT_EQ(ran.out, "");
+    EXPECT_THAT(ran.err, HasSubstr(slip.meant));
+  }
+}
+
+TEST(Usage, ErrorsPointToTheHelpOfTheirCommand) {
+  for (const char* command : {"denoise", "mesh", "smooth-mesh", "reconstruct", "info", "compare", "render"}) {
+    const std::string pointer = std::string("see: rfsmooth ") + command + " --help\n";
+    EXPECT_THAT(rfsmooth({command, "--no-such-option"}).err, HasSubstr(pointer));
+    const Ran ran = rfsmooth({command});  // no files; "reconstruct" may lack its program
+    if (ran.code != 127) {
+      EXPECT_THAT(ran.err, HasSubstr(pointer));
+    }
+  }
+  EXPECT_THAT(rfsmooth({"denoise", "a.ply", "b.docx"}).err, HasSubstr("see: rfsmooth denoise --help\n"));
+  EXPECT_THAT(rfsmooth({"xylophone"}).err, HasSubstr("see: rfsmooth --help\n"));
+}
+
+/// `rfsmooth WORDS | true`: the reader is gone before anything is written. What was said, and the exit code.
+Ran into_closed_pipe(const std::string& words) {
+  // The command starts when the reader has ended.
+  return run_program(
+      "bash", {"-c", "{ sleep 0.2; '" RFSMOOTH_COMMAND "' " + words + "; } | true; exit ${PIPESTATUS[0]}"});
+}
+
+TEST(Usage, AReaderThatHasSeenEnoughIsToldNothing) {
+  for (const char* words : {"--help", "--help-all", "denoise --help-all", "flows", "flows --json",
+                            "man denoise", "completion bash", "completion zsh"}) {
+    const Ran ran = into_closed_pipe(words);
+    EXPECT_EQ(ran.err, "") << words;
+    EXPECT_EQ(ran.code, 5) << words;
+  }
+}
+
 }  // namespace
 }  // namespace rfsmooth::test

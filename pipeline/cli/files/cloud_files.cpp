@@ -70,7 +70,7 @@ void store_cloud(const io::Cloud& cloud, const std::string& output, const FileOp
     value_or_throw(io::write_cloud(cloud, output, write_options(options), context));
     mark_as_own(output);
   }
-  context.report("write", 1);
+  if (context.progress) context.progress("write", 1);  // too late to cancel: the file is there
 }
 
 bool has_normals(const io::Cloud& cloud) {

@@ -35,7 +35,7 @@ void tell(const Job& job, const std::string& summary, bool one_of_many, Console&
 
 void run_one(const Job& job, const JobOptions& options, const CloudWork& work, const Context& context,
              Console& console, ordered_json& entry, bool one_of_many) {
-  if (!options.files.output) need_own_target(job);
+  need_own_target(job, options.files.output);
   check_target(job.output, options.files);
   std::vector<StageTime> stages;
   pipeline::io::Cloud cloud = load_cloud(job.input, context, stages);

@@ -1,6 +1,7 @@
 /// info, mesh, smooth-mesh and compare.
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <random>
 #include <sstream>
@@ -108,6 +109,67 @@ TEST_F(Commands, TheGraphHoldsTheTreeItStandsOnAndSaysWhichEdgeIsWhich) {
   EXPECT_EQ(of_kind[0] + of_kind[2], 400) << "all of the tree, so the graph is in one piece";
   EXPECT_GT(of_kind[1], 50);
   EXPECT_GT(of_kind[2], 0);
+}
+
+TEST_F(Commands, MeshRunsOnlyTheStagesThatItWrites) {
+  put("in.ply", noisy_plane(20).bytes());
+  const auto seconds = [&](const char* stage) {
+    EXPECT_EQ(run({"mesh", "in.ply", "out.ply", "--force", "--stage", stage, "--report", "r.json"}).code, 0);
+    return json::parse(take("r.json"))["seconds"];
+  };
+  const json alone = seconds("emst-points"), tree = seconds("emst"), graph = seconds("sdg"),
+             mesh = seconds("rfs");
+  EXPECT_TRUE(alone.contains("emst"));
+  for (const char* later : {"noise", "local surfaces", "shadow", "sdg", "umbrellas", "rfs-mesh"})
+    EXPECT_FALSE(alone.contains(later)) << later;
+  for (const char* later : {"sdg", "umbrellas", "rfs-mesh"}) EXPECT_FALSE(tree.contains(later)) << later;
+  EXPECT_TRUE(graph.contains("sdg"));
+  for (const char* later : {"umbrellas", "rfs-mesh"}) EXPECT_FALSE(graph.contains(later)) << later;
+  EXPECT_TRUE(mesh.contains("rfs-mesh"));
+}
+
+TEST_F(Commands, HelpOfMeshSaysWhatShowsItsEdges) {
+  for (const char* help : {"--help", "--help-all"}) {
+    const std::string text = run({"mesh", help}).out;
+    for (const char* program : {"MeshLab", "Open3D", "CloudCompare"}) EXPECT_THAT(text, HasSubstr(program));
+  }
+}
+
+/// A plane of points half a metre apart, far from the origin: in float32 with steps of half a metre.
+std::string far_plane(const char* type) {
+  std::string text = "ply\nformat ascii 1.0\nelement vertex 400\n";
+  for (const char* axis : {"x", "y", "z"}) text += std::string("property ") + type + " " + axis + "\n";
+  text += "end_header\n";
+  for (int i = 0; i < 20; ++i)
+    for (int j = 0; j < 20; ++j)
+      text += std::to_string(5400000 + i / 2) + (i % 2 ? ".5 " : " ") + std::to_string(j) + " 0\n";
+  return text;
+}
+
+TEST_F(Commands, CoordinatesThatFloatsCannotHoldAreWarnedOf) {
+  put("float.ply", far_plane("float"));
+  put("double.ply", far_plane("double"));
+  put("near.ply", noisy_plane(20).bytes());
+  for (const auto& typed : std::vector<std::vector<std::string>>{
+           {"denoise", "IN", "out.ply", "--force"}, {"mesh", "IN", "mesh.ply", "--force"}, {"info", "IN"}}) {
+    const auto said = [&](const char* name) {
+      std::vector<std::string> words = typed;
+      words[1] = name;
+      const Ran ran = run(words);
+      EXPECT_EQ(ran.code, 0) << ran.err;
+      return ran.err;
+    };
+    EXPECT_THAT(said("float.ply"),
+                ::testing::AllOf(HasSubstr("warning: float.ply"), HasSubstr("steps of 0.5 in float32")));
+    EXPECT_THAT(said("double.ply"), ::testing::Not(HasSubstr("float32")));
+    EXPECT_THAT(said("near.ply"), ::testing::Not(HasSubstr("float32")));
+  }
+}
+
+TEST_F(Commands, TheTerrainInUtmFloatsIsWarnedOf) {
+  const std::string scan = RFSMOOTH_SCANS_DIR "/terrain_samp11-utm.pcd";
+  if (!std::filesystem::exists(scan)) GTEST_SKIP() << "no " << scan;
+  EXPECT_THAT(run({"info", scan}).err, HasSubstr("float32"));
 }
 
 TEST_F(Commands, SmoothMeshMovesVerticesAndKeepsFaces) {

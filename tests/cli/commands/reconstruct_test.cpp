@@ -193,5 +193,23 @@ TEST_F(InFolder, ReconstructWithoutItsProgramSaysWhatIsMissing) {
       << "options are still strict";
 }
 
+TEST_F(InFolder, TheReleasePresetSwitchesOffNothingThatReconstructNeeds) {
+  RunSetup setup;
+  setup.folder = RFSMOOTH_SOURCE;
+  const Ran ran = run_program("cmake", {"-N", "--preset", "release", "-B", at("build")}, setup);
+  EXPECT_THAT(ran.out, HasSubstr("RFSMOOTH_BUILD_TESTS=\"OFF\"")) << "the preset's variables are listed";
+  for (const char* library : {"OPEN3D", "CGAL"})
+    EXPECT_THAT(ran.out, ::testing::Not(HasSubstr(std::string("RFSMOOTH_WITH_") + library + "=\"OFF\"")));
+}
+
+TEST_F(InFolder, ConfiguringWithoutWhatReconstructNeedsSaysSo) {
+  const Ran ran = run_program(
+      "cmake", {"-S", RFSMOOTH_SOURCE, "-B", at("build"), "-G", "Ninja", "-DRFSMOOTH_BUILD_TESTS=OFF",
+                "-DRFSMOOTH_WITH_PCL=OFF", "-DRFSMOOTH_WITH_CGAL=OFF", "-DRFSMOOTH_WITH_OPEN3D=OFF"});
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  EXPECT_THAT(ran.out, ::testing::AllOf(HasSubstr("rfsmooth reconstruct: will exit with 127"),
+                                        HasSubstr("libopen3d-dev"), HasSubstr("libcgal-dev")));
+}
+
 }  // namespace
 }  // namespace rfsmooth::test

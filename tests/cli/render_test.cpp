@@ -1,0 +1,84 @@
+/// rfsmooth render: pictures by the program that the command finds.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/cli/support/folder.h"
+#include "tests/cli/support/small_clouds.h"
+
+using ::testing::HasSubstr;
+
+namespace rfsmooth::test {
+namespace {
+
+class Render : public InFolder {
+ protected:
+  void SetUp() override { put("in.ply", noisy_plane(10).bytes()); }
+  /// Width and height that the PNG's header says.
+  std::pair<unsigned, unsigned> size(const std::string& name) const {
+    const std::string png = take(name);
+    EXPECT_EQ(png.substr(0, 8), "\x89PNG\r\n\x1a\n");
+    const auto number = [&](std::size_t at) {
+      unsigned value = 0;
+      for (std::size_t k = 0; k < 4; ++k) value = value << 8 | static_cast<unsigned char>(png.at(at + k));
+      return value;
+    };
+    return {number(16), number(20)};
+  }
+};
+
+TEST_F(Render, DrawsCloudsSideBySide) {
+  ASSERT_EQ(run({"render", "in.ply", "-o", "one.png", "--width", "100", "--height", "80"}).code, 0);
+  EXPECT_EQ(size("one.png"), std::pair(100u, 80u));
+  const Ran ran = run({"render", "in.ply", "in.ply", "-o", "two.png", "--width", "100", "--height", "80",
+                       "--labels", "before,after", "--direction", "0,0.5,-1"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  EXPECT_EQ(ran.out, "");
+  EXPECT_GT(size("two.png").first, 200u) << "both and a gap";
+  EXPECT_GT(size("two.png").second, 80u) << "and the labels";
+}
+
+TEST_F(Render, DrawsTheEdgesOfAGraph) {
+  ASSERT_EQ(run({"mesh", "--stage", "emst", "in.ply", "tree.ply"}).code, 0);
+  ASSERT_EQ(run({"render", "in.ply", "-o", "points.png"}).code, 0);
+  ASSERT_EQ(run({"render", "tree.ply", "-o", "tree.png"}).code, 0);
+  EXPECT_EQ(size("tree.png"), size("points.png"));
+  EXPECT_FALSE(take("tree.png") == take("points.png"));
+}
+
+TEST_F(Render, KeepsTheContractsOfTheCommand) {
+  put("out.png", "mine");
+  EXPECT_EQ(run({"render", "in.ply", "-o", "out.png"}).code, 5);
+  EXPECT_EQ(take("out.png"), "mine");
+  EXPECT_EQ(run({"render", "in.ply", "-o", "out.png", "--force"}).code, 0);
+  EXPECT_EQ(run({"render", "in.ply", "-o", "new.png", "--widht", "3"}).code, 2);
+  EXPECT_EQ(run({"render", "in.ply", "-o", "new.png", "--direction", "1,2"}).code, 2);
+  EXPECT_EQ(run({"render", "in.ply", "-o", "new.png", "--direction", "0,0,0"}).code, 2);
+  EXPECT_EQ(run({"render", "in.ply", "-o", "new.png", "--labels", "a,b"}).code, 2);
+  EXPECT_EQ(run({"render", "none.ply", "-o", "new.png"}).code, 3);
+  EXPECT_EQ(run({"render", "in.ply", "-o", "no/folder/new.png"}).code, 5);
+  EXPECT_FALSE(there("new.png"));
+}
+
+TEST_F(Render, WithoutItsProgramSaysWhatIsMissing) {
+  std::filesystem::copy_file(RFSMOOTH_COMMAND, at("alone"));
+  RunSetup setup;
+  setup.folder = at("");
+  setup.environment = {"PATH=" + at("")};
+  const Ran ran = run_program(at("alone"), {"render", "in.ply", "-o", "out.png"}, setup);
+  EXPECT_EQ(ran.code, 127);
+  EXPECT_THAT(ran.err, HasSubstr("rfsmooth-render is not installed"));
+}
+
+TEST_F(Render, IsInstalledBesideTheCommand) {
+  ASSERT_EQ(
+      run_program("cmake", {"--install", RFSMOOTH_BINARY, "--prefix", at("usr"), "--component", "command"})
+          .code,
+      0);
+  RunSetup setup;
+  setup.folder = at("");
+  EXPECT_EQ(run_program(at("usr/bin/rfsmooth"), {"render", "in.ply", "-o", "out.png"}, setup).code, 0);
+  EXPECT_TRUE(there("usr/share/man/man1/rfsmooth-render.1.gz"));
+}
+
+}  // namespace
+}  // namespace rfsmooth::test

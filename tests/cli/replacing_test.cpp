@@ -1,0 +1,115 @@
+/// What --force replaces and what it does not: nobody's scan is lost to a pattern that names it as OUT.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/xattr.h>
+
+#include "tests/cli/support/folder.h"
+#include "tests/cli/support/small_clouds.h"
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+namespace rfsmooth::test {
+namespace {
+
+class Replacing : public InFolder {
+ protected:
+  void SetUp() override {
+    put("a.ply", noisy_plane(10).bytes());
+    put("b.ply", raw_);
+  }
+  /// Whether this file system keeps what a file was marked with.
+  bool keeps_marks() const { return setxattr(at("a.ply").c_str(), "user.rfsmooth-test", "1", 1, 0) == 0; }
+  const std::string raw_ = noisy_plane(12).bytes();
+};
+
+class ReplacingBy : public Replacing, public ::testing::WithParamInterface<const char*> {};
+
+TEST_P(ReplacingBy, APatternOfTwoScansKeepsTheSecond) {
+  const std::string command = GetParam();
+  const Ran ran = run({command, "--force", "a.ply", "b.ply"});  // what the shell makes of *.ply
+  EXPECT_EQ(ran.code, 5);
+  EXPECT_THAT(ran.err, AllOf(HasSubstr("b.ply: is a cloud"), HasSubstr("--force a.ply -o b.ply"),
+                             HasSubstr("a.ply b.ply -o FOLDER")));
+  EXPECT_TRUE(take("b.ply") == raw_);
+  EXPECT_EQ(run({command, "a.ply", "b.ply"}).code, 5);
+  EXPECT_TRUE(take("b.ply") == raw_);
+}
+
+INSTANTIATE_TEST_SUITE_P(Commands, ReplacingBy, ::testing::Values("denoise", "mesh"));
+
+TEST_F(Replacing, AScanOfAnyFormatIsKept) {
+  put("b.xyz", "0 0 0\n1 0 0\n0 1 0\n");
+  put("broken.pcd", "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS x y z\n");
+  for (const std::string name : {"b.xyz", "broken.pcd"}) {
+    const std::string before = take(name);
+    EXPECT_EQ(run({"denoise", "--force", "a.ply", name}).code, 5) << name;
+    EXPECT_EQ(take(name), before);
+  }
+}
+
+TEST_F(Replacing, WhatIsNamedWithOIsMeant) {
+  const Ran ran = run({"denoise", "--flow", "hc", "--force", "a.ply", "-o", "b.ply"});
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  EXPECT_FALSE(take("b.ply") == raw_);
+}
+
+TEST_F(Replacing, WhatTheCommandWroteMayBeWrittenAgain) {
+  if (!keeps_marks()) GTEST_SKIP() << "no extended attributes here";
+  ASSERT_EQ(run({"denoise", "--flow", "hc", "a.ply", "out.ply"}).code, 0);
+  const Ran again = run({"denoise", "--flow", "hc", "--iterations", "3", "--force", "a.ply", "out.ply"});
+  EXPECT_EQ(again.code, 0) << again.err;
+}
+
+TEST_F(Replacing, TheMarkEndsWhenAnotherProgramChangesTheFile) {
+  ASSERT_EQ(run({"denoise", "--flow", "hc", "a.ply", "out.ply"}).code, 0);
+  put("out.ply", raw_);  // written into the same file, attributes and all
+  EXPECT_EQ(run({"denoise", "--force", "a.ply", "out.ply"}).code, 5);
+  EXPECT_TRUE(take("out.ply") == raw_);
+}
+
+TEST_F(Replacing, TheMarkIsInNoByteOfTheFile) {
+  put("same.xyz", "0 0 0\n1 0 0\n0 1 0\n");
+  ASSERT_EQ(run({"denoise", "same.xyz", "out.xyz"}).code, 0);
+  EXPECT_EQ(take("out.xyz"), take("same.xyz"));
+}
+
+TEST_F(Replacing, NeitherReportNorPictureTakesTheNameOfAScan) {
+  const Ran report = run({"denoise", "--force", "a.ply", "out.ply", "--report", "b.ply"});
+  EXPECT_EQ(report.code, 5);
+  const Ran picture = run({"render", "--force", "a.ply", "-o", "b.ply"});
+  EXPECT_EQ(picture.code, 5);
+  EXPECT_THAT(picture.err, HasSubstr("b.ply: is a cloud"));
+  EXPECT_TRUE(take("b.ply") == raw_);
+  EXPECT_THAT(names(), ElementsAre("a.ply", "b.ply"));
+}
+
+TEST_F(Replacing, SeveralInputsMakeTheirFolder) {
+  const Ran ran = run({"denoise", "--flow", "hc", "a.ply", "b.ply", "-o", "cleaned"});
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  EXPECT_TRUE(there("cleaned/a.ply"));
+  EXPECT_TRUE(there("cleaned/b.ply"));
+  EXPECT_TRUE(take("b.ply") == raw_);
+}
+
+TEST_F(Replacing, AFolderThatHoldsTheInputsKeepsThem) {
+  const std::string a = take("a.ply");
+  const Ran ran = run({"denoise", "--force", "a.ply", "b.ply", "-o", "."});
+  EXPECT_EQ(ran.code, 5);
+  EXPECT_THAT(ran.err, HasSubstr("--force b.ply -o b.ply"));
+  EXPECT_TRUE(take("a.ply") == a);
+  EXPECT_TRUE(take("b.ply") == raw_);
+}
+
+TEST_F(Replacing, SeveralInputsIntoWhatIsCalledLikeACloudAreASlip) {
+  const Ran ran = run({"denoise", "a.ply", "b.ply", "-o", "c.ply"});
+  EXPECT_EQ(ran.code, 2);
+  EXPECT_THAT(ran.err, HasSubstr("need a folder"));
+  EXPECT_EQ(run({"denoise", "--force", "a.ply", "a.ply", "-o", "b.ply"}).code, 5) << "b.ply is a file";
+  EXPECT_TRUE(take("b.ply") == raw_);
+  EXPECT_THAT(names(), ElementsAre("a.ply", "b.ply"));
+}
+
+}  // namespace
+}  // namespace rfsmooth::test
