@@ -26,7 +26,7 @@ noise=$rms
 cells=("![the noisy cloud](pictures/flows/noisy.png)<br>**the noisy cloud**<br>volume $volume %")
 "$bin/rfsmooth" flows --markdown > "$work/table.md"
 while read -r flow summary; do
-  if "$bin/rfsmooth" denoise --flow "$flow" "$work/noisy.ply" "$work/out.ply" --force --quiet 2> "$work/error"; then
+  if "$bin/rfsmooth" denoise --flow "$flow" "$work/noisy.ply" -o "$work/out.ply" --force --quiet 2> "$work/error"; then
     "$bin/render_cloud" "$work/out.ply" -o "$pictures/$flow.png" "${look[@]}" > /dev/null
     distance "$work/out.ply"
     left=$(awk -v a="$rms" -v b="$noise" 'BEGIN { printf "%.0f", 100 * a / b }')

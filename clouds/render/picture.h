@@ -1,7 +1,6 @@
 /// A picture of clouds or meshes from files, side by side from the same place.
 #pragma once
 
-#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,7 +14,7 @@ struct PictureOptions {
   std::vector<std::string> inputs, labels;  ///< files; text above each, in order
   std::string title;
   std::optional<Eigen::Vector3d> direction, up;  ///< see CameraOptions
-  std::optional<std::array<double, 3>> zoom;     ///< x, y: shares of the full frame; magnification
+  std::optional<Eigen::Vector3d> zoom;           ///< x, y: shares of the full frame; magnification
   int width = 700, height = 560;                 ///< of each input's, pixels
   int neighbors = 8;                             ///< a normal is estimated from
   double splat = 1;                              ///< size of the points, x what covers the surface

@@ -58,7 +58,7 @@ int parse_and_run(int argc, char** argv) {
   value_or_throw(validate(request));
   request.direction = vector_of(direction);
   request.up = vector_of(up);
-  if (!zoom.empty()) request.zoom = {zoom[0], zoom[1], zoom[2]};
+  request.zoom = vector_of(zoom);
   const render::Picture made = render::make_picture(request, {});
   if (made.colors)
     std::printf("colours from %g (dark blue) to %g (yellow)\n", made.colors->low, made.colors->high);

@@ -6,6 +6,8 @@
 #include <string>
 #include <string_view>
 
+#include <Eigen/Core>
+
 #include <rfsmooth/options.h>
 
 namespace rfsmooth::cli {

@@ -45,7 +45,7 @@ rfsmooth::render::PictureOptions picture_options(const RenderOptions& options,
   out.title = options.title.value_or("");
   out.direction = three("direction", options.direction);
   out.up = three("up", options.up);
-  if (const auto zoom = three("zoom", options.zoom)) out.zoom = {zoom->x(), zoom->y(), zoom->z()};
+  out.zoom = three("zoom", options.zoom);
   out.width = options.width;
   out.height = options.height;
   out.neighbors = options.neighbors;
