@@ -78,7 +78,7 @@ void drop_long(std::vector<FrontFace>& front, const Positions& points, double lo
 /// Turns each piece of the front to the side of the normals; without normals, so that the least of its faces
 /// (by sorted corners) has its corners ascending: CGAL's side depends on where its nodes lie in memory.
 void turn(std::vector<FrontFace>& front, const Positions& points, const Positions& normals) {
-  pipeline::Groups<Index> pieces(points.size());
+  Groups<Index> pieces(points.size());
   for (const FrontFace& f : front) {
     pieces.join(f.corners[0], f.corners[1]);
     pieces.join(f.corners[1], f.corners[2]);
@@ -112,17 +112,16 @@ double least_invented(const std::vector<FrontFace>& front, const Positions& poin
     whole += 0.5 * (points[b] - points[a]).cross(points[c] - points[a]).norm();
     faces.push_back(f.corners);
   }
-  pipeline::Groups<Index> rims(points.size());
-  std::vector<pipeline::rfs_mesh::EdgeFace> sides;
-  pipeline::for_each_edge(
-      pipeline::rfs_mesh::edge_faces(faces),
-      [&](const pipeline::rfs_mesh::EdgeFace* first, const pipeline::rfs_mesh::EdgeFace* last) {
-        if (last - first != 1) return;
-        rims.join(first->a, first->b);
-        sides.push_back(*first);
-      });
+  Groups<Index> rims(points.size());
+  std::vector<rfs_mesh::EdgeFace> sides;
+  rfs_mesh::for_each_edge(rfs_mesh::edge_faces(faces),
+                          [&](const rfs_mesh::EdgeFace* first, const rfs_mesh::EdgeFace* last) {
+                            if (last - first != 1) return;
+                            rims.join(first->a, first->b);
+                            sides.push_back(*first);
+                          });
   Positions area(points.size(), Eigen::Vector3d::Zero());
-  for (const pipeline::rfs_mesh::EdgeFace& s : sides)
+  for (const rfs_mesh::EdgeFace& s : sides)
     area[rims.of(s.a)] += (s.forward ? 0.5 : -0.5) * points[s.a].cross(points[s.b]);
   double sum = 0;
   for (const Eigen::Vector3d& a : area) sum += a.norm();

@@ -181,7 +181,7 @@ class Builder {
       if (longest_square(f) > longest * longest) far.push_back(f);
     });
     if (all > 0) solid.disagreeing /= all;
-    pipeline::Groups<Index> gaps(points_.size());
+    Groups<Index> gaps(points_.size());
     for (const Face& f : far) {
       gaps.join(f[0], f[1]);
       gaps.join(f[1], f[2]);
