@@ -293,7 +293,8 @@ struct MedianDirectionOptions {
 /// Directional diffusion (flow_directional.cpp).
 struct DirectionalOptions {
   static constexpr FlowInfo kInfo{"directional",
-                                  "curvature flow along one direction; keeps the volume of closed meshes",
+                                  "curvature flow along one direction, for closed meshes, whose volume it "
+                                  "keeps; takes little noise from clouds",
                                   "Zhao-Xu (3), (33)"};
   int iterations = 4;
   double lambda = 0.05;  ///< in units of the squared mean edge length
@@ -316,10 +317,10 @@ struct DirectionalOptions {
 
 /// Local directional diffusion (flow_local_directional.cpp).
 struct LocalDirectionalOptions {
-  static constexpr FlowInfo kInfo{
-      "local-directional",
-      "diffusion weighted by Gauss curvature on each one-ring; keeps corners and saddles",
-      "Zhao-Xu (34)-(36)"};
+  static constexpr FlowInfo kInfo{"local-directional",
+                                  "diffusion weighted by Gauss curvature on each one-ring, for meshes whose "
+                                  "corners and saddles must stay; takes little noise from clouds",
+                                  "Zhao-Xu (34)-(36)"};
   int iterations = 8;
   double lambda = 0.005;  ///< the paper's figure 3
   double eps = 0.05;      ///< Gauss curvature that counts as flat, 1 / (mean edge length)^2
