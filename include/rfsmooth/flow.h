@@ -29,6 +29,7 @@ struct AutomaticReport {
   double left = 0;            ///< estimate of the noise left, root mean square along the normal, world units
   double equalized = 0;       ///< root mean square move along the surface afterwards, world units
   double equalized_most = 0;  ///< the largest of them
+  double tail_times = 1;      ///< noise of the points of the tails over that of the others; 1: none
   std::size_t stranded = 0;   ///< points that the fairing had left beside the surface
 };
 

@@ -7,7 +7,10 @@
 /// - A ball narrower than a few sigma lies inside a thick slab and tells too little: m grows from 16 until it
 ///   holds a patch of 2 sigma in radius.
 /// - Shape that a quadric does not follow: it grows with the neighbourhood, and is taken off.
-/// - Depths in steps and noise that neighbours share: they grow, too, but stop growing (noise_sites.h).
+/// - Depths in steps and noise that neighbours share: they grow, too, but stop growing (noise_sites.h,
+///   shared_noise.h).
+/// - Parts that are much louder than the rest: measured for themselves. The figure is then theirs, since the
+///   rest has little to smooth.
 /// - Scans have most points where their surface is nearest: places count by their area.
 ///
 /// The figure is the typical place's. The field is the mean of places that are near each other and face the
@@ -27,7 +30,8 @@ struct NoiseField {
   double sigma = 0;            ///< standard deviation along the normal, world units: typical of the cloud
   double shape = 0;            ///< part of s^2(m) taken off as shape, 0 to 0.6; above half little is sure
   std::size_t neighbours = 0;  ///< m
-  std::vector<double> local;   ///< n: sigma near each point, world units
+  double shared = 1;  ///< over how many points the noise is the same (shared_noise.h); 1: each has its own
+  std::vector<double> local;  ///< n: sigma near each point, world units
 };
 
 /// O(n log n) for the field, O(log n) for the figure. Parallel, deterministic. Zero for fewer than 25 points.

@@ -80,7 +80,11 @@ double lowest(const SpatialIndex& index, const Positions& places, std::size_t m,
 
 }  // namespace
 
-NoiseStart search_noise(const SpatialIndex& index, const Context& context) {
+Positions search_places(const Positions& places) {
+  return pick(places, std::min(places.size(), kSearchSites));
+}
+
+NoiseStart search_noise(const SpatialIndex& index, Positions places, const Context& context) {
   constexpr double kTooNarrow = 1.35;  // a window this much smaller than what it shows shows too little
   constexpr double kSettled = 1.03, kGrowing = 1.1;
   constexpr double kAboveBound = 1.15;
@@ -88,7 +92,6 @@ NoiseStart search_noise(const SpatialIndex& index, const Context& context) {
   const std::size_t n = index.points().size();
   const std::size_t widest = std::clamp(n / kShareOfCloud, kNarrowestScatter, kWidest);
   NoiseStart start;
-  Positions places = pick(index.points(), std::min(n, kSearchSites));
   std::vector<Scatter> all = fits(index, places, start.m, std::vector<double>(places.size(), 0), context);
   const double narrow = median_radius(index, places, start.m);
   start.least = 1e-9 * narrow;

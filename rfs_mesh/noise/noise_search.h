@@ -21,7 +21,11 @@ struct NoiseStart {
   std::size_t m = kNarrowestScatter;
 };
 
-/// O(log n). Parallel, deterministic. \param index at least 25 points.
-NoiseStart search_noise(const SpatialIndex& index, const Context& context);
+/// Places at which the search looks: up to 500 of the given ones, evenly over their order.
+Positions search_places(const Positions& places);
+
+/// O(log n). Parallel, deterministic. \param index at least 25 points. \param places where it looks, at least
+/// one.
+NoiseStart search_noise(const SpatialIndex& index, Positions places, const Context& context);
 
 }  // namespace rfsmooth::rfs_mesh

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/parallel.h"
 
@@ -113,10 +114,14 @@ class Listener {
 
 }  // namespace
 
-NoiseSites listen(const SpatialIndex& index, const NoiseStart& start, const Context& context) {
+Positions listening_places(const Positions& places, std::size_t m) {
+  return pick(places, std::min(places.size(), std::clamp(kWork / m, kFewestSites, kSites)));
+}
+
+NoiseSites listen(const SpatialIndex& index, Positions at, const NoiseStart& start, const Context& context) {
   const std::size_t n = index.points().size();
   NoiseSites sites;
-  sites.at = pick(index.points(), std::min(n, std::clamp(kWork / start.m, kFewestSites, kSites)));
+  sites.at = std::move(at);
   Listener listener(index, sites.at, start, context);
   listener.find_floor();
   for (int round = 0; round < 3; ++round) listener.hear(start.m, true);

@@ -27,7 +27,11 @@ struct NoiseSites {
   std::vector<Scatter> fits;  ///< to the m nearest of the site by itself
 };
 
-/// \param start sigma and m to start from, `least` > 0. O(log n). Parallel, deterministic.
-NoiseSites listen(const SpatialIndex& index, const NoiseStart& start, const Context& context);
+/// Where to listen: up to 2,000 of the given places, evenly over their order, fewer the larger m is.
+Positions listening_places(const Positions& places, std::size_t m);
+
+/// \param at the sites. \param start sigma and m to start from, `least` > 0. O(log n). Parallel,
+/// deterministic.
+NoiseSites listen(const SpatialIndex& index, Positions at, const NoiseStart& start, const Context& context);
 
 }  // namespace rfsmooth::rfs_mesh

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "smoothing/automatic/mixture.h"
 #include "smoothing/automatic/patches/height_field.h"
 #include "smoothing/automatic/patches/patches.h"
+#include "smoothing/automatic/patches/tails.h"
 #include "smoothing/automatic/patches/thinning.h"
 #include "smoothing/automatic/stranded.h"
 #include "smoothing/automatic/thin_walls.h"
@@ -29,9 +31,9 @@ constexpr double kFewest = 16;            // m_0 at small noise: a quadric has s
 constexpr double kWidest = 1600;          // the widest patches, and
 constexpr double kWidestShare = 4;        // at least this many times m_0
 constexpr double kStrayFrom = 5;          // sigma
+constexpr double kCalm = 0.1;             // of the figure: so much calmer places have no part in the tails
 constexpr std::size_t kSeeing = 2;        // the scale that looks for walls, of 9 sigma: from 0
 
-constexpr double kNoNoise = 0.05;     // spacings: less than this is left alone
 constexpr std::size_t kTooFew = 32;   // points
 constexpr std::size_t kDense = 4;     // a subset with a point in so many has its own among the nearest
 constexpr std::size_t kOwnMean = 60;  // from this many members on, patches average; below, near neighbours do
@@ -66,19 +68,23 @@ struct Scale {
 
 /// `before` holds the risk of the scale before it.
 Scale try_scale(const HeightField& field, std::size_t members, const std::vector<Index>& seeds,
-                const std::vector<double>& sigma, std::vector<float>& before, Patches::Memory& memory,
+                const rfs_mesh::NoiseField& noise, std::vector<float>& before, Patches::Memory& memory,
                 const Context& context) {
+  const std::vector<double>& sigma = noise.local;
+  const auto shared = float(noise.shared);
   const Patches patches(field, members, seeds, sigma, memory, context);
   Scale scale{
       members, patches.predict(context), std::vector<float>(field.size()), {}, patches.with_several_sheets()};
   const Prediction& prediction = scale.prediction;
   for_each_index(context, field.size(), [&](std::size_t i) {
     const float e = (field.local()[i].height - prediction.height[i]) / float(sigma[i]);
-    const float risk = prediction.covered[i] != 0 ? e * e + 2 * prediction.own[i] - 1 : before[i];
+    const float own = prediction.own[i], of_all = own * shared / (1 + own * (shared - 1));
+    const float risk = prediction.covered[i] != 0 ? e * e + 2 * of_all - 1 : before[i];
     scale.worse[i] = risk - before[i];
     before[i] = risk;
   });
-  if (members >= kOwnMean) scale.mean = patches.mean(patches.mean(scale.worse, context), context);
+  if (double(members) >= double(kOwnMean) * noise.shared)
+    scale.mean = patches.mean(patches.mean(scale.worse, context), context);
   return scale;
 }
 
@@ -100,8 +106,9 @@ void average_near(const HeightField& field, std::vector<Scale>& scales, const Co
 }
 
 /// The mixture of the data and all scales, by their evidence.
-void mix(const HeightField& field, std::vector<Scale> scales, std::vector<float>& height,
+void mix(const HeightField& field, std::vector<Scale> scales, double shared, std::vector<float>& height,
          std::vector<float>& own, const Context& context) {
+  const auto alone = float(1 / shared);
   // The data themselves are the first candidate: no error against themselves, all their own.
   Mixture mixture(heights(field, context));
   average_near(field, scales, context);
@@ -114,7 +121,7 @@ void mix(const HeightField& field, std::vector<Scale> scales, std::vector<float>
       const float against = scale.mean.empty() ? kNearEvidence * near
                                                : kPatchEvidence * float(scale.members) * scale.mean[i] +
                                                      kNearEvidence * std::max(0.0F, near - kTolerated);
-      gain[i] = scale.prediction.covered[i] != 0 ? -against : std::numeric_limits<float>::quiet_NaN();
+      gain[i] = scale.prediction.covered[i] != 0 ? -alone * against : std::numeric_limits<float>::quiet_NaN();
     });
     mixture.add(std::move(scale.prediction.height), std::move(scale.prediction.own), std::move(gain),
                 context);
@@ -136,61 +143,182 @@ double noise_left(const HeightField& field, const std::vector<float>& height, co
   return sums[0] > 0 ? std::sqrt(std::max({0.0, sums[1], sums[2]}) / sums[0]) : noise.sigma;
 }
 
+/// The guide of mesh.positions and the heights over it.
+std::unique_ptr<HeightField> raise_field(const Mesh& mesh, double sigma, AutomaticReport& report,
+                                         const Context& context) {
+  Positions guide = fair(mesh, report.guide_strength, context);
+  Landed landed = land_stranded(mesh, kStrayFrom * sigma, guide, context);
+  report.stranded = landed.stranded;
+  return std::make_unique<HeightField>(std::move(guide), std::move(landed.tree), std::move(landed.near),
+                                       mesh.positions, context);
+}
+
+/// The ladder of scales.
+class Ladder {
+ public:
+  Ladder(const HeightField& field, const rfs_mesh::NoiseField& noise) : field_(field), noise_(noise) {
+    risk_.assign(field.size(), 1);  // of the data themselves: no error, all their own
+  }
+
+  void add(double m, const Context& context) {
+    const std::size_t n = field_.size(), members = std::min(std::size_t(m), n / 2);
+    if (seeds_.empty()) seeds_ = thin_all(field_.index(), field_.neighbors(), context);
+    while (seeds_.size() * members > kMostOverlap * n)
+      seeds_ = seeds_.size() > n / kDense ? thin_dense(field_.index(), field_.neighbors(), seeds_, context)
+                                          : thin(field_.guide(), seeds_, context);
+    scales.push_back(try_scale(field_, members, seeds_, noise_, risk_, memory_, context));
+  }
+
+  std::vector<Scale> scales;
+
+ private:
+  const HeightField& field_;
+  const rfs_mesh::NoiseField& noise_;
+  std::vector<float> risk_;
+  Patches::Memory memory_;
+  std::vector<Index> seeds_;  ///< empty: all
+};
+
+/// What a pass over the scales gives.
+struct Pass {
+  std::vector<float> height, own;  ///< n: of the mixture, as in Prediction
+  std::vector<float> wide;         ///< n: of the scale that looks for tails
+  std::vector<Index> several;      ///< places where the scale that looks for walls sees several sheets
+  std::size_t members_seeing = 0;  ///< of that scale
+};
+
+Pass smooth_heights(const HeightField& field, const rfs_mesh::NoiseField& noise, double spacing,
+                    const Context& context) {
+  constexpr std::size_t kTailMembers = 64;
+  const double share = noise.sigma / spacing;
+  const std::size_t n = field.size();
+  std::optional<Ladder> ladder(std::in_place, field, noise);
+  const double narrowest = std::max(kFewest * noise.shared, kNarrowest * share * share);
+  const double widest = std::max(kWidest, kWidestShare * narrowest);
+  for (double m = narrowest; m <= widest; m *= 2) {
+    context.report("smooth", 0.1 + 0.9 * std::log(m / narrowest) / std::log(2 * widest / narrowest));
+    ladder->add(m, context);
+    if (m >= double(n) / 2) break;
+  }
+  std::vector<Scale> scales = std::move(ladder->scales);
+  ladder.reset();
+  Pass pass;
+  const Scale& seeing = scales[std::min(kSeeing, scales.size() - 1)];
+  pass.members_seeing = seeing.members;
+  pass.several = seeing.several;
+  for (const Scale& scale : scales) {
+    pass.wide = scale.prediction.height;
+    if (scale.members >= kTailMembers && &scale != &scales.front()) break;
+  }
+  mix(field, std::move(scales), noise.shared, pass.height, pass.own, context);
+  return pass;
+}
+
+/// How far each point lies off a patch that is wide enough not to follow it, beyond what its neighbours do,
+/// too: they all lie off it beside an edge.
+std::vector<float> off_neighbours(const HeightField& field, const Pass& pass,
+                                  const rfs_mesh::NoiseField& noise, const Context& context) {
+  constexpr float kMostOfOne = 2;  // sigma
+  std::vector<float> off(field.size()), at_most(field.size());
+  for_each_index(context, off.size(), [&](std::size_t i) {
+    off[i] = field.local()[i].height - pass.wide[i];
+    const float most = kMostOfOne * float(noise.local[i]);
+    at_most[i] = std::clamp(off[i], -most, most);
+  });
+  at_most = field.local_mean(at_most, context);
+  for_each_index(context, off.size(), [&](std::size_t i) { off[i] -= at_most[i]; });
+  return off;
+}
+
+/// Points of the tails that a first smoothing left beside the surface, since their neighbours are each other,
+/// are seen from the surface instead.
+void land_hovering(const HeightField& field, const Pass& pass, const Mesh& mesh, const Tails& tails,
+                   const rfs_mesh::NoiseField& noise, Positions& data, const Context& context) {
+  Positions smooth(field.size());
+  for_each_index(context, smooth.size(), [&](std::size_t i) {
+    smooth[i] = field.guide()[i] + double(pass.height[i]) * field.normal(i);
+  });
+  Positions landed = smooth;
+  land_stranded(mesh, kStrayFrom * tails.times * noise.sigma, landed, context);
+  for_each_index(context, smooth.size(), [&](std::size_t i) {
+    if (landed[i] == smooth[i] || noise.local[i] < kCalm * noise.sigma) return;
+    const Eigen::Vector3d off = mesh.positions[i] - landed[i];
+    data[i] = landed[i] + tails.weight(off.norm() / noise.local[i]) * off;
+  });
+}
+
+/// Points of the tails go towards the surface that the others show (tails.h), and the noise down to that of
+/// the others. Returns the tails.
+Tails tame(const HeightField& field, const Pass& pass, const Mesh& mesh, Positions& data,
+           rfs_mesh::NoiseField& noise, const Context& context) {
+  if (noise.shared > 1) return {};  // what neighbours share stands out as if it were tails
+  constexpr float kMostItsOwn = 0.8F;
+  const std::vector<float> off = off_neighbours(field, pass, noise, context);
+  constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
+  std::vector<float> relative(off.size(), kUnknown), least(off.size(), kUnknown);
+  for_each_index(context, off.size(), [&](std::size_t i) {
+    if (noise.local[i] < kCalm * noise.sigma) return;
+    const auto sigma = float(noise.local[i]);
+    const float e = field.local()[i].height - pass.height[i],
+                without = e / (1 - std::clamp(pass.own[i], 0.0F, kMostItsOwn));
+    relative[i] = off[i] / sigma;
+    // Where the mixture had to be narrow, a wide patch says little.
+    least[i] = std::min(std::abs(relative[i]), std::abs(without) / sigma);
+  });
+  const Tails tails = find_tails(relative, least);
+  if (!(tails.share > 0)) return tails;
+  for_each_index(context, off.size(), [&](std::size_t i) {
+    if (!std::isnan(relative[i]))
+      data[i] -= (1 - tails.weight(double(relative[i]))) * double(off[i]) * field.normal(i);
+  });
+  land_hovering(field, pass, mesh, tails, noise, data, context);
+  noise.sigma *= tails.narrow;
+  for (double& local : noise.local) local *= tails.narrow;
+  return tails;
+}
+
 }  // namespace
 
-Positions automatic_smoothing(Mesh& mesh, bool keep_rings, const rfs_mesh::NoiseField& noise, double spacing,
+Positions automatic_smoothing(Mesh& mesh, bool keep_rings, rfs_mesh::NoiseField noise, double spacing,
                               AutomaticReport& report, rfs_mesh::NeighborTable& near,
                               const Context& context) {
   near = {};
   const std::size_t n = mesh.positions.size();
-  const double sigma = noise.sigma;
   report = {};
-  report.left = sigma;
-  if (n < kTooFew || !(sigma > kNoNoise * spacing)) return mesh.positions;
-  const double share = sigma / spacing;
-  report.guide_strength = kGuide * share * share * std::max(1.0, share * share);
-  Positions guide = fair(mesh, report.guide_strength, context);
+  report.left = noise.sigma;
+  if (n < kTooFew || !(noise.sigma > 0)) return mesh.positions;
+  const auto guide_strength = [&] {
+    const double share = noise.sigma / spacing;
+    return kGuide * share * share * std::max(1.0, share * share) * noise.shared;
+  };
+  report.guide_strength = guide_strength();
+  std::vector<double> most = noise.local;
+  for (double& limit : most) limit = kStrayFrom * std::max(limit, noise.sigma);
+  auto field = raise_field(mesh, noise.sigma, report, context);
   context.report("smooth", 0.1);
-  Landed landed = land_stranded(mesh, kStrayFrom * sigma, guide, context);
-  report.stranded = landed.stranded;
-  if (!keep_rings) mesh.one_ring = {};
-  HeightField field(std::move(guide), std::move(landed.tree), std::move(landed.near), mesh.positions,
-                    context);
-
-  std::vector<float> risk(n, 1);  // of the data themselves: no error, all their own
-  std::vector<Scale> scales;
-  std::optional<Patches::Memory> memory(std::in_place);
-  std::vector<Index> seeds;  // empty: all
-  const double narrowest = std::max(kFewest, kNarrowest * share * share);
-  const double widest = std::max(kWidest, kWidestShare * narrowest);
-  for (double m = narrowest; m <= widest; m *= 2) {
-    context.report("smooth", 0.1 + 0.9 * std::log(m / narrowest) / std::log(2 * widest / narrowest));
-    const std::size_t members = std::min(std::size_t(m), n / 2);
-    if (seeds.empty()) seeds = thin_all(field.index(), field.neighbors(), context);
-    while (seeds.size() * members > kMostOverlap * n)
-      seeds = seeds.size() > n / kDense ? thin_dense(field.index(), field.neighbors(), seeds, context)
-                                        : thin(field.guide(), seeds, context);
-    scales.push_back(try_scale(field, members, seeds, noise.local, risk, *memory, context));
-    if (m >= double(n) / 2) break;
+  Pass pass = smooth_heights(*field, noise, spacing, context);
+  Positions data = mesh.positions;  // as tamed
+  if (const Tails tails = tame(*field, pass, mesh, data, noise, context); tails.share > 0) {
+    report.tail_times = tails.times;
+    for (double& limit : most) limit *= tails.times;
+    report.guide_strength = guide_strength();
+    mesh.positions.swap(data);
+    field = raise_field(mesh, noise.sigma, report, context);
+    pass = smooth_heights(*field, noise, spacing, context);
+    mesh.positions.swap(data);
   }
-
-  const Scale& seeing = scales[std::min(kSeeing, scales.size() - 1)];
-  const std::size_t members_seeing = seeing.members;
-  const std::vector<Index> several = seeing.several;
-  std::vector<float> height, own;
-  std::vector<float>().swap(risk);
-  memory.reset();
-  mix(field, std::move(scales), height, own, context);
-  split_hidden_sheets(field, sigma, height, own, context);
+  if (!keep_rings) mesh.one_ring = {};
+  split_hidden_sheets(*field, noise.sigma, pass.height, pass.own, context);
 
   Positions smooth = mesh.positions;
   for_each_index(context, n, [&](std::size_t i) {
-    const Eigen::Vector3d move = field.guide()[i] + double(height[i]) * field.normal(i) - mesh.positions[i];
-    if (move.allFinite() && move.norm() <= kStrayFrom * std::max(sigma, noise.local[i])) smooth[i] += move;
+    const Eigen::Vector3d move =
+        field->guide()[i] + double(pass.height[i]) * field->normal(i) - mesh.positions[i];
+    if (move.allFinite() && move.norm() <= most[i]) smooth[i] += move;
   });
-  part_thin_walls(field, mesh.positions, several, members_seeing, noise, smooth, context);
-  report.left = noise_left(field, height, own, noise, context);
-  near = field.release_neighbors();
+  part_thin_walls(*field, data, pass.several, pass.members_seeing, noise, smooth, context);
+  report.left = noise_left(*field, pass.height, pass.own, noise, context);
+  near = field->release_neighbors();
   return smooth;
 }
 

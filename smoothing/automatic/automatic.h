@@ -25,6 +25,14 @@
 ///    is off by a quarter in the middle, at worst four times too high on a sphere, of which hardly anything
 ///    is left: an error of 2 % in sigma is then as much.
 ///
+/// Noise that k neighbours share (rfs_mesh/shared_noise.h) is that of n / k points, each seen k times: scales
+/// begin at k times as many points, c is k times as large, evidence counts a k-th, and of a prediction that
+/// has the share `own` of the point's height k own / (1 + (k - 1) own) is the point's and its neighbours'
+/// noise.
+///
+/// Where some points are several times noisier than their neighbours (tails.h), steps 1 to 3 are done twice,
+/// the second time with those drawn towards the surface that the others show.
+///
 /// One strength for the whole cloud cannot do this: on the development shapes the best single c differs by
 /// 100 times between the flat and the thin parts of one cloud. Points move along the guide's normals from the
 /// guide's places; those that would move more than 5 sigma are strays and stay.
@@ -37,13 +45,13 @@
 
 namespace rfsmooth::smoothing {
 
-/// The smoothed places of mesh.positions (n x 3). `noise`: along the normal; `sigma` below 0.05 spacings: the
-/// points come back as they are; `local`: n, positive. `spacing`: h, world units.
+/// The smoothed places of mesh.positions (n x 3). `noise`: along the normal; `sigma` zero: the points come
+/// back as they are; `local`: n, positive. `spacing`: h, world units.
 /// \param keep_rings false: the mesh is left without its one-rings, as soon as they are read.
 /// \param near out: the nearest of every point on the guide (height_field.h); empty if nothing moved.
 /// O(n log n); about 500 bytes a point beside the mesh. Parallel, the same bits for any number of
 /// threads. Of the report, `noise` and what was equalized are the flow's to enter (flow_auto.cpp).
-Positions automatic_smoothing(Mesh& mesh, bool keep_rings, const rfs_mesh::NoiseField& noise, double spacing,
+Positions automatic_smoothing(Mesh& mesh, bool keep_rings, rfs_mesh::NoiseField noise, double spacing,
                               AutomaticReport& report, rfs_mesh::NeighborTable& near, const Context& context);
 
 }  // namespace rfsmooth::smoothing

@@ -19,18 +19,32 @@ double measured(const rfs_mesh::NoiseField& noise, double spacing) {
   return noise.sigma < kLittle * spacing && noise.shape > kMostlyShape ? 0 : noise.sigma;
 }
 
-/// Noise of the size `sigma` that varies over the cloud as `noise` does.
-rfs_mesh::NoiseField scaled(rfs_mesh::NoiseField noise, double sigma) {
-  for (double& local : noise.local) local = noise.sigma > 0 ? local * sigma / noise.sigma : sigma;
-  noise.sigma = sigma;
+/// Noise below this cannot be told from detail, spacings: such places stay, unless more strength is asked
+/// for.
+constexpr double kNoNoise = 0.05;
+
+/// Noise of the size `sigma`, that varies over the cloud as `noise` does, times `strength`. A strength above
+/// 1 acts everywhere, where next to nothing was measured on as much as may be hidden there.
+rfs_mesh::NoiseField scaled(rfs_mesh::NoiseField noise, double sigma, double strength, double spacing) {
+  const double hidden = kNoNoise * spacing;
+  const auto of = [&](double s) {
+    if (strength > 1) return strength * std::max(s, hidden);
+    return s > hidden ? strength * s : 0.0;
+  };
+  constexpr double kStays = 1e-3;  // of the figure: so little that a point cannot move to speak of
+  const double measured = noise.sigma;
+  noise.sigma = of(sigma);
+  for (double& local : noise.local)
+    local = std::max(of(measured > 0 ? local * sigma / measured : sigma), kStays * noise.sigma);
   return noise;
 }
 
-/// Takes back what a move has beyond kFarthestMove. `local`: the noise around each point times `strength`.
-void limit(const Positions& before, const std::vector<double>& local, double strength, Positions& points,
-           const Context& context) {
+/// Takes back what a move has beyond kFarthestMove. `local`: the noise around each point times `strength`;
+/// `tail_times` of it where there are tails.
+void limit(const Positions& before, const std::vector<double>& local, double strength, double tail_times,
+           Positions& points, const Context& context) {
   for_each_index(context, points.size(), [&](std::size_t i) {
-    const double most = kFarthestMove * std::max(1.0, 1 / strength) * local[i];
+    const double most = kFarthestMove * std::max(1.0, 1 / strength) * tail_times * local[i];
     const Eigen::Vector3d move = points[i] - before[i];
     if (const double length = move.norm(); length > most) points[i] = before[i] + most / length * move;
   });
@@ -66,7 +80,7 @@ std::optional<AutomaticReport> smooth_automatically(Mesh& mesh, const AutomaticO
   }
   const double sigma = options.noise ? options.noise->resolve(spacing) : measured(noise, spacing);
   const double used = options.strength * sigma;
-  noise = scaled(std::move(noise), used);
+  noise = scaled(std::move(noise), sigma, options.strength, spacing);
   AutomaticReport report;
   rfs_mesh::NeighborTable near;
   Positions smooth =
@@ -83,7 +97,8 @@ std::optional<AutomaticReport> smooth_automatically(Mesh& mesh, const AutomaticO
       slide_back(mesh.positions, before, 1, std::move(near), context);
     }
   }
-  if (options.strength > 0) limit(before, noise.local, options.strength, mesh.positions, context);
+  if (options.strength > 0)
+    limit(before, noise.local, options.strength, report.tail_times, mesh.positions, context);
   return report;
 }
 

@@ -1,0 +1,81 @@
+#include "smoothing/automatic/patches/tails.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace rfsmooth::smoothing {
+
+namespace {
+
+constexpr double kFar = 4;  // s: 6e-5 of a normal distribution lie farther
+constexpr double kLeastFar =
+    0.003;  // share of them; white noise on the development shapes leaves at most 0.001
+constexpr double kFarthestTail =
+    12;  // s: what lies beyond is a stray and does not say how wide the tails are
+constexpr double kMostInTails = 0.35;  // more is noise that differs over the cloud
+constexpr double kTwice = 2.1;         // least `times`: less is a scale that varies a little
+constexpr int kTailRounds = 50;
+
+/// Standard deviation of a normal distribution with the same median of absolute values.
+double scale(const std::vector<float>& values) {
+  constexpr double kMedianOfNormal = 0.6745;
+  std::vector<float> absolute;
+  for (const float r : values)
+    if (!std::isnan(r)) absolute.push_back(std::abs(r));
+  if (absolute.empty()) return 0;
+  const auto middle = absolute.begin() + std::ptrdiff_t(absolute.size() / 2);
+  std::nth_element(absolute.begin(), middle, absolute.end());
+  return double(*middle) / kMedianOfNormal;
+}
+
+double share_of_far(const std::vector<float>& values, double unit) {
+  const auto far = std::count_if(values.begin(), values.end(), [&](float r) {
+    return double(std::abs(r)) > kFar * unit && double(std::abs(r)) < kFarthestTail * unit;
+  });
+  const auto known = std::count_if(values.begin(), values.end(), [](float r) { return !std::isnan(r); });
+  return known > 0 ? double(far) / double(known) : 0;
+}
+
+}  // namespace
+
+double Tails::weight(double r) const {
+  if (!(share > 0)) return 1;
+  const double t = r / narrow;
+  const double wide = share / times * std::exp(-t * t / (2 * times * times));
+  const double close = (1 - share) * std::exp(-t * t / 2);
+  const double least = 1 / (times * times);
+  return close + wide > 0 ? (close + least * wide) / (close + wide) : least;
+}
+
+Tails find_tails(const std::vector<float>& residuals, const std::vector<float>& least) {
+  Tails tails;
+  if (residuals.empty() || !(share_of_far(least, scale(least)) > kLeastFar)) return tails;
+  const double unit = scale(residuals);
+  if (!(unit > 0)) return tails;
+  std::vector<double> squares;
+  for (const float r : residuals)
+    if (const double t = double(r) / unit; std::abs(t) < kFarthestTail) squares.push_back(t * t);
+  double share = 0.1, narrow = 1, wide = 9;
+  for (int round = 0; round < kTailRounds; ++round) {
+    double sums[2] = {}, weights[2] = {};
+    for (const double square : squares) {
+      const double a = (1 - share) / std::sqrt(narrow) * std::exp(-square / (2 * narrow)),
+                   b = share / std::sqrt(wide) * std::exp(-square / (2 * wide)), is_wide = b / (a + b);
+      sums[0] += (1 - is_wide) * square;
+      sums[1] += is_wide * square;
+      weights[0] += 1 - is_wide;
+      weights[1] += is_wide;
+    }
+    share = weights[1] / (weights[0] + weights[1]);
+    narrow = sums[0] / weights[0];
+    wide = sums[1] / weights[1];
+  }
+  if (share > kMostInTails || wide < kTwice * kTwice * narrow) return tails;
+  tails.share = share;
+  tails.times = std::sqrt(wide / narrow);
+  tails.narrow = std::min(1.0, std::sqrt(narrow) * unit);
+  return tails;
+}
+
+}  // namespace rfsmooth::smoothing

@@ -1,0 +1,127 @@
+/// What `denoise` makes of noise that is not the same everywhere, not normal, not every point's own.
+#include <cmath>
+#include <functional>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include <rfsmooth/denoise.h>
+
+#include "rfs_mesh/fit/local_surface.h"
+#include "tests/support/meshes.h"
+
+using namespace rfsmooth;
+
+namespace {
+
+/// 10,242 points of the unit sphere.
+const Positions& sphere() {
+  static const Positions points = support::icosphere(5).positions;
+  return points;
+}
+
+double spacing() {
+  static const double mean = rfs_mesh::mean_spacing(rfs_mesh::SpatialIndex(sphere(), {}), {});
+  return mean;
+}
+
+/// Along the normals, by point.
+Positions off_sphere(const std::function<double(std::size_t)>& height) {
+  Positions points = sphere();
+  for (std::size_t i = 0; i < points.size(); ++i) points[i] *= 1 + height(i);
+  return points;
+}
+
+Positions denoised(Positions points, double strength = 1) {
+  DenoiseOptions options;
+  options.flow.strength = strength;
+  const auto report = rfsmooth::denoise(points.front().data(), points.size(), options, {});
+  EXPECT_TRUE(report);
+  return points;
+}
+
+double rms_off(const Positions& points, const std::function<bool(std::size_t)>& counts) {
+  double sum = 0, count = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!counts(i)) continue;
+    sum += std::pow(points[i].norm() - 1, 2);
+    ++count;
+  }
+  return std::sqrt(sum / count);
+}
+
+bool everywhere(std::size_t) {
+  return true;
+}
+
+double rms_move(const Positions& from, const Positions& to) {
+  double sum = 0;
+  for (std::size_t i = 0; i < from.size(); ++i) sum += (to[i] - from[i]).squaredNorm();
+  return std::sqrt(sum / double(from.size()));
+}
+
+TEST(NoiseLaws, TheCalmHalfStaysAndTheLoudHalfIsSmoothed) {
+  const auto loud = [](std::size_t i) { return sphere()[i].x() > 0; };
+  const auto calm = [](std::size_t i) { return sphere()[i].x() < -0.2; };
+  for (const double share : {0.35, 1.0}) {
+    std::mt19937_64 engine(3);
+    std::normal_distribution<double> normal(0, share * spacing());
+    const Positions noisy = off_sphere([&](std::size_t i) { return loud(i) ? normal(engine) : 0; });
+    const Positions smooth = denoised(noisy);
+    EXPECT_LT(rms_off(smooth, loud), 0.4 * rms_off(noisy, loud)) << share;
+    EXPECT_LT(rms_off(smooth, calm), 0.05 * spacing()) << share;
+  }
+}
+
+TEST(NoiseLaws, PointsThatAreNoisierThanTheirNeighboursComeToTheSurface) {
+  for (const double share : {0.05, 0.2}) {
+    std::mt19937_64 engine(4);
+    std::normal_distribution<double> normal(0, 0.35 * spacing());
+    std::bernoulli_distribution wide(share);
+    std::vector<char> is_wide(sphere().size());
+    const Positions noisy = off_sphere([&](std::size_t i) {
+      is_wide[i] = char(wide(engine));
+      return (is_wide[i] ? 4 : 1) * normal(engine);
+    });
+    const Positions smooth = denoised(noisy);
+    EXPECT_LT(rms_off(smooth, everywhere), 0.3 * rms_off(noisy, everywhere)) << share;
+    const auto tails = [&](std::size_t i) { return is_wide[i] != 0; };
+    EXPECT_LT(rms_off(smooth, tails), 0.5 * rms_off(noisy, tails)) << share;
+  }
+}
+
+TEST(NoiseLaws, NoiseThatNeighboursShareIsSmoothedOverMoreOfThem) {
+  // The mean of independent noise over the seven nearest of each point.
+  std::mt19937_64 engine(5);
+  std::normal_distribution<double> normal(0, 0.5 * spacing() * std::sqrt(7.0));
+  std::vector<double> own(sphere().size());
+  for (double& x : own) x = normal(engine);
+  const rfs_mesh::SpatialIndex index(sphere(), {});
+  std::vector<rfs_mesh::Neighbor> near;
+  const Positions noisy = off_sphere([&](std::size_t i) {
+    index.nearest(sphere()[i], 7, near);
+    double sum = 0;
+    for (const auto& q : near) sum += own[q.index] / 7;
+    return sum;
+  });
+  EXPECT_LT(rms_off(denoised(noisy), everywhere), 0.7 * rms_off(noisy, everywhere));
+}
+
+TEST(NoiseLaws, StrengthActsWhereNextToNothingWasMeasured) {
+  std::mt19937_64 engine(6);
+  std::normal_distribution<double> normal(0, 0.02 * spacing());
+  const Positions noisy = off_sphere([&](std::size_t) { return normal(engine); });
+  EXPECT_EQ(rms_move(noisy, denoised(noisy)), 0);
+  EXPECT_LT(rms_off(denoised(noisy, 2), everywhere), 0.6 * rms_off(noisy, everywhere));
+}
+
+TEST(NoiseLaws, LittleStrengthMovesLessThanMuch) {
+  std::mt19937_64 engine(7);
+  std::normal_distribution<double> normal(0, 0.08 * spacing());
+  const Positions noisy = off_sphere([&](std::size_t) { return normal(engine); });
+  const double half = rms_move(noisy, denoised(noisy, 0.5)), full = rms_move(noisy, denoised(noisy));
+  EXPECT_GT(half, 0);
+  EXPECT_GT(full, half);
+}
+
+}  // namespace
