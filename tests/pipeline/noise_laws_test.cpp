@@ -34,7 +34,9 @@ Positions off_sphere(const std::function<double(std::size_t)>& height) {
 
 Positions denoised(Positions points, double strength = 1) {
   DenoiseOptions options;
-  options.flow.strength = strength;
+  AutomaticOptions automatic;
+  automatic.strength = strength;
+  options.flow.flow = automatic;
   const auto report = rfsmooth::denoise(points.front().data(), points.size(), options, {});
   EXPECT_TRUE(report);
   return points;

@@ -6,7 +6,6 @@
 #include <rfsmooth/reconstruct.h>
 
 using namespace rfsmooth;
-using namespace rfsmooth::pipeline;
 
 namespace {
 

@@ -30,7 +30,8 @@ Positions rough_square(Sigma&& sigma, double step = 0) {
 
 NoiseSites sites_of(const Positions& points) {
   const SpatialIndex index(points, {});
-  return listen(index, search_noise(index, {}), {});
+  const NoiseStart start = search_noise(index, search_places(points), {});
+  return listen(index, listening_places(points, start.m), start, {});
 }
 
 double median_where(const NoiseSites& sites, double from, double to) {
