@@ -31,6 +31,7 @@ void enter(const AutomaticReport& found, DenoiseReport& report) {
   std::get<AutomaticOptions>(report.effective.flow.flow).noise = Length{found.noise, false};
   report.stranded = found.stranded;
   report.guide_strength = found.guide_strength;
+  report.tail_times = found.tail_times;
   report.equalized_rms = found.equalized;
   report.equalized_largest = found.equalized_most;
 }

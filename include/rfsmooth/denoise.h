@@ -9,7 +9,8 @@
 /// That is how flows run; the default, the automatic smoother, takes one step of its own.
 ///
 /// Differs from the paper: points that no face reaches stay where they are, as do outliers (outliers.h),
-/// which are not connected at all; and a point moves only so far: four times the noise around it (more with
+/// which are not connected at all; and a point moves only so far: four times the noise around it (of the
+/// noisiest points where noise has heavy tails; more with
 /// a strength above 1), or under a flow, which knows of no noise, the median length of its edges.
 #pragma once
 
@@ -67,9 +68,10 @@ struct DenoiseReport {
                              ///< units; 0 for flows that do not even them out
   double equalized_largest = 0;  ///< the farthest
   double guide_strength = 0;     ///< of the automatic smoother's guide, dimensionless; 0 for flows
-  std::size_t stranded = 0;      ///< points that its fairing had left beside the surface
-  double largest_move = 0;       ///< world units
-  double rms_move = 0;           ///< over the finite rows, world units
+  double tail_times = 1;  ///< noise of the noisiest points (heavy tails) over that of the others; 1: no tails
+  std::size_t stranded = 0;  ///< points that its fairing had left beside the surface
+  double largest_move = 0;   ///< world units
+  double rms_move = 0;       ///< over the finite rows, world units
   std::size_t faces = 0, edges = 0, sdg_edges = 0, bridges = 0, faceless = 0, swaps = 0;
   std::vector<StageTime> seconds;  ///< in the order first done
 };

@@ -129,6 +129,7 @@ SharedNoise find_shared_noise(const SpatialIndex& index, const Positions& places
     seen.push_back(variance);
   }
   SharedNoise found;
+  if (seen.empty()) return found;  // nothing scatters, or too few points to tell
   double sill = 0;
   std::size_t at = 0;
   const bool stepped = in_steps(index.points());

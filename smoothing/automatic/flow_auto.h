@@ -2,8 +2,8 @@
 /// (automatic.h), evens the points out along the surface (equalize.h).
 ///
 /// How far a point may move in a step: at most kFarthestMove times the noise around it, measured or stated;
-/// strength times that where the strength is above one. Strays, which would go farther still (automatic.h),
-/// stay.
+/// strength times that where the strength is above one, and AutomaticReport::tail_times that where some
+/// points are much noisier than the others. Strays, which would go farther still (automatic.h), stay.
 #pragma once
 
 #include <memory>

@@ -60,6 +60,7 @@ void enter(const DenoiseReport& done, const DenoiseCommandOptions& options, orde
   entry["noise"] = done.noise;
   entry["noise_left"] = done.noise_left;
   entry["guide_strength"] = done.guide_strength;
+  entry["tail_times"] = done.tail_times;
   entry["equalized"] = {{"rms", done.equalized_rms}, {"largest", done.equalized_largest}};
   entry["largest_move"] = done.largest_move;
   entry["rms_move"] = done.rms_move;
