@@ -1,5 +1,6 @@
-// The accuracy and time of the default on development clouds, one line a cloud: shape, noise in per cent, Chamfer distance,
-// mean square distance to the surface (both x 1e4 on the unit sphere), processor seconds. sensitivity.py runs it.
+// The accuracy and time of the default on development clouds, one line a cloud: shape, noise in per cent,
+// Chamfer distance, mean square distance to the surface (both x 1e4 on the unit sphere), processor seconds.
+// sensitivity.py runs it.
 #include <cstdio>
 #include <ctime>
 
