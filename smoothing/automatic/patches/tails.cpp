@@ -8,7 +8,7 @@ namespace rfsmooth::smoothing {
 
 namespace {
 
-constexpr double kFar = 4;  // s: 6e-5 of a normal distribution lie farther
+constexpr double kBeyondTails = 4;  // s: 6e-5 of a normal distribution lie farther
 constexpr double kLeastFar =
     0.003;  // share of them; white noise on the development shapes leaves at most 0.001
 constexpr double kFarthestTail =
@@ -31,7 +31,7 @@ double scale(const std::vector<float>& values) {
 
 double share_of_far(const std::vector<float>& values, double unit) {
   const auto far = std::count_if(values.begin(), values.end(), [&](float r) {
-    return double(std::abs(r)) > kFar * unit && double(std::abs(r)) < kFarthestTail * unit;
+    return double(std::abs(r)) > kBeyondTails * unit && double(std::abs(r)) < kFarthestTail * unit;
   });
   const auto known = std::count_if(values.begin(), values.end(), [](float r) { return !std::isnan(r); });
   return known > 0 ? double(far) / double(known) : 0;
