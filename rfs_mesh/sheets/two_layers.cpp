@@ -16,7 +16,7 @@ using Vector9 = Eigen::Matrix<double, 9, 1>;
 using Matrix9 = Eigen::Matrix<double, 9, 9>;
 
 constexpr int kLayerRounds = 12;
-constexpr double kRidge = 1e-6;          // of the normal equations, beside the weights
+constexpr double kRidgeOfLayers = 1e-6;  // of the normal equations, beside the weights
 constexpr double kLeastWeights = 30;     // nine unknowns, and
 constexpr double kUnknowns = 13;         // what they take of the variance: the weights are not all one
 constexpr double kLeastVariance = 0.35;  // s^2
@@ -26,7 +26,7 @@ constexpr double kLeastVariance = 0.35;  // s^2
 // those that did harm elsewhere 2.2 to 3; sensors' steps known of 0.45 to 0.85 and 0.05 to 0.45 of place.
 constexpr double kLeastSingle = 1.4;  // variance about one quadric below which there is nothing to part
 constexpr double kNats = 3;
-constexpr double kMostLeft = 1.25;
+constexpr double kMostLeftByLayers = 1.25;
 constexpr double kMostOfPlace = 0.12;  // of the variance of the sides, explained by the place
 constexpr double kKnown = 0.6;
 constexpr double kFarApart = 2.1;     // one point in 56 crosses the middle: patches of one sheet do as well
@@ -76,7 +76,7 @@ void TwoLayers::fit_one(std::vector<LayerPoint>& points) {
     a.noalias() += p.weight * f * f.transpose();
     right += p.weight * p.height * f;
   }
-  a.diagonal().array() += kRidge * weights_;
+  a.diagonal().array() += kRidgeOfLayers * weights_;
   const SmallCholesky<6> factors(a);
   normal_ = factors.inverse();
   middle_ = factors.solve(right);
@@ -97,7 +97,7 @@ void TwoLayers::fit_two(std::vector<LayerPoint>& points) {
       a.noalias() += p.weight * f * f.transpose();
       right += p.weight * p.height * f;
     }
-    a.diagonal().array() += kRidge * weights_;
+    a.diagonal().array() += kRidgeOfLayers * weights_;
     const Vector9 x = SmallCholesky<9>(a).solve(right);
     const double up = x[6] < 0 ? -1 : 1;  // the upper one is the one above
     middle_ = x.head<6>();
@@ -150,7 +150,7 @@ void TwoLayers::judge(const std::vector<LayerPoint>& points) {
       misfit += (cell.middle * cell.middle + cell.apart * cell.apart) / (cell.squares * variance_);
       counted += 2;
     }
-  convincing_ = two - one > kNats && left_ < kMostLeft && misfit < kMostMisfit * counted &&
+  convincing_ = two - one > kNats && left_ < kMostLeftByLayers && misfit < kMostMisfit * counted &&
                 of_place < kMostOfPlace * (squares - mean) && apart_[0] < kFarApart && known > kKnown * all;
 }
 
