@@ -149,7 +149,7 @@ std::string connect_cloud(const MeshCommandOptions& options, pipeline::io::Cloud
 /// What is reported until the stage that was asked for is made.
 std::vector<StageShare> stages_up_to(const std::string& stage) {
   std::vector<StageShare> stages = connecting_stages();
-  const std::string_view ends = stage == "emst" ? "shadow" : stage == "emst-points" ? "emst" : stage;
+  const std::string ends = stage == "emst" ? "shadow" : stage == "emst-points" ? "emst" : stage;
   const auto last =
       std::find_if(stages.begin(), stages.end(), [&](const StageShare& s) { return s.stage == ends; });
   if (last != stages.end()) stages.erase(last + 1, stages.end());
