@@ -15,7 +15,7 @@ using rfsmooth::cli::RenderOptions;
 
 std::optional<Eigen::Vector3d> three(const char* option, const std::optional<std::string>& text) {
   if (!text) return std::nullopt;
-  const auto values = rfsmooth::cli::read_point(*text);
+  auto values = rfsmooth::cli::read_point(*text);
   if (!values)
     throw rfsmooth::Failure(
         {rfsmooth::ErrorCode::usage,
