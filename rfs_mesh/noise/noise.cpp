@@ -171,7 +171,6 @@ bool is_noise(const SpatialIndex& index, const Positions& places, double sigma, 
 /// (beyond the window) or something else. Its sigma is zero if there is none.
 Part measure_loud(const SpatialIndex& index, const Part& calm, const Context& context) {
   constexpr double kLeastPart = 0.1, kMuch = 3, kLouder = 2;  // of the area; times the noise of the rest
-  constexpr double kNoNoise = 0.05;                           // spacings
   constexpr double kMostlyNoise = 0.3;                        // most of s^2 that may be shape
   constexpr std::size_t kAround = 24;
   const Positions& at = calm.sites.at;

@@ -25,6 +25,9 @@
 
 namespace rfsmooth::rfs_mesh {
 
+/// Spacings: noise below this cannot be told from detail.
+inline constexpr double kNoNoise = 0.05;
+
 /// The noise of a cloud.
 struct NoiseField {
   double sigma = 0;            ///< standard deviation along the normal, world units: typical of the cloud

@@ -19,14 +19,11 @@ double measured(const rfs_mesh::NoiseField& noise, double spacing) {
   return noise.sigma < kLittle * spacing && noise.shape > kMostlyShape ? 0 : noise.sigma;
 }
 
-/// Noise below this cannot be told from detail, spacings: such places stay, unless more strength is asked
-/// for.
-constexpr double kNoNoise = 0.05;
-
-/// Noise of the size `sigma`, that varies over the cloud as `noise` does, times `strength`. A strength above
-/// 1 acts everywhere, where next to nothing was measured on as much as may be hidden there.
+/// Noise of the size `sigma`, that varies over the cloud as `noise` does, times `strength`. Places of less
+/// than kNoNoise stay. A strength above 1 acts everywhere, where next to nothing was measured on as much as
+/// may be hidden there.
 rfs_mesh::NoiseField scaled(rfs_mesh::NoiseField noise, double sigma, double strength, double spacing) {
-  const double hidden = kNoNoise * spacing;
+  const double hidden = rfs_mesh::kNoNoise * spacing;
   const auto of = [&](double s) {
     if (strength > 1) return strength * std::max(s, hidden);
     return s > hidden ? strength * s : 0.0;
