@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Halves and doubles every tuned constant and writes docs/CONSTANTS.md.
 
-    python3 tests/bench/sensitivity/sensitivity.py [--shapes a,b] [--noise 1,2,3] [--points N] [--only REGEX] [--jobs N]
+    python3 tests/bench/sensitivity/sensitivity.py [--only REGEX] [--jobs N] [-- OPTIONS OF THE PROGRAM]
 
 A constant is a line `constexpr TYPE kName = NUMBER;` of base, rfs_mesh, smoothing or pipeline. In a copy of the sources under
 build/sensitivity each reads its factor from the environment; those that the compiler needs as constants (sizes of arrays) are
@@ -118,7 +118,7 @@ def copy_sources(tree):
 
 def build(tree):
     subprocess.run(["cmake", "--preset", "bench", "-DRFSMOOTH_WITH_PCL=OFF", "-DRFSMOOTH_WITH_OPEN3D=OFF",
-                    "-DRFSMOOTH_BUILD_CLI=OFF", "-DCMAKE_CXX_FLAGS=-include base/tuned.h -I" + str(tree)],
+                    "-DCMAKE_CXX_FLAGS=-include base/tuned.h -I" + str(tree)],
                    cwd=tree, check=True, stdout=subprocess.DEVNULL)
     subprocess.run(["cmake", "--build", "--preset", "bench", "--target", "rfsmooth_bench_sensitivity"], cwd=tree,
                    check=True, stdout=subprocess.DEVNULL)
@@ -138,8 +138,8 @@ def measure(program, options, tuning=None):
 
 
 def change(before, after, column):
-    was = sum(row[column] for row in before.values())
-    return 100 * (sum(row[column] for row in after.values()) / was - 1)
+    """The mean over the clouds, each against itself, in per cent."""
+    return 100 * sum(after[key][column] / row[column] - 1 for key, row in before.items()) / len(before)
 
 
 def share_of_one_shape(before, after):
@@ -167,11 +167,9 @@ def is_idle(before, afters):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--shapes", default="")
-    parser.add_argument("--noise", default="1,2,3")
-    parser.add_argument("--points", default="10000")
     parser.add_argument("--only", default="", help="regular expression on FILE:NAME")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
+    parser.add_argument("words", nargs="*", help="options of the program: --shapes, --laws, --times, --points, --cache")
     parser.add_argument("--out", default=str(ROOT / "docs/CONSTANTS.md"))
     options = parser.parse_args()
     tree = ROOT / "build/sensitivity"
@@ -182,19 +180,17 @@ def main():
         chosen += tunable(tree, path, [c for c in everything if c.path == path])
     build(tree)
     program = str(tree / "build/bench/bin/sensitivity")
-    words = ["--noise", options.noise, "--points", options.points] + (["--shapes", options.shapes] if options.shapes else [])
-    before = measure(program, words)
+    before = measure(program, options.words)
     if not before:
         sys.exit("the program fails as it is")
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-        runs = {(c.key, f): pool.submit(measure, program, words, f"{c.key}={f}") for c in chosen for f in (0.5, 2)}
+        runs = {(c.key, f): pool.submit(measure, program, options.words, f"{c.key}={f}") for c in chosen for f in (0.5, 2)}
         results = {key: run.result() for key, run in runs.items()}
     with open(options.out, "w") as out:
-        cells = sorted({shape for shape, _ in before})
+        cells = [", ".join(sorted({key[i] for key in before})) for i in (0, 1)]
         idle = sum(is_idle(before, [results[c.key, f] for f in (0.5, 2)]) for c in chosen)
         out.write("# Tuned constants\n\nMade by `tests/bench/sensitivity/sensitivity.py`: each constant halved and doubled, the "
-                  f"change in per cent of the mean\nover {len(before)} clouds of {options.points} points "
-                  f"({', '.join(cells)}; noise {options.noise} %).\n\n{len(chosen)} constants; {idle} change neither "
+                  f"change in per cent of the mean\nover {len(before)} clouds ({cells[0]}; {cells[1]}).\n\n{len(chosen)} constants; {idle} change neither "
                   "the Chamfer distance (CD) nor the distance to the surface (p2s) by half a per cent here.\n\n"
                   "| constant | value | file | origin | CD / 2 | p2s / 2 | time / 2 | CD x 2 | p2s x 2 | time x 2 | "
                   "one shape's share |\n|---|---|---|---|---|---|---|---|---|---|---|\n")
