@@ -1,6 +1,6 @@
-// The accuracy and time of the default on development clouds under laws of real noise, one line a cloud: shape, law and
-// noise, Chamfer distance and mean square distance to the surface (both in squared spacings), processor seconds.
-// sensitivity.py runs it.
+// The accuracy and time of the default on development clouds under laws of real noise, one line a cloud:
+// shape, law and noise, Chamfer distance and mean square distance to the surface (both in squared spacings),
+// processor seconds. sensitivity.py runs it.
 #include <cstdio>
 #include <ctime>
 
@@ -22,7 +22,8 @@ void run(const LawPlan& plan, const std::string& law, const std::string& shape, 
   const OurResult ours = run_ours(one.cloud.measured, plan.ours, 1);
   const double seconds = double(std::clock() - start) / CLOCKS_PER_SEC;
   const Measures m = truth.measure(ours.points, {}, {});
-  std::printf("%s %s*%g %.6g %.6g %.3f\n", shape.c_str(), law.c_str(), plan.times, unit * m.chamfer, unit * m.p2s, seconds);
+  std::printf("%s %s*%g %.6g %.6g %.3f\n", shape.c_str(), law.c_str(), plan.times, unit * m.chamfer,
+              unit * m.p2s, seconds);
 }
 
 }  // namespace
@@ -38,7 +39,9 @@ int main(int argc, char** argv) {
   app.add_option("--shapes", plan.shapes, "development shapes")->delimiter(',');
   app.add_option("--laws", plan.laws, "of noise")->delimiter(',');
   app.add_option("--points", points, "points of each");
-  app.add_option("--times", times, "the noise of the first law, x what its row says; the others run at the first")->delimiter(',');
+  app.add_option("--times", times,
+                 "the noise of the first law, x what its row says; the others run at the first")
+      ->delimiter(',');
   app.add_option("--cache", plan.cache, "folder of the samples");
   CLI11_PARSE(app, argc, argv);
   for (const std::string& shape : plan.shapes)

@@ -72,12 +72,16 @@ def constants():
     return found
 
 
-def compiles(tree, path):
+def compiles(tree, path, chosen):
+    """A source, or a header and every source that names a constant of it."""
+    sources = [path]
     if path.endswith(".h"):
-        return True  # seen in the build of those that include it
+        names = re.compile(r"\b(" + "|".join(c.name for c in chosen) + r")\b")
+        sources += [str(p.relative_to(tree)) for room in ROOMS for p in sorted((tree / room).rglob("*.cpp"))
+                    if names.search(p.read_text())]
     command = ["g++", "-std=c++17", "-fsyntax-only", "-I.", "-Iinclude", "-isystem", "/usr/include/eigen3", "-include",
-               "base/tuned.h", path]
-    return subprocess.run(command, cwd=tree, capture_output=True).returncode == 0
+               "base/tuned.h", "-x", "c++"]
+    return all(subprocess.run(command + [source], cwd=tree, capture_output=True).returncode == 0 for source in sources)
 
 
 def patch(tree, path, chosen):
@@ -93,12 +97,12 @@ def patch(tree, path, chosen):
 def tunable(tree, path, all_of_file):
     """Those of a file that need not be known to the compiler; the copy is left with just these."""
     patch(tree, path, all_of_file)
-    if compiles(tree, path):
+    if compiles(tree, path, all_of_file):
         return all_of_file
     kept = []
     for constant in all_of_file:
         patch(tree, path, kept + [constant])
-        if compiles(tree, path):
+        if compiles(tree, path, kept + [constant]):
             kept.append(constant)
     patch(tree, path, kept)
     return kept
