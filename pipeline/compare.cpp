@@ -46,21 +46,17 @@ struct Sphere {
 };
 
 Sphere bounding_sphere(const double* xyz, std::size_t n) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  Vector3d lower = Vector3d::Constant(kInfinity), upper = -lower;
+  Eigen::AlignedBox3d box;
   const auto each_finite = [&](auto&& body) {
     for (std::size_t i = 0; i < n; ++i) {
       const Vector3d p = Eigen::Map<const Vector3d>(xyz + 3 * i);
       if (p.allFinite()) body(p);
     }
   };
-  each_finite([&](const Vector3d& p) {
-    lower = lower.cwiseMin(p);
-    upper = upper.cwiseMax(p);
-  });
-  if (!(lower[0] <= upper[0]))
+  each_finite([&](const Vector3d& p) { box.extend(p); });
+  if (box.isEmpty())
     throw Failure({ErrorCode::no_usable_points, "the truth has no finite point to measure against"});
-  Sphere sphere{lower + (upper - lower) / 2, 0};
+  Sphere sphere{box.min() + box.sizes() / 2, 0};
   each_finite(
       [&](const Vector3d& p) { sphere.radius = std::max(sphere.radius, (p - sphere.centre).norm()); });
   return sphere;

@@ -15,13 +15,15 @@ namespace rfsmooth::pipeline {
 using Eigen::Vector3d;
 using Triangle = std::array<Vector3d, 3>;
 
-double Box::squared_distance(const Vector3d& p) const {
-  return (lower - p).cwiseMax(p - upper).cwiseMax(0.0).squaredNorm();
+namespace {
+
+Box box_of(const Triangle& triangle) {
+  Box box;
+  for (const Vector3d& corner : triangle) box.extend(corner);
+  return box;
 }
 
-double Box::squared_distance(const Box& other) const {
-  return (lower - other.upper).cwiseMax(other.lower - upper).cwiseMax(0.0).squaredNorm();
-}
+}  // namespace
 
 BoxTree::BoxTree(const std::vector<Box>& items) : order_(items.size()) {
   std::iota(order_.begin(), order_.end(), Index{0});
@@ -32,11 +34,8 @@ BoxTree::BoxTree(const std::vector<Box>& items) : order_(items.size()) {
 
 void BoxTree::split(std::size_t node, std::size_t first, std::size_t last, const std::vector<Box>& items) {
   constexpr std::size_t kLeaf = 6;
-  Box box = items[order_[first]];
-  for (std::size_t k = first; k < last; ++k) {
-    box.lower = box.lower.cwiseMin(items[order_[k]].lower);
-    box.upper = box.upper.cwiseMax(items[order_[k]].upper);
-  }
+  Box box;
+  for (std::size_t k = first; k < last; ++k) box.extend(items[order_[k]]);
   nodes_[node].box = box;
   if (last - first <= kLeaf) {
     nodes_[node].first = Index(first);
@@ -44,8 +43,8 @@ void BoxTree::split(std::size_t node, std::size_t first, std::size_t last, const
     return;
   }
   Eigen::Index axis = 0;
-  (box.upper - box.lower).maxCoeff(&axis);
-  const auto centre = [&](Index i) { return items[i].lower[axis] + items[i].upper[axis]; };
+  box.sizes().maxCoeff(&axis);
+  const auto centre = [&](Index i) { return items[i].min()[axis] + items[i].max()[axis]; };
   const auto begin = order_.begin();
   const std::size_t middle = first + (last - first) / 2;
   std::nth_element(begin + std::ptrdiff_t(first), begin + std::ptrdiff_t(middle),
@@ -62,13 +61,13 @@ void BoxTree::split(std::size_t node, std::size_t first, std::size_t last, const
 
 PointTree::PointTree(Positions points) : points_(std::move(points)) {
   std::vector<Box> boxes(points_.size());
-  for (std::size_t i = 0; i < boxes.size(); ++i) boxes[i] = {points_[i], points_[i]};
+  for (std::size_t i = 0; i < boxes.size(); ++i) boxes[i] = Box(points_[i]);
   tree_ = BoxTree(boxes);
 }
 
 PointTree::Hit PointTree::nearest(const Vector3d& query, Index skip) const {
   Hit hit{kNone, std::numeric_limits<double>::infinity()};
-  tree_.search([&](const Box& box) { return box.squared_distance(query); },
+  tree_.search([&](const Box& box) { return box.squaredExteriorDistance(query); },
                [&](Index i) {
                  if (i == skip) return;
                  const double d = (points_[i] - query).squaredNorm();
@@ -79,10 +78,9 @@ PointTree::Hit PointTree::nearest(const Vector3d& query, Index skip) const {
 }
 
 double PointTree::squared_distance_from(const Triangle& triangle) const {
-  const Box extent{triangle[0].cwiseMin(triangle[1]).cwiseMin(triangle[2]),
-                   triangle[0].cwiseMax(triangle[1]).cwiseMax(triangle[2])};
+  const Box extent = box_of(triangle);
   double best = std::numeric_limits<double>::infinity();
-  tree_.search([&](const Box& box) { return box.squared_distance(extent); },
+  tree_.search([&](const Box& box) { return box.squaredExteriorDistance(extent); },
                [&](Index i) {
                  const Vector3d& p = points_[i];
                  best = std::min(best, (nearest_on_triangle(p, triangle).point - p).squaredNorm());
@@ -143,7 +141,7 @@ TrueSurface::TrueSurface(Positions vertices, std::vector<Face> faces)
   std::vector<Box> boxes(faces_.size());
   for (std::size_t f = 0; f < faces_.size(); ++f) {
     const Triangle t = corners(f);
-    boxes[f] = {t[0].cwiseMin(t[1]).cwiseMin(t[2]), t[0].cwiseMax(t[1]).cwiseMax(t[2])};
+    boxes[f] = box_of(t);
     area_ += 0.5 * (t[1] - t[0]).cross(t[2] - t[0]).norm();
   }
   tree_ = BoxTree(boxes);
@@ -213,7 +211,7 @@ Vector3d TrueSurface::face_normal(std::size_t face) const {
 TrueSurface::Hit TrueSurface::nearest(const Vector3d& query) const {
   Hit hit;
   hit.squared = std::numeric_limits<double>::infinity();
-  tree_.search([&](const Box& box) { return box.squared_distance(query); },
+  tree_.search([&](const Box& box) { return box.squaredExteriorDistance(query); },
                [&](Index f) {
                  const TrianglePoint on = nearest_on_triangle(query, corners(f));
                  const double d = (on.point - query).squaredNorm();

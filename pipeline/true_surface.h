@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include <rfsmooth/mesh.h>
 
@@ -19,12 +19,7 @@
 
 namespace rfsmooth::pipeline {
 
-/// An axis-aligned box.
-struct Box {
-  Eigen::Vector3d lower, upper;
-  double squared_distance(const Eigen::Vector3d& p) const;
-  double squared_distance(const Box& other) const;
-};
+using Box = Eigen::AlignedBox3d;
 
 /// Boxes of items, halved along the longest axis. The same tree for the same items, whatever the machine.
 class BoxTree {

@@ -1,7 +1,8 @@
 #include "rfs_mesh/points.h"
 
-#include <cmath>
+#include <limits>
 
+#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include "base/morton.h"
@@ -9,33 +10,7 @@
 
 namespace rfsmooth::rfs_mesh {
 
-namespace {
-
 using Eigen::Vector3d;
-
-struct Box {
-  Vector3d low = Vector3d::Constant(std::numeric_limits<double>::infinity());
-  Vector3d high = -low;
-  std::size_t finite = 0;
-  void add(const Vector3d& p) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-    ++finite;
-  }
-  static Box join(Box a, const Box& b) {
-    a.low = a.low.cwiseMin(b.low);
-    a.high = a.high.cwiseMax(b.high);
-    a.finite += b.finite;
-    return a;
-  }
-};
-
-struct Keyed {
-  std::uint64_t code;
-  Index input;
-};
-
-}  // namespace
 
 std::size_t WorkingCloud::finite() const {
   std::size_t n = 0;
@@ -45,67 +20,103 @@ std::size_t WorkingCloud::finite() const {
 
 namespace {
 
-WorkingCloud make(const double* xyz, std::size_t n, const Context& context) {
-  if (n >= kNone)
-    throw Failure({ErrorCode::usage, fmt::format("{} points; at most {} are supported", n, kNone - 1)});
-  const auto point = [xyz](std::size_t i) { return Vector3d(xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]); };
+/// The cloud as it was given: n x 3 numbers, some of them perhaps not finite.
+struct Input {
+  const double* xyz;
+  std::size_t n;
+  Vector3d operator[](std::size_t i) const { return Eigen::Map<const Vector3d>(xyz + 3 * i); }
+};
 
-  const Box box = reduce_blocks(
-      context, n, Box{},
-      [&](std::size_t b, std::size_t e) {
-        Box part;
-        for (std::size_t i = b; i < e; ++i)
-          if (const Vector3d p = point(i); p.allFinite()) part.add(p);
+/// The box of the finite points, and how many they are.
+struct Extent {
+  Eigen::AlignedBox3d box;
+  std::size_t finite = 0;
+};
+
+Extent extent_of(const Input& input, const Context& context) {
+  return reduce_blocks(
+      context, input.n, Extent{},
+      [&](std::size_t begin, std::size_t end) {
+        Extent part;
+        for (std::size_t i = begin; i < end; ++i)
+          if (const Vector3d p = input[i]; p.allFinite()) {
+            part.box.extend(p);
+            ++part.finite;
+          }
         return part;
       },
-      Box::join);
-  if (box.finite == 0)
-    throw Failure({ErrorCode::no_usable_points,
-                   n == 0 ? "the cloud has no points" : fmt::format("none of the {} points is finite", n)});
+      [](const Extent& a, const Extent& b) {
+        return Extent{a.box.merged(b.box), a.finite + b.finite};
+      });
+}
 
-  WorkingCloud cloud;
-  cloud.origin = 0.5 * box.low + 0.5 * box.high;
-  const double extent = (0.5 * box.high - 0.5 * box.low).maxCoeff() * 2;
+/// The largest side of the box; a failure where its square would not be a number.
+double largest_side(const Eigen::AlignedBox3d& box) {
   constexpr double kLargest = 1e100, kSmallest = 1e-100;
-  if (extent > kLargest || (extent > 0 && extent < kSmallest))
+  const double side = (0.5 * box.max() - 0.5 * box.min()).maxCoeff() * 2;
+  if (side > kLargest || (side > 0 && side < kSmallest))
     throw Failure({ErrorCode::no_usable_points,
                    fmt::format("the points extend over {:g}; rescale the cloud to between {:g} and {:g}",
-                               extent, kSmallest, kLargest)});
+                               side, kSmallest, kLargest)});
+  return side;
+}
 
-  // Morton code on a 2^21 grid over the box; points in one cell are ordered by their coordinates.
-  const double to_cell = extent > 0 ? kMortonCells / extent : 0;
-  std::vector<Keyed> keyed(n);
-  for_each_index(context, n, [&](std::size_t i) {
-    const Vector3d p = point(i);
-    if (!p.allFinite()) {
-      keyed[i] = {std::numeric_limits<std::uint64_t>::max(), Index(i)};
-      return;
-    }
-    keyed[i] = {morton_code(p, box.low, to_cell), Index(i)};
-  });
-  const auto lexicographic = [&](const Vector3d& p, const Vector3d& q) {
-    for (int axis = 0; axis < 3; ++axis)
-      if (p[axis] != q[axis]) return p[axis] < q[axis] ? -1 : 1;
-    return 0;
+/// -1, 0 or 1: by x, then y, then z.
+int compare(const Vector3d& p, const Vector3d& q) {
+  for (int axis = 0; axis < 3; ++axis)
+    if (p[axis] != q[axis]) return p[axis] < q[axis] ? -1 : 1;
+  return 0;
+}
+
+/// Rows of the input in Morton order on a 2^21 grid over the box; points of one cell by their coordinates,
+/// what is not finite last.
+std::vector<Index> in_morton_order(const Input& input, const Vector3d& low, double side,
+                                   const Context& context) {
+  struct Keyed {
+    std::uint64_t code;
+    Index row;
   };
+  constexpr auto kLast = std::numeric_limits<std::uint64_t>::max();
+  const double to_cell = side > 0 ? kMortonCells / side : 0;
+  std::vector<Keyed> keyed(input.n);
+  for_each_index(context, input.n, [&](std::size_t i) {
+    const Vector3d p = input[i];
+    keyed[i] = {p.allFinite() ? morton_code(p, low, to_cell) : kLast, Index(i)};
+  });
   parallel_sort(context, keyed, [&](const Keyed& a, const Keyed& b) {
     if (a.code != b.code) return a.code < b.code;
-    if (a.code != std::numeric_limits<std::uint64_t>::max())
-      if (const int order = lexicographic(point(a.input), point(b.input)); order != 0) return order < 0;
-    return a.input < b.input;
+    if (a.code != kLast)
+      if (const int order = compare(input[a.row], input[b.row]); order != 0) return order < 0;
+    return a.row < b.row;
   });
+  std::vector<Index> rows(input.n);
+  for_each_index(context, input.n, [&](std::size_t k) { rows[k] = keyed[k].row; });
+  return rows;
+}
 
+WorkingCloud make(const Input& input, const Context& context) {
+  const std::size_t n = input.n;
+  if (n >= kNone)
+    throw Failure({ErrorCode::usage, fmt::format("{} points; at most {} are supported", n, kNone - 1)});
+  const Extent extent = extent_of(input, context);
+  if (extent.finite == 0)
+    throw Failure({ErrorCode::no_usable_points,
+                   n == 0 ? "the cloud has no points" : fmt::format("none of the {} points is finite", n)});
+  const std::vector<Index> rows = in_morton_order(input, extent.box.min(), largest_side(extent.box), context);
+
+  WorkingCloud cloud;
+  cloud.origin = 0.5 * extent.box.min() + 0.5 * extent.box.max();
   cloud.of_input.assign(n, kNone);
-  cloud.points.reserve(box.finite);
-  cloud.multiplicity.reserve(box.finite);
-  for (std::size_t s = 0; s < box.finite; ++s) {
-    const Vector3d p = point(keyed[s].input);
-    if (s == 0 || lexicographic(point(keyed[s - 1].input), p) != 0) {
+  cloud.points.reserve(extent.finite);
+  cloud.multiplicity.reserve(extent.finite);
+  for (std::size_t k = 0; k < extent.finite; ++k) {
+    const Vector3d p = input[rows[k]];
+    if (k == 0 || compare(input[rows[k - 1]], p) != 0) {
       cloud.points.push_back(p - cloud.origin);
       cloud.multiplicity.push_back(0);
     }
     ++cloud.multiplicity.back();
-    cloud.of_input[keyed[s].input] = Index(cloud.points.size() - 1);
+    cloud.of_input[rows[k]] = Index(cloud.points.size() - 1);
   }
   return cloud;
 }
@@ -113,7 +124,7 @@ WorkingCloud make(const double* xyz, std::size_t n, const Context& context) {
 }  // namespace
 
 Result<WorkingCloud> make_working_cloud(const double* xyz, std::size_t n, const Context& context) {
-  return guarded([&] { return make(xyz, n, context); });
+  return guarded([&] { return make({xyz, n}, context); });
 }
 
 }  // namespace rfsmooth::rfs_mesh

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include <Eigen/Geometry>
+
 #include "pipeline/io/io.h"
 
 namespace rfsmooth::render {
@@ -14,14 +16,12 @@ namespace {
 /// Middle of the finite points, so that large coordinates lose nothing on the way to the picture.
 Vector3d middle(const io::Cloud& cloud) {
   const std::vector<double> xyz = io::positions(cloud);
-  Vector3d lower = Vector3d::Constant(INFINITY), upper = -lower;
+  Eigen::AlignedBox3d box;
   for (std::size_t i = 0; i < xyz.size(); i += 3) {
     const Vector3d p = Eigen::Map<const Vector3d>(xyz.data() + i);
-    if (!p.allFinite()) continue;
-    lower = lower.cwiseMin(p);
-    upper = upper.cwiseMax(p);
+    if (p.allFinite()) box.extend(p);
   }
-  return lower[0] <= upper[0] ? Vector3d(lower + (upper - lower) / 2) : Vector3d(Vector3d::Zero());
+  return box.isEmpty() ? Vector3d(Vector3d::Zero()) : Vector3d(box.min() + box.sizes() / 2);
 }
 
 /// One value per point of `scene` for --color height, field and displacement; empty for the others.

@@ -126,13 +126,10 @@ Law scaled(Law law, double times) {
 }
 
 Frame frame_of(const Positions& points) {
-  Vector3d low = points.at(0), high = low;
-  for (const Vector3d& p : points) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
+  Eigen::AlignedBox3d box;
+  for (const Vector3d& p : points) box.extend(p);
   Frame frame;
-  frame.centre = (low + high) / 2;
+  frame.centre = box.center();
   for (const Vector3d& p : points) frame.radius = std::max(frame.radius, (p - frame.centre).norm());
   frame.eye = frame.centre + kEyeDistance * frame.radius * Vector3d::UnitZ();
   return frame;

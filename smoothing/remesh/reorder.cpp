@@ -2,12 +2,13 @@
 
 #include <algorithm>
 
+#include <Eigen/Geometry>
+
 #include "base/morton.h"
 #include "base/parallel.h"
 
 namespace rfsmooth::smoothing {
 
-using Eigen::Vector3d;
 using rfsmooth::Mesh;
 
 bool is_scattered(const Mesh& mesh, const Context& context) {
@@ -25,45 +26,65 @@ bool is_scattered(const Mesh& mesh, const Context& context) {
   return 2 * far > rows.items.size();
 }
 
-Reordered reorder(const Mesh& mesh, const Context& context) {
-  const std::size_t n = mesh.positions.size();
-  struct Box {
-    Vector3d low, high;
-  };
-  const Vector3d any = n == 0 ? Vector3d(Vector3d::Zero()) : mesh.positions.front();
-  const Box box = reduce_blocks(
-      context, n, Box{any, any},
-      [&](std::size_t begin, std::size_t end) {
-        Box part{any, any};
-        for (std::size_t i = begin; i < end; ++i) {
-          part.low = part.low.cwiseMin(mesh.positions[i]);
-          part.high = part.high.cwiseMax(mesh.positions[i]);
-        }
-        return part;
-      },
-      [](const Box& a, const Box& b) {
-        return Box{a.low.cwiseMin(b.low), a.high.cwiseMax(b.high)};
-      });
-  const double extent = (box.high - box.low).maxCoeff();
-  const double to_cell = extent > 0 ? kMortonCells / extent : 0;
+namespace {
+
+/// The vertices in Morton order.
+std::vector<Index> in_order_of_space(const Mesh& mesh, const Context& context) {
   struct Keyed {
     std::uint64_t code;
     Index vertex;
   };
+  const std::size_t n = mesh.positions.size();
+  const auto box = reduce_blocks(
+      context, n, Eigen::AlignedBox3d(),
+      [&](std::size_t begin, std::size_t end) {
+        Eigen::AlignedBox3d part;
+        for (std::size_t i = begin; i < end; ++i) part.extend(mesh.positions[i]);
+        return part;
+      },
+      [](const Eigen::AlignedBox3d& a, const Eigen::AlignedBox3d& b) { return a.merged(b); });
+  const double extent = box.isEmpty() ? 0 : box.sizes().maxCoeff();
+  const double to_cell = extent > 0 ? kMortonCells / extent : 0;
   std::vector<Keyed> keyed(n);
   for_each_index(context, n, [&](std::size_t i) {
-    keyed[i] = {rfsmooth::morton_code(mesh.positions[i], box.low, to_cell), Index(i)};
+    keyed[i] = {morton_code(mesh.positions[i], box.min(), to_cell), Index(i)};
   });
   parallel_sort(context, keyed, [](const Keyed& a, const Keyed& b) {
     return a.code != b.code ? a.code < b.code : a.vertex < b.vertex;
   });
+  std::vector<Index> order(n);
+  for_each_index(context, n, [&](std::size_t k) { order[k] = keyed[k].vertex; });
+  return order;
+}
 
+/// The rows move with their vertices; only their items have to be sorted again.
+Adjacency moved(const Adjacency& rows, const std::vector<Index>& order, const std::vector<Index>& place,
+                const Context& context) {
+  const std::size_t n = rows.size();
+  Adjacency out;
+  out.start.resize(n + 1);
+  out.start[0] = 0;
+  for (std::size_t k = 0; k < n; ++k) out.start[k + 1] = out.start[k] + Index(rows.degree(order[k]));
+  out.items.resize(out.start[n]);
+  for_each_index(context, n, [&](std::size_t k) {
+    auto to = out.items.begin() + out.start[k];
+    for (const Index j : rows[order[k]]) *to++ = place[j];
+    std::sort(out.items.begin() + out.start[k], to);
+  });
+  return out;
+}
+
+}  // namespace
+
+Reordered reorder(const Mesh& mesh, const Context& context) {
+  const std::size_t n = mesh.positions.size();
+  const std::vector<Index> order = in_order_of_space(mesh, context);
   Reordered out;
   out.place.resize(n);
   out.mesh.positions.resize(n);
   for_each_index(context, n, [&](std::size_t k) {
-    out.place[keyed[k].vertex] = Index(k);
-    out.mesh.positions[k] = mesh.positions[keyed[k].vertex];
+    out.place[order[k]] = Index(k);
+    out.mesh.positions[k] = mesh.positions[order[k]];
   });
   out.mesh.faces.resize(mesh.faces.size());
   for_each_index(context, mesh.faces.size(), [&](std::size_t f) {
@@ -74,18 +95,7 @@ Reordered reorder(const Mesh& mesh, const Context& context) {
     out.mesh.loose_edges.push_back({std::min(a, b), std::max(a, b)});
   }
   std::sort(out.mesh.loose_edges.begin(), out.mesh.loose_edges.end());
-  // The rows move with their vertices; only their items have to be sorted again.
-  Adjacency& ring = out.mesh.one_ring;
-  ring.start.resize(n + 1);
-  ring.start[0] = 0;
-  for (std::size_t k = 0; k < n; ++k)
-    ring.start[k + 1] = ring.start[k] + Index(mesh.one_ring.degree(keyed[k].vertex));
-  ring.items.resize(ring.start[n]);
-  for_each_index(context, n, [&](std::size_t k) {
-    auto to = ring.items.begin() + ring.start[k];
-    for (const Index j : mesh.one_ring[keyed[k].vertex]) *to++ = out.place[j];
-    std::sort(ring.items.begin() + ring.start[k], to);
-  });
+  out.mesh.one_ring = moved(mesh.one_ring, order, out.place, context);
   return out;
 }
 

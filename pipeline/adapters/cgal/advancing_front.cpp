@@ -21,12 +21,9 @@ using rfsmooth::Face;
 /// What the points are multiplied with, so that their spacing is about 1: CGAL's front calls tetrahedra flat
 /// by an absolute volume.
 double scale_of(const Positions& points) {
-  Eigen::Vector3d low = points.front(), high = low;
-  for (const Eigen::Vector3d& p : points) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
-  const double extent = (high - low).norm();
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3d& p : points) box.extend(p);
+  const double extent = box.diagonal().norm();
   return extent > 0 ? std::sqrt(double(points.size())) / extent : 1;
 }
 

@@ -138,6 +138,53 @@ struct Coordinates {
   }
 };
 
+/// Where the rows of a PCLPointCloud2 begin. Rows may be padded (organised clouds from cameras): row_step,
+/// where it is given, separates them.
+class Rows {
+ public:
+  explicit Rows(const ::pcl::PCLPointCloud2& cloud)
+      : width_(cloud.width),
+        step_(cloud.point_step),
+        padded_(cloud.row_step > cloud.width * cloud.point_step ? cloud.row_step : 0) {}
+
+  std::size_t operator[](std::size_t i) const {
+    return padded_ != 0 ? (i / width_) * padded_ + (i % width_) * step_ : i * step_;
+  }
+  bool are_padded() const { return padded_ != 0; }
+
+ private:
+  std::size_t width_, step_, padded_;
+};
+
+/// Why the cloud cannot be smoothed; null if it can.
+const char* what_is_wrong_with(const ::pcl::PCLPointCloud2& cloud, const Coordinates& coordinates) {
+  const std::size_t size = std::size_t(cloud.width) * cloud.height;
+  if (coordinates.type == 0)
+    return "the cloud needs fields x, y and z inside its point_step, all FLOAT32 or all FLOAT64";
+  if (cloud.is_bigendian != 0 || cloud.data.size() < size * cloud.point_step)
+    return "the cloud's data does not match its width, height and point_step";
+  if (Rows(cloud).are_padded() && cloud.data.size() < std::size_t(cloud.row_step) * cloud.height)
+    return "the cloud's data does not match its row_step and height";
+  return nullptr;
+}
+
+/// Takes the rows `gone` (ascending) out: the others in order, without the padding of an organised cloud.
+void close_up(::pcl::PCLPointCloud2& cloud, const ::pcl::Indices& gone) {
+  const Rows rows(cloud);
+  const std::size_t size = std::size_t(cloud.width) * cloud.height;
+  std::size_t kept = 0, next = 0;
+  for (std::size_t i = 0; i < size; ++i) {
+    if (next < gone.size() && std::size_t(gone[next]) == i)
+      ++next;
+    else
+      std::memmove(&cloud.data[kept++ * cloud.point_step], &cloud.data[rows[i]], cloud.point_step);
+  }
+  cloud.width = std::uint32_t(kept);
+  cloud.height = 1;
+  cloud.row_step = cloud.width * cloud.point_step;
+  cloud.data.resize(cloud.row_step);
+}
+
 }  // namespace
 
 void Denoise<::pcl::PCLPointCloud2>::filter(PCLPointCloud2& output) {
@@ -153,70 +200,37 @@ void Denoise<::pcl::PCLPointCloud2>::filter(PCLPointCloud2& output) {
 
 void Denoise<::pcl::PCLPointCloud2>::applyFilter(PCLPointCloud2& output) {
   const PCLPointCloud2& input = *input_;
-  const std::size_t size = std::size_t(input.width) * input.height;
-  const auto give_up = [&] {
+  const auto give_up = [&](const char* why) {
+    if (why != nullptr) fail(why);
     output = PCLPointCloud2();
     output.header = input.header;
   };
   const Coordinates coordinates(input);
-  if (coordinates.type == 0) {
-    fail("the cloud needs fields x, y and z inside its point_step, all FLOAT32 or all FLOAT64");
-    return give_up();
-  }
-  if (input.is_bigendian != 0 || input.data.size() < size * input.point_step) {
-    fail("the cloud's data does not match its width, height and point_step");
-    return give_up();
-  }
-  // Rows may be padded (organised clouds from cameras): row_step, where it is given, separates them.
-  const std::size_t padded = input.row_step > input.width * input.point_step ? input.row_step : 0;
-  const auto offset_of = [&](std::size_t i) {
-    return padded != 0 ? (i / input.width) * padded + (i % input.width) * input.point_step
-                       : i * input.point_step;
-  };
-  if (padded != 0 && input.data.size() < padded * input.height) {
-    fail("the cloud's data does not match its row_step and height");
-    return give_up();
-  }
+  if (const char* const wrong = what_is_wrong_with(input, coordinates)) return give_up(wrong);
+  const Rows rows(input);
   std::vector<double> xyz;
   const auto at = [&](std::size_t i, double* to) {
-    for (int axis = 0; axis < 3; ++axis) to[axis] = coordinates.get(&input.data[offset_of(i)], axis);
+    for (int axis = 0; axis < 3; ++axis) to[axis] = coordinates.get(&input.data[rows[i]], axis);
   };
   removed_indices_->clear();
-  if (!detail::gather(*indices_, size, at, xyz)) {
-    fail("an index is outside the cloud");
-    return give_up();
-  }
+  if (!detail::gather(*indices_, std::size_t(input.width) * input.height, at, xyz))
+    return give_up("an index is outside the cloud");
   const std::vector<double> before = xyz;
-  if (!run(xyz.data(), indices_->size())) return give_up();
+  if (!run(xyz.data(), indices_->size())) return give_up(nullptr);
   output = input;
   for (std::size_t row = 0; row < indices_->size(); ++row)
     for (int axis = 0; axis < 3; ++axis)
       if (const double value = xyz[3 * row + axis]; value != before[3 * row + axis] && std::isfinite(value))
-        coordinates.set(&output.data[offset_of(std::size_t((*indices_)[row]))], axis, value);
+        coordinates.set(&output.data[rows[std::size_t((*indices_)[row])]], axis, value);
 
   const ::pcl::Indices gone = removed(*indices_);
   if (extract_removed_indices_) *removed_indices_ = gone;
   if (gone.empty()) return;
-  if (keep_organized_) {
-    for (const auto i : gone)
-      for (int axis = 0; axis < 3; ++axis)
-        coordinates.set(&output.data[offset_of(std::size_t(i))], axis, user_filter_value_);
-    if (!std::isfinite(user_filter_value_)) output.is_dense = 0;
-    return;
-  }
-  // Closes up: rows in order, without the padding of the organised cloud.
-  std::size_t kept = 0, next = 0;
-  for (std::size_t i = 0; i < size; ++i) {
-    if (next < gone.size() && std::size_t(gone[next]) == i) {
-      ++next;
-      continue;
-    }
-    std::memmove(&output.data[kept++ * output.point_step], &output.data[offset_of(i)], output.point_step);
-  }
-  output.width = std::uint32_t(kept);
-  output.height = 1;
-  output.row_step = output.width * output.point_step;
-  output.data.resize(output.row_step);
+  if (!keep_organized_) return close_up(output, gone);
+  for (const auto i : gone)
+    for (int axis = 0; axis < 3; ++axis)
+      coordinates.set(&output.data[rows[std::size_t(i)]], axis, user_filter_value_);
+  if (!std::isfinite(user_filter_value_)) output.is_dense = 0;
 }
 
 }  // namespace rfsmooth::pcl
