@@ -29,32 +29,32 @@ namespace rfsmooth {
 /// When two sheets near each other are told apart (a thin plate, a fold): the thresholds, each with its
 /// reason.
 struct SheetsOptions {
-  int looked_at = 48;  ///< shadows around a point: in each of two layers as many as a neighbourhood has
-  /// Gap over scatter within the layers. A Gaussian cut in two at its middle has 2.2, an even slab 3.5.
+  int looked_at = 48;  ///< shadows around a point: in each of two sheets as many as a neighbourhood has
+  /// Gap over scatter within the sheets. A Gaussian cut in two at its middle has 2.2, an even slab 3.5.
   double apart = 5;
   /// Mean squared cosine between the normals and their axis: 27 degrees. Faces that meet at an edge have
   /// less.
   double parallel = 0.8;
-  /// A layer's centre lies at most this share of its extent beside the point's foot; beyond, the point looks
+  /// A sheet's centre lies at most this share of its extent beside the point's foot; beyond, the point looks
   /// at two surfaces side by side, as at a step.
   double beside = 0.5;
-  /// Noise from which a point's distance to its sheet is worth a doubt; layers are at least twice that apart.
+  /// Noise from which a point's distance to its sheet is worth a doubt; sheets are at least twice that apart.
   double far = 1.5;
-  /// A point at least this share of the gap from the nearer layer is between. At six standard deviations the
+  /// A point at least this share of the gap from the nearer sheet is between. At six standard deviations the
   /// odds for the farther one are there 1 : 37; what is missed is then a sixth of what crosses the middle.
   double between = 0.4;
-  /// A shadow this far off its layer is put onto it: twice what the quadrics' own scatter explains.
+  /// A shadow this far off its sheet is put onto it: twice what the quadrics' own scatter explains.
   double off = 0.8;
 
   template <class Self, class Visit>
   static void describe(Self& self, Visit&& visit) {
-    visit(OptionInfo{"sheets-looked-at", "shadows among which two layers are looked for", "points", 16, 1000},
+    visit(OptionInfo{"sheets-looked-at", "shadows among which two sheets are looked for", "points", 16, 1000},
           self.looked_at);
-    visit(OptionInfo{"sheets-apart", "gap from which there are two layers", "x scatter within them", 1, 1e9},
+    visit(OptionInfo{"sheets-apart", "gap from which there are two sheets", "x scatter within them", 1, 1e9},
           self.apart);
     visit(OptionInfo{"sheets-parallel", "mean squared cosine from which normals are parallel", "", 0, 1},
           self.parallel);
-    visit(OptionInfo{"sheets-beside", "farthest that a layer's centre lies beside the point", "x extent", 0,
+    visit(OptionInfo{"sheets-beside", "farthest that a sheet's centre lies beside the point", "x extent", 0,
                      100},
           self.beside);
     visit(OptionInfo{"sheets-far", "distance from its sheet at which a point is doubted", "x noise", 0, 1e9},
@@ -62,7 +62,7 @@ struct SheetsOptions {
     visit(OptionInfo{"sheets-between", "nearer the middle than this a point has no neighbours", "x gap", 0,
                      0.5},
           self.between);
-    visit(OptionInfo{"sheets-off", "a shadow farther from its layer is put onto it", "x noise", 0, 1e9},
+    visit(OptionInfo{"sheets-off", "a shadow farther from its sheet is put onto it", "x noise", 0, 1e9},
           self.off);
   }
 };

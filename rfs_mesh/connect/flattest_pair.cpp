@@ -49,7 +49,7 @@ int fold(const FaceNormal& x, const FaceNormal& y, const std::vector<double>& co
 enum class State : std::uint8_t { contender, kept, out };
 
 /// A face at an edge, as the edge sees it.
-struct Side {
+struct FaceAt {
   Index face;
   FaceNormal normal;
 };
@@ -82,12 +82,12 @@ class Chooser {
 
   void round() {
     for_blocks(context_, at_.size(), kBlock, [&](std::size_t begin, std::size_t) {
-      std::vector<Side> sides;
+      std::vector<FaceAt> there;
       std::size_t& size = crowded_size_[begin / kBlock];
       Index *to = crowded_at(begin), *edge = to;
       for (const Index* const end = edge + size; edge != end;) {
         Index* const next = edge + kHead + edge[2];
-        if (decide(edge, sides)) to = std::copy(edge, next, to);
+        if (decide(edge, there)) to = std::copy(edge, next, to);
         edge = next;
       }
       size = std::size_t(to - crowded_at(begin));
@@ -145,7 +145,7 @@ class Chooser {
   }
 
   /// Marks what loses at one edge. False if nothing can lose there in a later round: faces only go.
-  bool decide(const Index* edge, std::vector<Side>& sides) {
+  bool decide(const Index* edge, std::vector<FaceAt>& there) {
     const Index a = edge[0], b = edge[1], count = edge[2];
     const Index* const faces = edge + kHead;
     std::size_t kept_count = 0, contenders = 0;
@@ -159,25 +159,24 @@ class Chooser {
         if (state_[faces[i]] == State::contender) raise(lost_[faces[i]], kNoRoom);
       return false;
     }
-    sides.clear();
-    std::size_t kept_side = kNone;
+    there.clear();
+    std::size_t kept_one = kNone;
     const Eigen::Vector3d along = at_[b] - at_[a];
     for (std::size_t i = 0; i < count; ++i) {
       const Index f = faces[i];
       if (state_[f] == State::out) continue;
-      if (kept(f)) kept_side = sides.size();
+      if (kept(f)) kept_one = there.size();
       const Face& v = proposed_.faces[f];
       const Index opposite = v[0] ^ v[1] ^ v[2] ^ a ^ b;
       const Eigen::Vector3d normal = along.cross(at_[opposite] - at_[a]);
-      sides.push_back({f, {normal, normal.squaredNorm()}});
+      there.push_back({f, {normal, normal.squaredNorm()}});
     }
     Best best;
-    for (std::size_t i = 0; i < sides.size(); ++i)
-      for (std::size_t j = i + 1; j < sides.size(); ++j)
-        if (kept_side == kNone || i == kept_side || j == kept_side)
-          best.offer(merit(sides[i], sides[j]), i, j);
-    for (std::size_t i = 0; i < sides.size(); ++i)
-      if (i != best.first && i != best.second && i != kept_side) raise(lost_[sides[i].face], kBeaten);
+    for (std::size_t i = 0; i < there.size(); ++i)
+      for (std::size_t j = i + 1; j < there.size(); ++j)
+        if (kept_one == kNone || i == kept_one || j == kept_one) best.offer(merit(there[i], there[j]), i, j);
+    for (std::size_t i = 0; i < there.size(); ++i)
+      if (i != best.first && i != best.second && i != kept_one) raise(lost_[there[i].face], kBeaten);
     return true;
   }
 
@@ -191,7 +190,7 @@ class Chooser {
   /// How good it is to have this pair of faces at an edge, larger is better: first the flatter, then the one
   /// with more votes, then the one of better quality. Single precision and one number, so that comparing
   /// takes no branches.
-  std::uint64_t merit(const Side& x, const Side& y) const {
+  std::uint64_t merit(const FaceAt& x, const FaceAt& y) const {
     const int steps = fold(x.normal, y.normal, cosines_);
     const int votes = proposed_.votes[x.face] + proposed_.votes[y.face];
     const float quality = quality_[x.face] + quality_[y.face];

@@ -8,8 +8,8 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
+#include "base/avx2.h"
 #include "base/median.h"
-#include "base/wide.h"
 #include "rfs_mesh/fit/quadric_moments.h"
 
 namespace rfsmooth::rfs_mesh {
@@ -42,7 +42,7 @@ inline void store(const Lanes& from, std::size_t at, std::vector<double>& to) {
 }
 
 /// Turns x, y, z into units of `radius` and sets the weights by distance; returns the weighted covariance.
-RFSMOOTH_WIDE
+RFSMOOTH_AVX2
 void weigh(QuadricWorkspace& w, double radius, Matrix3d& covariance) {
   const double scale = 1 / radius;
   Lanes sum[10] = {};
@@ -94,7 +94,7 @@ Matrix3d principal_axes(const Matrix3d& covariance) {
 }
 
 /// Offsets in the frame of `q`.
-RFSMOOTH_WIDE
+RFSMOOTH_AVX2
 void turn_into(const Quadric& q, QuadricWorkspace& w) {
   const double frame[9] = {q.t1[0], q.t1[1], q.t1[2], q.t2[0], q.t2[1], q.t2[2], q.n[0], q.n[1], q.n[2]};
   for (std::size_t k = 0; k < w.padded; k += kSideBySide) {
@@ -108,7 +108,7 @@ void turn_into(const Quadric& q, QuadricWorkspace& w) {
   }
 }
 
-RFSMOOTH_WIDE
+RFSMOOTH_AVX2
 void sum_up(const QuadricWorkspace& w, QuadricMoments<Lanes>& moments, QuadricHeights<Lanes>& heights) {
   QuadricMoments<Lanes> m;
   QuadricHeights<Lanes> h;
@@ -144,7 +144,7 @@ Vector6d fit(const QuadricWorkspace& w, int terms) {
 }
 
 /// |z - height| of the samples.
-RFSMOOTH_WIDE
+RFSMOOTH_AVX2
 void find_residuals(QuadricWorkspace& w, const Quadric& q) {
   const double c[6] = {q.c[0], q.c[1], q.c[2], q.c[3], q.c[4], q.c[5]};
   for (std::size_t k = 0; k < w.padded; k += kSideBySide) {
@@ -157,7 +157,7 @@ void find_residuals(QuadricWorkspace& w, const Quadric& q) {
   }
 }
 
-RFSMOOTH_WIDE
+RFSMOOTH_AVX2
 void weigh_by_residual(QuadricWorkspace& w, double cut) {
   const double inverse = 1 / cut;
   for (std::size_t k = 0; k < w.padded; k += kSideBySide) {

@@ -9,7 +9,7 @@
 #include <emmintrin.h>
 #endif
 
-#include "base/wide.h"
+#include "base/avx2.h"
 
 namespace rfsmooth::rfs_mesh {
 
@@ -48,7 +48,7 @@ std::size_t padded(std::size_t count) {
 }
 
 /// Squared distances of `count` points from (qx, qy, qz).
-RFSMOOTH_WIDE
+RFSMOOTH_AVX2
 void squared_distances(const float* __restrict x, const float* __restrict y, const float* __restrict z,
                        std::size_t count, float qx, float qy, float qz, float* __restrict out) {
   for (std::size_t i = 0; i < count; ++i) {
@@ -58,7 +58,7 @@ void squared_distances(const float* __restrict x, const float* __restrict y, con
 }
 
 /// How many of `count` keys are less than each of them; both padded.
-RFSMOOTH_WIDE
+RFSMOOTH_AVX2
 void count_nearer(const float* key, std::size_t count, std::uint32_t* nearer) {
   for (std::size_t i = 0; i < count; i += kLanes) {
     Keys own;

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "base/wide.h"
+#include "base/avx2.h"
 
 namespace rfsmooth::rfs_mesh {
 
@@ -18,7 +18,7 @@ constexpr double kLeastGrowth = 1.3;  // of the squared distance after too few w
 constexpr int kBins = 128;
 
 /// Appends the points of a leaf within the bound, in its units; returns how many there are then.
-RFSMOOTH_WIDE
+RFSMOOTH_AVX2
 std::size_t keep(const KdTree::Leaf& leaf, const Eigen::Vector3d& place, double scale, std::size_t kept,
                  float* squared, float* x, float* y, float* z, Index* id) {
   const double x0 = place[0], y0 = place[1], z0 = place[2];

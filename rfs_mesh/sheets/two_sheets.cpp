@@ -15,7 +15,7 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr std::size_t kFewest = 5;  ///< points that make a layer: more than strays in a row
+constexpr std::size_t kFewest = 5;  ///< points that make a sheet: more than strays in a row
 
 /// A point beyond the middle has the other sheet within 1.25 of its own distance d on the far side, give or
 /// take a quarter of d and half a spacing to the side; on a single sheet the nearest shadow is 2.25 d away.
@@ -43,9 +43,9 @@ class Parter {
         options_(options),
         surfaces_(surfaces) {}
 
-  /// For Place::off_its_sheet, `surface` gets its shadow and normal from the nearer layer.
+  /// For Place::off_its_sheet, `surface` gets its shadow and normal from the nearer sheet.
   Place place(Index i, LocalSurface& surface) {
-    if (!doubtful(i) || !find_layers(i)) return Place::on_its_sheet;
+    if (!doubtful(i) || !find_sheets(i)) return Place::on_its_sheet;
     const double low = height_of(0, middle_), high = height_of(middle_, heights_.size());
     if (high - low < std::max(options_.apart * scatter_, 2 * options_.far * sigma_))
       return Place::on_its_sheet;
@@ -82,7 +82,7 @@ class Parter {
 
   /// The shadows around point i by height along the axis of their normals, split in two. False if the normals
   /// have no axis in common or the shadows are too few.
-  bool find_layers(Index i) {
+  bool find_sheets(Index i) {
     shadows_.nearest(points_[i], options_.looked_at, found_);
     Matrix3d spread = Matrix3d::Zero();
     heights_.clear();
@@ -137,7 +137,7 @@ class Parter {
     return sum.norm() > 0 ? Vector3d(sum.normalized()) : axis_;
   }
 
-  /// Whether point i stands over the middle of the layer and not beside it.
+  /// Whether point i stands over the middle of the sheet and not beside it.
   bool surrounds(Index i, std::size_t begin, std::size_t end) const {
     Vector3d sum = Vector3d::Zero();
     double squares = 0;
@@ -158,9 +158,9 @@ class Parter {
   const std::vector<LocalSurface>& surfaces_;
 
   std::vector<Neighbor> found_;
-  std::vector<Height> heights_;  // ascending; the lower layer ends at middle_
+  std::vector<Height> heights_;  // ascending; the lower sheet ends at middle_
   std::size_t middle_ = 0;
-  double scatter_ = 0;  // root mean square within the layers
+  double scatter_ = 0;  // root mean square within the sheets
   Vector3d axis_ = Vector3d::UnitZ();
 };
 

@@ -10,10 +10,10 @@
 
 #include <Eigen/Geometry>
 
+#include "base/avx2.h"
 #include "base/parallel.h"
 #include "base/raw_array.h"
 #include "base/small_cholesky.h"
-#include "base/wide.h"
 #include "rfs_mesh/fit/plane_normal.h"
 #include "rfs_mesh/search/neighbors.h"
 #include "smoothing/automatic/patches/quadric_sums.h"
@@ -153,7 +153,7 @@ class Near {
   }
 
   /// row[number of smaller keys] = old, for each of the keys; they are all different.
-  RFSMOOTH_WIDE static void rank(const std::int32_t* key, const Index* old, std::size_t width, Index* row) {
+  RFSMOOTH_AVX2 static void rank(const std::int32_t* key, const Index* old, std::size_t width, Index* row) {
     typedef std::int32_t Keys __attribute__((vector_size(kPadded * sizeof(std::int32_t))));
     for (std::size_t k = 0; k < width; k += kPadded) {
       Keys own, nearer = {};

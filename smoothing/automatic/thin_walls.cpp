@@ -10,7 +10,7 @@
 
 #include "base/parallel.h"
 #include "rfs_mesh/search/wide_neighbors.h"
-#include "rfs_mesh/sheets/two_layers.h"
+#include "rfs_mesh/sheets/sheet_pair.h"
 #include "smoothing/automatic/patches/thinning.h"
 
 namespace rfsmooth::smoothing {
@@ -21,7 +21,7 @@ using Eigen::Vector3d;
 
 constexpr std::array<std::size_t, 3> kWider = {1, 2, 4};  // times the members of the patches that saw it
 constexpr double kFlat = 0.7;         // cosine from which a normal counts for the patch's axis
-constexpr double kPlaced = 0.3;       // and from which a point is put onto a layer: no points of rims
+constexpr double kPlaced = 0.3;       // and from which a point is put onto a sheet: no points of rims
 constexpr double kStray = 4;          // sigma
 constexpr double kLeastShare = 0.05;  // of the cloud: less says nothing, as for hidden_sheets.h
 constexpr double kLeastCovered = 10;  // sum of weights, in points
@@ -50,7 +50,7 @@ class Walls {
     moves_.assign(seeds.size() * members_, Move());
     for_blocks(context, seeds.size(), 16, [&](std::size_t begin, std::size_t end) {
       rfs_mesh::WideNeighbors near(field_.index(), members_);
-      std::vector<LayerPoint> points(members_);
+      std::vector<SheetPoint> points(members_);
       for (std::size_t s = begin; s < end; ++s) fit(seeds[s], near, points, moves_.data() + s * members_);
     });
     for (const Move& move : moves_) {
@@ -76,7 +76,7 @@ class Walls {
     return axis;
   }
 
-  void fit(Index seed, rfs_mesh::WideNeighbors& near, std::vector<LayerPoint>& points, Move* moves) const {
+  void fit(Index seed, rfs_mesh::WideNeighbors& near, std::vector<SheetPoint>& points, Move* moves) const {
     const Vector3d& centre = field_.guide()[seed];
     near.find(centre);
     const double square = 1.1 * double(near.farthest());  // a little beyond the farthest
@@ -89,7 +89,7 @@ class Walls {
       const Vector3d r(near.x()[k], near.y()[k], near.z()[k]);
       const double inside = 1 - double(near.squared()[k]) / square;
       const float cosine = std::abs(float(normal.dot(field_.normal(i))));
-      LayerPoint& p = points[k];
+      SheetPoint& p = points[k];
       p.u = u.dot(r) * in_radii;
       p.v = v.dot(r) * in_radii;
       p.height = normal.dot(data_[i] - centre) / sigma;
@@ -97,12 +97,12 @@ class Walls {
       p.weight = inside * inside * double(same_sheet(cosine));
       weights += p.weight;
     }
-    const TwoLayers layers(points);
-    if (!layers.convincing()) return;
+    const SheetPair sheets(points);
+    if (!sheets.convincing()) return;
     for (std::size_t k = 0; k < members_; ++k) {
-      const LayerPoint& p = points[k];
+      const SheetPoint& p = points[k];
       const Index i = near.index()[k];
-      const double height = layers.nearer(p), inside = 1 - double(near.squared()[k]) / square;
+      const double height = sheets.nearer(p), inside = 1 - double(near.squared()[k]) / square;
       if (std::abs(p.height - height) > kStray || std::abs(normal.dot(field_.normal(i))) < kPlaced) continue;
       // The more points, the better is what they say.
       moves[k] = {i, float(inside * inside * weights),

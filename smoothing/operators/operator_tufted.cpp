@@ -17,8 +17,8 @@ using rfsmooth::Edge;
 using rfsmooth::Face;
 using rfsmooth::Mesh;
 
-/// Side s of triangle t runs from corner s to corner s + 1; opposite is corner s + 2.
-struct Side {
+/// Half-edge s of triangle t runs from corner s to corner s + 1; opposite is corner s + 2.
+struct HalfEdge {
   Index triangle = kNone;
   int side = 0;
 };
@@ -45,14 +45,14 @@ class Cover {
 
   /// Flips sides until no two angles opposite a side sum to more than pi.
   void make_delaunay(const Context& context) {
-    std::vector<Side> queue;
+    std::vector<HalfEdge> queue;
     for (Index t = 0; t < corner_.size(); ++t)
       for (int s = 0; s < 3; ++s) queue.push_back({t, s});
     std::size_t flips = 0;
     const std::size_t most = 100 * queue.size();  // rounding could go in circles; in theory it ends
     for (std::size_t next = 0; next < queue.size() && flips < most; ++next) {
       if (next % 4096 == 0) context.check_stop();
-      const Side here = queue[next], there = twin(here);
+      const HalfEdge here = queue[next], there = twin(here);
       if (here.triangle == there.triangle || cot(here) + cot(there) >= -1e-10) continue;
       if (!flip(here, there)) continue;
       ++flips;
@@ -65,7 +65,7 @@ class Cover {
   Index corner(Index t, int s) const { return corner_[t][std::size_t(s % 3)]; }
 
   /// Cotangent of the angle opposite a side.
-  double cot(Side at) const {
+  double cot(HalfEdge at) const {
     const double a = length(at.triangle, at.side), b = length(at.triangle, at.side + 1),
                  c = length(at.triangle, at.side + 2);
     const double four = 4 * area(at.triangle);
@@ -85,8 +85,8 @@ class Cover {
  private:
   double& length(Index t, int s) { return length_[t][std::size_t(s % 3)]; }
   double length(Index t, int s) const { return length_[t][std::size_t(s % 3)]; }
-  Side twin(Side at) const { return twin_[at.triangle][std::size_t(at.side % 3)]; }
-  void join(Side a, Side b) {
+  HalfEdge twin(HalfEdge at) const { return twin_[at.triangle][std::size_t(at.side % 3)]; }
+  void join(HalfEdge a, HalfEdge b) {
     twin_[a.triangle][std::size_t(a.side % 3)] = b;
     twin_[b.triangle][std::size_t(b.side % 3)] = a;
   }
@@ -114,10 +114,10 @@ class Cover {
   }
 
   /// The copy of the face whose side runs from a to b, and the one whose side runs back.
-  static Side up(const rfs_mesh::EdgeFace& e) { return copy(e, e.forward); }
-  static Side down(const rfs_mesh::EdgeFace& e) { return copy(e, !e.forward); }
-  static Side copy(const rfs_mesh::EdgeFace& e, bool front) {
-    return front ? Side{2 * e.face, int(e.corner)} : Side{2 * e.face + 1, 2 - int(e.corner)};
+  static HalfEdge up(const rfs_mesh::EdgeFace& e) { return copy(e, e.forward); }
+  static HalfEdge down(const rfs_mesh::EdgeFace& e) { return copy(e, !e.forward); }
+  static HalfEdge copy(const rfs_mesh::EdgeFace& e, bool front) {
+    return front ? HalfEdge{2 * e.face, int(e.corner)} : HalfEdge{2 * e.face + 1, 2 - int(e.corner)};
   }
 
   void sort_by_angle(const Mesh& mesh, rfs_mesh::EdgeFace* first, rfs_mesh::EdgeFace* end) const {
@@ -146,7 +146,7 @@ class Cover {
   }
 
   /// Replaces the diagonal i-j of the quadrilateral i, m, j, k by k-m. \return whether it did.
-  bool flip(Side here, Side there) {
+  bool flip(HalfEdge here, HalfEdge there) {
     const Index t = here.triangle, u = there.triangle;
     const int s = here.side, r = there.side;
     const Index i = corner(t, s), j = corner(t, s + 1), k = corner(t, s + 2), m = corner(u, r + 2);
@@ -157,9 +157,9 @@ class Cover {
     const double height = 2 * (area(t) + area(u)) / l;
     const double km = std::hypot(kx - mx, height);
     if (!(km > 0) || !std::isfinite(km)) return false;
-    const std::array<Side, 4> old = {Side{u, r + 1}, {t, s + 2}, {u, r + 2}, {t, s + 1}};
-    const std::array<Side, 4> now = {Side{t, 0}, {t, 2}, {u, 0}, {u, 1}};
-    std::array<Side, 4> outer;
+    const std::array<HalfEdge, 4> old = {HalfEdge{u, r + 1}, {t, s + 2}, {u, r + 2}, {t, s + 1}};
+    const std::array<HalfEdge, 4> now = {HalfEdge{t, 0}, {t, 2}, {u, 0}, {u, 1}};
+    std::array<HalfEdge, 4> outer;
     for (std::size_t e = 0; e < 4; ++e) {
       outer[e] = twin(old[e]);
       for (std::size_t o = 0; o < 4; ++o)  // two sides of the quadrilateral may be glued to each other
@@ -179,7 +179,7 @@ class Cover {
 
   std::vector<std::array<Index, 3>> corner_;
   std::vector<std::array<double, 3>> length_;
-  std::vector<std::array<Side, 3>> twin_;
+  std::vector<std::array<HalfEdge, 3>> twin_;
 };
 
 }  // namespace

@@ -2,7 +2,7 @@
 
 #include <cstring>
 
-#include "base/wide.h"
+#include "base/avx2.h"
 #include "rfs_mesh/fit/quadric_moments.h"
 
 namespace rfsmooth::smoothing {
@@ -32,7 +32,7 @@ const auto kTotal = [](const auto& lanes) {
 
 }  // namespace
 
-RFSMOOTH_WIDE
+RFSMOOTH_AVX2
 void sum_quadric(std::size_t size, const float* u, const float* v, const float* y, const float* w,
                  QuadricSums& sums) {
   rfs_mesh::QuadricMoments<Doubles> moments;
@@ -56,7 +56,7 @@ void sum_quadric(std::size_t size, const float* u, const float* v, const float* 
   sums.right = heights.vector(kTotal);
 }
 
-RFSMOOTH_WIDE
+RFSMOOTH_AVX2
 void sum_squared_weights(std::size_t size, const float* u, const float* v, const float* w,
                          Eigen::Matrix<double, 6, 6>& sums) {
   rfs_mesh::QuadricMoments<SumFloats> moments;
@@ -71,7 +71,7 @@ void sum_squared_weights(std::size_t size, const float* u, const float* v, const
   sums = moments.matrix(kTotal);
 }
 
-RFSMOOTH_WIDE
+RFSMOOTH_AVX2
 double sum_residuals(std::size_t size, const float* u, const float* v, const float* y, const float* w,
                      const float* c, const Eigen::Matrix<double, 6, 1>& q) {
   SumFloats f[6], sum = {}, a, b, e, factor;

@@ -6,7 +6,7 @@
 #pragma once
 
 #if defined(__x86_64__) && defined(__ELF__) && !defined(__SANITIZE_THREAD__)  // the choice runs before it
-#define RFSMOOTH_WIDE __attribute__((target_clones("avx2", "default")))
+#define RFSMOOTH_AVX2 __attribute__((target_clones("avx2", "default")))
 #else
-#define RFSMOOTH_WIDE
+#define RFSMOOTH_AVX2
 #endif

@@ -1,8 +1,8 @@
-/// Two layers of heights with one middle between them, told apart while they are fitted.
+/// Two sheets of heights with one middle between them, told apart while they are fitted.
 ///
 ///     z = m(u, v) +- d(u, v) + noise,    m a quadric, d linear
 ///
-/// A height belongs to the upper layer with the probability P = 1 / (1 + exp(-2 (z - m) d / s^2)), s^2 the
+/// A height belongs to the upper sheet with the probability P = 1 / (1 + exp(-2 (z - m) d / s^2)), s^2 the
 /// variance of the noise; m, d, s and P are found in turns (expectation maximisation, Dempster, Laird and
 /// Rubin 1977), starting from one quadric through all heights and the variance that it leaves. Heights are in
 /// units of the measured noise. Walls make that too high, never too low, so s^2 is kept between 0.35 and 1.
@@ -16,7 +16,7 @@
 namespace rfsmooth::smoothing {
 
 /// A height over a plane.
-struct LayerPoint {
+struct SheetPoint {
   double u, v;       ///< where, within -1 .. 1
   double height;     ///< z, standard deviations of the noise
   double estimate;   ///< the height that an earlier smoothing gave the point, same unit
@@ -25,35 +25,35 @@ struct LayerPoint {
 };
 
 /// The fit, and what speaks for it.
-class TwoLayers {
+class SheetPair {
  public:
   /// Fits to `points` and sets their P. O(points).
-  explicit TwoLayers(std::vector<LayerPoint>& points);
+  explicit SheetPair(std::vector<SheetPoint>& points);
 
-  double middle(const LayerPoint& p) const;  ///< m
-  double apart(const LayerPoint& p) const;   ///< d >= 0 where the layers do not cross
+  double middle(const SheetPoint& p) const;  ///< m
+  double apart(const SheetPoint& p) const;   ///< d >= 0 where the sheets do not cross
 
-  /// Where the point would lie on the layer nearer to it.
-  double nearer(const LayerPoint& p) const {
+  /// Where the point would lie on the sheet nearer to it.
+  double nearer(const SheetPoint& p) const {
     return middle(p) + (p.height < middle(p) ? -apart(p) : apart(p));
   }
 
-  /// Whether there are two layers so near to each other that they must be fitted together. Not if
-  ///  - one layer with louder noise explains the heights as well (less than 3 nats apart);
+  /// Whether there are two sheets so near to each other that they must be fitted together. Not if
+  ///  - one sheet with louder noise explains the heights as well (less than 3 nats apart);
   ///  - more variance is left than the noise has, or the residuals' means over the cells of a 5 x 5 grid are
   ///    more than noise: then the shape is another one;
-  ///  - where a point is says to which layer it belongs: a step;
-  ///  - the estimates do not follow the two layers at all: layers that only the scatter of the heights
+  ///  - where a point is says to which sheet it belongs: a step;
+  ///  - the estimates do not follow the two sheets at all: sheets that only the scatter of the heights
   ///    shows may be louder noise, and one place has too few points to tell (hidden_sheets.h does);
-  ///  - the layers are more than 2.1 from the middle.
+  ///  - the sheets are more than 2.1 from the middle.
   bool convincing() const { return convincing_; }
 
  private:
   using Vector6 = Eigen::Matrix<double, 6, 1>;
 
-  void fit_one(std::vector<LayerPoint>& points);
-  void fit_two(std::vector<LayerPoint>& points);
-  void judge(const std::vector<LayerPoint>& points);
+  void fit_one(std::vector<SheetPoint>& points);
+  void fit_two(std::vector<SheetPoint>& points);
+  void judge(const std::vector<SheetPoint>& points);
 
   Vector6 middle_ = Vector6::Zero();
   Eigen::Vector3d apart_ = Eigen::Vector3d::Zero();
@@ -61,7 +61,7 @@ class TwoLayers {
   double weights_ = 0;
   double single_ = 0;    ///< variance about one quadric
   double variance_ = 1;  ///< s^2
-  double left_ = 0;      ///< variance about the layers, before its bounds
+  double left_ = 0;      ///< variance about the sheets, before its bounds
   bool convincing_ = false;
 };
 

@@ -1,4 +1,4 @@
-#include "rfs_mesh/sheets/two_layers.h"
+#include "rfs_mesh/sheets/sheet_pair.h"
 
 #include <cmath>
 #include <random>
@@ -20,18 +20,18 @@ double apart_at(double u, double v, double apart) {
 /// What was thought of the points before.
 enum class Before { half_way, one_sheet };
 
-/// Points on two layers, `apart` from their middle, with noise.
-std::vector<LayerPoint> layers(std::size_t n, double apart, double noise, Before before, unsigned seed = 1) {
+/// Points on two sheets, `apart` from their middle, with noise.
+std::vector<SheetPoint> sheets(std::size_t n, double apart, double noise, Before before, unsigned seed = 1) {
   std::mt19937 random(seed);
   std::normal_distribution<double> gauss;
   std::uniform_real_distribution<double> place(-1, 1);
-  std::vector<LayerPoint> points;
+  std::vector<SheetPoint> points;
   while (points.size() < n) {
     const double u = place(random), v = place(random), inside = 1 - (u * u + v * v);
     if (inside <= 0) continue;
     const double side = random() % 2 != 0 ? 1 : -1;
-    const double layer = middle_at(u, v) + side * apart_at(u, v, apart),
-                 height = layer + noise * gauss(random);
+    const double sheet = middle_at(u, v) + side * apart_at(u, v, apart),
+                 height = sheet + noise * gauss(random);
     const double share = before == Before::half_way ? 0.75 : 0;
     points.push_back(
         {u, v, height, middle_at(u, v) + share * side * apart_at(u, v, apart), inside * inside, 0});
@@ -39,13 +39,13 @@ std::vector<LayerPoint> layers(std::size_t n, double apart, double noise, Before
   return points;
 }
 
-TEST(TwoLayers, FindsTheLayersInNoise) {
+TEST(SheetPair, FindsTheSheetsInNoise) {
   for (const unsigned seed : {1U, 2U, 3U}) {
-    auto points = layers(600, 1.9, 1, Before::half_way, seed);
-    const TwoLayers fit(points);
+    auto points = sheets(600, 1.9, 1, Before::half_way, seed);
+    const SheetPair fit(points);
     EXPECT_TRUE(fit.convincing());
     double error = 0, weights = 0;
-    for (const LayerPoint& p : points) {
+    for (const SheetPoint& p : points) {
       const double upper = middle_at(p.u, p.v) + apart_at(p.u, p.v, 1.9),
                    lower = middle_at(p.u, p.v) - apart_at(p.u, p.v, 1.9), found = fit.nearer(p);
       error += p.weight * std::pow(std::min(std::abs(found - upper), std::abs(found - lower)), 2);
@@ -55,19 +55,19 @@ TEST(TwoLayers, FindsTheLayersInNoise) {
   }
 }
 
-TEST(TwoLayers, AreExactWithoutNoise) {
-  auto points = layers(300, 3, 0, Before::half_way);
-  const TwoLayers fit(points);
-  for (const LayerPoint& p : points) EXPECT_NEAR(fit.nearer(p), p.height, 1e-4);
+TEST(SheetPair, AreExactWithoutNoise) {
+  auto points = sheets(300, 3, 0, Before::half_way);
+  const SheetPair fit(points);
+  for (const SheetPoint& p : points) EXPECT_NEAR(fit.nearer(p), p.height, 1e-4);
 }
 
-TEST(TwoLayers, UpsideDownIsTheSame) {
-  auto points = layers(400, 1.9, 1, Before::half_way), turned = points;
-  for (LayerPoint& p : turned) {
+TEST(SheetPair, UpsideDownIsTheSame) {
+  auto points = sheets(400, 1.9, 1, Before::half_way), turned = points;
+  for (SheetPoint& p : turned) {
     p.height = -p.height;
     p.estimate = -p.estimate;
   }
-  const TwoLayers fit(points), other(turned);
+  const SheetPair fit(points), other(turned);
   EXPECT_EQ(fit.convincing(), other.convincing());
   for (std::size_t i = 0; i < points.size(); ++i) {
     EXPECT_NEAR(fit.nearer(points[i]), -other.nearer(turned[i]), 1e-9);
@@ -75,44 +75,44 @@ TEST(TwoLayers, UpsideDownIsTheSame) {
   }
 }
 
-TEST(TwoLayers, OneSheetHasNone) {
+TEST(SheetPair, OneSheetHasNone) {
   for (const double louder : {1.0, 1.5, 2.5}) {
-    auto points = layers(600, 0, louder, Before::half_way);
-    EXPECT_FALSE(TwoLayers(points).convincing()) << louder;
+    auto points = sheets(600, 0, louder, Before::half_way);
+    EXPECT_FALSE(SheetPair(points).convincing()) << louder;
   }
 }
 
-TEST(TwoLayers, FarApartOnesAndThoseThatNothingElseShowsAreLeftAlone) {
-  auto far = layers(600, 3, 1, Before::half_way), hidden = layers(600, 1.9, 1, Before::one_sheet);
-  EXPECT_FALSE(TwoLayers(far).convincing());
-  EXPECT_FALSE(TwoLayers(hidden).convincing());
+TEST(SheetPair, FarApartOnesAndThoseThatNothingElseShowsAreLeftAlone) {
+  auto far = sheets(600, 3, 1, Before::half_way), hidden = sheets(600, 1.9, 1, Before::one_sheet);
+  EXPECT_FALSE(SheetPair(far).convincing());
+  EXPECT_FALSE(SheetPair(hidden).convincing());
 }
 
-TEST(TwoLayers, AStepIsNoWall) {
-  auto points = layers(600, 1.9, 1, Before::half_way);
-  for (LayerPoint& p : points) {
+TEST(SheetPair, AStepIsNoWall) {
+  auto points = sheets(600, 1.9, 1, Before::half_way);
+  for (SheetPoint& p : points) {
     const double step = p.u < 0.1 ? -1.9 : 1.9, noise = p.height - p.estimate;
     p.estimate = 0.75 * step;
     p.height = step + 0.4 * noise;
   }
-  EXPECT_FALSE(TwoLayers(points).convincing());
+  EXPECT_FALSE(SheetPair(points).convincing());
 }
 
-TEST(TwoLayers, LayersOfAnotherShapeAreNotTakenForThese) {
-  auto points = layers(600, 1.9, 0.8, Before::half_way);
-  for (LayerPoint& p : points) {
+TEST(SheetPair, SheetsOfAnotherShapeAreNotTakenForThese) {
+  auto points = sheets(600, 1.9, 0.8, Before::half_way);
+  for (SheetPoint& p : points) {
     const double wave = 1.2 * std::sin(6 * p.u);
     p.height += wave;
     p.estimate += wave;
   }
-  EXPECT_FALSE(TwoLayers(points).convincing());
+  EXPECT_FALSE(SheetPair(points).convincing());
 }
 
-TEST(TwoLayers, FewPointsSayNothing) {
-  auto points = layers(40, 1.9, 1, Before::half_way);
-  EXPECT_FALSE(TwoLayers(points).convincing());
-  std::vector<LayerPoint> none;
-  EXPECT_FALSE(TwoLayers(none).convincing());
+TEST(SheetPair, FewPointsSayNothing) {
+  auto points = sheets(40, 1.9, 1, Before::half_way);
+  EXPECT_FALSE(SheetPair(points).convincing());
+  std::vector<SheetPoint> none;
+  EXPECT_FALSE(SheetPair(none).convincing());
 }
 
 }  // namespace
