@@ -1,5 +1,6 @@
-/// The whole of `denoise` beside PCL's moving least squares: stages, points per second, peak memory, the same
-/// bytes for 1, 2 and 4 threads, and how time per point grows (../README.md).
+/// The whole of `denoise` beside PCL's moving least squares and CGAL's jets: nine clouds and the worst ratio;
+/// then stages, points per second, peak memory, the same bytes for 1, 2 and 4 threads, and how time per point
+/// grows (../README.md).
 ///
 /// Every run is a process of its own, forked from one that has never started a thread, so that peaks of
 /// memory are the tool's; the rounds go over the tools in turn, so that both meet the same load of the
@@ -7,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <random>
@@ -17,7 +19,10 @@
 #include <CLI/CLI.hpp>
 #include <Eigen/Geometry>
 
+#include "clouds/shapes/sampling.h"
+#include "pipeline/io/io.h"
 #include "tests/bench/peers/peers.h"
+#include "tests/bench/quality/data/dataset.h"
 #include "tests/bench/quality/ours.h"
 #include "tests/bench/support/apart.h"
 #include "tests/bench/support/main.h"
@@ -27,6 +32,8 @@ namespace {
 
 using namespace rfsmooth::bench;
 using rfsmooth::Positions;
+namespace clouds = rfsmooth::clouds;
+namespace pipeline = rfsmooth::pipeline;
 
 constexpr double kPi = 3.14159265358979323846;
 
@@ -96,6 +103,10 @@ Run mls(const Positions& points, int threads) {
   return run_on(points, [&](Run&) { return peers::pcl_mls(points, 48, threads).points; });
 }
 
+Run jet(const Positions& points, int threads) {
+  return run_on(points, [&](Run&) { return peers::cgal_jet(points, 24, 1, threads).points; });
+}
+
 double median_of(const std::vector<Run>& runs, double Run::*field) {
   std::vector<double> values;
   values.reserve(runs.size());
@@ -146,6 +157,69 @@ void beside_mls(const Positions& points, const Variant& variant, const std::vect
               static_cast<unsigned long long>(mine[threads.front()].front().hash));
 }
 
+/// A cloud without noise of ours.
+struct Subject {
+  std::string name;
+  Positions points;
+};
+
+std::vector<Subject> subjects(std::size_t n, const std::string& scan) {
+  std::vector<Subject> all;
+  all.push_back({"bumpy sphere", noisy_cloud(n, 0)});
+  all.push_back({"CAD part", clouds::sample(load_shape("anchor_dense"), n, 7, clouds::Sampling::uniform)});
+  if (scan.empty()) {
+    std::printf("  a real scan: not measured, --scan names none\n");
+    return all;
+  }
+  const auto cloud = value_or_throw(pipeline::io::read_cloud(scan, {}, {}));
+  const std::vector<double> xyz = pipeline::io::positions(cloud);
+  Subject real{scan, {}};
+  for (std::size_t i = 0; i < xyz.size(); i += 3)
+    if (const Eigen::Vector3d p = Eigen::Map<const Eigen::Vector3d>(xyz.data() + i); p.allFinite())
+      real.points.push_back(p);
+  all.push_back(std::move(real));
+  return all;
+}
+
+/// Every subject at every noise, the three tools in turn; ratios are medians of the rounds' own.
+void nine(std::size_t n, const std::string& scan, const std::vector<double>& noises, const Variant& variant,
+          int threads, int rounds) {
+  std::printf(
+      "\n  %d thread(s), median of %d interleaved rounds; ratios of CPU (wall) time to MLS k 48 and jet k "
+      "24\n"
+      "    %-34s %9s %6s %9s %9s %9s %14s %14s %9s\n",
+      threads, rounds, "cloud", "points", "noise", "ours CPU", "MLS CPU", "jet CPU", "ours/MLS", "ours/jet",
+      "bytes/pt");
+  double worst = 0;
+  for (const Subject& subject : subjects(n, scan)) {
+    const double spacing = clouds::mean_spacing(subject.points);
+    for (const double noise : noises) {
+      Positions points = subject.points;
+      clouds::add_noise(points, noise * spacing, 7);
+      std::vector<Run> mine, least_squares, jets;
+      std::vector<double> cpu[2], wall[2];
+      for (int round = 0; round < rounds; ++round) {
+        mine.push_back(ours(points, variant, threads));
+        least_squares.push_back(mls(points, threads));
+        jets.push_back(jet(points, threads));
+        const Run* const peers[2] = {&least_squares.back(), &jets.back()};
+        for (int k = 0; k < 2; ++k) {
+          cpu[k].push_back(mine.back().cpu / peers[k]->cpu);
+          wall[k].push_back(mine.back().seconds / peers[k]->seconds);
+        }
+      }
+      worst = std::max(worst, median(cpu[0]));
+      std::printf("    %-34s %9zu %6g %9.2f %9.2f %9.2f %6.2f (%5.2f) %6.2f (%5.2f) %9.0f\n",
+                  std::filesystem::path(subject.name).filename().c_str(), points.size(), noise,
+                  median_of(mine, &Run::cpu), median_of(least_squares, &Run::cpu), median_of(jets, &Run::cpu),
+                  median(cpu[0]), median(wall[0]), median(cpu[1]), median(wall[1]),
+                  median_of(mine, &Run::bytes) / double(points.size()));
+      std::fflush(stdout);
+    }
+  }
+  std::printf("    worst ratio of CPU time to MLS: %.2f\n", worst);
+}
+
 void scaling(const std::vector<std::size_t>& sizes, double sigma, const Variant& variant, int threads) {
   std::printf("\n  time per point, %d threads, one run each\n", threads);
   double least = 0, most = 0;
@@ -170,8 +244,10 @@ int run(int argc, char** argv) {
   std::vector<int> threads = {1, 2, 4};
   std::vector<std::size_t> sizes = {100000, 1000000, 10000000};
   Variant variant{"rfsmooth", {}};
-  bool no_scaling = false;
-  CLI::App app{"denoise beside PCL's moving least squares: time, memory, same bytes"};
+  std::vector<double> noises = {0.3, 1, 2};
+  std::string scan;
+  bool no_scaling = false, only_nine = false;
+  CLI::App app{"denoise beside PCL's moving least squares and CGAL's jets: time, memory, same bytes"};
   app.add_option("--points", n)->capture_default_str();
   app.add_option("--rounds", rounds, "interleaved runs of each tool; medians are printed")
       ->capture_default_str();
@@ -179,7 +255,10 @@ int run(int argc, char** argv) {
   app.add_option("--threads", threads, "numbers of threads to measure")->capture_default_str();
   app.add_option("--options", variant.options, "options of denoise: flow=hc no-swap ...");
   app.add_option("--scaling-sizes", sizes)->capture_default_str();
+  app.add_option("--scan", scan, "a real scan, the third of the clouds");
+  app.add_option("--noises", noises, "added to the three clouds, x spacing")->capture_default_str();
   app.add_flag("--no-scaling", no_scaling);
+  app.add_flag("--only-nine", only_nine, "nothing behind the table of the nine clouds");
   CLI11_PARSE(app, argc, argv);
   make_options(variant.options);  // says what is wrong before anything long starts
 
@@ -192,6 +271,8 @@ int run(int argc, char** argv) {
     else
       std::printf("  %d threads: not measured, there are %u cores\n", t, cores);
   if (possible.empty()) return 0;
+  nine(n, scan, noises, variant, possible.back(), rounds);
+  if (only_nine) return 0;
   beside_mls(noisy_cloud(n, sigma), variant, possible, rounds);
   if (!no_scaling) scaling(sizes, sigma, variant, possible.back());
   return 0;
