@@ -23,11 +23,24 @@ constexpr std::size_t kScattered = 24;  // neighbours that say how well points l
 constexpr double kOfScatter = 230;      // radians per (r / R)^2
 constexpr double kCalmest = 0.05;       // radians: what normals of a flat place may differ by
 constexpr double kLeastMost = 0.02, kGreatestMost = 0.5;  // radians: bounds of the most
-constexpr double kFarOut = 20;                            // exponents beyond which a neighbour says nothing
+
+constexpr std::size_t kLanes = 8;  // numbers side by side in registers
+using Lanes = Eigen::Array<float, int(kLanes), 1>;
+
+/// A point and its normal, side by side in memory. Single precision is far finer than the calmest angle.
+struct Oriented {
+  Vector3d at;
+  Eigen::Vector3f normal;
+};
 
 /// |n -+ m|^2: the squared angle, for small ones.
-double apart(const Vector3d& n, const Vector3d& m) {
-  return std::max(0.0, 2 - 2 * std::abs(n.dot(m)));
+float apart(const Eigen::Vector3f& n, const Eigen::Vector3f& m) {
+  return std::min((n - m).squaredNorm(), (n + m).squaredNorm());
+}
+
+/// exp(-x) but for its far end: (1 - x / 16)^16, which needs no library and ends at 16.
+Lanes fading(const Lanes& x) {
+  return (1 - x / 16).max(0).square().square().square().square();
 }
 
 /// The most that each tolerance may be.
@@ -46,29 +59,66 @@ std::vector<double> limits(const Positions& points, const NeighborTable& near,
   return limit;
 }
 
-double tolerance_at(std::size_t i, Adjacency::Row row, const Positions& normals, double most) {
-  std::array<double, kJudged> squares{};
+float tolerance_at(const Oriented& here, Adjacency::Row row, const std::vector<Oriented>& all, double most) {
+  std::array<float, kJudged> squares{};
   const std::size_t count = std::min(kJudged, row.size());
-  for (std::size_t k = 0; k < count; ++k) squares[k] = apart(normals[i], normals[row[k]]);
+  for (std::size_t k = 0; k < count; ++k) squares[k] = apart(here.normal, all[row[k]].normal);
   const auto middle = squares.begin() + std::ptrdiff_t(kMiddle * count / kJudged);
   std::nth_element(squares.begin(), middle, squares.begin() + std::ptrdiff_t(count));
-  return std::min(std::max(kCalmest, kTolerance * std::sqrt(*middle)), most);
+  return float(std::min(std::max(kCalmest, kTolerance * std::sqrt(double(*middle))), most));
 }
 
-Vector3d filtered(std::size_t i, const Positions& points, Adjacency::Row row, const Positions& normals,
-                  double most) {
-  const double square = 1.1 * (points[row[row.size() - 1]] - points[i]).squaredNorm();
-  if (!(square > 0)) return normals[i];
-  const double tolerance = tolerance_at(i, row, normals, most);
-  Vector3d sum = normals[i];
-  for (const Index j : row) {
-    const double unlike = apart(normals[i], normals[j]) / (2 * tolerance * tolerance);
-    if (unlike > kFarOut) continue;
-    const double near = 1 - (points[j] - points[i]).squaredNorm() / square;
-    const double weight = near * near * std::exp(-unlike);
-    sum += (normals[i].dot(normals[j]) < 0 ? -weight : weight) * normals[j];
+/// The neighbours of a point by coordinate, padded to whole lanes with such of no weight.
+struct Ring {
+  std::vector<float> d, nx, ny, nz;  // squared distance over that of the rim; normal
+
+  void gather(const Oriented& here, Adjacency::Row row, const std::vector<Oriented>& all, double per_square) {
+    const std::size_t padded = (row.size() + kLanes - 1) / kLanes * kLanes;
+    d.assign(padded, 1);
+    for (auto* const n : {&nx, &ny, &nz}) n->resize(padded);
+    for (std::size_t k = 0; k < row.size(); ++k) {
+      const Oriented& other = all[row[k]];
+      d[k] = float(per_square * (other.at - here.at).squaredNorm());
+      nx[k] = other.normal[0];
+      ny[k] = other.normal[1];
+      nz[k] = other.normal[2];
+    }
   }
-  return sum.normalized();  // at least as long as the unit vector it starts from
+};
+
+/// The weighted sum of the ring's normals, each turned to the side of n. Lanes are added up in one order.
+Vector3d weighted_sum(const Ring& ring, const Eigen::Vector3f& n, float per_unlike) {
+  Lanes x = Lanes::Zero(), y = x, z = x;
+  for (std::size_t first = 0; first < ring.d.size(); first += kLanes) {
+    const auto at = [first](const std::vector<float>& of) {
+      return Eigen::Map<const Lanes>(of.data() + first);
+    };
+    const Lanes a = at(ring.nx), b = at(ring.ny), c = at(ring.nz);
+    const Lanes cosine = n[0] * a + n[1] * b + n[2] * c;
+    const Lanes turn = (cosine < 0).select(Lanes::Constant(-1), Lanes::Ones());
+    const Lanes unlike =
+        per_unlike * ((n[0] - turn * a).square() + (n[1] - turn * b).square() + (n[2] - turn * c).square());
+    const Lanes weight = turn * (1 - at(ring.d)).square() * fading(unlike);
+    x += weight * a;
+    y += weight * b;
+    z += weight * c;
+  }
+  const auto total = [](const Lanes& lanes) {
+    double sum = 0;
+    for (const float lane : lanes) sum += double(lane);
+    return sum;
+  };
+  return {total(x), total(y), total(z)};
+}
+
+Vector3d filtered(const Vector3d& normal, const Oriented& here, Adjacency::Row row,
+                  const std::vector<Oriented>& all, double most, Ring& ring) {
+  const double square = 1.1 * (all[row[row.size() - 1]].at - here.at).squaredNorm();
+  if (!(square > 0)) return normal;
+  const float tolerance = tolerance_at(here, row, all, most);
+  ring.gather(here, row, all, 1 / square);
+  return (normal + weighted_sum(ring, here.normal, 1 / (2 * tolerance * tolerance)))
+      .normalized();  // at least as long as the unit vector it starts from
 }
 
 }  // namespace
@@ -81,11 +131,16 @@ void bilateral_normals(const Positions& points, const NeighborTable& near, const
         "bilateral_normals: points, neighbours, scatter and normals differ in number");
   if (near.k == 0) return;
   const std::vector<double> most = limits(points, near, scatter, context);
-  Positions next(normals.size());
+  std::vector<Oriented> all(points.size());
   for (int pass = 0; pass < kPasses; ++pass) {
-    for_each_index(context, normals.size(),
-                   [&](std::size_t i) { next[i] = filtered(i, points, near[i], normals, most[i]); });
-    normals.swap(next);
+    for_each_index(context, all.size(), [&](std::size_t i) {
+      all[i] = {points[i], normals[i].cast<float>()};
+    });
+    for_blocks(context, all.size(), 1024, [&](std::size_t begin, std::size_t end) {
+      Ring ring;
+      for (std::size_t i = begin; i < end; ++i)
+        normals[i] = filtered(normals[i], all[i], near[i], all, most[i], ring);
+    });
   }
 }
 

@@ -8,8 +8,9 @@
 /// of the noise after smoothing turns normals by several degrees while it moves points by a few percent of
 /// the spacing.
 ///
-/// Differs from the papers: s_i is measured at each point, twice the lower-middle angle to its sixteen
-/// nearest neighbours' normals, so that flat places with calm normals keep even blunt edges; and at most
+/// Differs from the papers: exp(-x) is (1 - x/16)^16, which ends at 16; s_i is measured at each point, twice
+/// the lower-middle angle to its sixteen nearest neighbours' normals, so that flat places with calm normals
+/// keep even blunt edges; and at most
 ///
 ///     230 (r / R)^2 radians,
 ///
