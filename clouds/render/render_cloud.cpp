@@ -43,7 +43,7 @@ int parse_and_run(int argc, char** argv) {
   std::string out;
   std::vector<double> direction, up, zoom;
   bool force = false;
-  app.add_option("INPUT", request.inputs, "clouds or meshes: .ply, .pcd, .xyz, .off")->required();
+  app.add_option("INPUT", request.inputs, "clouds or meshes: .ply, .pcd, .xyz, .off, .las")->required();
   app.add_option("-o,--output", out, "PNG to write")->required();
   app.add_option("--title", request.title, "text above the picture");
   app.add_option("--label", request.labels, "text above each input, in order")->take_all();

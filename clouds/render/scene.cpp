@@ -97,7 +97,12 @@ bool color_by_file(Scene& scene, const io::Cloud& cloud) {
   if (red && green && blue) {
     const std::vector<double> r = io::field_values(cloud, *red), g = io::field_values(cloud, *green),
                               b = io::field_values(cloud, *blue);
-    const float full = io::is_float(cloud.points().fields[*red].type) ? 1.0F : 255.0F;
+    float full = io::is_float(cloud.points().fields[*red].type) ? 1.0F : 255.0F;
+    // LAS has 16 bits for a colour; some programs use the lower 8.
+    if (cloud.points().fields[*red].type == io::Scalar::uint16)
+      for (const std::vector<double>* c : {&r, &g, &b})
+        for (const double value : *c)
+          if (value > 255) full = 65535.0F;
     set([&](std::size_t i) { return Color(Color(float(r[i]), float(g[i]), float(b[i])) / full); });
     return true;
   }

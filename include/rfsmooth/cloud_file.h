@@ -1,4 +1,4 @@
-/// Files of clouds and meshes, PLY, PCD, XYZ and OFF, read and written without losing anything.
+/// Files of clouds and meshes, PLY, PCD, XYZ, OFF and LAS, read and written without losing anything.
 ///
 ///     auto file = CloudFile::read("scan.ply");            // Result: the format is told by the content
 ///     std::vector<double> xyz = file.value().positions(); // n x 3
@@ -28,7 +28,7 @@
 namespace rfsmooth {
 
 /// The kind of file.
-enum class Format { ply, pcd, xyz, off };
+enum class Format { ply, pcd, xyz, off, las };
 /// How its numbers are written.
 enum class Encoding { ascii, binary_little_endian, binary_big_endian, binary_compressed };
 
@@ -79,8 +79,8 @@ class CloudFile {
 
   /// n x 3 row-major, as doubles whatever the file's type.
   std::vector<double> positions(const Context& context = {}) const;
-  /// Writes n x 3 coordinates back, each in its own type, rounded to nearest. What equals the present one
-  /// keeps its bytes or text.
+  /// Writes n x 3 coordinates back, each in its own type, rounded to nearest (LAS: to the file's scale; a
+  /// warning is logged for what 32 bits cannot say). What equals the present one keeps its bytes or text.
   void set_positions(const double* xyz, const Context& context = {});
 
   /// Names of the points' fields, in file order; names may repeat.

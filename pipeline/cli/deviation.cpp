@@ -67,7 +67,10 @@ void color_by_deviation(io::Cloud& cloud, const std::vector<double>& distances, 
   } else {
     const char* const names[] = {"red", "green", "blue"};
     for (std::size_t k = 0; k < 3; ++k) {
-      for (std::size_t i = 0; i < n; ++i) values[i] = colours[i][k];
+      const auto present = io::find_field(cloud, names[k]);
+      // LAS has colours of 16 bits.
+      const int times = present && cloud.points().fields[*present].type == io::Scalar::uint16 ? 256 : 1;
+      for (std::size_t i = 0; i < n; ++i) values[i] = times * colours[i][k];
       io::set_field(cloud, names[k], io::Scalar::uint8, values, context);
     }
   }

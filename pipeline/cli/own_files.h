@@ -16,7 +16,7 @@ void mark_as_own(const std::string& path);
 /// Whether a file carries a valid mark.
 bool is_own(const std::string& path);
 
-/// Whether a regular file is there that begins as a PLY, PCD or OFF file does, or that reads as points.
+/// Whether a regular file is there that begins as a PLY, PCD, OFF or LAS file does, or that reads as points.
 bool holds_cloud(const std::string& path);
 
 /// Refuses an OUT that is a cloud without the mark: `*.ply` in a folder of two scans names the second one.

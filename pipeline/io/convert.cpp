@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 
 #include <fmt/format.h>
 
 #include "base/parallel.h"
 #include "pipeline/io/formats/header_lines.h"
+#include "pipeline/io/formats/las/las_plain.h"
 #include "pipeline/io/formats/off.h"
 
 namespace rfsmooth::pipeline::io {
@@ -44,6 +46,8 @@ bool carries(const Cloud& cloud, std::size_t field, Format format, const Context
       const std::vector<std::size_t> known = off_fields(cloud);
       return std::find(known.begin(), known.end(), field) != known.end();
     }
+    case Format::las:
+      return is_las_field(f);
   }
   return false;
 }
@@ -68,6 +72,18 @@ std::vector<std::size_t> kept_fields(const Cloud& cloud, Format format, const Co
         (is_coordinate(cloud, f) || carries(cloud, f, format, context)))
       kept.push_back(f);
   return kept;
+}
+
+bool has_points_only(Format format) {
+  return format == Format::pcd || format == Format::xyz || format == Format::las;
+}
+
+std::size_t points_not_finite(const Cloud& cloud, const Context& context) {
+  const std::vector<double> xyz = positions(cloud, context);
+  return sum_over(context, cloud.size(), std::size_t{0}, [&](std::size_t i) {
+    return std::size_t(!std::isfinite(xyz[3 * i]) || !std::isfinite(xyz[3 * i + 1]) ||
+                       !std::isfinite(xyz[3 * i + 2]));
+  });
 }
 
 bool float_digits_lost(const Table& table, std::size_t field, const Context& context) {
@@ -148,14 +164,15 @@ void rewrite_notes(Cloud& cloud, Format from, Format to) {
     table.interludes.clear();
   }
   if (from == Format::ply) take_grid_and_viewpoint(cloud);
-  const char* keyword = to == Format::ply ? "comment " : "# ";
+  const bool as_ply = to == Format::ply || to == Format::las;  // the texts of LAS are what PLY would say
+  const char* keyword = as_ply ? "comment " : "# ";
   for (Note& note : cloud.notes) {
     const bool info = from == Format::ply && note.line.substr(0, 8) == "obj_info";
     note = Note{keyword + std::string(info ? std::string_view(note.line) : without_keyword(note.line))};
     // Read again as ours: a comment "obj_info ..." of another format is obj_info in PLY.
-    if (to == Format::ply && note.line.substr(8, 9) == "obj_info ") note.line.erase(0, 8);
+    if (as_ply && note.line.substr(8, 9) == "obj_info ") note.line.erase(0, 8);
   }
-  if (to != Format::ply) return;
+  if (!as_ply) return;
   if (cloud.organised()) {
     cloud.notes.push_back({fmt::format("obj_info num_cols {}", cloud.width)});
     cloud.notes.push_back({fmt::format("obj_info num_rows {}", cloud.height)});
@@ -224,8 +241,11 @@ bool has_ragged_values(const Table& table, const Context& context) {
 
 Encoding target_encoding(const Cloud& cloud, Format format, std::optional<Encoding> wanted) {
   Encoding e = wanted.value_or(cloud.encoding);
+  if (format == Format::las && (!wanted || e == Encoding::binary_little_endian))
+    return Encoding::binary_little_endian;
   const bool text_only = format == Format::xyz || format == Format::off;
-  const bool known = e == Encoding::ascii || (!text_only && e == Encoding::binary_little_endian) ||
+  const bool known = (e == Encoding::ascii && format != Format::las) ||
+                     (!text_only && e == Encoding::binary_little_endian) ||
                      (format == Format::ply && e == Encoding::binary_big_endian) ||
                      (format == Format::pcd && e == Encoding::binary_compressed);
   if (known) return e;
@@ -247,6 +267,14 @@ bool is_writable_as_is(const Cloud& cloud, Format format) {
 std::vector<std::string> what_is_lost(const Cloud& cloud, Format format, Encoding encoding,
                                       const Context& context) {
   std::vector<std::string> lost;
+  if (cloud.format == Format::las && format != Format::las) {
+    Cloud fields = make_cloud(nullptr, 0);
+    fields.points().fields = plain_fields(cloud);
+    lost = what_is_lost(fields, format, encoding, context);
+    const std::vector<std::string> more = las_losses(cloud);
+    lost.insert(lost.end(), more.begin(), more.end());
+    return lost;
+  }
   const Table& points = cloud.points();
   const bool as_is = is_writable_as_is(cloud, format);
   for (std::size_t f = 0; f < points.fields.size(); ++f) {
@@ -255,7 +283,8 @@ std::vector<std::string> what_is_lost(const Cloud& cloud, Format format, Encodin
                       carries(cloud, f, format, context);
     if (!kept)
       lost.push_back(fmt::format("field '{}'", field.name));
-    else if (encoding != Encoding::ascii && float_digits_lost(points, f, context))
+    else if (encoding != Encoding::ascii && !(format == Format::las && is_coordinate(cloud, f)) &&
+             float_digits_lost(points, f, context))
       lost.push_back(fmt::format("all digits of field '{}' (float32)", field.name));
   }
   if (format == cloud.format) return lost;
@@ -263,7 +292,7 @@ std::vector<std::string> what_is_lost(const Cloud& cloud, Format format, Encodin
     const Table& table = cloud.elements[e];
     if (e == cloud.vertex || table.count == 0) continue;
     const bool faces = table.name == "face" && face_list(table);
-    if (format == Format::pcd || format == Format::xyz || (format == Format::off && !faces)) {
+    if (has_points_only(format) || (format == Format::off && !faces)) {
       lost.push_back(fmt::format("element '{}'", table.name));
     } else if (format == Format::off) {
       for (std::size_t f = 0; f < table.fields.size(); ++f)
@@ -273,6 +302,8 @@ std::vector<std::string> what_is_lost(const Cloud& cloud, Format format, Encodin
       lost.push_back("colours of the faces");
     }
   }
+  if (const std::size_t n = format == Format::las ? points_not_finite(cloud, context) : 0; n > 0)
+    lost.push_back(fmt::format("{} points that are not finite", n));
   if (format == Format::xyz || format == Format::off) {
     if (cloud.organised()) lost.push_back(fmt::format("the grid of {} x {}", cloud.width, cloud.height));
     if (cloud.viewpoint != kNoViewpoint) lost.push_back("the viewpoint");
@@ -281,6 +312,7 @@ std::vector<std::string> what_is_lost(const Cloud& cloud, Format format, Encodin
 }
 
 Cloud convert(const Cloud& cloud, Format format, const Context& context) {
+  if (cloud.format == Format::las) return convert(plain_of_las(cloud, context), format, context);
   Cloud out;
   out.format = format;
   out.encoding = cloud.encoding;
@@ -310,7 +342,7 @@ Cloud convert(const Cloud& cloud, Format format, const Context& context) {
   if (format == Format::xyz && points.fields.size() > 3) out.xyz_style.names = "# ";
   out.elements.push_back(std::move(points));
   for (std::size_t e = 0; e < cloud.elements.size(); ++e) {
-    if (e == cloud.vertex || format == Format::pcd || format == Format::xyz) continue;
+    if (e == cloud.vertex || has_points_only(format)) continue;
     Table table = cloud.elements[e];
     const auto list = face_list(table);
     if (format == Format::off && (table.name != "face" || !list)) continue;
@@ -320,7 +352,9 @@ Cloud convert(const Cloud& cloud, Format format, const Context& context) {
     out.elements.push_back(std::move(table));
   }
   rewrite_notes(out, cloud.format, format);
-  return out;
+  if (format != Format::las) return out;
+  make_binary(out.points(), context);
+  return las_of_plain(out, positions(cloud, context), context);
 }
 
 }  // namespace rfsmooth::pipeline::io

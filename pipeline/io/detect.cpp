@@ -33,10 +33,13 @@ void refuse_other_name(const Source& source, std::string_view word) {
 }  // namespace
 
 Format detect_format(const Source& source, const Context& context) {
-  if (source.size() == 0) source.fail("byte 0: expected a PLY, PCD, XYZ or OFF file, found an empty file");
+  if (source.size() == 0)
+    source.fail("byte 0: expected a PLY, PCD, XYZ, OFF or LAS file, found an empty file");
   constexpr std::uint64_t kLongestMagic = 16;
   const Bytes first = source.read(0, std::size_t(std::min(source.size(), kLongestMagic)), context);
-  refuse(source, other_format_of_bytes({first.data(), first.size()}));
+  const std::string_view start(first.data(), first.size());
+  if (start.substr(0, 4) == "LASF") return Format::las;
+  refuse(source, other_format_of_bytes(start));
   HeaderLines lines(source, context);
   while (!lines.at_end()) {
     const std::string_view line = lines.next("a point");
@@ -51,7 +54,7 @@ Format detect_format(const Source& source, const Context& context) {
     if (std::any_of(line.begin(), line.end(),
                     [](char c) { return (c >= 0 && c < ' ' && c != '\t' && c != '\r') || c == 127; })) {
       refuse_other_name(source, word);
-      lines.fail(fmt::format("expected a PLY, PCD, XYZ or OFF file, found {}", in_quotes(line)));
+      lines.fail(fmt::format("expected a PLY, PCD, XYZ, OFF or LAS file, found {}", in_quotes(line)));
     }
     if (word.empty() || word.front() == '#') continue;
     refuse_other_name(source, word);

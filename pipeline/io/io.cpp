@@ -7,6 +7,7 @@
 
 #include "pipeline/io/convert.h"
 #include "pipeline/io/detect.h"
+#include "pipeline/io/formats/las/las.h"
 #include "pipeline/io/formats/off.h"
 #include "pipeline/io/formats/pcd.h"
 #include "pipeline/io/formats/ply.h"
@@ -27,6 +28,8 @@ Cloud read(const Source& source, const ReadOptions& options, const Context& cont
       return read_xyz(source, context);
     case Format::off:
       return read_off(source, context);
+    case Format::las:
+      return read_las(source, context);
   }
   throw std::invalid_argument("read: not a Format");
 }
@@ -41,6 +44,8 @@ void write_as_is(const Cloud& cloud, Encoding encoding, Sink& sink, const Contex
       return write_xyz(cloud, sink, context);
     case Format::off:
       return write_off(cloud, sink, context);
+    case Format::las:
+      return write_las(cloud, sink, context);
   }
 }
 
@@ -66,12 +71,12 @@ Format target_format(const Cloud& cloud, const std::filesystem::path& path, cons
   if (!path.has_extension()) return cloud.format;
   if (const OtherFormat* other = other_format_of_extension(path))
     throw Failure({ErrorCode::usage,
-                   fmt::format("{}: {} is not written; write .ply, .pcd, .xyz or .off and convert that",
-                               path.string(), other->name)});
-  throw Failure({ErrorCode::usage,
-                 fmt::format("{}: the extension '{}' stands for no format we write (ply, pcd, xyz, off); "
-                             "choose one with `format`",
-                             path.string(), path.extension().string())});
+                   fmt::format("{}: {} is not written; {}", path.string(), other->name, other->instead)});
+  throw Failure(
+      {ErrorCode::usage,
+       fmt::format("{}: the extension '{}' stands for no format we write (ply, pcd, xyz, off, las); "
+                   "choose one with `format`",
+                   path.string(), path.extension().string())});
 }
 
 }  // namespace
@@ -129,12 +134,13 @@ std::optional<Format> format_of_extension(const std::filesystem::path& path) {
   if (e == ".ply") return Format::ply;
   if (e == ".pcd") return Format::pcd;
   if (e == ".off") return Format::off;
+  if (e == ".las") return Format::las;
   if (e == ".xyz" || e == ".txt" || e == ".asc" || e == ".csv" || e == ".pts") return Format::xyz;
   return std::nullopt;
 }
 
 std::optional<Format> format_by_name(std::string_view name) {
-  for (const Format f : {Format::ply, Format::pcd, Format::xyz, Format::off})
+  for (const Format f : {Format::ply, Format::pcd, Format::xyz, Format::off, Format::las})
     if (name_of(f) == name) return f;
   return std::nullopt;
 }

@@ -1,4 +1,5 @@
-/// The front door of files: read and write clouds and meshes, PLY, PCD, XYZ and OFF, without losing anything.
+/// The front door of files: read and write clouds and meshes, PLY, PCD, XYZ, OFF and LAS, without losing
+/// anything.
 ///
 ///     auto cloud = read_cloud("scan.ply", {}, context);             // the format is told by the content
 ///     std::vector<double> xyz = positions(cloud.value());           // n x 3
@@ -49,10 +50,10 @@ Result<Done> check_output(const std::filesystem::path& path, const WriteOptions&
 Result<Done> write_bytes(std::string_view bytes, const std::filesystem::path& path, bool force,
                          const Context& context);
 
-/// The format a path's extension stands for (.ply; .pcd; .xyz .txt .asc .csv .pts; .off), if any.
+/// The format a path's extension stands for (.ply; .pcd; .xyz .txt .asc .csv .pts; .off; .las), if any.
 std::optional<Format> format_of_extension(const std::filesystem::path& path);
 
-/// The format of that name ("ply", "pcd", "xyz", "off"), if any; likewise encodings ("binary" is
+/// The format of that name ("ply", "pcd", "xyz", "off", "las"), if any; likewise encodings ("binary" is
 /// little-endian).
 std::optional<Format> format_by_name(std::string_view name);
 /// The encoding of that name, if any.

@@ -9,13 +9,16 @@ namespace rfsmooth::pipeline::io {
 namespace {
 
 constexpr const char *kPoints = "convert it to PLY first: CloudCompare, or pdal translate IN OUT.ply",
+                     *kLaz =
+                         "use the Python module with laspy and lazrs (python -m rfsmooth denoise in.laz "
+                         "out.laz), or LAS and a converter: laszip, or pdal translate IN OUT",
                      *kMesh = "convert it to PLY first: MeshLab, Blender or CloudCompare",
                      *kScanner = "export it from the scanner's program as PLY or XYZ",
                      *kPacked = "unpack it first", *kNoPoints = "that holds no points",
                      *kArray = "save it as text, three columns x y z, in a file called .xyz";
 
 constexpr OtherFormat kFormats[] = {
-    {"LAS", ".las .laz", "LASF", kPoints},
+    {"LAZ", ".laz", "", kLaz, kLaz},
     {"E57", ".e57", "ASTM-E57", kPoints},
     {"OBJ", ".obj", "", kMesh},
     {"STL", ".stl", "solid ", kMesh},

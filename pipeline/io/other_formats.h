@@ -9,10 +9,11 @@ namespace rfsmooth::pipeline::io {
 
 /// A format of somebody else.
 struct OtherFormat {
-  const char* name;        ///< "LAS"
-  const char* extensions;  ///< ".las .laz", lower case
+  const char* name;        ///< "OBJ"
+  const char* extensions;  ///< ".glb .gltf", lower case
   const char* magic;       ///< what such a file begins with; "" if anything
   const char* advice;      ///< how to come by a file that is read here
+  const char* instead = "write .ply, .pcd, .xyz, .off or .las and convert that";  ///< of writing it
 };
 
 /// The format of a file that begins with these bytes; null if it is none that we know of.

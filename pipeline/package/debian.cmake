@@ -53,7 +53,7 @@ if(TARGET rfsmooth_command)
     SUMMARY "takes the noise out of 3-D scans"
     SUGGESTS rfsmooth-reconstruct
     DESCRIPTION "Gives back the same point cloud with the noise gone: every point, every
-field, in the same order. Reads and writes PLY, PCD and XYZ files. The
+field, in the same order. Reads and writes PLY, PCD, XYZ and LAS files. The
 strength is chosen at every point from the noise that is measured first, so
 no setting is needed.")
 endif()

@@ -4,6 +4,7 @@
 
 #include "tests/cli/support/folder.h"
 #include "tests/cli/support/small_clouds.h"
+#include "tests/support/las_bytes.h"
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
@@ -21,10 +22,12 @@ class OtherFormats : public InFolder {};
 TEST_F(OtherFormats, AreNamedWithWhatToDo) {
   using namespace std::string_literals;
   const std::string binary("\x00\x01\x02\xff\n\x03", 6);
+  std::string laz = las_bytes(4, 6, 2).bytes();
+  laz[104] = char(laz[104] | 128);
   for (const Foreign& foreign :
-       {Foreign{"a.las", "LAS", "convert it to PLY", "LASF" + binary},
-        Foreign{"a.laz", "LAS", "convert it to PLY", "LASF" + binary},
-        Foreign{"unnamed", "LAS", "convert it to PLY", "LASF" + binary},
+       {Foreign{"a.laz", "LAZ", "python -m rfsmooth denoise in.laz out.laz", laz},
+        Foreign{"unnamed", "LAZ", "python -m rfsmooth denoise in.laz out.laz", laz},
+        Foreign{"odd.laz", "LAZ", "laszip", binary},
         Foreign{"a.e57", "E57", "convert it to PLY", "ASTM-E57" + binary},
         Foreign{"a.obj", "OBJ", "convert it to PLY", "# Blender\nmtllib a.mtl\no Cube\nv 1 2 3\n"},
         Foreign{"object.txt", "OBJ", "convert it to PLY", "v 1 2 3\nv 1 2 4\n"},
@@ -52,10 +55,14 @@ TEST_F(OtherFormats, WhatIsReadIsReadWhateverItIsCalled) {
 
 TEST_F(OtherFormats, AreNotWrittenEither) {
   put("in.ply", noisy_plane(10).bytes());
-  const Ran ran = run({"denoise", "in.ply", "out.las"});
+  const Ran ran = run({"denoise", "in.ply", "out.e57"});
   EXPECT_EQ(ran.code, 2);
-  EXPECT_THAT(ran.err, AllOf(HasSubstr("out.las: LAS is not written"), HasSubstr(".ply")));
-  EXPECT_FALSE(there("out.las"));
+  EXPECT_THAT(ran.err, AllOf(HasSubstr("out.e57: E57 is not written"), HasSubstr(".las")));
+  const Ran laz = run({"denoise", "in.ply", "out.laz"});
+  EXPECT_EQ(laz.code, 2);
+  EXPECT_THAT(laz.err,
+              AllOf(HasSubstr("out.laz: LAZ is not written"), HasSubstr("laspy"), HasSubstr("LAS and a")));
+  EXPECT_EQ(names(), std::vector<std::string>{"in.ply"});
 }
 
 }  // namespace

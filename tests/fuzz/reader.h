@@ -27,7 +27,8 @@ inline int read_write_read(pipeline::io::Format format, const std::uint8_t* data
   std::vector<double> xyz = io::positions(cloud.value(), context);
   for (double& v : xyz) v += 0.125;
   io::set_positions(cloud.value(), xyz.data(), context);
-  for (const io::Format to : {io::Format::ply, io::Format::pcd, io::Format::xyz, io::Format::off}) {
+  for (const io::Format to :
+       {io::Format::ply, io::Format::pcd, io::Format::xyz, io::Format::off, io::Format::las}) {
     io::WriteOptions target;
     target.format = to;
     target.drop_unsupported = true;
@@ -38,7 +39,8 @@ inline int read_write_read(pipeline::io::Format format, const std::uint8_t* data
     // XYZ has no way to say "no points".
     if (to == io::Format::xyz && cloud.value().size() == 0) continue;
     const auto converted = io::parse_cloud(text.value(), "converted", back, context);
-    if (!converted.ok() || converted.value().size() != cloud.value().size()) std::abort();
+    if (!converted.ok() || (to != io::Format::las && converted.value().size() != cloud.value().size()))
+      std::abort();  // LAS has no points that are not finite
   }
   try {
     io::faces_of(cloud.value(), context);

@@ -80,6 +80,15 @@ std::string vector_text(const ordered_json& v, int digits = 9) {
                      v[2].get<double>(), digits);
 }
 
+void print_las(const ordered_json& las) {
+  fmt::print("  LAS       {}, point format {}, scale {}, offset {}\n", las["version"].get<std::string>(),
+             las["point_format"].get<int>(), vector_text(las["scale"], 17), vector_text(las["offset"], 17));
+  for (const auto& record : las["records"])
+    fmt::print("  record    {} {}: {} bytes{}\n", record["user"].get<std::string>(), record["id"].get<int>(),
+               record["bytes"].get<std::size_t>(),
+               record["extended"].get<bool>() ? ", behind the points" : "");
+}
+
 void print_text(const ordered_json& info) {
   const auto text = [&](const char* key) { return info[key].get<std::string>(); };
   const auto count = [&](const char* key) { return info[key].get<std::size_t>(); };
@@ -111,6 +120,7 @@ void print_text(const ordered_json& info) {
     if (field.contains("list")) fmt::print("[]");
   }
   fmt::print("\n");
+  if (info.contains("las")) print_las(info["las"]);
   if (info.contains("elements"))
     for (const auto& element : info["elements"])
       fmt::print("  element   {} x {}\n", element["name"].get<std::string>(),

@@ -11,6 +11,7 @@
 #include "base/stopwatch.h"
 #include "pipeline/cli/files/memory.h"
 #include "pipeline/cli/own_files.h"
+#include "pipeline/io/formats/las/las.h"
 
 namespace rfsmooth::cli {
 
@@ -26,6 +27,17 @@ io::WriteOptions write_options(const FileOptions& options) {
   out.force = options.force;
   out.drop_unsupported = options.drop_unsupported;
   return out;
+}
+
+ordered_json describe_las(const io::LasSummary& las) {
+  auto records = ordered_json::array();
+  for (const io::las::Record& r : las.records)
+    records.push_back({{"user", r.user}, {"id", r.id}, {"bytes", r.size}, {"extended", r.extended}});
+  return {{"version", fmt::format("1.{}", las.minor)},
+          {"point_format", las.point_format},
+          {"scale", las.scale},
+          {"offset", las.offset},
+          {"records", records}};
 }
 
 }  // namespace
@@ -73,6 +85,11 @@ void store_cloud(const io::Cloud& cloud, const std::string& output, const FileOp
   if (context.progress) context.progress("write", 1);  // too late to cancel: the file is there
 }
 
+io::Format output_format(const io::Cloud& cloud, const std::string& output, const FileOptions& options) {
+  if (options.format) return io::format_by_name(*options.format).value_or(cloud.format);
+  return io::format_of_extension(output).value_or(cloud.format);
+}
+
 bool has_normals(const io::Cloud& cloud) {
   return io::find_field(cloud, "nx") || io::find_field(cloud, "normal_x");
 }
@@ -112,6 +129,10 @@ ordered_json describe(const io::Cloud& cloud) {
     ordered_json entry = {{"name", field.name}, {"type", io::name_of(field.type)}};
     if (field.count != 1) entry["count"] = field.count;
     if (field.is_list()) entry["list"] = true;
+    if (field.is_scaled()) {
+      entry["scale"] = field.scale;
+      entry["offset"] = field.offset;
+    }
     fields.push_back(entry);
   }
   json["fields"] = fields;
@@ -120,6 +141,7 @@ ordered_json describe(const io::Cloud& cloud) {
     if (e != cloud.vertex)
       others.push_back({{"name", cloud.elements[e].name}, {"count", cloud.elements[e].count}});
   if (!others.empty()) json["elements"] = others;
+  if (cloud.format == io::Format::las) json["las"] = describe_las(io::las_summary(cloud));
   return json;
 }
 

@@ -37,6 +37,10 @@ bool has_normals(const pipeline::io::Cloud& cloud);
 void warn_if_coarse(const pipeline::io::Cloud& cloud, const std::vector<double>& xyz, double spacing,
                     const std::string& name, Console& console);
 
+/// The format that `output` will be written in.
+pipeline::io::Format output_format(const pipeline::io::Cloud& cloud, const std::string& output,
+                                   const FileOptions& options);
+
 /// Format, encoding, points, organised size and fields, for reports and `info`.
 nlohmann::ordered_json describe(const pipeline::io::Cloud& cloud);
 

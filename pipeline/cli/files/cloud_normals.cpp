@@ -35,11 +35,6 @@ bool complete(const io::Cloud& cloud, const Names& names) {
   return true;
 }
 
-io::Format output_format(const io::Cloud& cloud, const std::string& output, const FileOptions& files) {
-  if (files.format) return io::format_by_name(*files.format).value_or(cloud.format);
-  return io::format_of_extension(output).value_or(cloud.format);
-}
-
 /// Writes n x 3 normals into the fields; rows of NaN keep what is there.
 void put(io::Cloud& cloud, const Names& names, const std::vector<double>& normals, const Context& context) {
   for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -20,7 +20,7 @@ struct FileOptions {
     visit(OptionInfo{"output", "write here: a file for one input, a folder for many", "file"}, self.output);
     OptionInfo format{"format", "format of the output; auto: by the output's extension, else as the input",
                       ""};
-    format.choices = {"ply", "pcd", "xyz", "off"};
+    format.choices = {"ply", "pcd", "xyz", "off", "las"};
     visit(format, self.format);
     OptionInfo encoding{"encoding", "how values are stored in the output; auto: as in the input", ""};
     encoding.choices = {"ascii", "binary", "binary_big_endian", "binary_compressed"};

@@ -2,6 +2,7 @@
 
 #include <cstring>
 
+#include "pipeline/io/convert.h"
 #include "pipeline/io/mesh_file.h"
 #include "rfs_mesh/measure.h"
 
@@ -58,6 +59,7 @@ void set_normals(io::Cloud& cloud, const Mesh& mesh, const Context& context) {
 }  // namespace
 
 io::Cloud surface_file(io::Cloud cloud, const Reconstruction& made, const Context& context) {
+  if (cloud.format == io::Format::las) cloud = io::convert(cloud, io::Format::ply, context);
   io::Cloud out;
   out.encoding =
       cloud.encoding == io::Encoding::binary_compressed ? io::Encoding::binary_little_endian : cloud.encoding;

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "base/parallel.h"
+
 namespace rfsmooth::pipeline::io {
 namespace {
 
@@ -27,6 +29,22 @@ void forget_element(Cloud& cloud, std::size_t gone) {
   }
 }
 
+// Scaled whole numbers have a range and no NaN.
+void warn_of_range(const Cloud& cloud, const double* xyz, const Context& context) {
+  const auto field = [&](std::size_t axis) -> const Field& { return cloud.points().fields[cloud.xyz[axis]]; };
+  if (!field(0).is_scaled() && !field(1).is_scaled() && !field(2).is_scaled()) return;
+  const std::size_t beyond = sum_over(context, cloud.size(), std::size_t{0}, [&](std::size_t i) {
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      if (!can_hold(field(axis), xyz[3 * i + axis])) return std::size_t{1};
+    return std::size_t{0};
+  });
+  if (beyond > 0)
+    context.warn(
+        fmt::format("{} points are beyond what the file's scale and offset can say: they are put at "
+                    "the end of the range, or stay where a coordinate is not finite",
+                    beyond));
+}
+
 }  // namespace
 
 std::string_view name_of(Format format) {
@@ -39,6 +57,8 @@ std::string_view name_of(Format format) {
       return "xyz";
     case Format::off:
       return "off";
+    case Format::las:
+      return "las";
   }
   throw std::invalid_argument("name_of: not a Format");
 }
@@ -68,8 +88,9 @@ std::vector<double> positions(const Cloud& cloud, const Context& context) {
 }
 
 void set_positions(Cloud& cloud, const double* xyz, const Context& context) {
+  warn_of_range(cloud, xyz, context);
   for (const std::size_t f : cloud.xyz)
-    if (!is_float(cloud.points().fields[f].type)) {
+    if (cloud.points().fields[f].is_whole()) {
       context.warn("the coordinates are whole numbers (" +
                    std::string(name_of(cloud.points().fields[f].type)) +
                    "): new ones are rounded to whole numbers");
@@ -108,7 +129,7 @@ void check_field(const Cloud& cloud, const std::string& name, Scalar type) {
         {ErrorCode::usage,
          fmt::format("the points have a field '{}' already, a {}; it cannot take one value per point", name,
                      field.is_list() ? "list" : "row of several values")});
-  if (is_float(type) && !is_float(field.type))
+  if (is_float(type) && field.is_whole())
     throw Failure({ErrorCode::usage,
                    fmt::format("the points have a field '{}' already, of whole numbers ({}); it cannot "
                                "take values of type {}",

@@ -22,7 +22,7 @@ namespace rfsmooth::pipeline::io {
 using rfsmooth::Encoding;
 using rfsmooth::Format;
 
-std::string_view name_of(Format format);      ///< "ply", "pcd", "xyz", "off"
+std::string_view name_of(Format format);      ///< "ply", "pcd", "xyz", "off", "las"
 std::string_view name_of(Encoding encoding);  ///< as PLY and PCD headers write them ("binary_little_endian")
 
 /// A comment or obj_info line of a header, without its line end, and where it stands: before property `field`
@@ -78,7 +78,7 @@ std::vector<double> positions(const Cloud& cloud, const Context& context = {});
 
 /// Writes n x 3 coordinates back, each in its own type, floats rounded to nearest. A coordinate equal to the
 /// present one keeps its bytes or text. Integer coordinates are rounded to whole numbers and a warning is
-/// logged.
+/// logged. Scaled ones (LAS) are rounded to their scale; a warning is logged for what is beyond their range.
 void set_positions(Cloud& cloud, const double* xyz, const Context& context = {});
 
 /// The field of the points with that name (the first of several), or none.

@@ -144,4 +144,22 @@ void store(Scalar type, char* p, double value) {
   }
 }
 
+double load(const Field& field, const char* p) {
+  const double stored = load(field.type, p);
+  return field.is_scaled() ? stored * field.scale + field.offset : stored;
+}
+
+void store(const Field& field, char* p, double value) {
+  if (!field.is_scaled()) return store(field.type, p, value);
+  if (std::isfinite(value)) store(field.type, p, (value - field.offset) / field.scale);
+}
+
+bool can_hold(const Field& field, double value) {
+  if (!field.is_scaled()) return true;
+  const double wanted = std::nearbyint((value - field.offset) / field.scale);
+  char stored[8];
+  store(field.type, stored, wanted);
+  return std::isfinite(value) && (is_float(field.type) || load(field.type, stored) == wanted);
+}
+
 }  // namespace rfsmooth::pipeline::io

@@ -25,8 +25,12 @@ struct Field {
   std::string spelling = {};  ///< PLY: the type's words as the file has them ("float32" or "float",
                               ///< "list uchar int"); empty = the usual ones
 
+  double scale = 1, offset = 0;  ///< a value is what is stored * scale + offset (LAS; 1 and 0 elsewhere)
+
   bool is_list() const { return list_count.has_value(); }
   bool is_plain() const { return !is_list() && count == 1; }  ///< one value per row
+  bool is_scaled() const { return scale != 1 || offset != 0; }
+  bool is_whole() const { return !is_float(type) && !is_scaled(); }  ///< its values are whole numbers
 };
 
 /// Reads the `type` at `p` (unaligned, little-endian) as a double (64-bit integers are rounded to nearest).
@@ -35,5 +39,16 @@ double load(Scalar type, const char* p);
 /// Writes `value` at `p` as `type`: floats rounded to nearest; integers rounded to nearest, clamped to their
 /// range, NaN as 0.
 void store(Scalar type, char* p, double value);
+
+/// The value of `field` that is stored at `p`.
+double load(const Field& field, const char* p);
+
+/// Stores a value of `field` at `p`, as the nearest that its type and scale can say; where it is scaled, a
+/// value that is not finite leaves what is there.
+void store(const Field& field, char* p, double value);
+
+/// Whether `store` would write a value within half a step: it is finite and not beyond the type's range.
+/// Always true of fields that are not scaled.
+bool can_hold(const Field& field, double value);
 
 }  // namespace rfsmooth::pipeline::io

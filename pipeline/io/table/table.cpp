@@ -28,9 +28,9 @@ void scatter_binary(Table& table, const std::vector<std::size_t>& which, const d
     for (std::size_t i = begin; i < end; ++i)
       for (std::size_t k = 0; k < which.size(); ++k) {
         char* p = const_cast<char*>(locate(table.row(i).data(), which[k]));
-        const Scalar type = table.fields[which[k]].type;
+        const Field& field = table.fields[which[k]];
         const double value = values[i * which.size() + k];
-        if (!same(load(type, p), value)) store(type, p, value);
+        if (!same(load(field, p), value)) store(field, p, value);
       }
   });
 }
@@ -118,7 +118,7 @@ std::vector<double> gather(const Table& table, const std::vector<std::size_t>& w
       if (!table.text) {
         const char* row = table.row(i).data();
         for (std::size_t k = 0; k < which.size(); ++k)
-          out[k] = load(table.fields[which[k]].type, locate(row, which[k]));
+          out[k] = load(table.fields[which[k]], locate(row, which[k]));
       } else {
         for_each_field(table, table.row(i), [&](std::size_t f, const std::vector<std::string_view>& words) {
           for (std::size_t k = 0; k < which.size(); ++k)

@@ -175,7 +175,7 @@ TEST(Corpus, IsReplayed) {
     bytes << in.rdbuf();
     for (const std::optional<Format> format :
          {std::optional<Format>{}, std::optional{Format::ply}, std::optional{Format::pcd},
-          std::optional{Format::xyz}, std::optional{Format::off}}) {
+          std::optional{Format::xyz}, std::optional{Format::off}, std::optional{Format::las}}) {
       ReadOptions options;
       options.format = format;
       const auto cloud = parse_cloud(bytes.str(), entry.path().string(), options, {});

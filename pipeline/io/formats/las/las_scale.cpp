@@ -1,0 +1,128 @@
+#include "pipeline/io/formats/las/las_scale.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "base/parallel.h"
+#include "pipeline/io/formats/las/las_header.h"
+
+namespace rfsmooth::pipeline::io {
+namespace {
+
+// int32 holds all powers of ten up to this one.
+constexpr int kMostPowers = 9;
+constexpr double kMostSteps = std::numeric_limits<std::int32_t>::max();
+
+struct Span {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+};
+
+// Old and new coordinates of an axis in whole old steps.
+Span span_in_steps(const Table& points, std::size_t axis, const double* xyz, const Context& context) {
+  const Field& field = points.fields[axis];
+  return reduce_blocks(
+      context, points.count, Span{},
+      [&](std::size_t begin, std::size_t end) {
+        Span s;
+        for (std::size_t i = begin; i < end; ++i) {
+          const double old = las::number<std::int32_t>(points.row(i), 4 * axis);
+          const double now = (xyz[3 * i + axis] - field.offset) / field.scale;
+          s.low = std::min(s.low, std::isfinite(now) ? std::min(old, now) : old);
+          s.high = std::max(s.high, std::isfinite(now) ? std::max(old, now) : old);
+        }
+        return s;
+      },
+      [](const Span& a, const Span& b) {
+        return Span{std::min(a.low, b.low), std::max(a.high, b.high)};
+      });
+}
+
+// A change of an axis: integers become (old - shift) * 10^power.
+struct Change {
+  int power = 0;
+  double shift = 0;
+};
+
+// The finest change of at most `power` whose integers fit. An offset that must move does so by a round number
+// of steps.
+Change finest(const Span& span, int power) {
+  const auto fits = [&](double shift, double factor) {
+    return (span.high - shift) * factor < kMostSteps && (span.low - shift) * factor > -kMostSteps;
+  };
+  for (; power > 0; --power) {
+    const double factor = std::pow(10.0, power), unit = std::pow(10.0, std::max(0, kMostPowers - 1 - power));
+    const double shift = std::nearbyint((span.low + span.high) / 2 / unit) * unit;
+    if (fits(0, factor)) return {power, 0};
+    if (fits(shift, factor)) return {power, shift};
+  }
+  return {};
+}
+
+void apply(Table& points, std::size_t axis, const Change& change, const Context& context) {
+  const auto factor = std::int64_t(std::pow(10.0, change.power)), shift = std::int64_t(change.shift);
+  context.check_stop();
+  Context to_the_end = context;  // in place: all rows or none
+  to_the_end.stop = nullptr;
+  const std::size_t size = points.row_size();
+  for_each_index(to_the_end, points.count, [&](std::size_t i) {
+    char* p = points.data.data() + i * size + 4 * axis;
+    std::int32_t value;
+    std::memcpy(&value, p, sizeof value);
+    value = std::int32_t((value - shift) * factor);
+    std::memcpy(p, &value, sizeof value);
+  });
+  Field& field = points.fields[axis];
+  field.offset += change.shift * field.scale;
+  field.scale = times_power_of_ten(field.scale, -change.power);
+}
+
+}  // namespace
+
+bool RefinedScale::coarse(double step) const {
+  return std::any_of(after.begin(), after.end(), [&](double scale) { return std::abs(scale) > step; });
+}
+
+double times_power_of_ten(double value, int power) {
+  char shortest[64];
+  const auto written =
+      std::to_chars(shortest, shortest + sizeof shortest, value, std::chars_format::scientific);
+  const std::string_view digits(shortest, std::size_t(written.ptr - shortest));
+  const std::size_t e = digits.find('e');
+  int exponent = 0;
+  const char* first = digits.data() + e + (digits[e + 1] == '+' ? 2 : 1);
+  std::from_chars(first, digits.data() + digits.size(), exponent);
+  const std::string moved = fmt::format("{}e{}", digits.substr(0, e), exponent + power);
+  double out = value;
+  std::from_chars(moved.data(), moved.data() + moved.size(), out);
+  return out;
+}
+
+double decimal_scale(double extent, double steps) {
+  if (!(extent > 0)) return 1e-3;
+  return times_power_of_ten(1, int(std::ceil(std::log10(extent / steps))));
+}
+
+RefinedScale refine_scale(Cloud& las, double step, const double* xyz, const Context& context) {
+  RefinedScale done;
+  Table& points = las.points();
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double scale = points.fields[axis].scale;
+    done.before[axis] = done.after[axis] = scale;
+    if (!(step > 0) || std::abs(scale) <= step || points.count == 0) continue;
+    // Rounded up, but for what division adds to a power of ten.
+    const int power = int(std::ceil(std::log10(std::abs(scale) / step) - 1e-9));
+    const Change change =
+        finest(span_in_steps(points, axis, xyz, context), std::clamp(power, 0, kMostPowers));
+    if (change.power == 0) continue;
+    apply(points, axis, change, context);
+    done.after[axis] = points.fields[axis].scale;
+    done.shift[axis] = change.shift;
+  }
+  return done;
+}
+
+}  // namespace rfsmooth::pipeline::io

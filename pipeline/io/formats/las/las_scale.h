@@ -1,0 +1,33 @@
+/// The scale of a LAS file: the step that its coordinates are rounded to.
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "pipeline/io/table/cloud.h"
+
+namespace rfsmooth::pipeline::io {
+
+/// What was done to scales that are coarser than asked for.
+struct RefinedScale {
+  std::array<double, 3> before{}, after{};  ///< by axis; the same where nothing was done
+  std::array<double, 3> shift{};  ///< of the offset, in old steps: the old one left no room in 32 bits
+  bool refined() const { return before != after; }
+  bool moved_offset() const { return shift != std::array<double, 3>{}; }
+  /// Whether an axis still is coarser than `step`: the cloud is too large for 32 bits.
+  bool coarse(double step) const;
+};
+
+/// Gives each axis of a LAS cloud a scale of at most `step`, the old one over a power of ten, before
+/// coordinates `xyz` (n x 3) are set: integers become 10^k times what they were, so that points stay where
+/// they are to the last digit. As far as both old and new coordinates fit into 32 bits; the offset stays if
+/// that is enough, else it moves by a whole number of old steps. Every point keeps its place. O(n).
+RefinedScale refine_scale(Cloud& las, double step, const double* xyz, const Context& context);
+
+/// The finest power of ten that `steps` fit into `extent`; 1e-3 for an extent of 0.
+double decimal_scale(double extent, double steps);
+
+/// A decimal number times ten to the `power`, without the rounding of a division: 0.01 and -1 give 0.001.
+double times_power_of_ten(double value, int power);
+
+}  // namespace rfsmooth::pipeline::io

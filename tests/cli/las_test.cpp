@@ -1,0 +1,185 @@
+/// LAS through the real command: what stays, what is refined, removed, added and said.
+#include <cmath>
+#include <random>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/cli/support/cloud_file.h"
+#include "tests/cli/support/folder.h"
+#include "tests/support/las_bytes.h"
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+namespace rfsmooth::test {
+namespace {
+
+constexpr double kSigma = 0.2;
+constexpr int kSide = 40;
+
+/// kSide x kSide points a metre apart in the plane z = 0 in UTM, with Gaussian noise of kSigma, in steps of
+/// `scale`.
+LasBytes survey(int minor, int format, double scale) {
+  std::mt19937_64 engine(9);
+  std::normal_distribution<double> noise(0, kSigma);
+  LasBytes las;
+  las.minor = minor;
+  las.format = format;
+  las.scale = {scale, scale, scale};
+  for (int i = 0; i < kSide; ++i)
+    for (int j = 0; j < kSide; ++j) {
+      const double p[] = {i + noise(engine), j + noise(engine), noise(engine)};
+      las.xyz.push_back({});
+      for (std::size_t k = 0; k < 3; ++k) las.xyz.back()[k] = std::int32_t(std::lround(p[k] / scale));
+    }
+  return las;
+}
+
+class LasCommand : public InFolder {
+ protected:
+  /// Root of the mean square of z, the distance to the true plane.
+  double rms(const std::string& name) const {
+    const std::vector<double> xyz = pipeline::io::positions(read(at(name)));
+    double sum = 0;
+    for (std::size_t k = 2; k < xyz.size(); k += 3) sum += xyz[k] * xyz[k];
+    return std::sqrt(3 * sum / double(xyz.size()));
+  }
+};
+
+TEST_F(LasCommand, ChangesCoordinatesAndBoxOnly) {
+  for (const auto& [minor, format] : {std::pair{2, 3}, {3, 4}, {4, 1}, {4, 6}, {4, 10}}) {
+    const LasBytes las = survey(minor, format, 0.001);
+    const std::string before = las.bytes();
+    put("in.las", before);
+    const Ran ran = run({"denoise", "--force", "in.las", "out.las"});
+    ASSERT_EQ(ran.code, 0) << ran.err;
+    std::string after = take("out.las");
+    ASSERT_EQ(after.size(), before.size());
+    EXPECT_LT(rms("out.las"), kSigma / 2);
+    std::string expected = before;
+    expected.replace(179, 48, after.substr(179, 48));
+    for (std::size_t i = 0; i < las.xyz.size(); ++i) {
+      const std::size_t row = las.points() + i * las.row();
+      expected.replace(row, 12, after.substr(row, 12));
+    }
+    EXPECT_EQ(after == expected, true) << "1." << minor << ", point format " << format;
+  }
+}
+
+TEST_F(LasCommand, RoundingToACoarseScaleCostsMoreThanRefiningIt) {
+  put("in.las", survey(2, 1, kSigma).bytes());
+  ASSERT_EQ(run({"denoise", "--drop-unsupported", "in.las", "unrounded.ply"}).code, 0);
+  const Ran refined = run({"denoise", "in.las", "refined.las"}),
+            kept = run({"denoise", "--keep-scale", "in.las", "kept.las"});
+  ASSERT_EQ(refined.code + kept.code, 0) << refined.err << kept.err;
+  EXPECT_THAT(refined.err, AllOf(HasSubstr("scale 0.2 is coarse"), HasSubstr("refined to 0.02"),
+                                 HasSubstr("--keep-scale")));
+  EXPECT_THAT(kept.err, Not(HasSubstr("refined")));
+  const double best = rms("unrounded.ply");
+  EXPECT_LT(rms("refined.las"), 1.01 * best);
+  EXPECT_GT(rms("kept.las"), 1.2 * best);
+  EXPECT_EQ(LasBytes::get<double>(take("refined.las"), 131), 0.02);
+  EXPECT_EQ(LasBytes::get<double>(take("kept.las"), 131), kSigma);
+}
+
+TEST_F(LasCommand, PointsThatDoNotMoveStayWhereTheyAreUnderARefinedScale) {
+  const LasBytes las = survey(2, 1, kSigma);
+  put("in.las", las.bytes());
+  ASSERT_EQ(run({"denoise", "--mark-outliers", "--write-displacement", "in.las", "out.las"}).code, 0);
+  const auto cloud = read(at("out.las"));
+  const auto displacement = pipeline::io::find_field(cloud, "displacement");
+  ASSERT_TRUE(displacement);
+  const std::vector<double> moved = pipeline::io::field_values(cloud, *displacement),
+                            xyz = pipeline::io::positions(cloud);
+  for (std::size_t i = 0; i < moved.size(); ++i) {
+    double squared = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double d = xyz[3 * i + k] - (las.xyz[i][k] * las.scale[k] + las.offset[k]);
+      squared += d * d;
+    }
+    EXPECT_NEAR(moved[i], std::sqrt(squared), 1e-6) << i;
+  }
+}
+
+TEST_F(LasCommand, RemovesMarksAndAddsFieldsAsInOtherFormats) {
+  LasBytes las = survey(4, 6, 0.001);
+  for (const int k : {0, 1, 2})
+    las.xyz[std::size_t(400 * k + 100)][2] = 9000 + 500 * k;  // metres above the plane
+  put("in.las", las.bytes());
+  ASSERT_EQ(run({"denoise", "--outliers", "remove", "in.las", "removed.las"}).code, 0);
+  const std::string removed = take("removed.las");
+  const std::size_t n = las.xyz.size() - 3;
+  EXPECT_EQ(LasBytes::get<std::uint64_t>(removed, 247), n);
+  const std::size_t end = las.points() + n * las.row();
+  EXPECT_EQ(LasBytes::get<std::uint64_t>(removed, 235), end + 7);
+  EXPECT_EQ(removed.substr(end), las.tail());
+  std::size_t row = las.points();
+  for (std::size_t i = 0; i < las.xyz.size(); ++i) {
+    if (i == 100 || i == 500 || i == 900) continue;
+    ASSERT_EQ(removed.substr(row + 12, las.row() - 12), las.point(i).substr(12)) << i;
+    row += las.row();
+  }
+  ASSERT_EQ(run({"denoise", "--outliers", "mark", "--normals", "in.las", "marked.las"}).code, 0);
+  const auto cloud = read(at("marked.las"));
+  const auto outlier = pipeline::io::find_field(cloud, "outlier"), up = pipeline::io::find_field(cloud, "nz");
+  ASSERT_TRUE(outlier && up);
+  EXPECT_EQ(pipeline::io::field_values(cloud, *outlier)[500], 1);
+  EXPECT_EQ(pipeline::io::field_values(cloud, *outlier)[501], 0);
+  EXPECT_GT(std::abs(pipeline::io::field_values(cloud, *up)[820]), 0.9);
+}
+
+TEST_F(LasCommand, ManyFilesGoIntoAFolder) {
+  put("a.las", survey(2, 3, 0.001).bytes());
+  put("b.las", survey(4, 7, 0.001).bytes());
+  put("c.las", survey(4, 7, 0.001).bytes().substr(0, 9000));
+  const Ran ran = run({"denoise", "a.las", "c.las", "b.las", "-o", "cleaned/"});
+  EXPECT_EQ(ran.code, 3) << ran.err;
+  EXPECT_THAT(ran.err, AllOf(HasSubstr("c.las: byte "), HasSubstr("2 of 3 done")));
+  for (const char* name : {"cleaned/a.las", "cleaned/b.las"}) EXPECT_LT(rms(name), kSigma / 2) << name;
+  EXPECT_FALSE(there("cleaned/c.las"));
+}
+
+TEST_F(LasCommand, EveryCommandReadsIt) {
+  put("in.las", survey(4, 7, 0.001).bytes());
+  const Ran info = run({"info", "in.las"});
+  EXPECT_EQ(info.code, 0) << info.err;
+  EXPECT_THAT(info.out,
+              AllOf(HasSubstr("las binary"), HasSubstr("1.4, point format 7"),
+                    HasSubstr("LASF_Projection 2112"), HasSubstr("ring:uint8"), HasSubstr("copyist 9")));
+  const Ran json = run({"info", "--json", "in.las"});
+  EXPECT_THAT(json.out, AllOf(HasSubstr("\"point_format\": 7"), HasSubstr("\"scale\": 0.001")));
+  EXPECT_EQ(run({"mesh", "in.las", "mesh.ply"}).code, 0);
+  EXPECT_EQ(run({"denoise", "in.las", "out.las"}).code, 0);
+  EXPECT_EQ(run({"compare", "out.las", "in.las", "-o", "seen.las"}).code, 0);
+  const auto seen = read(at("seen.las"));
+  EXPECT_TRUE(pipeline::io::find_field(seen, "deviation"));
+  EXPECT_EQ(run({"denoise", "--strength-field", "ring", "in.las", "never.las"}).code, 2);  // not from 0 to 1
+}
+
+TEST_F(LasCommand, ConversionsNameWhatIsLost) {
+  put("in.las", survey(4, 7, 0.001).bytes());
+  const Ran refused = run({"denoise", "in.las", "out.ply"});
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_THAT(refused.err, AllOf(HasSubstr("the coordinate system"), HasSubstr("record 'copyist' 9"),
+                                 HasSubstr("--drop-unsupported")));
+  EXPECT_FALSE(there("out.ply"));
+  ASSERT_EQ(run({"denoise", "--drop-unsupported", "in.las", "out.ply"}).code, 0);
+  const Ran back = run({"denoise", "out.ply", "back.las"});
+  EXPECT_EQ(back.code, 0) << back.err;
+  EXPECT_EQ(read(at("back.las")).format, Format::las);
+}
+
+TEST_F(LasCommand, SameBytesForAnyNumberOfThreads) {
+  put("in.las", survey(4, 6, kSigma).bytes());
+  std::string first;
+  for (const char* threads : {"1", "2", "3"}) {
+    ASSERT_EQ(run({"denoise", "--force", "--threads", threads, "in.las", "out.las"}).code, 0);
+    if (first.empty()) first = take("out.las");
+    EXPECT_EQ(take("out.las") == first, true) << threads;
+  }
+}
+
+}  // namespace
+}  // namespace rfsmooth::test
