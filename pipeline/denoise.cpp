@@ -17,6 +17,7 @@
 #include "rfs_mesh/connect/edge_swap.h"
 #include "rfs_mesh/points.h"
 #include "smoothing/automatic/flow_auto.h"
+#include "smoothing/trace.h"
 
 namespace rfsmooth {
 
@@ -49,6 +50,7 @@ void alternate(Mesh& mesh, const Constraints& constraints, const DenoiseOptions&
   else if (options.flow.modifiers.any() || !constraints.strength.empty())
     flow = value_or_throw(make_flow([&](auto&&...) { return smoothing::make_automatic(*automatic, found); },
                                     mesh, options.flow, context, constraints));
+  smoothing::Tracer tracer(options.flow.trace ? &report.trace : nullptr, mesh, context);
   for (int step = 0; step < steps; ++step) {
     const bool last = step + 1 == steps;
     context.report("smooth", double(step) / steps);
@@ -57,9 +59,11 @@ void alternate(Mesh& mesh, const Constraints& constraints, const DenoiseOptions&
       if (flow)
         flow->step(mesh, context);
       else
-        found = smooth_automatically(mesh, *automatic, context,
-                                     last ? smoothing::Connectivity::used_up : smoothing::Connectivity::kept);
+        found = smooth_automatically(
+            mesh, *automatic, context,
+            last && !options.flow.trace ? smoothing::Connectivity::used_up : smoothing::Connectivity::kept);
     }
+    tracer.add(mesh, context);
     if (!swap || last) continue;
     const Stopwatch watch(report.seconds, "swap");
     const std::size_t swaps = rfs_mesh::swap_edges(mesh, options.swaps, context);

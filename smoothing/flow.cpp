@@ -12,6 +12,7 @@
 #include "smoothing/modifiers/threshold.h"
 #include "smoothing/partners.h"
 #include "smoothing/remesh/reorder.h"
+#include "smoothing/trace.h"
 
 namespace rfsmooth {
 
@@ -36,6 +37,16 @@ auto step_length(const Options& options, long) -> decltype(options.dt) {
 template <class Options>
 double step_length(const Options&, ...) {
   return 1;
+}
+
+/// Where a flow's scheme is; null of flows that have none.
+template <class Options>
+auto scheme_of(Options& options, int) -> decltype(&options.scheme) {
+  return &options.scheme;
+}
+template <class Options>
+Scheme* scheme_of(Options&, long) {
+  return nullptr;
 }
 
 /// Whether the order of the vertices matters.
@@ -72,6 +83,9 @@ std::unique_ptr<Flow> compose(const FlowMaker& make, const Mesh& mesh, const Flo
     rule.every = m.threshold_every;
     rule.lambda = std::visit([](const auto& o) { return step_length(o, 0); }, options.flow);
     if (!(rule.lambda > 0)) rule.lambda = 1;
+    const Scheme* const scheme =
+        std::visit([](const auto& o) -> const Scheme* { return scheme_of(o, 0); }, options.flow);
+    if (scheme != nullptr) rule.scheme = *scheme;
     flow = make_threshold(std::move(flow), mesh, rule, context);
   }
   return flow;
@@ -92,6 +106,14 @@ Result<AnyFlow> find_flow(std::string_view name) {
   }
   return Error{ErrorCode::usage,
                fmt::format("there is no flow '{}'; there are {}", name, fmt::join(names, ", "))};
+}
+
+Result<FlowOptions> as_printed(FlowOptions options) {
+  if (std::holds_alternative<AutomaticOptions>(options.flow))
+    return Error{ErrorCode::usage, "the flow 'auto' is in no paper; name one that is"};
+  Scheme* const scheme = std::visit([](auto& o) -> Scheme* { return scheme_of(o, 0); }, options.flow);
+  if (scheme != nullptr) *scheme = Scheme::printed;
+  return options;
 }
 
 Result<Done> validate(const FlowOptions& options) {
@@ -133,9 +155,11 @@ FlowReport run(Mesh& mesh, const FlowOptions& options, const Context& context,
   FlowReport report;
   const auto flow = value_or_throw(make_flow(mesh, options, context, constraints));
   const int steps = iterations(options.flow);
+  Tracer tracer(options.trace ? &report.trace : nullptr, mesh, context);
   for (; report.steps < steps; ++report.steps) {
     context.report(name_of(options.flow), double(report.steps) / steps);
     flow->step(mesh, context);
+    tracer.add(mesh, context);
   }
   report.solver_iterations = flow->solver_iterations();
   return report;

@@ -69,9 +69,10 @@ struct DenoiseReport {
   double equalized_largest = 0;  ///< the farthest
   double guide_strength = 0;     ///< of the automatic smoother's guide, dimensionless; 0 for flows
   double tail_times = 1;  ///< noise of the noisiest points (heavy tails) over that of the others; 1: no tails
-  std::size_t stranded = 0;  ///< points that its fairing had left beside the surface
-  double largest_move = 0;   ///< world units
-  double rms_move = 0;       ///< over the finite rows, world units
+  std::size_t stranded = 0;     ///< points that its fairing had left beside the surface
+  double largest_move = 0;      ///< world units
+  double rms_move = 0;          ///< over the finite rows, world units
+  std::vector<TraceRow> trace;  ///< of the rough mesh, if asked for (FlowOptions::trace); steps + 1 rows
   std::size_t faces = 0, edges = 0, sdg_edges = 0, bridges = 0, faceless = 0, swaps = 0;
   std::vector<StageTime> seconds;  ///< in the order first done
 };

@@ -7,6 +7,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -15,11 +16,22 @@
 
 namespace rfsmooth {
 
+/// What a mesh measures before the first step (row 0) and after each. World units.
+struct TraceRow {
+  int step = 0;
+  std::optional<double> volume;  ///< of closed meshes that have an inside
+  double area = 0;               ///< of the faces
+  double energy = 0;             ///< sum over the edges' ends of |umbrella vector|^2, the thin-plate energy
+  double roughness = 0;          ///< root mean square turn of the normal across edges of two faces, degrees
+  double largest_move = 0;       ///< of this step
+};
+
 /// What a run did.
 struct FlowReport {
   int steps = 0;
-  int solver_iterations = 0;  ///< implicit flows: products with the matrix, all steps together
-  double largest_move = 0;    ///< world units
+  int solver_iterations = 0;    ///< implicit flows: products with the matrix, all steps together
+  double largest_move = 0;      ///< world units
+  std::vector<TraceRow> trace;  ///< steps + 1 rows if asked for (FlowOptions::trace)
 };
 
 /// What the automatic flow measured and chose.
@@ -77,6 +89,10 @@ const std::vector<AnyFlow>& flows();
 
 /// The flow called `name`, with its defaults. Errors: usage, with the names there are.
 Result<AnyFlow> find_flow(std::string_view name);
+
+/// The same options with exactly the equations that the papers print: every scheme is Scheme::printed. Flows
+/// that have no scheme are printed already. Errors: usage, for auto, which is in no paper.
+Result<FlowOptions> as_printed(FlowOptions options);
 
 /// Checks the ranges, and that no option without effect (push_alpha without push_back) has another value than
 /// its default. The error (usage) names the option, and its range or the partner that it needs.

@@ -43,10 +43,12 @@ enum class OperatorKind {
 /// Of a residual: root mean square, or the largest.
 enum class Norm { l2, linf };
 /// How neighbours get their parameters: projected to the tangent plane, by lengths and scaled angles around
-/// the vertex, or the mean of the latter and the uniform chart.
-enum class Chart { tangent, exponential, mixed };
-/// A step of directional diffusion that keeps the volume to first order, or the one that the paper prints.
-enum class DirectionalScheme { conserving, printed };
+/// the vertex, the mean of the latter and the uniform chart, or the uniform chart: even angles, all lengths
+/// their mean.
+enum class Chart { tangent, exponential, mixed, uniform };
+/// A step whose size is bounded where a mesh is bad, with the mixed area in H n; or the papers' equation as
+/// it is printed: no bounds, and in H n the area of the whole one-ring, which makes it a third.
+enum class Scheme { safe, printed };
 /// Where the threshold comes from that vertices must be faster than (threshold.h).
 enum class ThresholdKind { none, constant, one_ring, two_ring };
 /// The invariant that is restored after every step (preserve.h).
@@ -77,7 +79,12 @@ struct Shared {
                                             1e-14, 1};
   static inline const OptionInfo kNorm =
       words("norm", "implicit flows: norm of the residual", {"l2", "linf"});
-  static inline const std::vector<std::string_view> kCharts = {"tangent", "exponential", "mixed"};
+  static inline const std::vector<std::string_view> kCharts = {"tangent", "exponential", "mixed", "uniform"};
+  static inline const OptionInfo kScheme =
+      words("scheme", "curvature flows: steps bounded on bad faces, or the equation as the paper prints it",
+            {"safe", "printed"});
+  static inline const OptionInfo kPower{"power", "directional flows: m of the energy integral H^(2m) dA", "",
+                                        0, 8};
 };
 
 /// The automatic smoother (flow_auto.h).
@@ -213,6 +220,7 @@ struct CurvatureOptions {
   int iterations = 10;
   double lambda = 0.25;     ///< on a regular mesh half of what is stable
   bool normalised = false;  ///< divided by the sum of the cotangents; stable up to lambda = 1
+  Scheme scheme = Scheme::safe;
 
   std::unique_ptr<Flow> start(const Mesh&, const Constraints&, const Context&) const;
   template <class Self, class Visit>
@@ -221,6 +229,7 @@ struct CurvatureOptions {
     visit(Shared::kLambda, self.lambda);
     visit(OptionInfo{"normalised", "curvature flow: divided by the sum of the cotangents", ""},
           self.normalised);
+    visit(Shared::kScheme, self.scheme);
   }
 };
 
@@ -231,9 +240,11 @@ struct ImplicitOptions {
   int iterations = 1;
   double dt = 10;  ///< any size is stable
   OperatorKind op = OperatorKind::umbrella;
-  int order = 2;              ///< power of the operator; 2 is the paper's recommendation (2.6)
-  double mixture = 0;         ///< share of the first power beside the order-th; negative enhances
-  bool keep_weights = false;  ///< weights of the first mesh for all steps
+  int order = 2;                 ///< power of the operator; 2 is the paper's recommendation (2.6)
+  double mixture = 0;            ///< share of the first power beside the order-th; negative enhances
+  bool keep_weights = false;     ///< weights of the first mesh for all steps
+  Scheme scheme = Scheme::safe;  ///< printed: the curvature operator's area, and L x of fixed vertices is 0
+                                 ///< inside L (L x) too, where safe counts how the surface bends there
   double tolerance = 1e-5;
   Norm norm = Norm::l2;
 
@@ -250,6 +261,7 @@ struct ImplicitOptions {
           self.mixture);
     visit(OptionInfo{"keep-weights", "implicit flows: weights of the first mesh for all steps", ""},
           self.keep_weights);
+    visit(Shared::kScheme, self.scheme);
     visit(Shared::kTolerance, self.tolerance);
     visit(Shared::kNorm, self.norm);
   }
@@ -263,6 +275,7 @@ struct ModifiedCurvatureOptions {
   int iterations = 10;
   double lambda = 0.25;
   double tangential = 1;  ///< weight of the tangential part
+  Scheme scheme = Scheme::safe;
 
   std::unique_ptr<Flow> start(const Mesh&, const Constraints&, const Context&) const;
   template <class Self, class Visit>
@@ -271,6 +284,7 @@ struct ModifiedCurvatureOptions {
     visit(Shared::kLambda, self.lambda);
     visit(OptionInfo{"tangential", "modified curvature flow: weight of the tangential part", "", 0, 4},
           self.tangential);
+    visit(Shared::kScheme, self.scheme);
   }
 };
 
@@ -281,12 +295,20 @@ struct MedianDirectionOptions {
       "Ohtake (12), (13)"};
   int iterations = 10;
   double lambda = 0.25;
+  double least_cosine = 0.1;  ///< the paper's epsilon: where the two directions are nearer to a right angle
+                              ///< a vertex stays
+  Scheme scheme = Scheme::safe;
 
   std::unique_ptr<Flow> start(const Mesh&, const Constraints&, const Context&) const;
   template <class Self, class Visit>
   static void describe(Self& self, Visit&& visit) {
     visit(Shared::kIterations, self.iterations);
     visit(Shared::kLambda, self.lambda);
+    visit(OptionInfo{"least-cosine",
+                     "median direction: vertices stay where its cosine to the normal is less (epsilon)", "",
+                     0, 1},
+          self.least_cosine);
+    visit(Shared::kScheme, self.scheme);
   }
 };
 
@@ -300,18 +322,16 @@ struct DirectionalOptions {
   double lambda = 0.05;  ///< in units of the squared mean edge length
   int power = 0;         ///< m of the energy, the integral of H^(2m), that falls; only without a direction
   std::optional<Eigen::Vector3d> direction;  ///< any length; empty = the one in which the energy falls
-  DirectionalScheme scheme = DirectionalScheme::conserving;
+  Scheme scheme = Scheme::safe;              ///< safe also keeps the volume to first order
 
   std::unique_ptr<Flow> start(const Mesh&, const Constraints&, const Context&) const;
   template <class Self, class Visit>
   static void describe(Self& self, Visit&& visit) {
     visit(Shared::kIterations, self.iterations);
     visit(Shared::kLambda, self.lambda);
-    visit(OptionInfo{"power", "directional: m of the energy integral H^(2m) dA", "", 0, 8}, self.power);
+    visit(Shared::kPower, self.power);
     visit(OptionInfo{"direction", "directional: auto, or x,y,z", ""}, self.direction);
-    visit(words("scheme", "directional: a step that keeps the volume, or the one the paper prints",
-                {"conserving", "printed"}),
-          self.scheme);
+    visit(Shared::kScheme, self.scheme);
   }
 };
 
@@ -324,6 +344,8 @@ struct LocalDirectionalOptions {
   int iterations = 8;
   double lambda = 0.005;  ///< the paper's figure 3
   double eps = 0.05;      ///< Gauss curvature that counts as flat, 1 / (mean edge length)^2
+  int power = 0;          ///< m of the energy, the integral of H^(2m) over each one-ring
+  Scheme scheme = Scheme::safe;
 
   std::unique_ptr<Flow> start(const Mesh&, const Constraints&, const Context&) const;
   template <class Self, class Visit>
@@ -333,6 +355,8 @@ struct LocalDirectionalOptions {
     visit(
         OptionInfo{"eps", "local directional: Gauss curvature that counts as flat", "1/(mean edge)^2", 0, 1},
         self.eps);
+    visit(Shared::kPower, self.power);
+    visit(Shared::kScheme, self.scheme);
   }
 };
 
@@ -414,6 +438,7 @@ struct Modifiers {
 struct FlowOptions {
   AnyFlow flow = AutomaticOptions();
   Modifiers modifiers = {};
+  bool trace = false;  ///< measure the mesh after every step, for the report; costs about a step's time
 
   /// Visitors that can take the whole, because they know every flow and not only the one chosen, get it.
   template <class Self, class Visit>

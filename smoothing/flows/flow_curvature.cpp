@@ -7,7 +7,7 @@ namespace rfsmooth {
 using namespace smoothing;
 
 std::unique_ptr<Flow> CurvatureOptions::start(const Mesh&, const Constraints&, const Context&) const {
-  return make_explicit(make_curvature_speed(normalised, lambda), lambda, Update::simultaneous);
+  return make_explicit(make_curvature_speed(normalised, lambda, scheme), lambda, Update::simultaneous);
 }
 
 }  // namespace rfsmooth

@@ -44,8 +44,8 @@ using Eigen::Vector3d;
 
 class DirectionalSpeed : public Speed {
  public:
-  DirectionalSpeed(const Mesh& mesh, int power, const Vector3d& direction, DirectionalScheme scheme,
-                   double lambda, const Context& context)
+  DirectionalSpeed(const Mesh& mesh, int power, const Vector3d& direction, Scheme scheme, double lambda,
+                   const Context& context)
       : power_(power), direction_(direction), scheme_(scheme), lambda_(lambda) {
     connectivity_changed(mesh, context);
     warn(context);
@@ -57,11 +57,10 @@ class DirectionalSpeed : public Speed {
     const Vector3d a = choose(mesh, grad, h, context);
     speed.resize(grad.area.size());
     for_each_index(context, speed.size(), [&](std::size_t i) {
-      const Vector3d v =
-          h * (scheme_ == DirectionalScheme::printed ? printed(grad, i, a) : conserving(grad, i, a));
+      const Vector3d v = h * (scheme_ == Scheme::printed ? printed(grad, i, a) : conserving(grad, i, a));
       speed[i] = v.allFinite() ? v : Vector3d(Vector3d::Zero());
     });
-    if (scheme_ == DirectionalScheme::conserving) restore_volume(grad, a, h, speed, context);
+    if (scheme_ == Scheme::safe) restore_volume(grad, a, h, speed, context);
   }
 
   void connectivity_changed(const Mesh& mesh, const Context& context) override {
@@ -133,7 +132,7 @@ class DirectionalSpeed : public Speed {
   /// The unit direction; zero on shapes too symmetric to have one.
   Vector3d choose(const Mesh& mesh, const Gradients& grad, double h, const Context& context) const {
     if (direction_ != Vector3d::Zero()) return direction_;
-    const bool area = power_ == 0 && scheme_ == DirectionalScheme::conserving;
+    const bool area = power_ == 0 && scheme_ == Scheme::safe;
     const Positions terms = area ? area_terms(grad, context) : bending_terms(mesh, grad, h, context);
     const Vector3d a =
         sum_over(context, terms.size(), Vector3d(Vector3d::Zero()), [&](std::size_t i) { return terms[i]; });
@@ -162,7 +161,8 @@ class DirectionalSpeed : public Speed {
     for_each_index(context, n, [&](std::size_t i) {
       share[i] = op.mass[i] / (2 * h * h);
       H[i] = -h * Hn[i].dot(grad.volume[i].normalized());
-      if (scheme_ == DirectionalScheme::printed) H[i] *= share[i] / std::max(grad.ring[i], share[i]);
+      if (scheme_ == Scheme::printed)  // the length of the vector of (37); only its square counts
+        H[i] = h * Hn[i].norm() * share[i] / std::max(grad.ring[i], share[i]);
       K[i] = angle_deficit(mesh, around_, Index(i)) / share[i];
       field[i] = Vector3d(std::pow(H[i], 2 * power_ - 1), 0, 0);
     });
@@ -170,7 +170,7 @@ class DirectionalSpeed : public Speed {
     for_each_index(context, n, [&](std::size_t i) {
       const double m = power_, H2 = H[i] * H[i];
       const double lap = -2 * h * h * laplacian[i].x();  // the operator is -Lap/2
-      const double inside = scheme_ == DirectionalScheme::printed
+      const double inside = scheme_ == Scheme::printed
                                 ? -std::pow(4 * H2, m) * (6 * m * (2 * H2 - K[i]) + 2 * H2)
                                 : m * H[i] * lap + std::pow(H2, m) * (2 * m * (2 * H2 - K[i]) - 2 * H2);
       const Vector3d t = -inside * share[i] * grad.volume[i].normalized();
@@ -193,7 +193,7 @@ class DirectionalSpeed : public Speed {
 
   int power_;
   Vector3d direction_;
-  DirectionalScheme scheme_;
+  Scheme scheme_;
   double lambda_;
   Unclosed unclosed_;
   std::vector<Face> faces_;

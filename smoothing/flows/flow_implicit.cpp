@@ -20,7 +20,9 @@ namespace {
 class ImplicitFlow : public Flow {
  public:
   ImplicitFlow(const ImplicitOptions& options, AllowedMoves allowed)
-      : source_(options.op, options.keep_weights), allowed_(std::move(allowed)) {
+      : source_(options.op, options.keep_weights, options.scheme),
+        printed_(options.scheme == Scheme::printed && options.order == 2),
+        allowed_(std::move(allowed)) {
     const double dt = options.dt, m = options.mixture;
     a_[options.order - 1] = dt * (1 - m);
     a_[0] += dt * m;
@@ -37,6 +39,12 @@ class ImplicitFlow : public Flow {
     for_each_index(context, system.data.size(), [&](std::size_t i) {
       if (const double s = allowed_.strength(i); s > 0) system.data[i] /= s;
     });
+    if (printed_ && !allowed_.all_free()) {  // 2.7: "fixed if we impose L(x_i) = 0"
+      system.strength.resize(system.data.size());
+      for_each_index(context, system.strength.size(), [&](std::size_t i) {
+        system.strength[i] = allowed_(i, Eigen::Vector3d::Ones()).isZero(0) ? 0 : 1;
+      });
+    }
     const Positions before = mesh.positions;
     iterations_ += solve(system, before, mesh.positions, allowed_, solver_, context).iterations;
   }
@@ -47,6 +55,7 @@ class ImplicitFlow : public Flow {
 
  private:
   OperatorSource source_;
+  bool printed_;
   AllowedMoves allowed_;
   std::array<double, 4> a_ = {0, 0, 0, 0};
   SolverOptions solver_;

@@ -1,16 +1,18 @@
 /// Local directional flow: each vertex diffuses with a direction and a weight of its own one-ring; keeps
 /// corners and saddles.
 ///
-///     move by lambda w (b_i, n) H n,   b_i = unit vector along the one-ring's integral of n H^2
+///     move by lambda w (b_i, n) H n
+///     b_i = unit vector along the one-ring's integral of n (2H)^(2m) (6m (2 H^2 - K) + 2 H^2)
 ///     w = |K|                          where |K| < eps
 ///         (1 + K) / ((1 + H^2) K)      where K >= eps
 ///         0                            where K <= -eps (saddles never move)
 ///
-/// Zhao, Xu 2005, (34)-(36), m = 0. K = angle deficit over the mixed area; the mixed area for H too, else H^2
-/// >= K fails. K, H and eps in units of 1/h (h = mean edge length); the paper's figure has eps 0.05, steps of
-/// 0.005. Differs from the paper: (36) is garbled, this is the reading that is consistent; the paper calls
-/// the flow volume preserving, only the global one is. Normals of a one-ring are turned to the vertex's side,
-/// so faces need not agree in orientation; boundary and non-manifold vertices, where K means nothing, stay.
+/// Zhao, Xu 2005, (34)-(36). K = angle deficit over the mixed area; the mixed area for H too, else H^2
+/// >= K fails (the printed scheme has the one-ring's, as (37) does, and no limit to a step). K, H and eps in
+/// units of 1/h (h = mean edge length); the paper's figure has eps 0.05, steps of 0.005. Differs from the
+/// paper: (36) is garbled, this is the reading that is consistent; the paper calls the flow volume
+/// preserving, only the global one is. Normals of a one-ring are turned to the vertex's side, so faces need
+/// not agree in orientation; boundary and non-manifold vertices, where K means nothing, stay.
 #include <algorithm>
 #include <cmath>
 
@@ -27,7 +29,7 @@ using Eigen::Vector3d;
 
 class LocalDirectionalSpeed : public Speed {
  public:
-  explicit LocalDirectionalSpeed(double eps, double lambda) : eps_(eps), lambda_(lambda) {}
+  explicit LocalDirectionalSpeed(const LocalDirectionalOptions& options) : options_(options) {}
 
   void evaluate(const Mesh& mesh, Positions& speed, const Context& context) override {
     const std::size_t n = mesh.positions.size();
@@ -36,10 +38,20 @@ class LocalDirectionalSpeed : public Speed {
       fans_ = fans_of(mesh, context);
       interior_ = interior_vertices(mesh, around, context);
     }
-    const Operator op = curvature(mesh, around, context);
+    const Operator op = curvature(mesh, around, context, options_.scheme);
+    const std::vector<double> area =
+        options_.scheme == Scheme::safe ? op.mass : curvature(mesh, around, context).mass;  // twice the mixed
     const double h2 = op.unit;
     Positions Hn;
     apply(mesh.one_ring, op, mesh.positions, Hn, context);
+    const auto gauss = [&](std::size_t i) {
+      return interior_[i] != 0 ? h2 * angle_deficit(mesh, around, Index(i)) * 2 / area[i] : 0;
+    };
+    std::vector<double> pull(n);  // what each vertex weighs in the integral
+    for_each_index(context, n, [&](std::size_t i) {
+      const double m = options_.power, H2 = h2 * Hn[i].squaredNorm();
+      pull[i] = area[i] * std::pow(4 * H2, m) * (m > 0 ? 6 * m * (2 * H2 - gauss(i)) + 2 * H2 : 2 * H2);
+    });
     std::vector<char> against;
     const Positions normal = unsigned_normals(mesh, fans_, context, &against);
     /// Whether face number f runs against the normal of its vertex i.
@@ -52,7 +64,7 @@ class LocalDirectionalSpeed : public Speed {
     for_each_index(context, n, [&](std::size_t i) {
       if (interior_[i] == 0) return;
       Vector3d b = Vector3d::Zero();
-      const auto part = [&](std::size_t j) { return Vector3d(op.mass[j] * Hn[j].squaredNorm() * normal[j]); };
+      const auto part = [&](std::size_t j) { return Vector3d(pull[j] * normal[j]); };
       b += part(i);
       for (const Index j : mesh.one_ring[i]) {
         const auto row = around[i];  // its side is told by the first face that has both
@@ -63,13 +75,13 @@ class LocalDirectionalSpeed : public Speed {
         b += opposed(f, i) == opposed(f, j) ? part(j) : Vector3d(-part(j));
       }
       if (!(b.norm() > 0)) return;
-      const double K = h2 * angle_deficit(mesh, around, Index(i)) * 2 / op.mass[i];
-      const double H2 = h2 * Hn[i].squaredNorm();
-      const double w = K <= -eps_ ? 0 : K < eps_ ? std::abs(K) : (1 + K) / ((1 + H2) * K);
-      // inward = -L x; a vertex moves by half an edge at most, so needles cannot blow the flow up
+      const double K = gauss(i), H2 = h2 * Hn[i].squaredNorm(), eps = options_.eps;
+      const double w = K <= -eps ? 0 : K < eps ? std::abs(K) : (1 + K) / ((1 + H2) * K);
+      // inward = -L x
       Vector3d v = -w * h2 * b.normalized().dot(normal[i]) * Hn[i];
-      const double longest = 0.5 * std::sqrt(h2) / std::max(lambda_, 1e-300);
-      if (v.norm() > longest) v *= longest / v.norm();
+      // half an edge at most, so that needles cannot blow the flow up
+      const double longest = 0.5 * std::sqrt(h2) / std::max(options_.lambda, 1e-300);
+      if (options_.scheme == Scheme::safe && v.norm() > longest) v *= longest / v.norm();
       if (v.allFinite()) speed[i] = v;
     });
   }
@@ -77,7 +89,7 @@ class LocalDirectionalSpeed : public Speed {
   void connectivity_changed(const Mesh&, const Context&) override { fans_ = {}; }
 
  private:
-  double eps_, lambda_;
+  LocalDirectionalOptions options_;
   Fans fans_;
   std::vector<char> interior_;
 };
@@ -91,7 +103,7 @@ namespace rfsmooth {
 using namespace smoothing;
 
 std::unique_ptr<Flow> LocalDirectionalOptions::start(const Mesh&, const Constraints&, const Context&) const {
-  return make_explicit(std::make_unique<LocalDirectionalSpeed>(eps, lambda), lambda, Update::simultaneous);
+  return make_explicit(std::make_unique<LocalDirectionalSpeed>(*this), lambda, Update::simultaneous);
 }
 
 }  // namespace rfsmooth

@@ -4,10 +4,10 @@
 ///     m = U0 / |U0|,  cos t = m . H n / |H|
 ///     F = |H| m / cos t              where cos t > eps
 ///         2 H n - |H| m / cos t      where cos t < -eps
-///         0                          else, and where H or U0 vanishes;  eps = 0.1
+///         0                          else, and where H or U0 vanishes;  eps = least_cosine
 ///
-/// Ohtake, Belyaev, Bogaevski 2000, (12), (13); H n times h^2. |F| reaches |H| / eps, so a step is limited to
-/// |U0|: beyond the neighbours' mean it would overshoot what the direction is for.
+/// Ohtake, Belyaev, Bogaevski 2000, (12), (13); H n times h^2. |F| reaches |H| / eps, so a step of the safe
+/// scheme is limited to |U0|: beyond the neighbours' mean it would overshoot what the direction is for.
 #include <cmath>
 
 #include "base/parallel.h"
@@ -22,9 +22,9 @@ using Eigen::Vector3d;
 
 class MedianDirectionSpeed : public Speed {
  public:
-  explicit MedianDirectionSpeed(double lambda)
-      : lambda_(lambda),
-        curvature_(make_curvature_speed(false, lambda)),
+  explicit MedianDirectionSpeed(const MedianDirectionOptions& options)
+      : options_(options),
+        curvature_(make_curvature_speed(false, options.lambda, options.scheme)),
         umbrella_(make_umbrella_speed(false)) {}
 
   void evaluate(const Mesh& mesh, Positions& speed, const Context& context) override {
@@ -39,19 +39,19 @@ class MedianDirectionSpeed : public Speed {
 
  private:
   Vector3d median(const Vector3d& curvature, const Vector3d& umbrella) const {
-    constexpr double kEps = 0.1;  // the paper's, "independently of the mesh sampling rate"
     const double H = curvature.norm(), U = umbrella.norm();
     if (!(H > 0 && U > 0)) return Vector3d::Zero();
     const Vector3d m = umbrella / U;
     const double cosine = m.dot(curvature) / H;
-    if (std::abs(cosine) <= kEps) return Vector3d::Zero();
+    if (std::abs(cosine) <= options_.least_cosine) return Vector3d::Zero();
     const Vector3d along = H / cosine * m;
     const Vector3d F = cosine > 0 ? along : Vector3d(2 * curvature - along);
-    const double longest = U / std::max(lambda_, 1e-300);
+    if (options_.scheme == Scheme::printed) return F;
+    const double longest = U / std::max(options_.lambda, 1e-300);
     return F.norm() > longest ? Vector3d(longest / F.norm() * F) : F;
   }
 
-  double lambda_;
+  MedianDirectionOptions options_;
   std::unique_ptr<Speed> curvature_, umbrella_;
   Positions median_;
 };
@@ -65,7 +65,7 @@ namespace rfsmooth {
 using namespace smoothing;
 
 std::unique_ptr<Flow> MedianDirectionOptions::start(const Mesh&, const Constraints&, const Context&) const {
-  return make_explicit(std::make_unique<MedianDirectionSpeed>(lambda), lambda, Update::simultaneous);
+  return make_explicit(std::make_unique<MedianDirectionSpeed>(*this), lambda, Update::simultaneous);
 }
 
 }  // namespace rfsmooth

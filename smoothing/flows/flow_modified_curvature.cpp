@@ -18,8 +18,8 @@ using Eigen::Vector3d;
 
 class ModifiedCurvatureSpeed : public Speed {
  public:
-  ModifiedCurvatureSpeed(double lambda, double tangential)
-      : curvature_(make_curvature_speed(false, lambda)),
+  ModifiedCurvatureSpeed(double lambda, double tangential, Scheme scheme)
+      : curvature_(make_curvature_speed(false, lambda, scheme)),
         umbrella_(make_umbrella_speed(false)),
         tangential_(tangential) {}
 
@@ -55,7 +55,7 @@ namespace rfsmooth {
 using namespace smoothing;
 
 std::unique_ptr<Flow> ModifiedCurvatureOptions::start(const Mesh&, const Constraints&, const Context&) const {
-  return make_explicit(std::make_unique<ModifiedCurvatureSpeed>(lambda, tangential), lambda,
+  return make_explicit(std::make_unique<ModifiedCurvatureSpeed>(lambda, tangential, scheme), lambda,
                        Update::simultaneous);
 }
 

@@ -9,16 +9,17 @@ namespace {
 
 class CurvatureSpeed : public Speed {
  public:
-  CurvatureSpeed(bool normalised, double lambda)
-      : source_(normalised ? OperatorKind::curvature_normalised : OperatorKind::curvature, false),
-        lambda_(lambda) {}
+  CurvatureSpeed(bool normalised, double lambda, Scheme scheme)
+      : source_(normalised ? OperatorKind::curvature_normalised : OperatorKind::curvature, false, scheme),
+        lambda_(lambda),
+        scheme_(scheme) {}
 
   void evaluate(const Mesh& mesh, Positions& speed, const Context& context) override {
     const Operator& op = source_.on(mesh, context);
     apply(op.rows(mesh), op, mesh.positions, speed, context);
     const std::vector<double> sums = weight_sums(op.rows(mesh), op, context);
     for_each_index(context, speed.size(), [&](std::size_t i) {
-      const double rate = lambda_ * op.unit * sums[i] / op.mass[i];
+      const double rate = scheme_ == Scheme::printed ? 0 : lambda_ * op.unit * sums[i] / op.mass[i];
       speed[i] *= -op.unit / std::max(1.0, rate);
     });
   }
@@ -28,12 +29,13 @@ class CurvatureSpeed : public Speed {
  private:
   OperatorSource source_;
   double lambda_;
+  Scheme scheme_;
 };
 
 }  // namespace
 
-std::unique_ptr<Speed> make_curvature_speed(bool normalised, double lambda) {
-  return std::make_unique<CurvatureSpeed>(normalised, lambda);
+std::unique_ptr<Speed> make_curvature_speed(bool normalised, double lambda, Scheme scheme) {
+  return std::make_unique<CurvatureSpeed>(normalised, lambda, scheme);
 }
 
 }  // namespace rfsmooth::smoothing

@@ -51,13 +51,14 @@ class Threshold : public WrappedFlow {
       fans_ = fans_of(mesh, context);
       interior_ = interior_vertices(mesh, fans_.faces, context);
     }
-    const Operator op = curvature(mesh, fans_.faces, context);
+    const Operator op = curvature(mesh, fans_.faces, context, rule_.scheme);
     const Positions normal = unsigned_normals(mesh, fans_, context);
     Positions Hn;
     apply(mesh.one_ring, op, mesh.positions, Hn, context);
     std::vector<double> bend(n);
     for_each_index(context, n, [&](std::size_t i) {
-      bend[i] = op.unit * (interior_[i] != 0 ? Hn[i].norm() : std::abs(Hn[i].dot(normal[i])));
+      const bool whole = interior_[i] != 0 || rule_.scheme == Scheme::printed;
+      bend[i] = op.unit * (whole ? Hn[i].norm() : std::abs(Hn[i].dot(normal[i])));
     });
     return bend;
   }

@@ -112,7 +112,9 @@ std::vector<Vector2d> chart_of(const Mesh& mesh, const Adjacency& faces, const V
   for (std::size_t k = 0; k < m; ++k) {
     const double a = scale * angle[k], e = offset + even(k);
     Vector2d p = length[k] * Vector2d(std::cos(a), std::sin(a));
-    if (kind == Chart::mixed) p = 0.5 * (p + mean * Vector2d(std::cos(e), std::sin(e)));
+    const Vector2d uniform = mean * Vector2d(std::cos(e), std::sin(e));
+    if (kind == Chart::mixed) p = 0.5 * (p + uniform);
+    if (kind == Chart::uniform) p = uniform;
     chart[std::size_t(std::lower_bound(row.begin(), row.end(), fan.order[k]) - row.begin())] = p;
   }
   return chart;

@@ -57,7 +57,8 @@ double length_unit(const Mesh& mesh, const Context& context) {
   return sum[0] > 0 ? sum[0] / sum[1] : 1;
 }
 
-OperatorSource::OperatorSource(OperatorKind kind, bool frozen) : kind_(kind), frozen_(frozen) {}
+OperatorSource::OperatorSource(OperatorKind kind, bool frozen, Scheme scheme)
+    : kind_(kind), frozen_(frozen), scheme_(scheme) {}
 
 const Operator& OperatorSource::on(const Mesh& mesh, const Context& context) {
   const bool fixed_weights = frozen_ || kind_ == OperatorKind::umbrella;
@@ -72,7 +73,7 @@ const Operator& OperatorSource::on(const Mesh& mesh, const Context& context) {
     op_ = tufted(mesh, context);
   } else {
     if (!ready_) faces_ = vertex_faces(mesh, context);
-    op_ = curvature(mesh, faces_, context);
+    op_ = curvature(mesh, faces_, context, scheme_);
     if (kind_ == OperatorKind::curvature_normalised) op_ = normalised(mesh.one_ring, std::move(op_), context);
   }
   ready_ = true;

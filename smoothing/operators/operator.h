@@ -54,10 +54,12 @@ Operator scale_dependent(const Mesh& mesh, const Context& context);
 ///     (L x)_i = 1 / (4 A_i) sum_j (cot a_ij + cot b_ij) (x_i - x_j),   w = (cot a + cot b) / 2,  m = 2 A
 ///
 /// Desbrun (14), Ohtake (8). Differs from the papers: they take A = the area of the whole one-ring, which
-/// gives H/3; A is the mixed area of Meyer et al. 2002 and L x is H n. More or fewer than two faces at an
+/// gives H/3 and is what Scheme::printed does; A is the mixed area of Meyer et al. 2002 and L x is H n. More
+/// or fewer than two faces at an
 /// edge contribute one cotangent each; faces with twice their area below 1e-8 of their longest edge squared
 /// are skipped (5.4). Zero at interior vertices of any planar mesh. Unit h^2.
-Operator curvature(const Mesh& mesh, const Adjacency& vertex_faces, const Context& context);
+Operator curvature(const Mesh& mesh, const Adjacency& vertex_faces, const Context& context,
+                   Scheme scheme = Scheme::safe);
 
 /// The curvature operator without negative weights, on any mesh: intrinsic Delaunay on the tufted cover.
 ///
@@ -88,7 +90,8 @@ double thin_plate_energy(const Adjacency& rows, const Operator& op, const Positi
 class OperatorSource {
  public:
   /// \param frozen keep the weights of the first mesh (Desbrun 4.3, "relative to the initial mesh").
-  OperatorSource(OperatorKind kind, bool frozen);
+  /// \param scheme of the curvature operator.
+  OperatorSource(OperatorKind kind, bool frozen, Scheme scheme = Scheme::safe);
 
   /// The operator on mesh's positions now (or, frozen, on those of the first call).
   const Operator& on(const Mesh& mesh, const Context& context);
@@ -98,6 +101,7 @@ class OperatorSource {
  private:
   OperatorKind kind_;
   bool frozen_;
+  Scheme scheme_;
   bool ready_ = false;
   Adjacency faces_;
   Operator op_;

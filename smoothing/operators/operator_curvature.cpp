@@ -12,13 +12,14 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Cotangents of a face's three angles and each corner's share of its mixed area; all zero if it is skipped.
+/// Cotangents of a face's three angles and what it adds to the area of each corner; all zero if it is
+/// skipped.
 struct FaceShape {
   std::array<double, 3> cot = {0, 0, 0};
   std::array<double, 3> area = {0, 0, 0};
 };
 
-FaceShape shape_of(const Mesh& mesh, const Face& face) {
+FaceShape shape_of(const Mesh& mesh, const Face& face, Scheme scheme) {
   constexpr double kSliver = 1e-8;  // twice the area over the longest edge squared
   FaceShape shape;
   std::array<double, 3> squared;  // of the edge opposite each corner
@@ -39,16 +40,17 @@ FaceShape shape_of(const Mesh& mesh, const Face& face) {
   }
   for (int k = 0; k < 3; ++k) {
     const int m = (k + 1) % 3, n = (k + 2) % 3;
-    shape.area[k] = obtuse < 0    ? (squared[m] * shape.cot[m] + squared[n] * shape.cot[n]) / 8
-                    : obtuse == k ? doubled / 4
-                                  : doubled / 8;
+    shape.area[k] = scheme == Scheme::printed ? doubled / 2
+                    : obtuse < 0              ? (squared[m] * shape.cot[m] + squared[n] * shape.cot[n]) / 8
+                    : obtuse == k             ? doubled / 4
+                                              : doubled / 8;
   }
   return shape;
 }
 
 }  // namespace
 
-Operator curvature(const Mesh& mesh, const Adjacency& vertex_faces, const Context& context) {
+Operator curvature(const Mesh& mesh, const Adjacency& vertex_faces, const Context& context, Scheme scheme) {
   Operator op;
   const Adjacency& rows = mesh.one_ring;
   const double h = length_unit(mesh, context);
@@ -56,7 +58,8 @@ Operator curvature(const Mesh& mesh, const Adjacency& vertex_faces, const Contex
   op.mass.resize(mesh.positions.size());
   op.weight.assign(rows.items.size(), 0);
   std::vector<FaceShape> shape(mesh.faces.size());
-  for_each_index(context, shape.size(), [&](std::size_t f) { shape[f] = shape_of(mesh, mesh.faces[f]); });
+  for_each_index(context, shape.size(),
+                 [&](std::size_t f) { shape[f] = shape_of(mesh, mesh.faces[f], scheme); });
   for_each_index(context, op.mass.size(), [&](std::size_t i) {
     const auto row = rows[i];
     const auto add = [&](Index j, double cot) {

@@ -10,6 +10,7 @@
 #include <rfsmooth/denoise.h>
 
 #include "pipeline/cli/commands/command.h"
+#include "pipeline/cli/console/trace_file.h"
 #include "pipeline/cli/files/cloud_jobs.h"
 #include "pipeline/cli/files/cloud_normals.h"
 #include "pipeline/cli/files/constraint_fields.h"
@@ -31,6 +32,7 @@ struct DenoiseCommandOptions {
   bool mark_outliers = false;
   bool keep_scale = false;
   NormalsFields normals;
+  TraceFile trace;
   JobOptions job;
 
   template <class Self, class Visit>
@@ -49,6 +51,7 @@ struct DenoiseCommandOptions {
             ""},
         self.keep_scale);
     NormalsFields::describe(self.normals, visit);
+    TraceFile::describe(self.trace, visit);
   }
 
   bool marks() const { return mark_outliers || denoise.outliers == Outliers::mark; }
@@ -184,8 +187,11 @@ std::string denoise_cloud(const DenoiseCommandOptions& options, pipeline::io::Cl
   std::vector<double> xyz = pipeline::io::positions(cloud, context);
   const std::vector<double> strength =
       options.strength_field ? strengths(cloud, *options.strength_field, context) : std::vector<double>{};
+  DenoiseOptions how = options.denoise;
+  how.flow.trace = options.trace.trace.has_value();
   const DenoiseReport done =
-      value_or_fail(rfsmooth::denoise(xyz.data(), n, options.denoise, context, strength), job.input);
+      value_or_fail(rfsmooth::denoise(xyz.data(), n, how, context, strength), job.input);
+  options.trace.write(done.trace, options.job.files);
   const bool some_removed = options.removes() && done.outliers > 0,
              as_nan = some_removed && keeps_grid(cloud);
   const auto blank_outliers = [&] {
@@ -217,6 +223,7 @@ int run_denoise(const DenoiseCommandOptions& options, const Invocation& typed) {
   if (options.mark_outliers && options.denoise.outliers == Outliers::smooth)
     throw Failure({ErrorCode::usage, "--mark-outliers has nothing to mark with --outliers smooth"});
   check(options.normals);
+  options.trace.check(options.job.files, typed);
   return run_cloud_jobs(
       "denoise", options.job, typed, denoising_stages(options.normals.normals),
       [&](auto&&... all) { return denoise_cloud(options, std::forward<decltype(all)>(all)...); });

@@ -8,6 +8,7 @@
 
 #include "base/stopwatch.h"
 #include "pipeline/cli/commands/command.h"
+#include "pipeline/cli/console/trace_file.h"
 #include "pipeline/cli/files/cloud_jobs.h"
 #include "pipeline/cli/files/constraint_fields.h"
 #include "pipeline/cli/files/file_mesh.h"
@@ -63,6 +64,7 @@ struct SmoothMeshCommandOptions {
   FlowOptions flow;
   ConstraintFields constraints;
   After after;
+  TraceFile trace;
   JobOptions job;
 
   template <class Self, class Visit>
@@ -70,6 +72,7 @@ struct SmoothMeshCommandOptions {
     FlowOptions::describe(self.flow, visit);
     ConstraintFields::describe(self.constraints, visit);
     After::describe(self.after, visit);
+    TraceFile::describe(self.trace, visit);
   }
 };
 
@@ -116,7 +119,10 @@ std::string smooth_file(const SmoothMeshCommandOptions& options, pipeline::io::C
                                          }),
                                          job.input);
   watch.next("smooth");
-  const auto done = value_or_fail(rfsmooth::smooth(file.mesh, options.flow, context, constraints), job.input);
+  FlowOptions flow = options.flow;
+  flow.trace = options.trace.trace.has_value();
+  const auto done = value_or_fail(rfsmooth::smooth(file.mesh, flow, context, constraints), job.input);
+  options.trace.write(done.trace, options.job.files);
   bool moved = false;
   const std::vector<double> rows = file.moved_rows(moved);
   const bool stale_normals = moved && has_normals(cloud) && options.after.refine.levels == 0;
@@ -168,6 +174,7 @@ std::string smooth_file(const SmoothMeshCommandOptions& options, pipeline::io::C
 
 int run_smooth_mesh(const SmoothMeshCommandOptions& options, const Invocation& typed) {
   options.after.check_partners(typed);
+  options.trace.check(options.job.files, typed);
   if (const auto& fields = options.constraints; fields.direction && !fields.axis && !fields.plane)
     throw Failure(
         {ErrorCode::usage, "--slide-direction has no effect without --axis-field or --plane-field"});

@@ -19,6 +19,7 @@ using rfsmooth::FlowOptions;
 /// As typed.
 struct Given {
   std::string flow;
+  bool paper = false;
   std::map<std::string, std::string> options;  ///< text by name, without those that are auto
 };
 
@@ -46,6 +47,7 @@ FlowOptions read_given(const Given& given) {
   for (const smoothing::Partner& p : smoothing::partners(fields))
     if (!p.on && given.options.count(std::string(p.option)) > 0)
       throw Failure({ErrorCode::usage, fmt::format("`{}` has no effect without {}", p.option, p.partner)});
+  if (given.paper) fields = value_or_throw(rfsmooth::as_printed(fields));
   value_or_throw(rfsmooth::validate(fields));
   return fields;
 }
@@ -79,7 +81,7 @@ CommandOption of_any_flow(const CommandOption& example, const std::shared_ptr<Fl
 }  // namespace
 
 void OptionCollector::operator()(FlowOptions& field) {
-  const auto given = std::make_shared<Given>(Given{std::string(name_of(field.flow)), {}});
+  const auto given = std::make_shared<Given>(Given{std::string(name_of(field.flow)), false, {}});
   CommandOption flow;
   flow.name = "flow";
   flow.help = "how the mesh is smoothed (see `rfsmooth flows`)";
@@ -90,6 +92,13 @@ void OptionCollector::operator()(FlowOptions& field) {
   flow.get = [&field] { return std::optional<std::string>(name_of(field.flow)); };
   flow.finish = [given, &field] { field = read_given(*given); };
   out_.push_back(std::move(flow));
+  (*this)(OptionInfo{"paper", "exactly the equations that the flow's paper prints: --scheme printed", ""},
+          given->paper);
+  out_.back().get = [given, &field]() -> std::optional<std::string> {  // given: what `set` is bound to
+    std::vector<CommandOption> now = options_of(field, false);
+    const CommandOption* const scheme = find_option(now, "scheme");
+    return scheme != nullptr && scheme->get() == "printed" ? "true" : "false";
+  };
   const auto add = [&](const std::shared_ptr<FlowOptions>& fields,
                        const std::vector<CommandOption>& options) {
     for (const CommandOption& option : options)

@@ -158,11 +158,11 @@ TEST(Directional, ThePrintedSchemeIsThePapers) {
   for (std::size_t i = 0; i < n; ++i) {
     Hn[i] /= 4 * ring[i];
     normal[i].normalize();
-    a += 0.5 * op.mass[i] * 2 * std::pow(Hn[i].dot(normal[i]), 2) * normal[i];
+    a += 0.5 * op.mass[i] * 2 * Hn[i].squaredNorm() * normal[i];
   }
   a.normalize();
   DirectionalOptions o;
-  o.scheme = DirectionalScheme::printed;
+  o.scheme = Scheme::printed;
   o.iterations = 1;
   o.lambda = 0.05;
   Mesh after = mesh;

@@ -1,0 +1,66 @@
+#include "smoothing/trace.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "rfs_mesh/edge_faces.h"
+#include "rfs_mesh/measure.h"
+#include "smoothing/operators/operator.h"
+#include "smoothing/operators/surface.h"
+
+namespace rfsmooth::smoothing {
+
+namespace {
+
+/// Root mean square turn of the normal across the edges with two faces, degrees.
+double roughness(const Mesh& mesh) {
+  constexpr double kPi = 3.14159265358979323846;
+  double sum = 0;
+  std::size_t edges = 0;
+  using rfs_mesh::EdgeFace;
+  rfs_mesh::for_each_edge(rfs_mesh::edge_faces(mesh.faces), [&](const EdgeFace* first, const EdgeFace* last) {
+    if (last - first != 2) return;
+    const auto opposite = [&](const EdgeFace& at) {
+      return mesh.positions[mesh.faces[at.face][(at.corner + 2) % 3]];
+    };
+    const double turn = kPi - rfs_mesh::dihedral_angle(mesh.positions[first->a], mesh.positions[first->b],
+                                                       opposite(first[0]), opposite(first[1]));
+    sum += turn * turn;
+    ++edges;
+  });
+  return edges > 0 ? 180 / kPi * std::sqrt(sum / double(edges)) : 0;
+}
+
+/// The enclosed volume, if the mesh encloses one.
+std::optional<double> volume(const Mesh& mesh, const Context& context) {
+  Unclosed missing;
+  Mesh outward;
+  outward.faces = oriented_as_far_as_possible(mesh, &missing);
+  if (mesh.faces.empty() || missing.rim + missing.crowded > 0 || missing.one_sided) return std::nullopt;
+  outward.positions = mesh.positions;
+  return rfs_mesh::signed_volume(outward, context);
+}
+
+}  // namespace
+
+Tracer::Tracer(std::vector<TraceRow>* rows, const Mesh& mesh, const Context& context)
+    : rows_(rows), before_(rows == nullptr ? Positions{} : mesh.positions) {
+  add(mesh, context);
+}
+
+void Tracer::add(const Mesh& mesh, const Context& context) {
+  if (rows_ == nullptr) return;
+  TraceRow row;
+  row.step = int(rows_->size());
+  row.volume = volume(mesh, context);
+  row.area = rfs_mesh::surface_area(mesh, context);
+  row.energy = thin_plate_energy(mesh.one_ring, umbrella(mesh, context), mesh.positions, context);
+  row.roughness = roughness(mesh);
+  for (std::size_t i = 0; i < before_.size(); ++i)
+    row.largest_move = std::max(row.largest_move, (mesh.positions[i] - before_[i]).norm());
+  before_ = mesh.positions;
+  rows_->push_back(row);
+}
+
+}  // namespace rfsmooth::smoothing
