@@ -134,7 +134,7 @@ void set_edges(Cloud& cloud, const std::vector<Edge>& edges, const std::vector<s
   table.data.reserve(9 * edges.size());
   for (std::size_t e = 0; e < edges.size(); ++e) {
     for (const Index end : edges[e]) append(table.data, std::int32_t(end));
-    if (!kind.empty()) append(table.data, kind.at(e));
+    if (!kind.empty()) table.data.push_back(static_cast<char>(kind.at(e)));
   }
   put(cloud, std::move(table));
 }

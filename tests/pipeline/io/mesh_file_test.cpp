@@ -20,9 +20,9 @@ Cloud parsed_mesh_file(const std::string& text) {
 }
 
 TEST(MeshFile, WhatIsWrittenReadsBackInEveryEncoding) {
-  const Cloud cloud = make_mesh_file(kPoints, kFaces, kEdges);
   for (const Encoding encoding :
        {Encoding::ascii, Encoding::binary_little_endian, Encoding::binary_big_endian}) {
+    const Cloud cloud = make_mesh_file(kPoints, kFaces, kEdges, {1, 0});
     WriteOptions options;
     options.encoding = encoding;
     const Cloud back = parsed_mesh_file(serialize_cloud(cloud, options, {}).value());
@@ -31,6 +31,8 @@ TEST(MeshFile, WhatIsWrittenReadsBackInEveryEncoding) {
     for (std::size_t i = 0; i < xyz.size(); ++i) EXPECT_EQ(xyz[i], kPoints[i / 3][Eigen::Index(i % 3)]);
     EXPECT_EQ(faces_of(back), kFaces);
     EXPECT_EQ(edges_of(back), kEdges);
+    const Table& edges = *back.element("edge");
+    EXPECT_EQ(gather(edges, {2}, {}), (std::vector<double>{1, 0})) << "what kind each edge is";
   }
 }
 
