@@ -6,10 +6,11 @@
 ///     file.value().set_positions(xyz.data());             // only what moved changes
 ///     file.value().write("clean.ply");                    // by extension; complete or not at all
 ///
-/// Only coordinates, and fields that you add, change. Everything else - field order, types and names, rows
-/// with NaN, other PLY elements, comments, width x height, viewpoint - comes back byte for byte.
+/// Only what you set changes. Everything else comes back byte for byte: field order, types and names, rows
+/// with NaN, other PLY elements, comments, width x height, viewpoint.
 ///
-/// Distinct objects are independent; one object may be read by several threads, but not written.
+/// Several threads may read one object; only one may change it, while no other reads. A moved-from object can
+/// only be assigned to or destroyed.
 #pragma once
 
 #include <array>
@@ -49,11 +50,11 @@ struct WriteOptions {
 /// A file in memory: n points and all that stands beside them.
 class CloudFile {
  public:
-  /// Reads a file; pipes and devices to their end. Errors: input_unreadable with the line or byte, what was
-  /// expected and what was found. Needs memory for one copy of the file.
+  /// Reads a file; pipes and devices are read to their end. Errors: input_unreadable; the message says the
+  /// line or byte, what was expected and what was found. Needs memory for one copy of the file.
   static Result<CloudFile> read(const std::filesystem::path& path, const ReadOptions& options = {},
                                 const Context& context = {});
-  /// Reads a buffer; `name` is what errors call it.
+  /// Reads a buffer; error messages call it `name`.
   static Result<CloudFile> parse(std::string_view bytes, const std::string& name,
                                  const ReadOptions& options = {}, const Context& context = {});
   /// n x 3 row-major coordinates as float64, and nothing else.
@@ -65,8 +66,9 @@ class CloudFile {
   CloudFile& operator=(CloudFile&& other) noexcept;
   ~CloudFile();
 
-  /// Writes to a temporary name beside it, synced, renamed: complete or not at all. Errors: cannot_write (an
-  /// existing file without `force` too); usage for a target that cannot carry what the cloud has.
+  /// Writes a temporary file beside `path` and renames it, so that `path` is complete or unchanged. Errors:
+  /// cannot_write (also for an existing file without `force`); usage if the format cannot carry what the
+  /// cloud has.
   Result<Done> write(const std::filesystem::path& path, const WriteOptions& options = {},
                      const Context& context = {}) const;
   /// Writes to a buffer.
@@ -79,27 +81,29 @@ class CloudFile {
 
   /// n x 3 row-major, as doubles whatever the file's type.
   std::vector<double> positions(const Context& context = {}) const;
-  /// Writes n x 3 coordinates back, each in its own type, rounded to nearest (LAS: to the file's scale; a
-  /// warning is logged for what 32 bits cannot say). What equals the present one keeps its bytes or text.
+  /// Sets n x 3 coordinates, each rounded to nearest in its field's type (LAS: to the file's scale; a warning
+  /// is logged for what 32 bits cannot say). A coordinate that equals the present one keeps its bytes or text.
   void set_positions(const double* xyz, const Context& context = {});
 
   /// Names of the points' fields, in file order; names may repeat.
   std::vector<std::string> field_names() const;
-  /// One double per point; none if there is no such field, or it is a list.
+  /// One double per point; none if there is no such field, or it is a list or an array.
   std::optional<std::vector<double>> field(std::string_view name, const Context& context = {}) const;
-  /// Writes a field of the points, one value each: appended as float32 behind the last one, or, if there is
-  /// one of that name, in place in its own type. Errors: usage if that one cannot take the values. \throw
-  /// std::invalid_argument for another number of values.
+  /// Sets a field of the points. A field of that name keeps its place and type; else one is appended as
+  /// float32. Errors: usage if the present field cannot take the values. \throw std::invalid_argument if
+  /// there is not one value per point.
   Result<Done> set_field(const std::string& name, const std::vector<double>& values,
                          const Context& context = {});
 
-  /// Keeps the points `rows`, in that order; not organised afterwards unless all are kept in order.
+  /// Keeps the points `rows`, in that order. Unless these are all in order, the cloud is no longer organised,
+  /// and elements that name points by index, such as faces, are dropped. \throw std::invalid_argument if
+  /// there is no such row.
   void select(const std::vector<std::size_t>& rows, const Context& context = {});
 
-  /// Its polygons as triangles (fans); empty without faces. Errors: input_unreadable if one names a vertex
-  /// that is not there.
+  /// The file's polygons, split into triangles; empty without faces. Errors: input_unreadable if one names a
+  /// vertex that does not exist.
   Result<std::vector<Face>> faces(const Context& context = {}) const;
-  /// Puts triangles in place of its faces; only PLY and OFF can carry them.
+  /// Replaces the faces by triangles; only PLY and OFF can carry them.
   void set_faces(const std::vector<Face>& faces);
 
  private:

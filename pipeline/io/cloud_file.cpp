@@ -10,9 +10,13 @@ namespace rfsmooth {
 
 namespace io = pipeline::io;
 
-/// The cloud as every stage sees it.
+/// What a CloudFile hides: the cloud that the readers and writers of this folder work on.
 struct CloudFile::Contents {
   io::Cloud cloud;
+
+  static CloudFile file_of(io::Cloud cloud) {
+    return CloudFile(std::make_unique<Contents>(Contents{std::move(cloud)}));
+  }
 };
 
 CloudFile::CloudFile(std::unique_ptr<Contents> contents) : contents_(std::move(contents)) {}
@@ -27,22 +31,17 @@ CloudFile::~CloudFile() = default;
 
 Result<CloudFile> CloudFile::read(const std::filesystem::path& path, const ReadOptions& options,
                                   const Context& context) {
-  return guarded([&] {
-    return CloudFile(
-        std::make_unique<Contents>(Contents{value_or_throw(io::read_cloud(path, options, context))}));
-  });
+  return guarded([&] { return Contents::file_of(value_or_throw(io::read_cloud(path, options, context))); });
 }
 
 Result<CloudFile> CloudFile::parse(std::string_view bytes, const std::string& name,
                                    const ReadOptions& options, const Context& context) {
-  return guarded([&] {
-    return CloudFile(
-        std::make_unique<Contents>(Contents{value_or_throw(io::parse_cloud(bytes, name, options, context))}));
-  });
+  return guarded(
+      [&] { return Contents::file_of(value_or_throw(io::parse_cloud(bytes, name, options, context))); });
 }
 
 CloudFile CloudFile::of_points(const double* xyz, std::size_t n) {
-  return CloudFile(std::make_unique<Contents>(Contents{io::make_cloud(xyz, n)}));
+  return Contents::file_of(io::make_cloud(xyz, n));
 }
 
 Result<Done> CloudFile::write(const std::filesystem::path& path, const WriteOptions& options,

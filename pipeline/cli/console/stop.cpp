@@ -6,10 +6,10 @@ namespace rfsmooth::cli {
 
 namespace {
 std::atomic<bool> stopped{false};
-static_assert(std::atomic<bool>::is_always_lock_free, "the handler must not lock");
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler must not lock");
 
-extern "C" void note_signal(int) {
-  stopped.store(true, std::memory_order_relaxed);
+extern "C" void set_stopped(int) {
+  stopped.store(true, std::memory_order_relaxed);  // no other data hang on the flag
 }
 }  // namespace
 
@@ -19,12 +19,12 @@ const std::atomic<bool>& stop_flag() {
 
 void catch_signals() {
   struct sigaction action = {};
-  action.sa_handler = note_signal;
+  action.sa_handler = set_stopped;
   sigemptyset(&action.sa_mask);
-  action.sa_flags = 0;  // no SA_RESTART: a read that waits for standard input must return
+  action.sa_flags = 0;  // not SA_RESTART: a read that waits for standard input is to return
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
-  std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is a failed write (exit code 5), not a death
+  std::signal(SIGPIPE, SIG_IGN);  // writing to a closed pipe then fails: exit code 5
 }
 
 }  // namespace rfsmooth::cli

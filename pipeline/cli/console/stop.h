@@ -1,4 +1,6 @@
-/// Ctrl-C. A signal handler needs a global; this is the command's only one, and the library never sees it but
+/// Ctrl-C and its relatives: how the signals of the operating system reach the work.
+///
+/// A signal handler can only write to a global variable. This one stays in stop.cpp; the library sees it
 /// through Context::stop.
 #pragma once
 
@@ -6,10 +8,11 @@
 
 namespace rfsmooth::cli {
 
-/// Set once SIGINT or SIGTERM has arrived.
+/// True once SIGINT or SIGTERM has arrived; it never becomes false again. May be read by any thread.
 const std::atomic<bool>& stop_flag();
 
-/// From now on SIGINT and SIGTERM set the flag instead of killing the process; blocked reads return.
+/// From now on SIGINT and SIGTERM set the flag instead of ending the process, and system calls that wait
+/// return with EINTR. SIGPIPE is ignored. Call it once, before other threads start.
 void catch_signals();
 
 }  // namespace rfsmooth::cli
