@@ -1,6 +1,6 @@
-/// Gathers what many threads produce into one vector, in index order: the items of fixed blocks are counted,
-/// then written to their places. The result does not depend on the number of threads. Used where a stage
-/// makes a variable number of things per vertex. Thread safe, as far as `produce` is.
+/// Gathers a variable number of items per index into one vector, in index order, in parallel. Fixed blocks
+/// are counted first, then written to their places, so the result does not depend on the number of threads.
+/// Thread safe if `produce` is.
 #pragma once
 
 #include <cstddef>
@@ -10,9 +10,9 @@
 
 namespace rfsmooth {
 
-/// Returns everything that `produce(i, emit)` passes to `emit(T)`, ordered by i in [0, n). It is run twice
-/// for every i, to count and to fill: a list for each block would be memory that the threads' own heaps keep.
-/// O(n + output).
+/// Returns everything that `produce(i, emit)` passes to `emit(T)`, ordered by i in [0, n). `produce` runs
+/// twice for every i: to count and to fill. (One list per block instead would leave memory in the heaps of
+/// the threads.) O(n + output).
 template <class T, class Produce>
 std::vector<T> collect(const Context& context, std::size_t n, Produce&& produce, std::size_t grain = 2048) {
   std::vector<std::size_t> start((n + grain - 1) / grain + 1, 0);

@@ -1,4 +1,4 @@
-/// Disjoint sets of indices, for one thread.
+/// Union-find: disjoint sets of indices. One thread at a time.
 #pragma once
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 
 namespace rfsmooth {
 
-/// Disjoint sets; the least member stands for its set.
+/// Disjoint sets of [0, n), each represented by its least member. Amortised O(log n) an operation.
 template <class Index>
 class Groups {
  public:

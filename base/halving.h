@@ -1,10 +1,9 @@
-/// Splits items into the lower and the upper half along an axis: what building a kd-tree consists of;
-/// internal to it (kd_tree.cpp).
+/// Splits items into the lower and the upper half along an axis: the step that builds the kd-tree. Internal
+/// to kd_tree.cpp.
 ///
-/// The coordinates become whole numbers, a histogram of them names the one in the middle, and one pass deals
-/// the items out to the two sides. No loop has a branch that the processor would have to foresee (selection
-/// by comparing has one a comparison, and takes three times as long), and the items keep their order: in
-/// every node of the tree they ascend.
+/// The coordinates become 31-bit integers, a histogram of these finds the median, and one pass distributes
+/// the items. No loop has an unpredictable branch; selection by comparison has one per comparison and takes
+/// three times as long. The split is stable, so the items of every node of the tree ascend.
 #pragma once
 
 #include <algorithm>
@@ -15,12 +14,13 @@
 
 namespace rfsmooth {
 
-/// Scratch of one thread.
+/// The split, with its scratch memory; one object per thread.
 class Halving {
  public:
-  /// Writes the `half` items of the least coordinate to `to` and the others behind them, both in the order in
-  /// which they came; of equal coordinates the first are the lower. Coordinates count as equal if they are in
-  /// 2^-31 of `extent`, and beyond [low, low + extent]. `coordinate(item)`: finite.
+  /// Writes the `half` items of the least coordinates to `to` and the others behind them; both halves keep
+  /// the order of `items`. Of equal coordinates the first count as lower. Coordinates are equal if they fall
+  /// into the same of the 2^31 cells of [low, low + extent]; beyond an end they count as that end.
+  /// `coordinate(item)` must be finite.
   template <class Item, class Coordinate>
   void operator()(const Item* items, std::size_t count, std::size_t half, double low, double extent, Item* to,
                   Coordinate&& coordinate) {
@@ -36,10 +36,10 @@ class Halving {
 
  private:
   static constexpr double kLargestKey = 2147483647.0;
-  static constexpr double kLeastExtent = 1e-290;  // its share of the largest key is finite
-  static constexpr std::size_t kFew = 512;
+  static constexpr double kLeastExtent = 1e-290;  // kLargestKey / extent is finite above this
+  static constexpr std::size_t kFew = 512;        // up to here 64 bins, beyond 1024
 
-  /// Lower than `key`, and the first `ties` that have it: the lower half.
+  /// The lower half: all items below `key` and the first `ties` items equal to it.
   struct Pivot {
     std::uint32_t key;
     std::size_t ties;

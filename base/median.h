@@ -1,5 +1,5 @@
-/// The median: of an even number of values the upper of the two in the middle, so that it is always one of
-/// them; 0 of none. The values change places. O(n). Thread safe for different values.
+/// The median. Of an even number of values it is the upper of the two in the middle, so it is always one of
+/// the values; of none it is 0. Reorders the values. O(n). Thread safe for different values.
 #pragma once
 
 #include <algorithm>
@@ -24,9 +24,9 @@ inline double median(std::vector<double>& values) {
   return median(values.begin(), values.end());
 }
 
-/// The nth of the first `count` (from 0, nth < count), which must be finite; the others are overwritten.
-/// Every value is compared with every other: for a few that takes less time than branches that cannot be
-/// foreseen.
+/// The nth smallest (from 0, nth < count) of the first `count` values, which must be finite; the rest of the
+/// array is overwritten. Compares every value with every other: for few values that is faster than the
+/// unpredictable branches of a selection. O(count^2).
 template <std::size_t kMost>
 float nth_of_few(std::array<float, kMost>& values, std::size_t count, std::size_t nth) {
   static_assert(kMost % 4 == 0);

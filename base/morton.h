@@ -1,4 +1,4 @@
-/// Morton (Z-order) codes: points that are close in space are mostly close in this order. Thread safe.
+/// Morton (Z-order) codes: points near in space mostly have near codes. Thread safe.
 #pragma once
 
 #include <cstdint>
@@ -18,10 +18,11 @@ inline std::uint64_t spread_bits(std::uint64_t v) {
   return v;
 }
 
-/// Cells along an axis, less one.
+/// The largest cell coordinate on an axis: 2^21 - 1.
 constexpr double kMortonCells = 2097151;
 
-/// The code of p in a box with corner `low`; `to_cell` = kMortonCells / its largest side (0 for a point).
+/// The code of p in a box with lower corner `low`. `to_cell` = kMortonCells / the box's longest side; 0 if
+/// the box is a point.
 inline std::uint64_t morton_code(const Eigen::Vector3d& p, const Eigen::Vector3d& low, double to_cell) {
   std::uint64_t code = 0;
   for (int axis = 0; axis < 3; ++axis)

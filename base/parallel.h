@@ -1,8 +1,8 @@
-/// The one parallel header: loops and reductions whose result does not depend on the number of threads.
+/// Parallel loops and reductions whose results do not depend on the number of threads.
 ///
-/// Rules that make it so: write by index, gather over neighbours (never scatter), reduce in blocks of a fixed
-/// size combined in index order, sort by a total order. TBB stays in parallel.cpp.
-/// Thread safe: any number of callers may run loops at once, and loops may run inside loops.
+/// The rules that make this so: write by index; gather over neighbours, never scatter; reduce in blocks of
+/// fixed size, combined in index order; sort by a total order. TBB stays in parallel.cpp. Thread safe:
+/// several threads may run loops at once, and loops may be nested.
 #pragma once
 
 #include <algorithm>
@@ -14,12 +14,12 @@
 
 namespace rfsmooth {
 
-/// Runs `body` with parallel loops limited to `context.threads`; use it once, at a front door. Rethrows.
+/// Runs `body`; its parallel loops use at most `context.threads` threads. Call it once, at a front door.
+/// Rethrows what `body` throws.
 void in_arena(const Context& context, const std::function<void()>& body);
 
-/// Calls `body(begin, end)` over [0, n) in blocks of `grain` (the same blocks for any number of threads), in
-/// parallel on at most `context.threads` threads. \throw Failure if `context.stop` is set; whatever `body`
-/// throws.
+/// Calls `body(begin, end)` for blocks of `grain` that cover [0, n), in parallel. The blocks are the same for
+/// any number of threads. \throw Failure if `context.stop` is set; rethrows what `body` throws.
 void for_blocks(const Context& context, std::size_t n, std::size_t grain,
                 const std::function<void(std::size_t begin, std::size_t end)>& body);
 
@@ -43,7 +43,7 @@ T reduce_blocks(const Context& context, std::size_t n, T identity, Map&& map, Co
   return total;
 }
 
-/// The sum of `term(i)` over [0, n); T needs `T()` = zero and +=, or pass the zero.
+/// The sum of `term(i)` over [0, n), starting from `zero` in every block. T needs +=.
 template <class T, class Term>
 T sum_over(const Context& context, std::size_t n, T zero, Term&& term) {
   return reduce_blocks(
@@ -56,7 +56,8 @@ T sum_over(const Context& context, std::size_t n, T zero, Term&& term) {
       [](T a, const T& b) { return T(a += b); });
 }
 
-/// Sorts by a strict total order (no two elements equivalent unless equal), in parallel: blocks, then merges.
+/// Sorts in parallel: blocks first, then merges. `less` must be a total order: two elements are equivalent
+/// only if they are equal.
 template <class T, class Less>
 void parallel_sort(const Context& context, std::vector<T>& v, Less less) {
   constexpr std::size_t kBlock = std::size_t{1} << 15;

@@ -1,6 +1,5 @@
-/// An array whose elements are not filled before they are written: large ones are first touched by the
-/// threads that write them, side by side, and memory is kept from one use to the next.
-/// As std::vector: one thread changes it, or several read.
+/// An array that does not initialise its elements. The threads that fill a large array are then the first to
+/// touch its pages, each its own part. clear() and resize() keep the memory. Thread safety as of std::vector.
 #pragma once
 
 #include <algorithm>
@@ -10,17 +9,17 @@
 
 namespace rfsmooth {
 
-/// For plain numbers and structs of them.
+/// An array of numbers, or of plain structs of numbers.
 template <class T>
 class RawArray {
  public:
   RawArray() = default;
   explicit RawArray(std::size_t size) { resize(size); }
 
-  /// Keeps what fits of the old elements; new ones hold anything.
+  /// Keeps the old elements that fit; the value of new ones is indeterminate.
   void resize(std::size_t size) {
     if (size > capacity_) {
-      const std::size_t room = size + size / 32;  // a little more is often asked for soon
+      const std::size_t room = size + size / 32;  // slightly larger sizes often follow
       std::unique_ptr<T[]> larger(new T[room]);
       std::copy(items_.get(), items_.get() + size_, larger.get());
       items_ = std::move(larger);

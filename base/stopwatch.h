@@ -1,4 +1,4 @@
-/// How long the stages of some work took.
+/// Times the stages of a computation.
 #pragma once
 
 #include <chrono>
@@ -11,16 +11,18 @@
 
 namespace rfsmooth {
 
-/// Adds the time it lives to a stage's entry, which it makes if there is none. Not thread safe.
+/// Adds the time from its construction to its destruction to the entry of a stage, which it creates if need
+/// be. Not thread safe.
 class Stopwatch {
  public:
-  /// \param stages is kept by reference: it must stay where it is, and not be returned, while this lives.
+  /// \param stages kept by reference. It must outlive this; a copy made before the destruction lacks the last
+  /// time.
   Stopwatch(std::vector<StageTime>& stages, std::string_view name) : stages_(stages) { start(name); }
   ~Stopwatch() { stop(); }
   Stopwatch(const Stopwatch&) = delete;
   Stopwatch& operator=(const Stopwatch&) = delete;
 
-  /// This stage ends here and the next one begins.
+  /// Ends the present stage and begins the next one.
   void next(std::string_view name) {
     stop();
     start(name);

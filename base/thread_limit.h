@@ -1,16 +1,16 @@
-/// A limit for the whole program. Limits may be made and ended by any thread.
+/// A limit on the threads of the whole process. Limits may be made and destroyed by any thread.
 #pragma once
 
 #include <memory>
 
 namespace rfsmooth {
 
-/// While it lives, the process runs at most `threads` threads in parallel loops: ours, and those of libraries
-/// that use TBB. For programs; a library leaves the choice to its caller (Context::threads). Several may
-/// live: the least counts.
+/// While an object exists, parallel loops of this process use at most `threads` threads: ours and those of
+/// other libraries that use TBB. Of several limits the lowest counts. For programs; a library leaves the
+/// choice to its caller (Context::threads).
 class ThreadLimit {
  public:
-  /// `threads`: at least 1. More than there are cores are no limit.
+  /// `threads`: at least 1. A number above that of the cores has no effect.
   explicit ThreadLimit(int threads);
   ~ThreadLimit();
   ThreadLimit(const ThreadLimit&) = delete;

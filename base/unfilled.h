@@ -1,5 +1,5 @@
-/// An allocator whose vectors do not fill new elements: large tables are first touched by the threads that
-/// write them, side by side, and files are read straight into their place. Thread safe, as std::allocator.
+/// An allocator for vectors that do not initialise new elements. The threads that fill a large table are then
+/// the first to touch its pages, and files are read straight into place. Thread safe, as std::allocator.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 namespace rfsmooth {
 
-/// For numbers: after resize() new elements hold anything.
+/// For numbers: resize() leaves the value of new elements indeterminate.
 template <class T>
 class Unfilled {
  public:
