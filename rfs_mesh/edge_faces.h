@@ -1,4 +1,4 @@
-/// Which faces meet at every edge: the one table of faces by their edges.
+/// The faces at every edge of a mesh, as one sorted table. Thread safe: no state is kept.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +19,7 @@ struct EdgeFace {
   bool same_edge(const EdgeFace& other) const { return a == other.a && b == other.b; }
 };
 
-/// 3 m rows, ascending by (a, b, face, corner). O(m log m), one thread.
+/// The 3 m edges of m faces, ascending by (a, b, face, corner). O(m log m), one thread.
 inline std::vector<EdgeFace> edge_faces(const std::vector<Face>& faces) {
   std::vector<EdgeFace> all;
   all.reserve(3 * faces.size());
@@ -34,7 +34,7 @@ inline std::vector<EdgeFace> edge_faces(const std::vector<Face>& faces) {
   return all;
 }
 
-/// Calls visit(first, last) for the faces at every edge, in order of the edges.
+/// Calls visit(first, last) with the rows of each edge, in order of the edges.
 template <class Visit>
 void for_each_edge(const std::vector<EdgeFace>& all, Visit&& visit) {
   for (std::size_t first = 0, last = 0; first < all.size(); first = last) {
@@ -43,7 +43,7 @@ void for_each_edge(const std::vector<EdgeFace>& all, Visit&& visit) {
   }
 }
 
-/// Which corner of `face` is `vertex`, one of its three, counted over all faces.
+/// 3 face + k, where corner k of `face` is `vertex`. Precondition: one of its corners is.
 inline Index corner_of(const std::vector<Face>& faces, Index face, Index vertex) {
   Index k = 0;
   while (faces[face][k] != vertex) ++k;

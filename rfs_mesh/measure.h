@@ -1,9 +1,7 @@
-/// What a mesh measures: areas, volume, edge lengths, angles. All in world units (squared, cubed) and
-/// radians.
+/// Measures of a mesh: areas, volume, edge lengths, angles. World units (squared, cubed) and radians.
 ///
-/// Every function reads the mesh it is given and nothing else; degenerate faces count as zero area and have a
-/// zero normal. Parallel, the same bits for any number of threads; O(n + m). Safe to call concurrently.
-/// Precondition of all of them: `check(mesh)` is empty.
+/// Degenerate faces have zero area and a zero normal. Parallel, the same bits for any number of threads; O(n
+/// + m). Thread safe: no state is kept. Precondition of all functions: `check(mesh)` is empty.
 #pragma once
 
 #include <vector>
@@ -22,16 +20,17 @@ Eigen::Vector3d face_cross(const Positions& at, const Face& face);
 /// degenerate one; the same at every scale.
 double face_quality(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c);
 
-/// The angle in [0, pi] at edge pq between the half planes that hold r and s: pi where the two faces are
-/// flat, small where they fold onto each other. It needs no orientation. 0 if a face is degenerate.
+/// The angle in [0, pi] at edge pq between the half planes through r and s: pi where the two faces are flat,
+/// small where they fold onto each other. Independent of the orientation of the faces. 0 if a face is
+/// degenerate.
 double dihedral_angle(const Eigen::Vector3d& p, const Eigen::Vector3d& q, const Eigen::Vector3d& r,
                       const Eigen::Vector3d& s);
 
 /// m unit normals by the right-hand rule; zero for degenerate faces.
 Positions face_normals(const Mesh& mesh, const Context& context);
 
-/// n unit normals: the mean of the incident faces' normals, weighted by area; zero where there are none or
-/// they cancel. They agree across the mesh only if the faces' orientations do.
+/// n unit normals: the mean of the incident faces' normals, weighted by area; zero if there are none or they
+/// cancel. Neighbours' normals agree only if the faces are oriented alike.
 Positions vertex_normals(const Mesh& mesh, const Context& context);
 
 /// The total area of the faces.
@@ -44,8 +43,8 @@ double signed_volume(const Mesh& mesh, const Context& context);
 /// Mean length of the edges of the one-ring (faces' and loose edges); 0 without edges.
 double mean_edge_length(const Mesh& mesh, const Context& context);
 
-/// The sum of `dihedral_angle` over the edges with exactly two faces: what an edge swap never lowers
-/// (Vollmer et al. section 7).
+/// The sum of `dihedral_angle` over the edges with exactly two faces. Edge swaps never lower it (Vollmer et
+/// al. section 7).
 double dihedral_angle_sum(const Mesh& mesh, const Context& context);
 
 /// How the faces meet at the edges.
@@ -53,7 +52,7 @@ struct EdgeCensus {
   std::size_t loose = 0;     ///< edges of the one-ring without a face
   std::size_t rim = 0;       ///< edges with one face
   std::size_t inner = 0;     ///< edges with two faces
-  std::size_t crowded = 0;   ///< edges with more: none in an RFS-mesh
+  std::size_t crowded = 0;   ///< edges with more; an RFS-mesh has none
   std::size_t faceless = 0;  ///< vertices without a face
 };
 /// Counts the edges by their faces.

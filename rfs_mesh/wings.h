@@ -1,5 +1,5 @@
-/// The faces around a vertex, edge by edge; internal to the choice of faces (flattest_pair.h).
-/// One object for each thread.
+/// The faces around a vertex, grouped by edge. Internal to the choice of faces (flattest_pair.h). One object
+/// per thread.
 #pragma once
 
 #include <algorithm>
@@ -12,10 +12,10 @@
 
 namespace rfsmooth::rfs_mesh {
 
-/// Brings the faces at the edges from a vertex to higher ones (wings) together by their edges, for one vertex
-/// after the other. A hash table that need not be emptied in between, no sorting, and no branch that the
-/// processor would have to foresee: on noisy points every vertex has some ten wings, and which of them share
-/// an edge follows no pattern.
+/// Groups the wings of one vertex after the other: the faces at the edges that lead from the vertex to higher
+/// indices. A hash table serves that need not be emptied in between. Nothing is sorted and no branch is
+/// unpredictable: on noisy points a vertex has some ten wings, and which of them share an edge follows no
+/// pattern.
 class Wings {
  public:
   Wings() : places_(kPlaces, Place{0, kNone, 0}), wings_(kMost + 1), edge_(kMost + 1) {}
@@ -29,13 +29,13 @@ class Wings {
     if (many_ && wings_.size() <= most) wings_.resize(most + 1);
   }
 
-  /// Adds a face at the edge to `other_end`, if that is the higher one. The faces must come in ascending
-  /// order.
+  /// Adds a face at the edge to `other_end` if that is above the vertex, else does nothing. Faces must come
+  /// in ascending order.
   void add_if_above(Index other_end, Index face) {
     const bool wanted = other_end > vertex_;
     wings_[count_] = {other_end, face};
     if (!many_) {
-      // An unwanted wing finds a place as well, but leaves it as it was.
+      // Without a branch: an unwanted wing looks up a place, too, but leaves it unchanged.
       std::uint32_t at = (other_end * kSpread) >> (32 - kBits);
       while (places_[at].round == round_ && places_[at].other_end != other_end) at = (at + 1) % kPlaces;
       Place& place = places_[at];
@@ -66,13 +66,13 @@ class Wings {
   }
 
  private:
-  static constexpr std::size_t kMost = 64;
+  static constexpr std::size_t kMost = 64;  // wings, one bit of a mask each; more are sorted
   static constexpr int kBits = 8;
   static constexpr std::uint32_t kPlaces = 1u << kBits;
   static constexpr std::uint32_t kSpread = 2654435769;  // 2^32 over the golden ratio
 
   struct Place {
-    std::uint32_t round;  ///< in which it was last used
+    std::uint32_t round;  ///< of the vertex that last used this place
     Index other_end;
     std::uint64_t mask;
   };
@@ -100,7 +100,7 @@ class Wings {
   bool many_ = false;
   std::vector<Place> places_;
   std::vector<Wing> wings_;
-  std::vector<std::uint32_t> edge_;  // places of the edges
+  std::vector<std::uint32_t> edge_;  // where in places_ each edge is
   std::size_t count_ = 0, edges_ = 0;
 };
 

@@ -1,4 +1,4 @@
-/// The stages of `connect` for a caller who has searched the points already.
+/// `connect` (rfsmooth/connect.h) for a caller who has searched the points already.
 #pragma once
 
 #include <rfsmooth/connect.h>
@@ -7,8 +7,8 @@
 
 namespace rfsmooth::rfs_mesh {
 
-/// `connect` (rfsmooth/connect.h) for a caller who has an index over the points already and the rows of their
-/// nearest `options.neighbours`. \throw std::invalid_argument if `near` is of another width or size.
+/// Connects the points of `index`. `near`: their nearest `options.neighbours`. \throw std::invalid_argument
+/// if `near` is of another width or size.
 Result<Connection> connect(SpatialIndex index, NeighborTable near, const ConnectOptions& options,
                            const Context& context);
 

@@ -1,17 +1,17 @@
-/// From the EMST to the surface description graph (SDG): the tree "extended at appropriate regions"
-/// (Vollmer et al. section 7, after Mencl). The tree stops at leaves and leaves wide gaps beside its
-/// branches; the SDG continues the leaves and closes the gaps with edges that run along the surface, and
-/// marks the tree edges that do not lie in it as bridges.
+/// From the EMST to the surface description graph (SDG): the tree "extended at appropriate regions" (Vollmer
+/// et al. section 7, after Mencl). The tree stops at leaves and leaves wide gaps beside its branches. The SDG
+/// continues the leaves, closes the gaps with edges along the surface, and marks as bridges the tree edges
+/// that do not lie in it.
 ///
-/// Differs from the paper: it gives the idea, not the rules. Ours, with every threshold in SdgOptions:
+/// Differs from the paper: it gives the idea but no rules. Ours, with every threshold in SdgOptions:
 ///
 /// - (A) A leaf (degree 1) is joined to the nearest admissible point ahead of it.
 /// - (B) A point whose neighbours leave a wide gap in the tangent plane is joined to the nearest admissible
-///   point inside the gap, if the wish is mutual or the edge short; two rounds.
-/// - (C) An edge far longer than the tree around both ends, or standing up from the surface at both, or with
-///   an end between two sheets (two_sheets.h), is a bridge.
+///   point inside the gap, if that point wants the same edge or the edge is short; two rounds.
+/// - (C) A tree edge is a bridge if it is far longer than the tree around both ends, or stands up from the
+///   surface at both, or has an end between two sheets (two_sheets.h).
 ///
-/// Each rule decides for every vertex from one snapshot of the graph, so no order of visiting matters.
+/// Each rule decides for every vertex on one snapshot of the graph, so the order of visiting does not matter.
 /// Thread safe: no state is kept.
 #pragma once
 
@@ -24,8 +24,8 @@
 
 namespace rfsmooth::rfs_mesh {
 
-/// What the tests of the SDG and the RFS-mesh look at: positions (the points, their shadows, or smoothed
-/// positions), the surface through each, the nearest neighbours among them, the noise that is left in them.
+/// What the SDG and the RFS-mesh are built from: positions (the points, their shadows, or smoothed
+/// positions), the surface at each, the nearest neighbours among them, and the noise that is left in them.
 struct Terrain {
   const Positions& at;                        ///< n x 3
   const std::vector<LocalSurface>& surfaces;  ///< n; only the normals are read
@@ -33,7 +33,7 @@ struct Terrain {
   double noise = 0;                           ///< standard deviation of `at` along the normal, world units
   const std::vector<char>& between;           ///< n flags (two_sheets.h), or none
 
-  /// Whether v lies between two sheets and has no neighbours.
+  /// Whether v lies between two sheets; it gets no neighbours then.
   bool is_between(Index v) const { return !between.empty() && between[v] != 0; }
 };
 
@@ -45,8 +45,8 @@ struct Sdg {
   std::vector<double> local_length;  ///< n: median EMST edge length within two hops, measured in `at`
 };
 
-/// `tree` is the EMST (a < b in every edge), in any order. O(n k), parallel, the same for any number of
-/// threads.
+/// The SDG. `tree`: the EMST (a < b in every edge), in any order. O(n k), parallel, the same for any number
+/// of threads.
 Sdg make_sdg(const Terrain& terrain, const std::vector<Edge>& tree, const SdgOptions& options,
              const Context& context);
 

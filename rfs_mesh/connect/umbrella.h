@@ -1,10 +1,10 @@
-/// Around each vertex a corona of faces "like a spanning umbrella" (Vollmer et al. section 7): the SDG edges
-/// of the vertex, filled up with nearest neighbours "adaptive per vertex, estimated from the SDG", sorted
-/// around it; consecutive ones span a face and its closing edge.
+/// Around each vertex a corona of faces "like a spanning umbrella" (Vollmer et al. section 7). Its ribs are
+/// the SDG edges of the vertex and nearest neighbours, "adaptive per vertex, estimated from the SDG", sorted
+/// around the vertex. Consecutive ribs and the edge between their ends span a face.
 ///
-/// Differs from the paper: it does not say which neighbours. Ours are taken nearest first, leaving out
-/// directions close to one already taken, so that the umbrella covers every side once.
-/// Thread safe: no state is kept.
+/// Differs from the paper: it does not say which neighbours. Ours are taken nearest first; directions
+/// close to one already taken are left out, so that the umbrella covers every side once. Thread safe: no
+/// state is kept.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@
 
 namespace rfsmooth::rfs_mesh {
 
-inline constexpr int kMostRibs = 10;  ///< ribs of an umbrella: 360 / 30 degrees, less what the gaps eat
+inline constexpr int kMostRibs = 10;  ///< ribs of an umbrella: 360 / 30 degrees are 12, and gaps take some
 
 /// The ribs of one vertex, counter-clockwise about its normal; rib k and the next one span a face if bit k of
 /// `faces` is set.
@@ -27,7 +27,7 @@ struct Umbrella {
 
   bool spans(int k) const { return (faces >> k) & 1; }
   Index next(int k) const { return ribs[std::size_t(k + 1 == count ? 0 : k + 1)]; }
-  /// Whether it spans the face with the corners a and b besides its own tip.
+  /// Whether it spans the face of its vertex, a and b.
   bool spans(Index a, Index b) const {
     for (int k = 0; k < count; ++k)
       if (spans(k) &&

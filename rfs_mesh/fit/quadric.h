@@ -1,6 +1,6 @@
-/// A quadric fitted robustly to some points around another: what local surfaces (local_surface.h, where the
-/// formula stands) and shared patches (shared_surface.cpp) are made of; internal to the connection stage.
-/// Thread safe with a workspace for each thread.
+/// A quadric fitted robustly to the points around another one: the part of local surfaces (local_surface.h
+/// has the formula) and of shared ones (shared_surface.cpp). Internal to the connection stage. Thread safe
+/// with one workspace per thread.
 #pragma once
 
 #include <cmath>
@@ -12,7 +12,7 @@
 
 namespace rfsmooth::rfs_mesh {
 
-/// Re-weightings after the first fit; more changes nothing visible.
+/// Rounds of re-weighting after the first fit; more change nothing visible.
 inline constexpr int kRobustRounds = 2;
 
 /// z = c0 + c1 u + c2 v + c3 u^2 + c4 u v + c5 v^2 in the frame (t1, t2, n) at `centre`, lengths in units of
@@ -35,13 +35,13 @@ struct Quadric {
   double curvature() const { return (std::abs(c[3] + c[5]) + std::hypot(c[3] - c[5], c[4])) / radius; }
 };
 
-/// Room for the neighbours of one point, reused along a block so that nothing is allocated per point. By
-/// coordinate, padded to whole vectors with samples of no weight.
+/// Scratch memory for the neighbours of one point, reused so that nothing is allocated per point. One array
+/// per coordinate, padded to whole SIMD vectors with samples of weight zero.
 struct QuadricWorkspace {
   std::vector<double> x, y, z;   ///< offsets from the centre, in units of the radius
   std::vector<double> u, v, h;   ///< the same along t1, t2, n
-  std::vector<double> distance;  ///< the samples' weights by distance
-  std::vector<double> weight;    ///< and by residual
+  std::vector<double> distance;  ///< weights by distance
+  std::vector<double> weight;    ///< weights by residual
   std::vector<double> residual, sorted;
   std::size_t count = 0, padded = 0;
 };
@@ -50,7 +50,7 @@ struct QuadricWorkspace {
 Quadric fit_quadric(const Positions& points, const Eigen::Vector3d& p, const Index* neighbours,
                     std::size_t count, QuadricWorkspace& workspace, int robust_rounds = kRobustRounds);
 
-/// What the quadric says of the surface at its centre.
+/// The local surface at the quadric's centre.
 LocalSurface surface_at_centre(const Quadric& quadric);
 
 }  // namespace rfsmooth::rfs_mesh

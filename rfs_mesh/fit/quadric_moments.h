@@ -1,18 +1,18 @@
-/// The sums of a weighted least-squares fit of z = q.f, f = (1, u, v, u^2, u v, v^2).
+/// The sums of a weighted least-squares fit of z = q.f, f = (1, u, v, u^2, u v, v^2):
 ///
 ///     matrix = sum w f f^T,   right = sum w z f
 ///
 /// The matrix holds the moments sum w u^p v^q of degree 0 to 4 only: 15 sums instead of 36.
 ///
-/// `Number`: double, or a vector of numbers of which each lane sums points of its own; `total` adds the lanes
-/// up. Internal to the fits. One thread at a time for each object.
+/// `Number` is double, or a SIMD vector whose lanes sum different points; `total` adds the lanes. Internal to
+/// the fits. One object per thread.
 #pragma once
 
 #include <Eigen/Core>
 
 namespace rfsmooth::rfs_mesh {
 
-/// The left side.
+/// The matrix.
 template <class Number>
 class QuadricMoments {
  public:
@@ -56,7 +56,7 @@ class QuadricMoments {
          m03_ = {}, m40_ = {}, m31_ = {}, m22_ = {}, m13_ = {}, m04_ = {};
 };
 
-/// The right side.
+/// The right-hand side.
 template <class Number>
 class QuadricHeights {
  public:

@@ -14,9 +14,9 @@ inline double radians(double degrees) {
   return degrees * (M_PI / 180);
 }
 
-/// The direction of (x, y) in (-pi, pi], within 1.5e-5 radians (a thousandth of a degree, which no threshold
-/// here is worth), 0 for the zero vector: four times as fast as std::atan2, and it is asked tens of times a
-/// point. The minimax polynomial of atan on [0, 1] of degree 11.
+/// The angle of (x, y) in (-pi, pi], 0 for the zero vector. Within 1.5e-5 radians, a thousandth of a degree,
+/// which is finer than every threshold it is used with. Four times as fast as std::atan2; it is called tens
+/// of times a point. The minimax polynomial of atan on [0, 1] of degree 11.
 inline double direction(double x, double y) {
   const double ax = std::abs(x), ay = std::abs(y), large = std::max(ax, ay), small = std::min(ax, ay);
   const double z = large > 0 ? small / large : 0, s = z * z;
@@ -40,7 +40,7 @@ struct TangentPlane {
   double angle(const Eigen::Vector3d& d) const { return direction(t1.dot(d), t2.dot(d)); }
 };
 
-/// The angle in [0, 2 pi) to turn counter-clockwise from `from` to `to`, both in (-pi, pi].
+/// The counter-clockwise angle in [0, 2 pi) from `from` to `to`, both in (-pi, pi].
 inline double turn(double from, double to) {
   const double t = to - from;  // both lie in (-pi, pi], so one turn is enough
   return t < 0 ? t + 2 * M_PI : t;
@@ -52,13 +52,13 @@ inline double between(double a, double b) {
   return t > M_PI ? 2 * M_PI - t : t;
 }
 
-/// The directions that lie `width` (at most 2 pi) counter-clockwise of `from`, both ends included; asked
-/// without angles.
+/// The directions up to `width` (at most 2 pi) counter-clockwise of `from`, both ends included. `holds`
+/// computes no angle.
 class Sector {
  public:
   Sector(double from, double width)
       : Sector({std::cos(from), std::sin(from)}, {std::cos(from + width), std::sin(from + width)}, width) {}
-  /// The same by its ends, of any length.
+  /// The sector between two directions of any length.
   Sector(const Eigen::Vector2d& first, const Eigen::Vector2d& last, double width)
       : first_(first), last_(last), empty_(!(width >= 0)), narrow_(width <= M_PI) {}
 

@@ -1,28 +1,28 @@
-/// Normals on one side: the same side along every neighbourhood, outward on closed shapes, towards the
-/// scanner where it is known.
+/// Orients normals: on the same side along every neighbourhood, outward on closed shapes, towards the scanner
+/// where it is known.
 ///
 /// 1. Two normals at the ends of an edge e (a unit vector) agree if, rolled from one end to the other along
 ///    the circle through both,
 ///        a = n_i . (n_j - 2 (n_j . e) e)
-///    is positive; |a| says how sure that is: 1 in a plane, on a sphere, across a sharp edge and from one
+///    is positive. |a| is how sure that is. It is 1 in a plane, on a sphere, across a sharp edge and from one
 ///    side of a thin sheet to the other (Konig and Gumhold 2009, "Consistent propagation of normal
-///    orientations in point clouds", section 3; Hoppe et al. 1992, 3.3, compares n_i . n_j, which fails at
-///    the last two).
-/// 2. Along the edges of the mesh and of the EMST points grow together into regions, the surest first, by
-///    what all edges between two regions say together (sides.h). Bridges are no neighbourhood; a part of
-///    fewer than 32 points follows the bridge that it hangs on, every other part gets its side as a whole:
-/// 3. Without a viewpoint outward, by the sign of its volume, sum of a_i (p_i - c) . n_i over its points of
-///    area a_i and centroid c. A part that is as good as flat has no outward and is turned to +z (then +y,
-///    +x); an open sheet faces away from its centroid.
-/// 4. That is checked by the winding number, which is 1/2 on a closed surface whose normals are right
-///    (winding.h). Where it is not, the Gauss formula is asked for the side of up to 50,000 points, the
-///    regions are grown again with these votes, and each part takes what comes nearer to 1/2: so the sheets
-///    of thin plates that noise has mixed are told apart, and the wall of a cavity faces the cavity.
-/// 5. With a viewpoint the points that can be seen from it vote instead, each by the cosine of its normal to
-///    the ray (visible.h); what they are connected to follows. A part of which nothing is seen goes by 3.
+///    orientations in point clouds", section 3). Hoppe et al. 1992, 3.3, compare n_i . n_j, which fails in
+///    the last two cases.
+/// 2. Along the edges of the mesh and of the EMST points grow together into regions, the surest first, by the
+///    sum of all edges between two regions (sides.h). Bridges are not used, but a connected part of fewer
+///    than 32 points follows the bridge it hangs on. Every other part gets its side as a whole:
+/// 3. Without a viewpoint the side is outward, by the sign of the part's volume, sum of a_i (p_i - c) . n_i
+///    over its points of area a_i and centroid c. A part that is nearly flat has no outward side and is
+///    turned to +z (then +y, +x); an open sheet faces away from its centroid.
+/// 4. The winding number checks this: it is 1/2 on a closed surface whose normals are right (winding.h).
+///    Where it is not, the Gauss formula gives votes for the sides of up to 50,000 points, the regions are
+///    grown again with these votes, and each part takes the result nearer to 1/2. This separates the sheets
+///    of thin plates that noise has mixed, and the wall of a cavity faces the cavity.
+/// 5. With a viewpoint the points visible from it vote instead, each by the cosine of its normal to the ray
+///    (visible.h); points connected to them follow. A part with no visible point goes by 3.
 ///
-/// The result does not depend on the side the normals came with, on the number of threads, or (up to the
-/// rule for flat parts) on the frame.
+/// The result does not depend on the sides of the input normals, nor on the number of threads, nor (except
+/// for flat parts) on the frame.
 #pragma once
 
 #include <optional>
@@ -35,12 +35,12 @@
 
 namespace rfsmooth::rfs_mesh {
 
-/// Turns each of `normals` (n x 3, unit) to its side in place; returns the number of parts that were given
-/// their side as a whole. `mesh`: positions and one-rings. `tree`: the EMST, or any edges that connect what
-/// belongs together; `bridges`: those among them that are not neighbourhood (may be empty). `viewpoint`: in
-/// the frame of the positions. `calm`: the same points nearer to the surface (their shadows), on which rule 1
-/// compares normals; with noise of a spacing the edges of the points themselves stand every way. O(E log E),
-/// mostly parallel. Thread safe.
+/// Turns each of `normals` (n x 3, unit) to its side in place; returns the number of parts that got their
+/// side as a whole. `mesh`: positions and one-rings. `tree`: the EMST, or any edges that connect what belongs
+/// together; `bridges`: those of them that are no neighbourhood (may be empty). `viewpoint`: in the frame of
+/// the positions. `calm`: the same points nearer to the surface (their shadows); rule 1 compares normals
+/// there, because with noise of a spacing the edges between the points themselves have arbitrary directions.
+/// O(E log E), mostly parallel. Thread safe.
 std::size_t orient(const Mesh& mesh, const std::vector<Edge>& tree, const std::vector<Edge>& bridges,
                    const std::optional<Eigen::Vector3d>& viewpoint, Positions& normals,
                    const Context& context, const Positions* calm = nullptr);

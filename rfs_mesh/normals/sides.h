@@ -1,17 +1,17 @@
 /// Which of neighbouring normals are on one side: points grow together into regions, the surest first.
 ///
-/// A link says of two normals that they agree (positive) or not, with |agreement| <= 1. Each region joins the
-/// neighbour with which the links between the two, summed up, say most clearly how,
+/// A link says whether two normals agree: agreement in [-1, 1], positive if they do. Each region joins the
+/// neighbouring region for which the sum of the links between the two is clearest,
 ///
-///     clarity = (sum of agreements)^2 / number of links,
+///     clarity = (sum of agreements)^2 / number of links.
 ///
-/// at first only where clarity is at least 0.8 (one link in a plane has 1, noise about its variance whatever
-/// the number), then 0.6, ... 0: so doubtful points wait until their neighbours speak with one voice. Kruskal
-/// on single links, as in Hoppe et al. 1992, is turned over by one wrong link between two large parts.
+/// At first only joins with clarity of at least 0.8 are made (one link in a plane has 1; pure noise has about
+/// its variance, whatever the number of links), then 0.6, ... 0: doubtful points wait until their neighbours
+/// agree. Kruskal on single links, as in Hoppe et al. 1992, fails at one wrong link between two large parts.
 ///
-/// A vote says which side a point is on by other evidence (positive: its normal is right). Regions whose
-/// votes speak against a join more loudly than the links for it stay apart.
-/// The functions are thread safe; a Sides object is for one thread.
+/// A vote is other evidence on the side of a point (positive: its normal is right). Two regions stay apart if
+/// their votes speak more against the join than the links for it. The functions are thread safe; a Sides
+/// object is for one thread.
 #pragma once
 
 #include <algorithm>
@@ -25,13 +25,13 @@
 
 namespace rfsmooth::rfs_mesh {
 
-/// Union-find whose members know whether they are turned against their root; the lowest index is the root.
+/// Union-find that also stores whether each member is turned against its root, the lowest index of the set.
 class Sides {
  public:
   explicit Sides(std::size_t n) : parent_(n), turned_(n, 0) {
     std::iota(parent_.begin(), parent_.end(), Index{0});
   }
-  /// Where a member hangs.
+  /// The root of a member, and whether the member is turned against it.
   struct Root {
     Index index;
     bool turned;
@@ -47,7 +47,7 @@ class Sides {
     }
     return {i, turned};
   }
-  /// Joins two different roots; `turned`: against each other.
+  /// Joins two different roots. `turned`: whether they are turned against each other.
   void join(Index a, Index b, bool turned) {
     parent_[std::max(a, b)] = std::min(a, b);
     turned_[std::max(a, b)] = turned ? 1 : 0;
@@ -58,30 +58,30 @@ class Sides {
   std::vector<char> turned_;
 };
 
-/// How well the sides of two points, or regions, agree.
+/// How well the sides of two points, or of two regions, agree.
 struct SideLink {
   Index a, b;
-  float agreement;  ///< of all links in it
-  float count;      ///< how many links it stands for, 1 to begin with
+  float agreement;  ///< sum over its links
+  float count;      ///< number of links summed, 1 to begin with
 };
 
-/// Which points have found one side together.
+/// The regions of n points, and the side of each point in its region.
 struct Regions {
   std::vector<Index> of_point;  ///< n: the region's lowest point
   std::vector<char> turned;     ///< n: 1 where the normal is on the other side than the lowest point's
 };
 
-/// `links` in any order, a != b; `votes`: n, or empty for none. O(E log E) in all. Parallel where it counts;
-/// the same for any number of threads.
+/// Grows the regions of n points. `links`: in any order, a != b; `votes`: n, or empty for none. O(E log E).
+/// Mostly parallel; the same for any number of threads.
 Regions grow_regions(std::size_t n, std::vector<SideLink> links, const std::vector<double>& votes,
                      const Context& context);
 
-/// The links of the points [begin, end), to be appended to `out`.
+/// Appends the links of the points [begin, end) to `out`.
 using LinksOf = std::function<void(std::size_t begin, std::size_t end, std::vector<SideLink>& out)>;
 
-/// The same of many points that lie in memory about as in space, without ever holding all links: first the
-/// points of every block of 4096 grow together by the surest of the links among them, at least 0.8, then the
-/// regions of the blocks as above. Parallel; the same for any number of threads.
+/// The same for many points that lie in memory about as in space, without holding all links at once. First
+/// the points of every block of 4096 grow together by links among them of at least 0.8, then the regions of
+/// the blocks as above. Parallel; the same for any number of threads.
 Regions grow_regions_in_blocks(std::size_t n, const LinksOf& links, const Context& context);
 
 }  // namespace rfsmooth::rfs_mesh

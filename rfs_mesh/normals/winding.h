@@ -1,20 +1,18 @@
-/// The winding number of oriented points, and what it says about the side of a normal without looking at its
-/// neighbours.
+/// The winding number of oriented points. It tells the side of a normal without its neighbours.
 ///
-/// Points p_j with area vectors m_j (area times normal) wind about q
+/// Points p_j with area vectors m_j (area times normal) wind around q
 ///
 ///     w(q) = 1/(4 pi) sum over j of m_j . (p_j - q) / (|p_j - q|^2 + e^2)^(3/2)
 ///
 /// times: 1 inside a closed surface with outward normals, 0 outside, 1/2 on it (Barill et al. 2018, "Fast
-/// winding numbers for soups and clouds"). Conversely the area vectors for which w is 1/2 at every point are
+/// winding numbers for soups and clouds"). Conversely, the area vectors for which w is 1/2 at every point are
 /// those of the closed surface through them: parametric Gauss reconstruction (Lin et al. 2022, "Surface
-/// reconstruction from point clouds without normals by parametrizing the Gauss formula"). Few steps of
-/// conjugate gradients towards the smallest such m tell the side at nearly all points, between thin sheets
-/// that noise has mixed, too.
+/// reconstruction from point clouds without normals by parametrizing the Gauss formula"). A few steps of
+/// conjugate gradients towards the smallest such m give the side of nearly all points, also between thin
+/// sheets that noise has mixed.
 ///
-/// Sums over far points are taken as one (Barnes and Hut 1986): a box of the kd-tree whose radius is under
-/// half its distance counts as a point at its centroid. e is about a spacing.
-/// Const functions are thread safe.
+/// Far points are summed as one (Barnes and Hut 1986): a box of the kd-tree whose radius is under half its
+/// distance counts as a point at its centroid. e is about a spacing. Const functions are thread safe.
 #pragma once
 
 #include <vector>
@@ -26,7 +24,7 @@
 
 namespace rfsmooth::rfs_mesh {
 
-/// The winding number of the points and their normals.
+/// Evaluates w, its adjoint and its inverse over fixed points.
 class Winding {
  public:
   /// \param points n x 3, kept by reference; \param softening e, world units, > 0. O(n log n).
@@ -35,10 +33,10 @@ class Winding {
   /// w at every point, for area vectors m (n). O(n log n), parallel, the same bits for any number of threads.
   std::vector<double> numbers(const Positions& area_vectors, const Context& context) const;
 
-  /// The adjoint: the field sum over j of c_j (p_i - p_j) / (4 pi (...)^(3/2)) at every point.
+  /// The adjoint: sum over j of c_j (p_i - p_j) / (4 pi (|p_i - p_j|^2 + e^2)^(3/2)) at every point p_i.
   Positions field(const std::vector<double>& charges, const Context& context) const;
 
-  /// `steps` of conjugate gradients from zero towards the smallest area vectors with w = 1/2 everywhere.
+  /// The smallest area vectors with w = 1/2 everywhere, after `steps` of conjugate gradients from zero.
   Positions gauss(int steps, const Context& context) const;
 
  private:

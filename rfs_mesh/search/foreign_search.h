@@ -1,8 +1,8 @@
-/// The kd-tree as Boruvka's rounds see it: what is near a point, a leaf or a node and belongs to another
-/// component. Internal to the EMST (boruvka.h).
+/// Searches of the kd-tree for points of other components than one's own. Internal to Boruvka's algorithm
+/// (boruvka.h).
 ///
-/// Subtrees inside the own component are passed over: once the components are known, `label` names for each
-/// node the one that all its points share. Ties go by index.
+/// `label` stores for each node the component that all its points share, if they do. Searches skip subtrees
+/// inside the own component. Ties go by index.
 #pragma once
 
 #include <limits>
@@ -13,7 +13,7 @@
 
 namespace rfsmooth::rfs_mesh {
 
-/// Searches for foreign points. Const ones may run in parallel.
+/// Searches for foreign points: those of another component. Const functions may run in parallel.
 class ForeignSearch {
  public:
   using Cursor = KdTree::Cursor;
@@ -36,7 +36,7 @@ class ForeignSearch {
   /// Subtrees that cover the tree, each for one thread.
   const std::vector<Cursor>& subtrees() const { return subtrees_; }
 
-  /// Looks at the components as they are now. O(n), parallel.
+  /// Updates the labels of the nodes from `component`. O(n), parallel.
   void label(const Context& context) {
     for_each_index(
         context, subtrees_.size(), [&](std::size_t s) { label(subtrees_[s]); }, 1);
@@ -46,7 +46,8 @@ class ForeignSearch {
   /// The component that all points of a node share, kNone if they do not.
   Index shared(const Cursor& c) const { return shared_[c.node]; }
 
-  /// Whether a box with foreign points is within sqrt(bound) of that of `of`, whose points are `own`.
+  /// Whether a leaf with foreign points is within sqrt(bound) of the box of `of`, whose points are all of
+  /// `own`.
   bool any_within(const Cursor& of, Index own, double bound) const {
     bool any = false;
     visit(of, own, bound, [&](const Cursor&) {
@@ -56,7 +57,7 @@ class ForeignSearch {
     return any;
   }
 
-  /// The leaves of such boxes. False if there are too many.
+  /// Lists these leaves. False if there are more than Leaves::kMost, or `bound` is infinite.
   bool list(const Cursor& of, Index own, double bound, Leaves& leaves) const {
     if (bound == std::numeric_limits<double>::infinity()) return false;
     leaves.count = 0;
@@ -80,7 +81,7 @@ class ForeignSearch {
     return best;
   }
 
-  /// The same in the whole tree.
+  /// The nearest foreign point in the whole tree, as `nearest_in`.
   Neighbor nearest(Index self, Index own, double bound) const {
     const Eigen::Vector3d q = points_[self];
     Neighbor best = {kNone, bound};
@@ -131,7 +132,7 @@ class ForeignSearch {
   }
 
   /// Calls `see(cursor)` for the leaves with foreign points whose boxes are within sqrt(bound) of that of
-  /// `of`, until it says false.
+  /// `of`, until it returns false.
   template <class See>
   void visit(const Cursor& of, Index own, double bound, See&& see) const {
     const KdTree::Node& box = tree_.node(of.node);

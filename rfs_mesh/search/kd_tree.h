@@ -1,13 +1,12 @@
-/// The kd-tree under SpatialIndex: buckets of eight points, tight boxes, no pointers.
+/// The kd-tree under SpatialIndex: leaves of eight points, tight boxes, no pointers.
 ///
-/// The points are partitioned at medians of the widest axis (halving.h) into leaves of exactly kLeaf
-/// points (the last may be short). Nodes lie in preorder; which leaves a node covers follows from the number
-/// of leaves alone: the node over the leaves [first, last) has its left child right behind it and its right
-/// child behind the left subtree. A leaf keeps its coordinates by axis, so that a scan of it is a few vector
-/// instructions.
+/// The points are split at medians of the widest axis (halving.h) into leaves of exactly kLeaf points; the
+/// last may be short. Nodes are stored in preorder, and the number of leaves determines their layout: the
+/// node over the leaves [first, last) has its left child right behind it and its right child behind the left
+/// subtree. A leaf stores its coordinates by axis, so that a scan of it is a few SIMD instructions.
 ///
-/// Exactness: squared distances to points and to boxes are both evaluated as (dx^2 + dy^2) + dz^2 without
-/// contraction; rounding is monotone, so the distance to a box never exceeds that of a point in it.
+/// Exactness: squared distances to points and to boxes are both computed as (dx^2 + dy^2) + dz^2 without
+/// fused multiply-add. Rounding is monotone, so the distance to a box never exceeds that to a point in it.
 ///
 /// O(n log n) to build, in parallel; the same tree for any number of threads. 43 bytes a point. Read-only
 /// once built: any number of threads may search it.
@@ -34,10 +33,10 @@ class KdTree {
     Index id[kLeaf];
   };
 
-  /// What is known of the points below a node.
+  /// A summary of the points below a node.
   struct Node {
     Eigen::Vector3d low, high;  ///< tight box
-    Index least_id;             ///< smallest id in it: decides ties of distance
+    Index least_id;             ///< smallest id in the node: breaks ties of distance
   };
 
   /// A node and the leaves [first, last) that it covers.
@@ -52,9 +51,9 @@ class KdTree {
   /// \throw std::invalid_argument if a coordinate is not finite or squares of lengths overflow.
   KdTree(const Positions& points, const Context& context);
 
-  /// Goes on with the same points at other places (finite, as above): the leaves keep their points, boxes are
-  /// tight again. Searches stay exact; they are as fast as in a new tree if neighbours stayed neighbours.
-  /// O(n), parallel, a tenth of the time of a new tree.
+  /// Moves the points to other places (finite, as above). The leaves keep their points; the boxes are made
+  /// tight again. Searches stay exact, and as fast as in a new tree if neighbours stayed neighbours. O(n),
+  /// parallel, a tenth of the time of a new tree.
   void follow(const Positions& points, const Context& context);
 
   bool empty() const { return leaves_.empty(); }
@@ -81,7 +80,7 @@ inline double squared_distance(const Eigen::Vector3d& p, const Eigen::Vector3d& 
   return (x * x + y * y) + z * z;
 }
 
-/// Twice the positive part. No branch: along a walk through the tree it could not be foreseen.
+/// 2 max(x, 0), without a branch: along a walk through the tree it would be unpredictable.
 inline double twice_positive(double x) {
   return x + std::abs(x);
 }

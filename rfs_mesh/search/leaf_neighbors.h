@@ -1,12 +1,13 @@
-/// The k nearest of all points of one leaf of the kd-tree at once: how SpatialIndex fills its table.
+/// The k nearest neighbours of all points of one kd-tree leaf at once; SpatialIndex fills its table with it.
 ///
-/// The eight points share one walk through the tree. How far to look is guessed from the k-th neighbour of
-/// the point before, which is near. The points of the leaves listed are turned into single precision around
-/// the leaf, and what is within the guess is kept and ranked by counting the nearer ones of each: no heap, no
-/// comparison that the processor would have to foresee. Where k are within the guess, the k nearest are among
-/// them; where not, the point is given a second look as far as the walk went, and failing that a search of
-/// its own. Where two are as far up to what single precision can tell, the distances are taken in double
-/// precision. So a bad guess or rounding costs time, never exactness.
+/// The eight points share one walk through the tree. The search radius is guessed from the distance of the
+/// previous point's k-th neighbour, since that point is near. The points of the leaves found are converted to
+/// single precision around the leaf; those within the guess are kept and ranked by counting, for each, the
+/// points nearer than it. This needs no heap and has no unpredictable branch.
+///
+/// If k points are within the guess, the k nearest are among them. If not, the point is searched again as far
+/// as the walk went, and failing that in the whole tree. Where two distances are equal up to single-precision
+/// rounding, they are computed in double precision. So a bad guess or rounding costs time, never exactness.
 #pragma once
 
 #include <array>
@@ -17,20 +18,21 @@
 
 namespace rfsmooth::rfs_mesh {
 
-/// Scratch of one thread; reused from leaf to leaf.
+/// The search, with its scratch memory, reused from leaf to leaf. One object per thread.
 class LeafNeighbors {
  public:
   /// k < number of points.
   LeafNeighbors(const KdTree& tree, std::size_t k);
 
-  /// A squared distance to expect a k-th neighbour at; to be told after a search of its own.
+  /// Sets the squared distance at which to expect the next k-th neighbour. Call it after a point was searched
+  /// in the whole tree.
   void expect(double squared_distance) { guess_ = squared_distance; }
 
-  /// Prepares the leaf. False: too many leaves are near, search its points one by one.
+  /// Prepares the leaf. False if too many leaves are near: search its points one by one.
   bool prepare(std::uint32_t leaf);
 
-  /// The k nearest of the leaf's point `slot` other than itself into row[0, k), ascending by (distance,
-  /// index). False: not found within the bound, search it by itself.
+  /// Writes the k nearest of the leaf's point `slot`, without itself, to row[0, k), ascending by (distance,
+  /// index). False if there are not k within the bound: search the whole tree for it.
   bool find(std::uint32_t slot, Index* row);
 
  private:
@@ -45,7 +47,7 @@ class LeafNeighbors {
 
   const KdTree& tree_;
   std::size_t k_;
-  double widen_ = 1, widen_list_ = 1;  // of the guess: for a point, for its leaf (squared)
+  double widen_ = 1, widen_list_ = 1;  // factors on the guess, for a point and its leaf (squared)
   double guess_ = 0;                   // squared distance of the last point's k-th neighbour
 
   const KdTree::Leaf* leaf_ = nullptr;
@@ -54,9 +56,9 @@ class LeafNeighbors {
   // The points of the listed leaves: from the middle of the leaf's box, in units of the bound.
   std::vector<float> x_, y_, z_, key_;
   std::array<float, KdTree::kLeaf> own_x_, own_y_, own_z_;  // those of the leaf
-  float uncertain_ = 0;                                     // what rounding may do to a squared distance
+  float uncertain_ = 0;                                     // largest rounding error of a squared distance
 
-  std::vector<std::uint16_t> kept_;   // places in x_
+  std::vector<std::uint16_t> kept_;   // places in x_, y_, z_
   std::vector<float> kept_key_;       // squared distances of the kept
   std::vector<std::uint32_t> place_;  // of rank 0, 1, ... (0 is the point itself): its place in x_
   std::vector<float> sorted_;         // keys by rank

@@ -1,9 +1,9 @@
 /// The k nearest and the radius neighbours of points in space, exact, ties by index.
 ///
 /// Why an index of our own and not FLANN: the EMST needs a search that skips subtrees of its own component,
-/// equal distances must come in the order of the indices (determinism), and the tables of all points are made
-/// leaf by leaf (leaf_neighbors.h), which is faster. Seconds at 1M noisy surface points in Morton order, one
-/// thread, medians of one interleaved run of tests/bench/rfs_mesh/emst_bench.cpp:
+/// equal distances must come in the order of the indices (determinism), and filling the table of all points
+/// leaf by leaf (leaf_neighbors.h) is faster. Seconds at 1M noisy surface points in Morton order, one thread,
+/// medians of one interleaved run of tests/bench/rfs_mesh/emst_bench.cpp:
 ///
 ///                    build   k = 8   k = 32
 ///     this           0.18    0.41    0.80
@@ -25,7 +25,7 @@
 
 namespace rfsmooth::rfs_mesh {
 
-/// A point and how far it is.
+/// A point and its squared distance.
 struct Neighbor {
   Index index;
   double squared_distance;
@@ -51,15 +51,15 @@ struct NeighborTable {
   }
 };
 
-/// A kd-tree over points that stay where they are. The points may be in any order and may coincide; they are
-/// fastest along a Morton curve, as in the working cloud.
-/// O(n log n) to build, O(log n + k) a query. Thread safe once built.
+/// A kd-tree over points that do not move. They may be in any order and may coincide; searches are fastest
+/// along a Morton curve, as in the working cloud. O(n log n) to build, O(log n + k) a query. Thread safe once
+/// built.
 class SpatialIndex {
  public:
-  /// Keeps a reference to `points` (n x 3, finite): they must outlive the index and not move meanwhile.
+  /// Keeps a reference to `points` (n x 3, finite), which must outlive the index and not change.
   SpatialIndex(const Positions& points, const Context& context);
 
-  /// With the tree of the same points at other places, near these: saves most of the time.
+  /// Reuses `tree`, built over the same points at other places near these. This saves most of the time.
   SpatialIndex(const Positions& points, KdTree tree, const Context& context);
 
   const Positions& points() const { return points_; }
@@ -68,20 +68,20 @@ class SpatialIndex {
   /// The k nearest other points of every point (a coincident one counts, at distance 0). Parallel.
   NeighborTable nearest(int k, const Context& context) const;
 
-  /// Searches the rows of the points `wanted` (n flags) anew. `table`: as from nearest().
+  /// Searches the rows of the points flagged in `wanted` (n) again. `table`: from nearest().
   void renew(NeighborTable& table, const std::vector<char>& wanted, const Context& context) const;
 
-  /// The k nearest points of any query (fewer if there are fewer), ascending by (distance, index). A point of
-  /// the cloud at the query is part of the answer. Replaces `out`.
+  /// The k nearest points of any query (all if there are fewer), ascending by (distance, index). A point of
+  /// the cloud at the query is included. Replaces `out`.
   void nearest(const Eigen::Vector3d& query, int k, std::vector<Neighbor>& out) const;
 
   /// All points with |point - query| <= radius, ascending by (distance, index). Replaces `out`.
   void within(const Eigen::Vector3d& query, double radius, std::vector<Neighbor>& out) const;
 
-  /// Whether there is one. O(log n), cheapest where there is none.
+  /// Whether a point is within `radius`. O(log n), fastest if there is none.
   bool any_within(const Eigen::Vector3d& query, double radius) const;
 
-  /// The tree, for an index of the same points elsewhere; this one is of no use afterwards.
+  /// Gives up the tree, for an index of the same points elsewhere. The index cannot be searched afterwards.
   KdTree release_tree() { return std::move(tree_); }
 
  private:
@@ -91,9 +91,9 @@ class SpatialIndex {
   KdTree tree_;
 };
 
-/// The table of what is left of a cloud when the points `gone` (n flags) are taken out, as
-/// left.nearest(near.k) would give it: only rows that had one of them are searched anew. `near`: of the whole
-/// cloud; `left`: of the others, in their order. Parallel.
+/// The table of a cloud without the points flagged in `gone` (n), equal to left.nearest(near.k); only rows
+/// that held one of them are searched again. `near`: of the whole cloud; `left`: of the remaining points, in
+/// their order. Parallel.
 NeighborTable nearest_left(const NeighborTable& near, const std::vector<char>& gone, const SpatialIndex& left,
                            const Context& context);
 

@@ -1,13 +1,11 @@
-/// The k nearest points of a place for k in the tens and hundreds, unsorted and by axis: what a fit over them
-/// reads.
+/// The k nearest points of a place for k in the tens and hundreds, unsorted and by axis, as fits read them.
 ///
-/// How far to look is guessed from the place before, which is near, and checked by counting; of the points
-/// within the guess the k nearest are picked by a histogram of their distances, so that only those that fall
-/// into the last bin are ever compared with each other. Twice to four times as fast as SpatialIndex::nearest,
-/// which sorts.
+/// The search radius is guessed from the previous place, which is near, and checked by counting. Of the
+/// points within the guess a histogram of their distances picks the k nearest; only those in its last bin are
+/// compared with each other. Two to four times as fast as SpatialIndex::nearest, which sorts.
 ///
-/// Distances are compared in single precision: of points that are equally far up to 1e-7 the one of the lower
-/// index is taken.
+/// Distances are compared in single precision: of points equally far up to 1e-7 the one of the lower index is
+/// taken.
 #pragma once
 
 #include <vector>
@@ -16,24 +14,23 @@
 
 namespace rfsmooth::rfs_mesh {
 
-/// The search and its answer. Not thread safe: one a thread. The answers to the same places in the same order
-/// are the same.
+/// The search and its answer. One object per thread. The same places in the same order give the same answers.
 class WideNeighbors {
  public:
-  /// \param k at most the number of points of `index` (else all are found). Keeps a reference to `index`.
+  /// \param k at most the number of points of `index`, else all are found. Keeps a reference to `index`.
   WideNeighbors(const SpatialIndex& index, std::size_t k);
 
-  /// Finds the k nearest of `place`; a point there is one of them. O(log n + k).
+  /// Finds the k nearest of `place`, a point at the place included. O(log n + k).
   void find(const Eigen::Vector3d& place);
 
   std::size_t size() const { return kept_; }
-  double unit() const { return unit_; }  ///< world units, > 0: of the lengths below
+  double unit() const { return unit_; }  ///< of the lengths below, world units, > 0
   const Index* index() const { return id_.data(); }
-  const float* x() const { return x_.data(); }  ///< offsets from the place
+  const float* x() const { return x_.data(); }  ///< offset from the place
   const float* y() const { return y_.data(); }
   const float* z() const { return z_.data(); }
-  const float* squared() const { return squared_.data(); }  ///< distances
-  float farthest() const { return farthest_; }              ///< squared
+  const float* squared() const { return squared_.data(); }  ///< squared distance
+  float farthest() const { return farthest_; }              ///< largest squared distance
 
  private:
   struct Item {

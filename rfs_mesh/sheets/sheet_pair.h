@@ -1,12 +1,12 @@
-/// Two sheets of heights with one middle between them, told apart while they are fitted.
+/// Two sheets of heights on the two sides of one middle, separated while they are fitted:
 ///
 ///     z = m(u, v) +- d(u, v) + noise,    m a quadric, d linear
 ///
-/// A height belongs to the upper sheet with the probability P = 1 / (1 + exp(-2 (z - m) d / s^2)), s^2 the
-/// variance of the noise; m, d, s and P are found in turns (expectation maximisation, Dempster, Laird and
-/// Rubin 1977), starting from one quadric through all heights and the variance that it leaves. Heights are in
-/// units of the measured noise. Walls make that too high, never too low, so s^2 is kept between 0.35 and 1.
-/// Const functions are thread safe.
+/// A height belongs to the upper sheet with probability P = 1 / (1 + exp(-2 (z - m) d / s^2)), s^2 the
+/// variance of the noise. m, d, s and P are found in turns (expectation maximisation, Dempster, Laird and
+/// Rubin 1977), starting from one quadric through all heights and the variance about it. Heights are in units
+/// of the measured noise. Walls make the measured noise too high, never too low, so s^2 is kept between 0.35
+/// and 1. Const functions are thread safe.
 #pragma once
 
 #include <vector>
@@ -24,7 +24,7 @@ struct SheetPoint {
   double upper = 0;  ///< out: P
 };
 
-/// The fit, and what speaks for it.
+/// The fit of two sheets, and whether to believe it.
 class SheetPair {
  public:
   /// Fits to `points` and sets their P. O(points).
@@ -33,19 +33,19 @@ class SheetPair {
   double middle(const SheetPoint& p) const;  ///< m
   double apart(const SheetPoint& p) const;   ///< d >= 0 where the sheets do not cross
 
-  /// Where the point would lie on the sheet nearer to it.
+  /// The height of the sheet nearer to the point.
   double nearer(const SheetPoint& p) const {
     return middle(p) + (p.height < middle(p) ? -apart(p) : apart(p));
   }
 
-  /// Whether there are two sheets so near to each other that they must be fitted together. Not if
-  ///  - one sheet with louder noise explains the heights as well (less than 3 nats apart);
-  ///  - more variance is left than the noise has, or the residuals' means over the cells of a 5 x 5 grid are
-  ///    more than noise: then the shape is another one;
-  ///  - where a point is says to which sheet it belongs: a step;
-  ///  - the estimates do not follow the two sheets at all: sheets that only the scatter of the heights
-  ///    shows may be louder noise, and one place has too few points to tell (hidden_sheets.h does);
-  ///  - the sheets are more than 2.1 from the middle.
+  /// Whether there are two sheets so near to each other that they must be fitted together. False if
+  /// - one sheet with more noise explains the heights as well (less than 3 nats worse);
+  /// - more variance is left than the noise has, or the residuals' means over the cells of a 5 x 5 grid are
+  ///   more than noise: the shape is a different one;
+  /// - the place (u, v) of a point predicts its sheet: a step;
+  /// - the estimates do not follow the two sheets. Sheets that show only in the scatter of the heights may be
+  ///   more noise, and one place has too few points to tell (hidden_sheets.h can);
+  /// - the sheets are more than 2.1 from the middle.
   bool convincing() const { return convincing_; }
 
  private:
@@ -57,11 +57,11 @@ class SheetPair {
 
   Vector6 middle_ = Vector6::Zero();
   Eigen::Vector3d apart_ = Eigen::Vector3d::Zero();
-  Eigen::Matrix<double, 6, 6> normal_;  ///< equations of one quadric, inverted
+  Eigen::Matrix<double, 6, 6> normal_;  ///< inverse of one quadric's normal equations
   double weights_ = 0;
   double single_ = 0;    ///< variance about one quadric
   double variance_ = 1;  ///< s^2
-  double left_ = 0;      ///< variance about the sheets, before its bounds
+  double left_ = 0;      ///< variance about the sheets, unbounded
   bool convincing_ = false;
 };
 

@@ -1,20 +1,23 @@
-/// Where two sheets are near each other (a thin plate, a fold): which of them a noisy point belongs to.
+/// Which of two near sheets (of a thin plate, a fold) a noisy point belongs to.
 ///
-/// A shadow (local_surface.h) follows the sheet its point lies nearest to. That fails for the points noise
-/// has carried near the middle: quadrics of both sheets claim them, their shadows end in between, and edges
-/// from there join the two sides. Here such a point looks at the shadows around it, which lie in two sheets:
-/// along the common axis a of their normals the heights
+/// A shadow (local_surface.h) follows the sheet nearest to its point. That fails for points that noise has
+/// carried near the middle: quadrics of both sheets claim them, their shadows end in between, and edges from
+/// there join the two sides. For such a point we look at the shadows around it, which lie in two sheets.
+/// Along the common axis a of their normals the heights
+///
 ///     h_j = a . (shadow_j - p)
-/// split into two groups (the split of least variance within). If the sheets are well apart, parallel and
-/// both on either side of the point's foot, then
-///  - a point well nearer to one of them has its shadow and normal from that one;
-///  - a point about as far from both is *between*: nothing tells which sheet it came from, and any
-///    neighbours would be the wrong ones half of the time. It has none: its tree edges are bridges (sdg.h).
-/// Two sheets six standard deviations apart lose 0.8 % of their points so and keep 0.05 % of edges that
-/// cross; a single sheet has no second sheet, and nothing changes on it.
 ///
-/// Paper: none; Vollmer et al. (section 7) have no noise that reaches the next sheet.
-/// Thread safe: no state is kept.
+/// are split into the two groups with the least variance inside. If the sheets are well apart, parallel, and
+/// both extend around the point's foot, then
+/// - a point clearly nearer to one of them takes its shadow and normal from that one;
+/// - a point about as far from both is *between*: nothing tells which sheet it came from, and any neighbours
+///   would be wrong half of the time. It gets none, and its tree edges are bridges (sdg.h).
+///
+/// With two sheets six standard deviations apart 0.8 % of the points are between, and 0.05 % of the edges
+/// still cross. A single sheet is left as it is.
+///
+/// Paper: none. Vollmer et al. (section 7) have no noise that reaches the next sheet. Thread safe: no state
+/// is kept.
 #pragma once
 
 #include <vector>
@@ -26,10 +29,10 @@
 
 namespace rfsmooth::rfs_mesh {
 
-/// Corrects the shadows and normals of `surfaces` (n) that lie between two sheets, and says which points are
-/// between: n flags, or none if no point is. `shadows` is an index over shadows of the n points (those of
-/// `surfaces`, or of an earlier fit: only who is near whom is taken from it), `near` its table; `sigma`:
-/// noise of the points, world units. O(n k), a search only for the few points in doubt. Parallel,
+/// Corrects the shadows and normals of `surfaces` (n) that lie between two sheets, and returns which points
+/// are between: n flags, or none if no point is. `shadows`: an index over shadows of the n points (those of
+/// `surfaces`, or of an earlier fit; only neighbourhoods are taken from it); `near`: its table; `sigma`:
+/// noise of the points, world units. O(n k), and a search for each of the few doubtful points. Parallel,
 /// deterministic.
 std::vector<char> part_sheets(const Positions& points, const SpatialIndex& shadows, const NeighborTable& near,
                               double sigma, const SheetsOptions& options, std::vector<LocalSurface>& surfaces,
