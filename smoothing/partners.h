@@ -1,4 +1,4 @@
-/// Options that mean something only beside another one.
+/// Options that have a meaning only beside another option.
 #pragma once
 
 #include <string_view>
@@ -8,15 +8,15 @@
 
 namespace rfsmooth::smoothing {
 
-/// One of them, and what it needs.
+/// Such an option, and the one it needs.
 struct Partner {
   std::string_view option;   ///< its name in the tables
   std::string_view partner;  ///< what it needs, as messages say it
-  bool on;                   ///< whether that is so
+  bool on;                   ///< whether `partner` is set so
   bool set;                  ///< whether the option has another value than its default
 };
 
-/// Those of the flow that is chosen and of the modifiers. Thread safe.
+/// Those of the chosen flow and of the modifiers. Thread safe.
 std::vector<Partner> partners(const FlowOptions& options);
 
 }  // namespace rfsmooth::smoothing

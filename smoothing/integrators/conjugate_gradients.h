@@ -1,8 +1,9 @@
 /// The conjugate gradient iteration behind solver.h, in double or in single precision.
 ///
-/// Hestenes, Stiefel 1952, with a Jacobi preconditioner; Desbrun et al. 1999, 2.4-2.5. The coordinates of a
-/// vector are one system with a common step length. Four passes over the vectors per iteration; fixed-block
-/// sums in double, so the bits do not depend on the number of threads. Thread safe for different vectors.
+/// Hestenes, Stiefel 1952, with a Jacobi preconditioner; Desbrun et al. 1999, 2.4-2.5. The three coordinates
+/// are one system with a common step length. An iteration makes four passes over the vectors. Sums are taken
+/// in double over fixed blocks, so the bits do not depend on the number of threads. Thread safe for different
+/// vectors.
 #pragma once
 
 #include <algorithm>
@@ -14,11 +15,11 @@
 
 namespace rfsmooth::smoothing {
 
-/// Eigen::Vector3d, or Eigen::Vector4f with a zero at the end: one aligned load per gathered neighbour.
+/// Of Eigen::Vector3d, or of Eigen::Vector4f with fourth number 0, which loads a neighbour at once.
 template <class Vector>
 using Vectors = std::vector<Vector>;
 
-/// One number per vertex; not filled when made, so that the pages are first touched in parallel.
+/// One number per vertex. Not initialised, so that threads first touch the pages in parallel.
 template <class Scalar>
 using Numbers = Eigen::Array<Scalar, Eigen::Dynamic, 1>;
 
@@ -34,20 +35,20 @@ inline Eigen::Vector4f allowed_part(const AllowedMoves& allowed, std::size_t i, 
   return part;
 }
 
-/// What the iteration needs beside the product: 1 / A's diagonal and the weights of the residual's norm.
+/// The diagonal scalings of the iteration: 1 / A's diagonal and the weights of the residual's norm.
 template <class Scalar>
 struct Scales {
   Numbers<Scalar> inverse;
   Numbers<Scalar> norm;
-  bool largest = false;  ///< the largest weighted residual instead of the root of the sum of squares
+  bool largest = false;  ///< norm: the largest weighted residual, not the root of the sum of squares
 };
 
-/// r.z and the residual's squared norm.
+/// r.z, z the preconditioned residual, and the squared norm of r.
 struct ResidualSums {
   double rz = 0, square = 0;
 };
 
-/// `update(i)` for all i, returning the sums over the residuals that it returns.
+/// Calls `update(i)`, which returns the residual at i, for all i; returns the sums over these.
 template <class Scalar, class Update>
 ResidualSums residual_sums(const Context& context, std::size_t n, const Scales<Scalar>& scales,
                            Update&& update) {
@@ -69,14 +70,14 @@ ResidualSums residual_sums(const Context& context, std::size_t n, const Scales<S
       });
 }
 
-/// How far the iteration came.
+/// How the iteration ended.
 struct Iterated {
   int iterations = 0;
   double norm = 0;  ///< of the recursive residual
 };
 
-/// Continues A x = b from r = b - A x (already the allowed part, with its `sums`) until the norm of r is at
-/// most `goal`. `product(p, y)`: y = A p, returns p . y. A breakdown stops at the last iterate.
+/// Solves A x = b from r = b - A x (its allowed part, with its `sums`) until the norm of r is at most `goal`.
+/// `product(p, y)` sets y = A p and returns p . y. A breakdown stops at the last iterate.
 template <class Vector, class Product>
 Iterated conjugate_gradient_iteration(const Context& context, Product&& product,
                                       const Scales<typename Vector::Scalar>& scales, Vectors<Vector>& r,

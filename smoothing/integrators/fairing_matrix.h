@@ -2,9 +2,9 @@
 ///
 ///     A = [Q + a_1 S + a_2 S C M^-1 S + a_3 S (M^-1 S)^2 + a_4 S (M^-1 S)^3] / mu
 ///
-/// divided by mu = the mean mass, with S in units of mu / op.unit, so that its entries are of order one
-/// whatever the scale of the mesh and fit into single precision.
-/// One thread at a time for each object: products share room for intermediate values.
+/// Divided by mu = the mean mass, and with S in units of mu / op.unit, its entries are of order one whatever
+/// the scale of the mesh, and fit into single precision. One object per thread: products share scratch
+/// memory.
 #pragma once
 
 #include <array>
@@ -62,7 +62,7 @@ class FairingMatrix {
     return weighted_ ? multiply_with<true>(x, y) : multiply_with<false>(x, y);
   }
 
-  /// 1 / the diagonal; exact up to second order, an estimate above it (enough for a preconditioner).
+  /// 1 / the diagonal. Exact up to second order; above it an estimate, good enough for a preconditioner.
   Numbers<Scalar> inverse_diagonal() const {
     Numbers<Scalar> result(data_.size());
     for_each_index(context_, n_, [&](std::size_t i) {
@@ -108,7 +108,7 @@ class FairingMatrix {
         return double(x[i].dot(y[i]));
       });
     level_.resize(n);
-    const bool plain = order_ == 2 && a_[0] == 0;  // nothing to carry over from the first pass
+    const bool plain = order_ == 2 && a_[0] == 0;  // the last pass computes all of y
     for_each_index(context_, n, [&](std::size_t i) {
       const Vector d = difference<kWeighted>(x, i);
       if (!plain) y[i] = data_[Eigen::Index(i)] * x[i] + a_[0] * d;
@@ -137,7 +137,7 @@ class FairingMatrix {
   std::size_t n_;
   int order_ = 0;
   bool weighted_ = false;
-  Scalar graph_scale_ = 1;  ///< of S where it has no weights
+  Scalar graph_scale_ = 1;  ///< factor of S' if the operator has no weights
   Numbers<Scalar> weight_, data_, level_scale_, inverse_mass_;
   Vectors<Vector> level_, next_;
 };

@@ -1,25 +1,25 @@
-/// The implicit side of the flow library: symmetric positive definite solves on a mesh, by conjugate
-/// gradients with a Jacobi preconditioner, the three coordinates together.
+/// Implicit fairing: symmetric positive definite solves on a mesh, by conjugate gradients with a Jacobi
+/// preconditioner.
 ///
 ///     (Q + a_1 S + a_2 S C M^-1 S + a_3 S (M^-1 S)^2 + a_4 S (M^-1 S)^3) x = Q o
 ///
 /// S = M L of an Operator, Q = diag(data), C = diag(strength). With Q = M = D (degrees) and S = D - W this is
 /// implicit fairing of first order (a_1 = dt), of second order (a_2 = dt, a smoothing spline: (D + c (D-W)
-/// D^-1 (D-W)) x = D o), of higher order, and their mixtures (Desbrun et al. 1999, 2.3-2.6 and appendix A;
-/// written in the symmetric form, so CG suffices where the paper uses BiCG).
+/// D^-1 (D-W)) x = D o), of higher order, and mixtures of these (Desbrun et al. 1999, 2.3-2.6 and appendix
+/// A). In this symmetric form CG suffices where the paper uses BiCG.
 ///
 /// The three coordinates are one system of 3n unknowns with a common step length, so the iterates turn with
 /// the cloud. The right side is centred first, since the stopping test depends on the origin:
 ///
 ///     |A x - b| < tolerance |b|    in the inner product of M^-1 (l2), or per vertex over m_i (linf)
 ///
-/// Corrections are computed in single precision, residuals and positions in double; where single precision
+/// Corrections are computed in single precision, residuals and positions in double. Where single precision
 /// does not suffice, all is double. Second order with the umbrella and nothing else (Q = M, C = 1, no
 /// constraint, l2) is solved by a polynomial instead (chebyshev.h), several times faster.
 ///
-/// Determinism: fixed-block reductions, the same bits for any number of threads. Never returns a non-finite
-/// position: a breakdown (a singular or indefinite system) stops at the last finite iterate and says so.
-/// Thread safe for different positions.
+/// Fixed-block reductions: the same bits for any number of threads. Positions are always finite: a breakdown
+/// (a singular or indefinite system) stops at the last finite iterate and is reported. Thread safe for
+/// different positions.
 #pragma once
 
 #include <array>
@@ -41,22 +41,22 @@ struct SolverOptions {
 /// How it ended.
 struct SolverReport {
   int iterations = 0;   ///< products with A in the iteration
-  double residual = 0;  ///< reached, relative, in the norm of the options
+  double residual = 0;  ///< at the end; relative, in the norm of the options
   bool converged = false;
 };
 
-/// y = A x for a symmetric positive definite A; x and y n rows, distinct. Returns x . y, summed in fixed
+/// y = A x for a symmetric positive definite A; x and y are distinct, n rows. Returns x . y, summed in fixed
 /// blocks.
 using Product = std::function<double(const Positions& x, Positions& y)>;
 
-/// Solves A x = b from the start x (which hard constraints keep feasible). `diagonal` is A's, positive;
-/// `mass` defines the norm of the residual. 5 n-vectors of memory.
+/// Solves A x = b from the start x; hard constraints hold relative to it. `diagonal` is A's, positive; `mass`
+/// defines the norm of the residual. Memory of 5 n-vectors.
 SolverReport conjugate_gradients(const Product& product, const std::vector<double>& diagonal,
                                  const std::vector<double>& mass, const Positions& b, Positions& x,
                                  const AllowedMoves& allowed, const SolverOptions& options,
                                  const Context& context);
 
-/// The system above. Everything referred to must outlive the calls.
+/// The system above. The referenced objects must outlive the calls.
 struct Fairing {
   const Adjacency& rows;
   const Operator& op;
@@ -65,8 +65,8 @@ struct Fairing {
   std::vector<double> strength = {};       ///< n: C >= 0, of the a_2 term; empty = all 1
 };
 
-/// Solves it for o, starting from x if it has o's size (a warm start), else from o. Hard constraints hold
-/// relative to the start. \throw std::invalid_argument if the array sizes disagree.
+/// Solves the system for o. Starts from x if it has o's size (a warm start), else from o. Hard constraints
+/// hold relative to the start. \throw std::invalid_argument if the array sizes disagree.
 SolverReport solve(const Fairing& system, const Positions& o, Positions& x, const AllowedMoves& allowed,
                    const SolverOptions& options, const Context& context);
 

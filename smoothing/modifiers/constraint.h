@@ -1,11 +1,10 @@
 /// Constraints on vertices, for every flow: hard ones (fixed, on an axis, in a plane) and soft ones (a
 /// strength per vertex).
 ///
-/// Desbrun et al. 1999, section 2.7; fixed vertices are Vollmer's V_fix (section 2). Explicit moves are
-/// projected and scaled, each part step of those that have several; implicit flows project inside the solver
-/// and take the strength s as a mass 1 / s of the data, which is the paper's variable lambda and keeps the
-/// system symmetric.
-/// Const functions are thread safe; a flow is for one thread at a time.
+/// Desbrun et al. 1999, section 2.7; fixed vertices are Vollmer's V_fix (section 2). Explicit moves, and each
+/// part step of flows that have several, are projected and scaled. Implicit flows project inside the solver
+/// and take the strength s as a mass 1 / s of the data: this is the paper's variable lambda, and keeps the
+/// system symmetric. Const functions are thread safe; a flow is for one thread at a time.
 #pragma once
 
 #include <memory>
@@ -15,7 +14,7 @@
 
 namespace rfsmooth::smoothing {
 
-/// The moves a set of constraints leaves to each vertex.
+/// The moves that the constraints allow each vertex.
 class AllowedMoves {
  public:
   AllowedMoves() = default;

@@ -1,9 +1,9 @@
-/// Adaptive threshold over any flow: vertices whose speed is below T stay, the others move by the excess, so
-/// that smoothing slows down and stops by itself.
+/// An adaptive threshold T over a flow: vertices whose speed is below T stay, the others move by the excess.
+/// Smoothing slows down and stops by itself.
 ///
 ///     move by lambda (|F| - T) F / |F| where |F| > T, else stay
 ///
-/// Ohtake, Belyaev, Bogaevski 2000, (14). F = (p - q) / lambda, what the wrapped step did per unit of its
+/// Ohtake, Belyaev, Bogaevski 2000, (14). F = (p - q) / lambda, the move of the wrapped step per unit of its
 /// step length. T is constant, or the mean curvature of the surroundings, recomputed every few steps: the
 /// mean of h^2 |H| over the first, or first and second, ring of neighbours without the vertex itself; h^2 |H|
 /// (h = mean edge length) is the speed that mean curvature flow has there. At rims, where |H| has no meaning

@@ -1,8 +1,8 @@
-/// A flow around another one, as modifiers are: all it is asked goes on to the inner flow, except what a
-/// modifier answers itself.
+/// A flow around another one: the base of the modifiers. Calls go on to the inner flow unless a modifier
+/// overrides them.
 ///
-/// `applies_constraints` does not go on: a modifier that moves vertices by itself breaks what the inner flow
-/// kept, so one that keeps it says so. A flow is for one thread at a time.
+/// Except `applies_constraints`: a modifier that moves vertices itself can break what the inner flow kept, so
+/// a modifier that keeps the constraints overrides it. A flow is for one thread at a time.
 #pragma once
 
 #include <memory>
@@ -12,7 +12,7 @@
 
 namespace rfsmooth::smoothing {
 
-/// See above.
+/// Base class of the modifiers.
 class WrappedFlow : public Flow {
  public:
   explicit WrappedFlow(std::unique_ptr<Flow> inner) : inner_(std::move(inner)) {}

@@ -1,15 +1,15 @@
-/// Second derivatives on a mesh by divided differences: a quadratic fitted to each vertex's neighbours in a
-/// local chart.
+/// Second derivatives on a mesh by divided differences: a quadratic is fitted to each vertex's neighbours in
+/// a local chart.
 ///
 ///     (X_uu, sqrt(2) X_uv, X_vv)_i = sum_j c_ij (x_j - x_i)
 ///     E(x) = sum_i w_i (|X_uu|^2 + 2 |X_uv|^2 + |X_vv|^2)_i,   w_i = mixed area / h^2
 ///
-/// Kobbelt 1997, section 4. Parameters (u, v) in units of h, the mesh's mean edge length, so E is in world
-/// units squared; E does not depend on how the charts are turned. Charts come from one set of positions and
-/// stay fixed, so E is quadratic. Where the neighbours leave the fit open (valence 3 and 4, or all on one
-/// conic with the vertex) a ridge of 1e-6 picks the solution of minimum norm. Differs from the paper only
-/// there and in the choice of charts (below).
-/// One thread at a time for each object: products share room for intermediate values.
+/// Kobbelt 1997, section 4. Parameters (u, v) are in units of h, the mesh's mean edge length, so E is in
+/// world units squared. E does not depend on the rotation of the charts. Charts come from one set of
+/// positions and stay fixed, so E is quadratic. Where the neighbours do not determine the fit (valence 3 and
+/// 4, or all on one conic with the vertex), a ridge of 1e-6 picks the solution of minimum norm. Differs from
+/// the paper: this ridge, and the choice of charts (below). One object per thread: products share scratch
+/// memory.
 #pragma once
 
 #include <vector>
@@ -22,7 +22,8 @@ namespace rfsmooth::smoothing {
 /// The second derivatives at every vertex, from its neighbours.
 class DividedDifferences {
  public:
-  /// Charts from mesh.positions; where the faces do not go around a vertex once, all are Chart::tangent.
+  /// Makes the charts from mesh.positions. If the faces do not surround a vertex exactly once, all charts are
+  /// Chart::tangent.
   DividedDifferences(const Mesh& mesh, Chart chart, const Context& context);
 
   /// y = A x, A the Hessian of E / 2: E(x) = x . A x.

@@ -2,11 +2,11 @@
 ///
 ///     (L x)_i = (1 / m_i) sum_j w_ij (x_i - x_j),   S = M L symmetric
 ///
-/// Positive semi-definite and self-adjoint in the inner product <x, y> = x^T M y, M = diag(m); constants are
-/// in the null space. An operator of unit 1/length^2 carries `unit` = h^2 (h = mean edge length), so that
-/// time steps are dimensionless: flows use dt * unit * L. On a regular mesh, unit * L of the scale-dependent
-/// and of the curvature operator is twice the umbrella.
-/// The functions are thread safe; an OperatorSource is for one thread at a time.
+/// L is positive semi-definite and self-adjoint in the inner product <x, y> = x^T M y, M = diag(m); constants
+/// are in its null space. An operator of unit 1/length^2 carries `unit` = h^2 (h = mean edge length), so that
+/// time steps are dimensionless: flows use dt * unit * L. On a mesh of equilateral triangles, unit * L of the
+/// scale-dependent and of the curvature operator is twice the umbrella. The functions are thread safe; an
+/// OperatorSource is for one thread at a time.
 #pragma once
 
 #include <optional>
@@ -21,7 +21,7 @@ namespace rfsmooth::smoothing {
 struct Operator {
   std::vector<double> weight;         ///< w_ij per item of rows(), symmetric; empty = all 1
   std::vector<double> mass;           ///< n: m_i > 0, also for vertices without any weight
-  double unit = 1;                    ///< what turns a dimensionless step into the operator's own unit
+  double unit = 1;                    ///< factor from a dimensionless step to the operator's own unit
   std::optional<Adjacency> own_rows;  ///< only if the graph is not the mesh's one-ring
 
   const Adjacency& rows(const Mesh& mesh) const { return own_rows ? *own_rows : mesh.one_ring; }
@@ -31,12 +31,12 @@ struct Operator {
 void apply(const Adjacency& rows, const Operator& op, const Positions& x, Positions& y,
            const Context& context);
 
-/// Sum of the absolute weights of each row (the degree for the umbrella): L's rows sum to at most twice
-/// weight_sums / mass.
+/// Sum of the absolute weights of each row (the degree for the umbrella). The absolute values of row i of L
+/// sum to at most 2 weight_sums[i] / mass[i].
 std::vector<double> weight_sums(const Adjacency& rows, const Operator& op, const Context& context);
 
-/// Mean length of the mesh's edges, those to closing vertices left out: the h of every flow; 1 if there is
-/// none longer than zero. World units.
+/// Mean length of the mesh's edges, without those to closing vertices: the h of every flow, world units. 1 if
+/// no edge is longer than zero.
 double length_unit(const Mesh& mesh, const Context& context);
 
 /// Umbrella, L = I - T: w = 1, m = degree. Vollmer 3.1, Ohtake (3), Desbrun (7) with the sign turned. Unit 1.
@@ -63,22 +63,22 @@ Operator curvature(const Mesh& mesh, const Adjacency& vertex_faces, const Contex
 
 /// The curvature operator without negative weights, on any mesh: intrinsic Delaunay on the tufted cover.
 ///
-/// Every face is taken twice, front and back, and the sides around each edge are glued in pairs, which makes
-/// a closed manifold of any mesh; its lengths are mollified by at most 1e-5 h, its edges flipped until they
-/// are Delaunay; the cotangents of that, halved. Sharp, Crane, A Laplacian for Nonmanifold Triangle Meshes,
-/// 2020. On a closed Delaunay mesh it is the curvature operator. With weights that are never negative, an
-/// implicit step of first order keeps every vertex inside the bounding box, and explicit steps have their
-/// full length. Unit h^2; own rows. O(n log n) typically, one thread.
+/// Every face is taken twice, front and back, and the half-edges around each edge are glued in pairs: this
+/// makes a closed manifold of any mesh. Its lengths are mollified by at most 1e-5 h, and its edges flipped
+/// until they are Delaunay. The weights are half the cotangents of the result. Sharp, Crane, A Laplacian for
+/// Nonmanifold Triangle Meshes, 2020. On a closed Delaunay mesh it equals the curvature operator. Since no
+/// weight is negative, an implicit step of first order keeps every vertex inside the bounding box, and
+/// explicit steps have their full length. Unit h^2; own rows. O(n log n) typically, one thread.
 Operator tufted(const Mesh& mesh, const Context& context);
 
-/// The curvature operator with m = sum of w (Desbrun 5.5): towards the weighted mean of the neighbours, so
-/// that explicit steps up to 1 are stable while no weight is negative. Where the weights cancel or sum to
-/// less than zero there is no such mean, and m is 1e-9 of the sum of |w|, still positive: explicit flows then
-/// move that vertex by its own limit (curvature_speed.h). Unit 1.
+/// The curvature operator with m = sum of w (Desbrun 5.5), which moves towards the weighted mean of the
+/// neighbours: explicit steps up to 1 are stable while no weight is negative. Where the weights cancel or sum
+/// to less than zero there is no such mean. There m is 1e-9 of the sum of |w|, and explicit flows move the
+/// vertex by its own limit (curvature_speed.h). Unit 1.
 Operator normalised(const Adjacency& rows, Operator op, const Context& context);
 
-/// y = L (L x): the umbrella-like second Laplacian, gradient of the discrete thin-plate energy (Kobbelt et
-/// al. 1998, Desbrun 2.6). `scratch` is overwritten.
+/// y = L (L x): the gradient of the discrete thin-plate energy (Kobbelt et al. 1998, Desbrun 2.6). `scratch`
+/// is overwritten.
 void apply_thin_plate(const Adjacency& rows, const Operator& op, const Positions& x, Positions& y,
                       Positions& scratch, const Context& context);
 

@@ -1,5 +1,5 @@
-/// What the curvature-driven flows read off a mesh: normals, angle deficits, and faces that agree.
-/// Thread safe: no state is kept.
+/// Normals, angle deficits and orientation of a mesh, for the flows driven by curvature. Thread safe: no
+/// state is kept.
 #pragma once
 
 #include <vector>
@@ -9,35 +9,36 @@
 namespace rfsmooth::smoothing {
 
 /// The faces around each vertex, sorted into fans: faces that follow one another around the vertex across
-/// edges of exactly two faces. Within a fan it is always known which faces run against each other, however
-/// the file orders their corners and however sharp the edges are.
+/// edges with exactly two faces. Within a fan it is always known which faces run against each other, whatever
+/// the order of their corners in the file and however sharp the edges.
 struct Fans {
   Adjacency faces;           ///< vertex_faces of the mesh
   std::vector<Index> fan;    ///< per item of faces: which fan of its vertex it is in, from 0
-  std::vector<char> turned;  ///< per item: 1 = runs against the first face of its fan
+  std::vector<char> turned;  ///< per item: 1 = oriented against the first face of its fan
 };
 
 /// Reads the connectivity only. O(sum of squared numbers of faces around a vertex), parallel.
 Fans fans_of(const Mesh& mesh, const Context& context);
 
-/// n unit normals, each up to its sign: the area vectors of the faces of a fan, turned to agree, summed; then
-/// the fans' sums, each times its cosine to the largest, which turns it to that side and lets rounding decide
-/// nothing at right angles (among sums equal within 1e-6 the first is the largest). Zero where there is no
-/// face or the sum vanishes. So it does not matter in which order a file gives the corners of a face.
-/// `against`, if given: per item of fans.faces, 1 where the face runs against the normal of that vertex; two
-/// vertices of one face are on one side if they agree there.
+/// n unit normals, each up to its sign. The area vectors of the faces of a fan are turned to agree and
+/// summed. The sums of the fans are added, each times its cosine to the largest: this turns it to that side,
+/// and at right angles, where rounding would decide the side, its weight is zero. (Of sums equal within 1e-6
+/// the first is the largest.) Zero without faces or if the sum vanishes. So the order of a face's corners in
+/// the file does not matter. `against`, if given: per item of fans.faces, 1 where the face is oriented
+/// against the normal of that vertex; the normals of two vertices of a face are on one side if their flags
+/// agree.
 Positions unsigned_normals(const Mesh& mesh, const Fans& fans, const Context& context,
                            std::vector<char>* against = nullptr);
 
-/// n: 1 where every edge at the vertex has exactly two faces, so that the angle deficit means something.
+/// n: 1 where every edge at the vertex has exactly two faces. Only there the angle deficit has a meaning.
 std::vector<char> interior_vertices(const Mesh& mesh, const Adjacency& vertex_faces, const Context& context);
 
-/// Gauss curvature times mixed area: 2 pi - sum of the angles at vertex i. Meaningful at interior vertices.
+/// 2 pi - sum of the angles at vertex i: Gauss curvature times mixed area at interior vertices.
 double angle_deficit(const Mesh& mesh, const Adjacency& vertex_faces, Index i);
 
-/// The faces turned so that neighbours agree and closed parts face outward. Failure (usage), naming the first
-/// offending edge, if the mesh has no face, is open, non-manifold at an edge, or not orientable: `what` says
-/// what needs it.
+/// The faces, oriented so that neighbours agree and closed parts face outward. \throw Failure (usage), naming
+/// the first offending edge, if the mesh has no face, is open, non-manifold at an edge, or not orientable;
+/// `what` names what needs it.
 std::vector<Face> closed_and_oriented(const Mesh& mesh, const char* what);
 
 /// What keeps a mesh from being the boundary of a solid.
@@ -47,8 +48,8 @@ struct Unclosed {
   bool one_sided = false;   ///< somewhere neighbours cannot agree, as on a Moebius strip
 };
 
-/// The same for any mesh, as far as it goes: neighbours agree across edges of two faces, except where the
-/// mesh has only one side. Closed parts face outward, open ones keep the side that most of their faces have.
+/// The same for any mesh, as far as possible: neighbours agree across edges of two faces, except where the
+/// mesh has only one side. Closed parts face outward; open ones keep the side that most of their faces have.
 /// `found`, if given, is set to what is missing.
 std::vector<Face> oriented_as_far_as_possible(const Mesh& mesh, Unclosed* found = nullptr);
 

@@ -1,14 +1,14 @@
 /// Discrete fairing, interpolating: a finer mesh of least thin-plate energy through the given vertices.
 ///
-/// Every level splits each face into four, then the new vertices (all but the given ones) take the places
-/// that minimise the energy of divided_difference.h, coarse to fine. Boundary curves, and edges named sharp,
-/// get their points from the four-point scheme (-1, 9, 9, -1) / 16 along the curve alone and then stay, so
-/// that meshes that share a boundary still do. The two sides of a sharp line share its points and nothing
-/// else: every fit and every term of the energy is one-sided there. Kobbelt 1997, sections 4 and 5.
+/// Every level splits each face into four; then the new vertices (all but the given ones) minimise the energy
+/// of divided_difference.h, coarse to fine. Points on boundary curves and on edges named sharp come from the
+/// four-point scheme (-1, 9, 9, -1) / 16 along the curve alone and then stay, so that meshes that share a
+/// boundary still do. The two sides of a sharp line share only its points: every fit and every term of the
+/// energy is one-sided there. Kobbelt 1997, sections 4 and 5.
 ///
 /// Differs from the paper: conjugate gradients instead of Gauss-Seidel sweeps (no visiting order, so the same
-/// bits for any number of threads); charts of a level come from the mesh it starts with.
-/// Thread safe: no state is kept.
+/// bits for any number of threads); charts of a level come from the mesh it starts with. Thread safe: no
+/// state is kept.
 #pragma once
 
 #include <vector>
@@ -22,7 +22,7 @@ namespace rfsmooth::smoothing {
 struct RefineOptions {
   int levels = 1;              ///< each multiplies the faces by four
   Chart chart = Chart::mixed;  ///< how neighbours get their parameters
-  double pimple = 0;           ///< how far given vertices may move at the end, to take off pimples
+  double pimple = 0;           ///< how far given vertices may move at the end, x mean edge: flattens pimples
   double tolerance = 1e-4;     ///< of each level's solve, relative
 
   template <class Self, class Visit>
@@ -41,7 +41,7 @@ struct RefineOptions {
 Result<Mesh> refine(const Mesh& mesh, const RefineOptions& options, const Context& context,
                     const std::vector<Edge>& sharp = {});
 
-/// One split of every face into four, new vertices at the middle of the edges. `curve` edges (boundary and
+/// Splits every face into four, with new vertices at the middle of the edges. `curve` edges (boundary and
 /// sharp, each {a, b}, any order) are split too.
 Mesh split(const Mesh& mesh, std::vector<Edge>& curve, const Context& context);
 

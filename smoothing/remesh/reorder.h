@@ -1,4 +1,4 @@
-/// Vertices in an order that keeps neighbours close in memory, for meshes that come from files in another.
+/// Reorders vertices so that neighbours are near in memory, for meshes read from files in another order.
 /// Thread safe: no state is kept.
 #pragma once
 
@@ -17,7 +17,7 @@ struct Reordered {
   std::vector<Index> place;  ///< n: where each vertex went
 };
 
-/// Positions must be finite. O(n log n), parallel, deterministic.
+/// Reorders the mesh; positions must be finite. O(n log n), parallel, deterministic.
 Reordered reorder(const Mesh& mesh, const Context& context);
 
 /// The constraints for the reordered mesh.

@@ -3,13 +3,14 @@
 ///     ridge:   the maximal principal curvature has a positive maximum along its curvature line
 ///     ravine:  the minimal principal curvature has a negative minimum along its curvature line
 ///
-/// Ohtake, Belyaev, Bogaevski 2000, section 5. The curvature tensor of each vertex comes from
-/// the normal curvatures towards the neighbours with Taubin's (1995) weights. Differs from Taubin: it is
-/// fitted to them instead of averaged; the average takes the neighbours' directions for evenly spread, which
-/// splits a sphere's k1 and k2 by up to 20 %. The one-ring polygon is cut by the plane of normal and
-/// principal direction; curvatures are interpolated linearly at the two crossings and compared. Positive
-/// curvature bends away from the normal's side, as on a sphere with outward normals; faces should agree in
-/// orientation, else ridges and ravines trade places. Smooth first: it reads third derivatives.
+/// Ohtake, Belyaev, Bogaevski 2000, section 5. The curvature tensor of each vertex is fitted to the normal
+/// curvatures towards the neighbours with Taubin's (1995) weights. Differs from Taubin: he averages, which
+/// assumes that the neighbours' directions are evenly spread, and splits a sphere's k1 and k2 by up to 20 %.
+/// The plane of normal and principal direction cuts the one-ring polygon; the curvatures at the two crossings
+/// are interpolated linearly and compared.
+///
+/// Positive curvature bends away from the normal's side, as on a sphere with outward normals. Faces should be
+/// oriented alike, else ridges and ravines trade places. Smooth first: ridges depend on third derivatives.
 /// Thread safe: no state is kept.
 #pragma once
 
@@ -29,8 +30,8 @@ struct PrincipalCurvatures {
 /// The principal curvatures at every vertex.
 PrincipalCurvatures principal_curvatures(const Mesh& mesh, const Context& context);
 
-/// n: 1 = ridge, -1 = ravine, 0 = neither. Vertices whose one-ring polygon the plane does not cross twice
-/// (boundary) are 0. \param least curvature that counts, x 1 / mean edge length.
+/// n: 1 = ridge, -1 = ravine, 0 = neither. Vertices whose one-ring polygon the plane does not cross twice (at
+/// the boundary) are 0. \param least lowest curvature that counts, x 1 / mean edge length.
 std::vector<int> ridges_and_ravines(const Mesh& mesh, double least, const Context& context);
 
 }  // namespace rfsmooth::smoothing
