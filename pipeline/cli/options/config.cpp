@@ -68,11 +68,13 @@ Config read_config(const std::string& path, const Command& command) {
     fail_config(ErrorCode::usage, fmt::format("{}: 'options' must be an object", path));
 
   Config config;
-  const std::vector<std::string> names = names_of(command);
   for (const auto& [name, value] : options.items()) {
-    if (std::find(names.begin(), names.end(), name) == names.end() || name == "config")
-      fail_config(ErrorCode::usage,
-                  fmt::format("{}: unknown option '{}'{}", path, name, did_you_mean(name, names)));
+    const auto option = std::find_if(command.options.begin(), command.options.end(),
+                                     [&named = name](const CommandOption& o) { return o.name == named; });
+    if (option == command.options.end() || name == "config")
+      fail_config(ErrorCode::usage, fmt::format("{}: unknown option '{}'{}", path, name,
+                                                did_you_mean(name, names_of(command))));
+    if (value.is_null() && option->kind == ValueKind::file) continue;  // left out
     config.options.emplace_back(name, as_typed(path, name, value));
   }
   if (report)
