@@ -6,9 +6,22 @@
 #include <utility>
 #include <vector>
 
+#include <nlohmann/json_fwd.hpp>
+
+#include "pipeline/cli/console/progress.h"
 #include "pipeline/cli/options/option.h"
 
+namespace rfsmooth {
+struct StageTime;
+namespace pipeline::io {
+struct Cloud;
+}
+}  // namespace rfsmooth
+
 namespace rfsmooth::cli {
+
+class Console;
+struct Job;
 
 /// What was typed, taken apart but not yet believed.
 struct Invocation {
@@ -17,6 +30,22 @@ struct Invocation {
   bool short_help = false;                                   ///< -h, --help
   bool long_help = false;                                    ///< --help-all
   bool version = false;
+};
+
+/// What a sub-command does with one cloud: changes it (or puts another in its place), adds to the report's
+/// entry ("options", "counts", ...) and to the stages, and returns what it did in at most three short lines,
+/// the most telling ones first. \throw Failure.
+using CloudWork = std::function<std::string(pipeline::io::Cloud& cloud, const Job& job,
+                                            const Context& context, Console& console,
+                                            std::vector<StageTime>& stages, nlohmann::ordered_json& entry)>;
+
+/// A sub-command that turns one cloud into another, wherever that comes from: a file, or an array in Python.
+/// To be called once every option has its value.
+struct OnCloud {
+  /// Refuses options that cannot be meant. \throw Failure (usage).
+  std::function<void(const Invocation&)> check;
+  std::function<std::vector<StageShare>()> stages;  ///< those of reading and working
+  CloudWork work;
 };
 
 struct Command {
@@ -28,6 +57,7 @@ struct Command {
   std::vector<std::string> everyday;  ///< what --help shows, in this order; empty: all of them
   /// \return the exit code. \throw Failure. `invocation.options` are already assigned when it is called.
   std::function<int(const Invocation&)> run;
+  OnCloud on_cloud;    ///< empty where it does something else
   bool listed = true;  ///< shown in the overview of `rfsmooth --help`
 };
 

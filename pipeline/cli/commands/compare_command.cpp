@@ -6,6 +6,7 @@
 #include <rfsmooth/compare.h>
 
 #include "pipeline/cli/commands/command.h"
+#include "pipeline/cli/commands/figures.h"
 #include "pipeline/cli/console/console.h"
 #include "pipeline/cli/deviation.h"
 #include "pipeline/cli/files/cloud_files.h"
@@ -96,29 +97,6 @@ struct TruthFile {
   Truth view;
 };
 
-ordered_json json_of(const CompareReport& report, const Deviation& deviation,
-                     const std::vector<std::string>& names) {
-  ordered_json own, unit;
-  Measures::describe(report.own_units, ToJson{own});
-  const Measures scaled = rfsmooth::on_unit_sphere(report.own_units, report.radius);
-  Measures::describe(scaled, ToJson{unit});
-  return {{"cloud", names[0]},
-          {"truth", names[1]},
-          {"points", report.points},
-          {"finite", report.finite},
-          {"truth_points", report.truth_points},
-          {"truth_faces", report.truth_faces},
-          {"truth_closed", report.truth_closed},
-          {"radius", report.radius},
-          {"deviation",
-           {{"rms", deviation.rms},
-            {"median", deviation.median},
-            {"percentile_95", deviation.most},
-            {"largest", deviation.largest}}},
-          {"own_units", own},
-          {"unit_sphere", unit}};
-}
-
 void print_text(const CompareReport& report, const Deviation& deviation, const ordered_json& json) {
   const bool mesh = report.truth_faces > 0;
   fmt::print("{} points ({} finite) against {} {}\n", report.points, report.finite,
@@ -155,7 +133,8 @@ int run_compare(const CompareCommandOptions& options, const Invocation& typed) {
       value_or_throw(rfsmooth::compare({xyz.data(), cloud.size(), normals.empty() ? nullptr : normals.data()},
                                        truth.view, compare_options, context));
   const Deviation deviation = summed_up(report.deviation);
-  const ordered_json json = json_of(report, deviation, typed.arguments);
+  ordered_json json = {{"cloud", typed.arguments[0]}, {"truth", typed.arguments[1]}};
+  json.update(figures_of(report));
   if (options.json)
     fmt::print("{}\n", json.dump(2, ' ', false, ordered_json::error_handler_t::replace));
   else
@@ -170,6 +149,27 @@ int run_compare(const CompareCommandOptions& options, const Invocation& typed) {
 }
 
 }  // namespace
+
+ordered_json figures_of(const CompareReport& report) {
+  const Deviation deviation = summed_up(report.deviation);
+  ordered_json own, unit;
+  Measures::describe(report.own_units, ToJson{own});
+  const Measures scaled = rfsmooth::on_unit_sphere(report.own_units, report.radius);
+  Measures::describe(scaled, ToJson{unit});
+  return {{"points", report.points},
+          {"finite", report.finite},
+          {"truth_points", report.truth_points},
+          {"truth_faces", report.truth_faces},
+          {"truth_closed", report.truth_closed},
+          {"radius", report.radius},
+          {"deviation",
+           {{"rms", deviation.rms},
+            {"median", deviation.median},
+            {"percentile_95", deviation.most},
+            {"largest", deviation.largest}}},
+          {"own_units", own},
+          {"unit_sphere", unit}};
+}
 
 Command compare_command() {
   auto options = std::make_shared<CompareCommandOptions>();

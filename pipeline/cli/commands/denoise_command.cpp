@@ -219,14 +219,11 @@ std::string denoise_cloud(const DenoiseCommandOptions& options, pipeline::io::Cl
   return summary(done, options);
 }
 
-int run_denoise(const DenoiseCommandOptions& options, const Invocation& typed) {
+void check_denoise(const DenoiseCommandOptions& options, const Invocation& typed) {
   if (options.mark_outliers && options.denoise.outliers == Outliers::smooth)
     throw Failure({ErrorCode::usage, "--mark-outliers has nothing to mark with --outliers smooth"});
   check(options.normals);
   options.trace.check(options.job.files, typed);
-  return run_cloud_jobs(
-      "denoise", options.job, typed, denoising_stages(options.normals.normals),
-      [&](auto&&... all) { return denoise_cloud(options, std::forward<decltype(all)>(all)...); });
 }
 
 }  // namespace
@@ -239,8 +236,8 @@ Command denoise_command() {
   command.usage = {"[options] IN OUT", "[options] IN... -o FOLDER"};
   command.description =
       "Reads a cloud (PLY, PCD, XYZ, LAS; the format is found by content), connects its points to a rough "
-      "mesh "
-      "(EMST, SDG, RFS-mesh), smooths the mesh, and writes the same cloud with x, y, z replaced: every "
+      ""
+      "mesh (EMST, SDG, RFS-mesh), smooths the mesh, and writes the same cloud with x, y, z replaced: every "
       "other field, the order and the number of points stay. Points that are not finite stay as they are. "
       "Fields that are asked for (--write-displacement, --mark-outliers, --normals) come behind the "
       "points' other fields, or take the place of the one of that name.\n\n"
@@ -252,7 +249,13 @@ Command denoise_command() {
   command.everyday = {"strength", "noise",   "flow",   "outliers", "normals", "output",
                       "force",    "threads", "report", "quiet",    "verbose"};
   polish(command);
-  command.run = [options](const Invocation& typed) { return run_denoise(*options, typed); };
+  command.on_cloud = {
+      [options](const Invocation& typed) { check_denoise(*options, typed); },
+      [options] { return denoising_stages(options->normals.normals); },
+      [options](auto&&... all) { return denoise_cloud(*options, std::forward<decltype(all)>(all)...); }};
+  command.run = [options, on_cloud = command.on_cloud](const Invocation& typed) {
+    return run_cloud_jobs("denoise", options->job, typed, on_cloud);
+  };
   return command;
 }
 

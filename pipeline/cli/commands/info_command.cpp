@@ -8,6 +8,7 @@
 
 #include "base/parallel.h"
 #include "pipeline/cli/commands/command.h"
+#include "pipeline/cli/commands/figures.h"
 #include "pipeline/cli/console/console.h"
 #include "pipeline/cli/files/cloud_files.h"
 #include "rfs_mesh/fit/local_surface.h"
@@ -140,8 +141,7 @@ int run_info(const InfoCommandOptions& options, const Invocation& typed) {
       std::vector<StageTime> unused;
       const pipeline::io::Cloud cloud = load_cloud(job.input, context, unused);
       ordered_json info = {{"path", job.input}};
-      info.update(describe(cloud));
-      info.update(measure(cloud, context));
+      info.update(info_of(cloud, context));
       if (!info["spacing"].is_null())
         warn_if_coarse(cloud, pipeline::io::positions(cloud, context), info["spacing"], job.input, console);
       return info;
@@ -158,6 +158,12 @@ int run_info(const InfoCommandOptions& options, const Invocation& typed) {
 }
 
 }  // namespace
+
+ordered_json info_of(const pipeline::io::Cloud& cloud, const Context& context) {
+  ordered_json info = describe(cloud);
+  info.update(measure(cloud, context));
+  return info;
+}
 
 Command info_command() {
   auto options = std::make_shared<InfoCommandOptions>();

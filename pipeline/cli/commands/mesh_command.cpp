@@ -156,12 +156,6 @@ std::vector<StageShare> stages_up_to(const std::string& stage) {
   return stages;
 }
 
-int run_mesh(const MeshCommandOptions& options, const Invocation& typed) {
-  return run_cloud_jobs("mesh", options.job, typed, stages_up_to(options.mesh.stage), [&](auto&&... all) {
-    return connect_cloud(options, std::forward<decltype(all)>(all)...);
-  });
-}
-
 }  // namespace
 
 Command mesh_command() {
@@ -185,7 +179,12 @@ Command mesh_command() {
   collect(options->job, command.options);
   command.everyday = {"stage", "output", "force", "threads", "report", "quiet", "verbose"};
   polish(command);
-  command.run = [options](const Invocation& typed) { return run_mesh(*options, typed); };
+  command.on_cloud = {
+      [](const Invocation&) {}, [options] { return stages_up_to(options->mesh.stage); },
+      [options](auto&&... all) { return connect_cloud(*options, std::forward<decltype(all)>(all)...); }};
+  command.run = [options, on_cloud = command.on_cloud](const Invocation& typed) {
+    return run_cloud_jobs("mesh", options->job, typed, on_cloud);
+  };
   return command;
 }
 

@@ -144,10 +144,11 @@ Command reconstruct_command(std::vector<SurfaceMethod> methods) {
   Command command = table(options);
   command.run = [options, methods = std::move(methods)](const Invocation& typed) {
     const SurfaceMethod& method = find_method(methods, options->reconstruct.method);
-    return run_cloud_jobs("reconstruct", options->job, typed, reconstructing_stages(*options),
-                          [&](auto&&... all) {
-                            return reconstruct_cloud(*options, method, std::forward<decltype(all)>(all)...);
-                          });
+    return run_cloud_jobs("reconstruct", options->job, typed,
+                          {[](const Invocation&) {}, [&] { return reconstructing_stages(*options); },
+                           [&](auto&&... all) {
+                             return reconstruct_cloud(*options, method, std::forward<decltype(all)>(all)...);
+                           }});
   };
   return command;
 }

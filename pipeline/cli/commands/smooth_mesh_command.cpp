@@ -172,16 +172,12 @@ std::string smooth_file(const SmoothMeshCommandOptions& options, pipeline::io::C
                      done.largest_move);
 }
 
-int run_smooth_mesh(const SmoothMeshCommandOptions& options, const Invocation& typed) {
+void check_smooth_mesh(const SmoothMeshCommandOptions& options, const Invocation& typed) {
   options.after.check_partners(typed);
   options.trace.check(options.job.files, typed);
   if (const auto& fields = options.constraints; fields.direction && !fields.axis && !fields.plane)
     throw Failure(
         {ErrorCode::usage, "--slide-direction has no effect without --axis-field or --plane-field"});
-  return run_cloud_jobs(
-      "smooth-mesh", options.job, typed,
-      {{"read", 1}, {"smooth", 10}, {"refine", options.after.refine.levels > 0 ? 20.0 : 0.0}},
-      [&](auto&&... all) { return smooth_file(options, std::forward<decltype(all)>(all)...); });
 }
 
 }  // namespace
@@ -204,7 +200,16 @@ Command smooth_mesh_command() {
   command.everyday = {"flow",  "iterations", "strength-field", "refine", "ridges", "output",
                       "force", "threads",    "report",         "quiet",  "verbose"};
   polish(command);
-  command.run = [options](const Invocation& typed) { return run_smooth_mesh(*options, typed); };
+  command.on_cloud = {
+      [options](const Invocation& typed) { check_smooth_mesh(*options, typed); },
+      [options]() -> std::vector<StageShare> {
+        const double refining = options->after.refine.levels > 0 ? 20 : 0;
+        return {{"read", 1}, {"smooth", 10}, {"refine", refining}};
+      },
+      [options](auto&&... all) { return smooth_file(*options, std::forward<decltype(all)>(all)...); }};
+  command.run = [options, on_cloud = command.on_cloud](const Invocation& typed) {
+    return run_cloud_jobs("smooth-mesh", options->job, typed, on_cloud);
+  };
   return command;
 }
 

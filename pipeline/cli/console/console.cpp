@@ -22,13 +22,13 @@ bool stdout_reader_is_gone() {
   return poll(&out, 1, 0) > 0 && (out.revents & (POLLERR | POLLHUP)) != 0;
 }
 
-Console::Console(const TalkOptions& options)
-    : quiet_(options.quiet), verbose_(options.verbose && !options.quiet) {
+Console::Console(const TalkOptions& options, std::function<void(LogLevel, const std::string&)> listener)
+    : listener_(std::move(listener)), quiet_(options.quiet), verbose_(options.verbose && !options.quiet) {
   const bool terminal = isatty(STDERR_FILENO) == 1;
   const char* type = std::getenv("TERM");
   const bool dumb = type != nullptr && std::string_view(type) == "dumb";
   const char* no_colour = std::getenv("NO_COLOR");  // no-color.org: set and not empty
-  bar_ = terminal && !dumb && !quiet_;
+  bar_ = terminal && !dumb && !quiet_ && !listener_;
   colour_ = terminal && !dumb && (no_colour == nullptr || *no_colour == '\0');
 }
 
@@ -45,15 +45,19 @@ void Console::print(const char* colour, const char* label, const std::string& li
 }
 
 void Console::say(const std::string& line) {
+  if (listener_) return listener_(LogLevel::info, line);
   if (!quiet_) print("", "", line);
 }
 void Console::detail(const std::string& line) {
+  if (listener_) return listener_(LogLevel::debug, line);
   if (verbose_) print("", "", line);
 }
 void Console::warn(const std::string& line) {
+  if (listener_) return listener_(LogLevel::warning, line);
   if (!quiet_) print("\x1b[33m", "warning: ", line);
 }
 void Console::error(const std::string& line) {
+  if (listener_) return listener_(LogLevel::warning, line);
   print("\x1b[31m", "error: ", line);
 }
 

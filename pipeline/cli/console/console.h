@@ -3,6 +3,7 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -33,7 +34,10 @@ bool stdout_reader_is_gone();
 class Console {
  public:
   /// A bar is drawn, and colours are used, only if stderr is a terminal; NO_COLOR turns colours off.
-  explicit Console(const TalkOptions& options);
+  /// With a `listener` everything goes there instead: warnings and errors as LogLevel::warning, details as
+  /// debug, the rest as info.
+  explicit Console(const TalkOptions& options,
+                   std::function<void(LogLevel, const std::string&)> listener = {});
   ~Console();
   Console(const Console&) = delete;
   Console& operator=(const Console&) = delete;
@@ -58,6 +62,7 @@ class Console {
   void clear_bar();
   void print(const char* colour, const char* label, const std::string& line);
 
+  std::function<void(LogLevel, const std::string&)> listener_;
   bool quiet_, verbose_, bar_, colour_;
   bool drawn_ = false;
   std::size_t points_ = 0;

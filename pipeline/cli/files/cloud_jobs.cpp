@@ -52,17 +52,18 @@ void run_one(const Job& job, const JobOptions& options, const CloudWork& work, c
 }  // namespace
 
 int run_cloud_jobs(const std::string& command, const JobOptions& options, const Invocation& typed,
-                   std::vector<StageShare> stages, const CloudWork& work) {
+                   const OnCloud& on_cloud) {
+  on_cloud.check(typed);
   const std::vector<Job> jobs = plan_jobs(typed.arguments, options.files.output);
   need_free_stdout(jobs, options.run);
   Report report(command, options.run.report, options.files.force);
   Console console(options.talk);
-  console.progress().plan(std::move(stages));
+  console.progress().plan(on_cloud.stages());
   const Context context = console.context(options.run.threads.value_or(0));
   const int code = run_jobs(jobs, console, [&](const Job& job) {
     ordered_json entry = {{"input", {{"path", job.input}}}, {"output", {{"path", job.output}}}};
     const auto done = guarded([&] {
-      run_one(job, options, work, context, console, entry, jobs.size() > 1);
+      run_one(job, options, on_cloud.work, context, console, entry, jobs.size() > 1);
       return Done{};
     });
     std::optional<Error> error;

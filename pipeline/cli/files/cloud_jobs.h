@@ -23,17 +23,10 @@ struct JobOptions {
   }
 };
 
-/// What a sub-command does with one cloud: changes it (or puts another in its place), adds to the report's
-/// entry ("options", "counts", ...) and to the stages, and returns what it did in at most three short lines,
-/// the most telling ones first. \throw Failure.
-using CloudWork = std::function<std::string(pipeline::io::Cloud& cloud, const Job& job,
-                                            const Context& context, Console& console,
-                                            std::vector<StageTime>& stages, nlohmann::ordered_json& entry)>;
-
-/// Plans the jobs, then for each: reads, works, writes, reports. \return the exit code.
-/// `stages`: those of reading and working.
+/// Checks the options and plans the jobs, then for each: reads, works, writes, reports. \return the exit
+/// code.
 int run_cloud_jobs(const std::string& command, const JobOptions& options, const Invocation& typed,
-                   std::vector<StageShare> stages, const CloudWork& work);
+                   const OnCloud& on_cloud);
 
 /// The value of a result. \throw Failure with its error, which `name` (the file's) comes before.
 template <class T>
