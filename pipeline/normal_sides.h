@@ -1,10 +1,10 @@
-/// Which of its two sides a surface was seen from before it was smoothed: what is known of it stays known.
+/// Keeps the side of the normals that a cloud came with, when new normals are written after smoothing.
 ///
-///     v_i = sum of a_j over i and its 24 nearest,    a_j = normal_j . before_j
+///     v_i = sum of a_j over i and its 24 nearest,    a_j = normal_j . before_j / |before_j|
 ///
-/// With `normals` on one side throughout (rfsmooth/normals.h), a_j has one sign on each part of the surface
-/// if the normals before had sides at all, on the two faces of a thin sheet too, and v_i says which, in spite
-/// of some that noise threw over.
+/// If the new normals are on one side throughout (rfsmooth/normals.h) and the old ones had sides at all, a_j
+/// has one sign on each part of the surface, also on the two faces of a thin sheet. v_i gives that sign even
+/// if noise has reversed some normals.
 #pragma once
 
 #include <cstddef>
@@ -13,11 +13,11 @@
 
 namespace rfsmooth::pipeline {
 
-/// Turns the n normals (n x 3, row-major, unit) to the sides of `before` (n x 3, any length; rows that are
-/// zero or not finite say nothing): all with v_i < 0. Returns whether it did: not if the normals before have
-/// no common sides, that is if sum |v_i| is less than half of sum |a_j| counted as often (random sides give
-/// about a sixth). Rows of `xyz` (n x 3) that are not finite stay as they are. Same result for any number of
-/// threads. O(n log n). \throw Failure if cancelled.
+/// Reverses those of the n `normals` (n x 3, row-major, unit) with v_i < 0. `before`: n x 3, of any length;
+/// rows that are zero or not finite do not count. `xyz`: n x 3; normals of rows that are not finite stay.
+/// Does nothing and returns false if the old normals have no common sides: sum |v_i| is less than half of the
+/// sum of the |a_j| in it (random sides give about a sixth). Same result for any number of threads. O(n log
+/// n). \throw Failure if cancelled.
 bool keep_sides(const double* xyz, std::size_t n, const double* before, double* normals,
                 const Context& context);
 

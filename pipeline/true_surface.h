@@ -1,9 +1,9 @@
-/// Exact distances to a triangle mesh and to a cloud: what `compare` measures with.
+/// Exact distances to a triangle mesh and to a cloud, as `compare` measures them.
 ///
 /// Both use one tree of axis-aligned boxes, searched best first, and are exact up to rounding. The sign of a
 /// distance comes from angle-weighted pseudo-normals (Baerentzen & Aanaes 2005, "Signed distance computation
-/// using the angle weighted pseudonormal"), which are right on edges and corners too. Building: O(n log n). A
-/// query: O(log n) typically. Queries are const and may run in parallel.
+/// using the angle weighted pseudonormal"), which are right at edges and corners too. O(n log n) to build,
+/// typically O(log n) a query. Queries are const and may run in parallel.
 #pragma once
 
 #include <array>
@@ -44,7 +44,7 @@ class BoxTree {
   std::vector<Index> order_;
 };
 
-/// The nearest point of a cloud.
+/// Finds the nearest point of a cloud.
 class PointTree {
  public:
   /// What was found nearest.
@@ -55,10 +55,10 @@ class PointTree {
   explicit PointTree(Positions points);
   const Positions& points() const { return points_; }
 
-  /// The nearest point, ties by index; not `skip`. `point` is kNone if there is none.
+  /// The nearest point other than `skip`, ties by index. `point` is kNone if there is none.
   Hit nearest(const Eigen::Vector3d& query, Index skip = kNone) const;
 
-  /// Squared distance from a triangle (as a filled piece of plane) to the nearest point.
+  /// Squared distance from a triangle (filled) to the nearest point.
   double squared_distance_from(const std::array<Eigen::Vector3d, 3>& triangle) const;
 
  private:
@@ -66,18 +66,18 @@ class PointTree {
   BoxTree tree_;
 };
 
-/// The point of a triangle that is nearest to `query`. `feature`: 0 inside, 1 2 3 the edge opposite of corner
-/// 0 1 2, 4 5 6 corner 0 1 2. Degenerate triangles are their longest edge or point.
+/// A point of a triangle. `feature`: 0 in its inside; 1, 2, 3 on the edge opposite corner 0, 1, 2; 4, 5, 6 at
+/// corner 0, 1, 2.
 struct TrianglePoint {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
   int feature = 0;
 };
-/// The point of the triangle nearest to `query`.
+/// The point of the triangle nearest to `query`. A degenerate triangle is its longest edge, or a point.
 TrianglePoint nearest_on_triangle(const Eigen::Vector3d& query,
                                   const std::array<Eigen::Vector3d, 3>& triangle);
 
-/// A triangle mesh as a surface to measure against. Corners at bit-equal positions count as one vertex, so an
-/// unindexed soup works.
+/// A triangle mesh to measure against. Corners at bit-equal positions count as one vertex, so an unindexed
+/// soup works.
 class TrueSurface {
  public:
   /// What was found nearest.
@@ -88,13 +88,13 @@ class TrueSurface {
     int feature = 0;  ///< as in TrianglePoint
   };
 
-  /// \throw std::invalid_argument if a face names a vertex that does not exist or there is no face.
+  /// \throw std::invalid_argument if there is no face, or a face names a vertex that does not exist.
   TrueSurface(Positions vertices, std::vector<Face> faces);
 
   Hit nearest(const Eigen::Vector3d& query) const;
 
-  /// Negative inside, for a closed surface, whichever way its faces are wound; for an open one the side is
-  /// the one its normals point away from.
+  /// The signed distance. For a closed surface negative inside, whatever the orientation of its faces; for an
+  /// open one negative on the side that its normals point away from.
   double signed_distance(const Eigen::Vector3d& query) const {
     return signed_distance(query, nearest(query));
   }
@@ -102,7 +102,8 @@ class TrueSurface {
 
   std::size_t face_count() const { return faces_.size(); }
   std::array<Eigen::Vector3d, 3> corners(std::size_t face) const;
-  /// Unit length, zero for a degenerate face; out of a closed surface whichever way its faces are wound.
+  /// Unit length; zero for a degenerate face. Points out of a closed surface whatever the orientation of its
+  /// faces.
   Eigen::Vector3d outward_normal(std::size_t face) const { return side_ * face_normal(face); }
 
   /// Every edge has two faces that run along it in opposite directions.

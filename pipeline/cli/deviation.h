@@ -1,4 +1,4 @@
-/// How far a cloud is from the truth: the figures a user asks for, and colours.
+/// The deviation of a cloud from the truth, as figures and as colours.
 #pragma once
 
 #include <string>
@@ -8,18 +8,18 @@
 
 namespace rfsmooth::cli {
 
-/// Of distances, in their own units.
+/// Statistics of distances, in the same units.
 struct Deviation {
   double rms = 0, median = 0, most = 0, largest = 0;  ///< `most`: 95 % are at most this far
 };
 
-/// Sums up the distances that are finite; at least one is. O(n).
+/// Summarises the finite distances, of which there must be one. O(n).
 Deviation summed_up(std::vector<double> distances);
 
-/// Gives every point a field 'deviation' (float32) and a colour in the way of the format of `output` (red,
-/// green, blue; PCD: rgb): blue at 0, through green at red / 2, to red. Points that are not finite become
-/// grey. Colours that were there are replaced. \throw Failure (usage) if a field of those names cannot take
-/// them.
+/// Gives every point a field 'deviation' (float32) and a colour as the format of `output` stores it (red,
+/// green, blue; PCD: rgb): blue at 0, green at red / 2, red from `red` on. Points that are not finite become
+/// grey. Existing colours are replaced. \throw Failure (usage) if existing fields of those names cannot take
+/// the values.
 void color_by_deviation(pipeline::io::Cloud& cloud, const std::vector<double>& distances, double red,
                         const std::string& output, const Context& context);
 

@@ -1,4 +1,4 @@
-/// What is said of words that name no sub-command.
+/// The error message for words that name no sub-command.
 #pragma once
 
 #include <string>
@@ -8,9 +8,9 @@
 
 namespace rfsmooth::cli {
 
-/// `words` are what was typed, from the one that stands where a sub-command should. The command most like it,
-/// or what does to the files that were named what most people want of this program.
-/// \throw Failure (usage).
+/// Refuses `words`, which were typed from the place of the sub-command on. The message suggests the
+/// sub-command with the most similar name; or, if a file was named, `denoise` for it; or the sub-command that
+/// does what the word means elsewhere. \throw Failure (usage).
 [[noreturn]] void refuse_words_without_command(const std::vector<std::string>& words,
                                                const std::vector<Command>& commands);
 

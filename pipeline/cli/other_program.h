@@ -1,4 +1,4 @@
-/// Sub-commands that are programs of their own, since they link what the command does not.
+/// Sub-commands that are separate programs, because they link libraries that the command does not.
 #pragma once
 
 #include <string>
@@ -8,11 +8,11 @@
 
 namespace rfsmooth::cli {
 
-/// Becomes the program `name` with these arguments: the one beside this program, else the first in PATH.
-/// \throw Failure (not_installed) if there is none.
+/// Replaces this process by the program `name` with these arguments: the one beside this program, else the
+/// first in PATH. \throw Failure (not_installed) if there is none.
 int become_program(const std::string& name, const std::vector<std::string>& arguments);
 
-/// The arguments that say the same again.
+/// The arguments that mean the same as `typed`.
 std::vector<std::string> as_typed(const Invocation& typed, const std::vector<CommandOption>& options);
 
 }  // namespace rfsmooth::cli

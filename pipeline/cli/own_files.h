@@ -1,4 +1,4 @@
-/// What --force may replace: nothing that somebody else's work is in.
+/// Protects clouds that others wrote from being replaced by --force.
 #pragma once
 
 #include <optional>
@@ -8,9 +8,9 @@
 
 namespace rfsmooth::cli {
 
-/// Marks a file that was just written as the command's own, in its extended attributes: no byte of it
-/// changes. The mark holds size and time of writing and counts no more once another program has changed the
-/// file. Silent where the file system keeps no attributes.
+/// Marks a file just written as the command's own, in its extended attributes, so that its bytes do not
+/// change. The mark holds size and time of writing; it is void once another program changes the file. Does
+/// nothing if the file system has no extended attributes.
 void mark_as_own(const std::string& path);
 
 /// Whether a file carries a valid mark.
@@ -19,12 +19,14 @@ bool is_own(const std::string& path);
 /// Whether a regular file is there that begins as a PLY, PCD, OFF or LAS file does, or that reads as points.
 bool holds_cloud(const std::string& path);
 
-/// Refuses an OUT that is a cloud without the mark: `*.ply` in a folder of two scans names the second one.
-/// `named` is what -o says. OUT is meant if that names it, or if it is written as IN is, letter by letter; in
-/// a folder that -o names, only the inputs themselves are kept. \throw Failure (cannot_write).
+/// Refuses an OUT that is a cloud without a valid mark, because `*.ply` in a folder with two scans passes the
+/// second one as OUT. `named`: the value of -o. OUT may be replaced if -o names it, or if it is spelled
+/// exactly as IN. In a folder named by -o only the inputs themselves are protected. \throw Failure
+/// (cannot_write).
 void need_own_target(const Job& job, const std::optional<std::string>& named);
 
-/// Refuses a file that is no cloud, a report say, in the place of one. \throw Failure (cannot_write).
+/// Refuses to write something else, such as a report, over a cloud; `what` is its name in the message. \throw
+/// Failure (cannot_write).
 void need_no_cloud(const std::string& path, const char* what);
 
 }  // namespace rfsmooth::cli

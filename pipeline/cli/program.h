@@ -1,5 +1,5 @@
-/// What every program of rfsmooth does: take argv apart, run one command, turn every failure into one line
-/// and an exit code.
+/// The main function of every program of rfsmooth: parses argv, runs one command, turns every failure into
+/// one line and an exit code.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace rfsmooth::cli {
 
-/// \return the exit code; standard output is closed.
+/// Runs the command that argv names and closes standard output. \return the exit code.
 int run_program(int argc, const char* const* argv, const std::vector<Command>& commands);
 
 }  // namespace rfsmooth::cli

@@ -1,4 +1,4 @@
-/// From one format to another: what the target can carry is carried, the rest is named.
+/// Conversion between formats: keeps what the target can carry and names the rest.
 #pragma once
 
 #include <optional>
@@ -13,11 +13,11 @@ namespace rfsmooth::pipeline::io {
 /// \throw Failure (usage) if `format` has no such encoding.
 Encoding target_encoding(const Cloud& cloud, Format format, std::optional<Encoding> wanted);
 
-/// Whether the cloud's rows can be written as they are: same format, and for OFF, whose columns have no
-/// names, no field that was added out of order or that OFF has no word for.
+/// Whether the cloud's rows can be written as they are: the format is the same, and for OFF, whose columns
+/// have no names, no field stands out of order or is unknown to OFF.
 bool is_writable_as_is(const Cloud& cloud, Format format);
 
-/// What writing the cloud so would lose, in words; empty if nothing. Not counted as a loss: the type names of
+/// What writing the cloud in this way would lose, in words; empty if nothing. Not counted: the type names of
 /// a text without types (XYZ, OFF), padding fields ('_') and the bytes behind the last row.
 std::vector<std::string> what_is_lost(const Cloud& cloud, Format format, Encoding encoding,
                                       const Context& context);

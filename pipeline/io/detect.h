@@ -1,4 +1,4 @@
-/// Which format a file is in, by its first lines.
+/// Detects the format of a file by its first lines.
 #pragma once
 
 #include "pipeline/io/stream/source.h"
@@ -6,7 +6,7 @@
 
 namespace rfsmooth::pipeline::io {
 
-/// \throw Failure (input_unreadable) if it is none of ours, saying what the file starts with.
+/// \throw Failure (input_unreadable) if it is none of ours; the message quotes the start of the file.
 Format detect_format(const Source& source, const Context& context);
 
 }  // namespace rfsmooth::pipeline::io

@@ -1,15 +1,14 @@
 /// The front door of files: read and write clouds and meshes, PLY, PCD, XYZ, OFF and LAS, without losing
 /// anything.
 ///
-///     auto cloud = read_cloud("scan.ply", {}, context);             // the format is told by the content
+///     auto cloud = read_cloud("scan.ply", {}, context);             // the content tells the format
 ///     std::vector<double> xyz = positions(cloud.value());           // n x 3
 ///     ...                                                           // NaN rows stay where they are
 ///     set_positions(cloud.value(), xyz.data());                     // only what moved changes
 ///     write_cloud(cloud.value(), "out.ply", {}, context);           // by extension; complete or not at all
 ///
-/// Errors: input_unreadable with the line or byte, what was expected and what was found; cannot_write; usage
-/// for a target that cannot carry what the cloud has. Reading and writing need memory for one copy of the
-/// file.
+/// Errors: input_unreadable, with the line or byte, what was expected and what was found; cannot_write; usage
+/// for a format that cannot carry what the cloud has. Memory: one copy of the file.
 #pragma once
 
 #include <filesystem>
@@ -30,23 +29,22 @@ using rfsmooth::WriteOptions;
 Result<Cloud> read_cloud(const std::filesystem::path& path, const ReadOptions& options,
                          const Context& context);
 
-/// Reads a buffer, standard input's say; `name` is what errors call it.
+/// Reads a buffer, for example of standard input; error messages call it `name`.
 Result<Cloud> parse_cloud(std::string_view bytes, const std::string& name, const ReadOptions& options,
                           const Context& context);
 
-/// Writes a file: to a temporary name beside it, synced, renamed. An existing file is refused without
-/// `force`. A symbolic link is written through. On an error or cancel nothing is left behind and nothing has
-/// changed.
+/// Writes a temporary file beside `path` and renames it. An existing file is refused without `force`. A
+/// symbolic link is followed. After an error or a cancel nothing has changed and no file is left behind.
 Result<Done> write_cloud(const Cloud& cloud, const std::filesystem::path& path, const WriteOptions& options,
                          const Context& context);
 
-/// Writes to a buffer, for standard output say.
+/// Writes to a buffer, for example for standard output.
 Result<std::string> serialize_cloud(const Cloud& cloud, const WriteOptions& options, const Context& context);
 
-/// What write_cloud would refuse about the path, told before the work is done; creates nothing.
+/// Reports in advance what write_cloud would refuse about the path; creates nothing.
 Result<Done> check_output(const std::filesystem::path& path, const WriteOptions& options);
 
-/// Any bytes (a report, a picture) written in the same way: complete or not at all.
+/// Writes any bytes (a report, a picture) in the same way: complete or not at all.
 Result<Done> write_bytes(std::string_view bytes, const std::filesystem::path& path, bool force,
                          const Context& context);
 
@@ -56,7 +54,7 @@ std::optional<Format> format_of_extension(const std::filesystem::path& path);
 /// The format of that name ("ply", "pcd", "xyz", "off", "las"), if any; likewise encodings ("binary" is
 /// little-endian).
 std::optional<Format> format_by_name(std::string_view name);
-/// The encoding of that name, if any.
+/// The encoding of that name, if any; "binary" is little-endian.
 std::optional<Encoding> encoding_by_name(std::string_view name);
 
 }  // namespace rfsmooth::pipeline::io

@@ -1,5 +1,5 @@
 /// Meshes in files: a Cloud whose PLY or OFF file also has faces (or edges). The polygons stay in the cloud
-/// as they were; here they are read as triangles to work on, and triangles and edges are put into a cloud to
+/// unchanged. Here they are read as triangles to work on, and triangles and edges are put into a cloud to
 /// write.
 #pragma once
 
@@ -15,30 +15,30 @@ struct MeshFile {
   std::vector<Face> faces;  ///< m x 3: its polygons split into fans; no repeated corners
 };
 
-/// Reads a mesh. Errors: as read_cloud; input_unreadable if it has no faces or one names a vertex that is not
-/// there. Polygons with fewer than three corners and triangles with a repeated corner are left out of `faces`
-/// and a warning says how many; the file keeps them. A convex polygon's fan covers it; of others, the
-/// connectivity is right.
+/// Reads a mesh. Errors: as read_cloud; input_unreadable if it has no faces or one names a vertex that does
+/// not exist. Polygons with fewer than three corners and triangles with a repeated corner are left out of
+/// `faces`; a warning says how many, and the file keeps them. A fan covers a convex polygon; of others, only
+/// the connectivity is right.
 Result<MeshFile> read_mesh(const std::filesystem::path& path, const ReadOptions& options,
                            const Context& context);
 /// The same from bytes; `name` is for messages.
 Result<MeshFile> parse_mesh(std::string_view bytes, const std::string& name, const ReadOptions& options,
                             const Context& context);
 
-/// The triangles of a PLY or OFF file, rows of the points as corners; polygons and degenerate faces as above.
-/// Empty if the file has no faces. \throw Failure (input_unreadable) naming the face that asks for a point
-/// that does not exist.
+/// The triangles of a PLY or OFF file, corners as rows of the points; polygons and degenerate faces as above.
+/// Empty if the file has no faces. \throw Failure (input_unreadable) naming a face with a point that does not
+/// exist.
 std::vector<Face> faces_of(const Cloud& cloud, const Context& context = {});
 
-/// The edges of a PLY file (element edge with vertex1 and vertex2), smaller index first; a == b is left out.
-/// \throw Failure as above.
+/// The edges of a PLY file (element edge with vertex1 and vertex2), lower index first, without edges from a
+/// point to itself. \throw Failure as above.
 std::vector<Edge> edges_of(const Cloud& cloud, const Context& context = {});
 
-/// Puts triangles into the cloud as element 'face' (list uchar int vertex_indices), edges as element 'edge'
-/// (int vertex1, int vertex2); replaces what was there under that name. Rows are binary. Only PLY and OFF can
-/// carry faces, only PLY edges: set cloud.format or write with that format.
+/// Replaces the element 'face' by triangles (list uchar int vertex_indices). Rows are binary. Only PLY and
+/// OFF can carry faces: set cloud.format, or write in that format.
 void set_faces(Cloud& cloud, const std::vector<Face>& faces);
-/// See `set_faces`. `kind`: one per edge, written as uchar kind; or empty.
+/// Replaces the element 'edge' (int vertex1, int vertex2), which only PLY can carry. `kind`: one per edge,
+/// written as uchar kind; or empty.
 void set_edges(Cloud& cloud, const std::vector<Edge>& edges, const std::vector<std::uint8_t>& kind = {});
 
 /// A binary PLY of points (float64), triangles and edges; elements without rows are left out.

@@ -1,4 +1,4 @@
-/// Formats that are not read or written here, and what to do with a file in one.
+/// Formats that are not supported, and what to do with a file in one of them.
 #pragma once
 
 #include <filesystem>
@@ -7,7 +7,7 @@
 
 namespace rfsmooth::pipeline::io {
 
-/// A format of somebody else.
+/// An unsupported format.
 struct OtherFormat {
   const char* name;        ///< "OBJ"
   const char* extensions;  ///< ".glb .gltf", lower case
@@ -16,10 +16,10 @@ struct OtherFormat {
   const char* instead = "write .ply, .pcd, .xyz, .off or .las and convert that";  ///< of writing it
 };
 
-/// The format of a file that begins with these bytes; null if it is none that we know of.
+/// The unsupported format of a file that begins with these bytes; null if unknown.
 const OtherFormat* other_format_of_bytes(std::string_view first_bytes);
 
-/// The format that the path's extension stands for; null if it is none that we know of.
+/// The unsupported format for the path's extension; null if unknown.
 const OtherFormat* other_format_of_extension(const std::filesystem::path& path);
 
 }  // namespace rfsmooth::pipeline::io

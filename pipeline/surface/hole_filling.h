@@ -1,10 +1,9 @@
-/// Closing the small holes of a surface, and only those.
+/// Closes the small holes of a surface, and only those.
 ///
 /// A hole is filled by the triangulation of its rim, without new vertices, that has the least area (Barequet
-/// and Sharir 1995, "Filling gaps in the boundary of a polyhedron"), among those whose new edges are at most
-/// `longest_edge` long and are not edges of the surface already. A slit that a method of reconstruction left
-/// between points has such a triangulation; a gap that nobody measured has none and stays open. What was a
-/// manifold stays one.
+/// and Sharir 1995, "Filling gaps in the boundary of a polyhedron"). Its new edges must be at most
+/// `longest_edge` long and not yet edges of the surface. A slit between measured points has such a
+/// triangulation; a gap that nobody measured has none and stays open. A manifold stays one.
 #pragma once
 
 #include <cstddef>
@@ -14,9 +13,9 @@
 
 namespace rfsmooth::pipeline {
 
-/// Appends the faces, oriented as their neighbours are, and rebuilds the adjacency. Holes of more than 1,000
-/// edges, and rims that pass a vertex twice, are left alone. `longest_edge` in world units. Returns how many
-/// holes were filled. Precondition: faces agree across every edge. O(m log m + k^3) for k edges of a rim; one
+/// Appends the faces, oriented as their neighbours, and rebuilds the adjacency; returns how many holes were
+/// filled. Holes of more than 1,000 edges, and rims that pass a vertex twice, are left alone. `longest_edge`:
+/// world units. Precondition: faces agree across every edge. O(m log m + k^3) for rims of k edges; one
 /// thread, deterministic; polls `context` between holes.
 std::size_t fill_holes(Mesh& mesh, double longest_edge, const Context& context);
 

@@ -1,8 +1,8 @@
-/// What kind of surface a triangle mesh is: its pieces, rims and handles.
+/// The topology of a triangle mesh: its pieces, rims and handles.
 ///
-/// Vertices count as far as faces use them. Per piece Euler's formula V - E + F = 2 - 2 g - b gives the genus
-/// g from the b rims of an orientable manifold; `genus` is the sum over the pieces and means nothing where
-/// edges are crowded or vertices pinched.
+/// Only vertices with faces count. For each piece Euler's formula V - E + F = 2 - 2 g - b gives the genus g
+/// of an orientable manifold with b rims. `genus` is the sum over the pieces; it has no meaning if edges are
+/// crowded or vertices pinched.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@
 
 namespace rfsmooth::pipeline {
 
-/// Of faces over n vertices. Precondition: corners are distinct and < n. O(m log m), one thread.
+/// The topology of faces over n vertices. Precondition: corners are distinct and < n. O(m log m), one thread.
 Topology topology(std::size_t n, const std::vector<Face>& faces);
 
 }  // namespace rfsmooth::pipeline

@@ -12,8 +12,8 @@ namespace rfsmooth::cgal {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
-/// CGAL's vertex, but that candidates of one priority wait in the order of the points at their edge. CGAL's
-/// own wait in the order of their addresses, and the surface is another one every time.
+/// CGAL's vertex, except that candidates of equal priority are ordered by the points at their edge. CGAL
+/// orders them by address, so its surface differs from run to run.
 template <class Traits, class Base = CGAL::Triangulation_vertex_base_3<Traits>>
 class OrderedVertex : public CGAL::Advancing_front_surface_reconstruction_vertex_base_3<Traits, Base> {
   using Front = CGAL::Advancing_front_surface_reconstruction_vertex_base_3<Traits, Base>;
@@ -40,7 +40,7 @@ class OrderedVertex : public CGAL::Advancing_front_surface_reconstruction_vertex
   };
 };
 
-/// CGAL's cell, numbered as it was made: cells are compared by that, and no more by their addresses.
+/// CGAL's cell, numbered in the order of creation. Cells are compared by this number, not by address.
 template <class Traits, class Base = CGAL::Triangulation_cell_base_3<Traits>>
 class NumberedCell : public CGAL::Advancing_front_surface_reconstruction_cell_base_3<Traits, Base> {
   using Front = CGAL::Advancing_front_surface_reconstruction_cell_base_3<Traits, Base>;
@@ -57,7 +57,7 @@ class NumberedCell : public CGAL::Advancing_front_surface_reconstruction_cell_ba
   void set_time_stamp(std::size_t number) { number_ = number; }
 
  private:
-  std::size_t number_ = std::size_t(-1);  // CGAL's for a cell that has none
+  std::size_t number_ = std::size_t(-1);  // what CGAL gives a cell without a number
 };
 
 using FrontVertex = OrderedVertex<Kernel>;

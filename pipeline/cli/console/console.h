@@ -1,5 +1,5 @@
-/// What the command says while it works: log lines, warnings and a progress bar, all on stderr. stdout is for
-/// data and JSON only.
+/// What the command prints while it works: log lines, warnings and a progress bar, all on stderr. stdout is
+/// for data and JSON only.
 #pragma once
 
 #include <chrono>
@@ -31,6 +31,7 @@ struct TalkOptions {
 /// Whether standard output is a pipe that nobody reads any more.
 bool stdout_reader_is_gone();
 
+/// The command's messages. One thread at a time.
 class Console {
  public:
   /// A bar is drawn, and colours are used, only if stderr is a terminal; NO_COLOR turns colours off.
@@ -47,14 +48,14 @@ class Console {
   void warn(const std::string& line);
   void error(const std::string& line);  ///< always
 
-  /// Number of points, for the rate beside the bar.
+  /// The number of points, from which the bar shows points per second.
   void set_points(std::size_t points) { points_ = points; }
 
-  /// What the bar shows: the stages, and which file of how many they belong to.
+  /// The progress that the bar shows.
   Progress& progress() { return progress_; }
 
-  /// A Context that logs and reports here and stops on Ctrl-C. `threads` (0 = all cores) binds the whole
-  /// program while the console lives.
+  /// A Context that logs and reports to this console and stops on Ctrl-C. `threads` (0 = all cores) limits
+  /// the whole process while the console exists.
   Context context(int threads);
 
  private:

@@ -1,4 +1,4 @@
-/// --report: what was done, as JSON. A report of one file can be given to --config to do it again.
+/// --report: what was done, as JSON. --config reads the report of a single file and does the same again.
 #pragma once
 
 #include <string>
@@ -11,17 +11,18 @@
 
 namespace rfsmooth::cli {
 
+/// The report of one run.
 class Report {
  public:
-  /// \throw Failure (cannot_write) if `path` exists and `force` is not set: told before any work is done.
+  /// \throw Failure (cannot_write) if `path` exists and `force` is not set, before any work is done.
   Report(std::string command, const std::optional<std::string>& path, bool force);
 
   bool wanted() const { return !path_.empty(); }
 
-  /// Adds what one file gave; `entry` should have "input", "output", "options", ...
+  /// Adds the entry of one file; it should have "input", "output", "options", ...
   void add(nlohmann::ordered_json entry) { files_.push_back(std::move(entry)); }
 
-  /// Writes it: one file as an object, several under "files". \throw Failure (cannot_write).
+  /// Writes the report: one file as an object, several under "files". \throw Failure (cannot_write).
   void write() const;
 
  private:

@@ -1,4 +1,4 @@
-/// Clouds in and out for the sub-commands: paths or "-", with the options they share.
+/// Reading and writing clouds in the sub-commands: paths or "-", with the options they share.
 #pragma once
 
 #include <string>
@@ -14,14 +14,14 @@
 
 namespace rfsmooth::cli {
 
-/// Refuses, before any work, an output that could not be written. \throw Failure.
+/// Refuses an output that cannot be written, before any work. \throw Failure.
 void check_target(const std::string& output, const FileOptions& options);
 
-/// At most one thing may go to standard output, and --report - counts. \throw Failure (usage).
+/// Refuses two outputs to standard output; --report - counts as one. \throw Failure (usage).
 void need_free_stdout(const std::vector<Job>& jobs, const RunOptions& options);
 
-/// Reads a path, or standard input for "-"; adds a stage "read". Refuses a file larger than the memory there
-/// is. \throw Failure.
+/// Reads a path, or standard input for "-"; adds a stage "read". \throw Failure, also if the file is larger
+/// than the available memory.
 pipeline::io::Cloud load_cloud(const std::string& input, const Context& context,
                                std::vector<StageTime>& stages);
 
@@ -29,11 +29,11 @@ pipeline::io::Cloud load_cloud(const std::string& input, const Context& context,
 void store_cloud(const pipeline::io::Cloud& cloud, const std::string& output, const FileOptions& options,
                  const Context& context, std::vector<StageTime>& stages);
 
-/// Whether the points have nx, ny, nz or normal_x, ...
+/// Whether the points have fields nx, ny, nz or normal_x, normal_y, normal_z.
 bool has_normals(const pipeline::io::Cloud& cloud);
 
-/// Warns where float32 cannot hold the coordinates' spacing: where rounding them is more than the noise that
-/// denoise lets be, a twentieth of the spacing. `xyz`: what the file holds. O(n).
+/// Warns if rounding the coordinates to float32 has moved them by more than a twentieth of the spacing, noise
+/// that denoise leaves alone. `xyz`: the file's coordinates. O(n).
 void warn_if_coarse(const pipeline::io::Cloud& cloud, const std::vector<double>& xyz, double spacing,
                     const std::string& name, Console& console);
 

@@ -1,4 +1,4 @@
-/// What the sub-commands that turn a cloud into a file share: options, jobs, report.
+/// What sub-commands that turn a cloud into a file share: options, the loop over files, the report.
 #pragma once
 
 #include <functional>
@@ -10,6 +10,7 @@
 
 namespace rfsmooth::cli {
 
+/// The options of all these sub-commands.
 struct JobOptions {
   FileOptions files;
   RunOptions run;
@@ -28,7 +29,7 @@ struct JobOptions {
 int run_cloud_jobs(const std::string& command, const JobOptions& options, const Invocation& typed,
                    const OnCloud& on_cloud);
 
-/// The value of a result. \throw Failure with its error, which `name` (the file's) comes before.
+/// The value of a result. \throw Failure with its error, prefixed with `name`, the file's name.
 template <class T>
 T value_or_fail(Result<T> result, const std::string& name) {
   if (!result.ok()) throw Failure({result.error().code, name + ": " + result.error().message});

@@ -1,4 +1,4 @@
-/// Normals of the smoothed surface for the sub-commands: which fields hold them, and how they get there.
+/// Normals of the smoothed surface in the sub-commands: their options, and the fields that hold them.
 #pragma once
 
 #include <optional>
@@ -14,6 +14,7 @@
 
 namespace rfsmooth::cli {
 
+/// The options of normals.
 struct NormalsFields {
   bool normals = false;
   std::optional<std::string> viewpoint;
@@ -28,16 +29,16 @@ struct NormalsFields {
   }
 };
 
-/// Options that cannot be meant, told before any file is touched. \throw Failure (usage).
+/// Refuses contradictory options, before any file is touched. \throw Failure (usage).
 void check(const NormalsFields& options);
 
-/// Fields that could not take the normals, told before the work. \throw Failure (usage).
+/// Refuses fields that cannot take the normals, before the work. \throw Failure (usage).
 void check_normals(const NormalsFields& options, const pipeline::io::Cloud& cloud);
 
-/// Estimates the normals of the coordinates `xyz` (the cloud's, smoothed, as doubles) and writes them: into
-/// every complete triple nx, ny, nz or normal_x, normal_y, normal_z in its own type, else into new float32
-/// fields named as `output`'s format does. Rows that are not finite keep what they have; new fields get NaN
-/// there. Adds a stage and tells `entry` the viewpoint. \throw Failure.
+/// Estimates the normals at the coordinates `xyz` (those of the cloud, smoothed) and writes them into every
+/// complete triple nx, ny, nz or normal_x, normal_y, normal_z, in its own type. Without such a triple, new
+/// float32 fields are added, named as `output`'s format does. Rows that are not finite keep their values; in
+/// new fields they get NaN. Adds a stage, and the viewpoint to `entry`. \throw Failure.
 void write_normals(const NormalsFields& options, pipeline::io::Cloud& cloud, const double* xyz,
                    const std::string& output, const FileOptions& files, const Context& context,
                    std::vector<StageTime>& stages, nlohmann::ordered_json& entry);

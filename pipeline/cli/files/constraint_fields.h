@@ -1,8 +1,8 @@
-/// Constraints on vertices from fields of the file: how far each may follow the flow, which stay, which slide
+/// Constraints on vertices from fields of the file: how far each follows the flow, which stay, which slide
 /// along an axis or in a plane.
 ///
-/// Desbrun et al. 1999, 2.7. A vertex is constrained where the field is neither zero nor NaN; of several
-/// constraints fixed wins, then axis.
+/// Desbrun et al. 1999, 2.7. A vertex is constrained where the field is neither zero nor NaN. Of several
+/// constraints on one vertex fixed wins, then axis.
 #pragma once
 
 #include <optional>
@@ -16,6 +16,7 @@
 
 namespace rfsmooth::cli {
 
+/// The options that name the fields.
 struct ConstraintFields {
   std::optional<std::string> strength, fixed, axis, plane;
   std::optional<std::string> direction;  ///< empty: normals
@@ -37,12 +38,12 @@ struct ConstraintFields {
   }
 };
 
-/// The strengths of one field, by row. \throw Failure (usage) naming the first row outside [0, 1], or the
-/// fields there are if there is none of that name.
+/// The strengths in one field, by row. \throw Failure (usage) naming the first row outside [0, 1], or, if
+/// there is no such field, the fields there are.
 std::vector<double> strengths(const pipeline::io::Cloud& cloud, const std::string& field,
                               const Context& context);
 
-/// The constraints on the vertices `of_row` (kNone = not a vertex) of n. \throw Failure (usage).
+/// The constraints on n vertices; `of_row`: the vertex of each row, or kNone. \throw Failure (usage).
 Constraints constraints_of(const ConstraintFields& fields, const pipeline::io::Cloud& cloud,
                            const std::vector<Index>& of_row, std::size_t n, const Context& context);
 

@@ -1,4 +1,4 @@
-/// Options that every sub-command with files has: where the output goes, threads, report, config.
+/// Options of every sub-command with files: the output, threads, report, config.
 #pragma once
 
 #include <optional>
@@ -8,6 +8,7 @@
 
 namespace rfsmooth::cli {
 
+/// Where the output goes, and how it is stored.
 struct FileOptions {
   std::optional<std::string> output;
   std::optional<std::string> format;
@@ -31,6 +32,7 @@ struct FileOptions {
   }
 };
 
+/// How the command runs.
 struct RunOptions {
   std::optional<int> threads;
   std::optional<std::string> report;

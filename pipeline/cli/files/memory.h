@@ -1,5 +1,4 @@
-/// How much memory there is, so that a job that cannot fit is refused before it starts; and taking no more of
-/// it than is used.
+/// The available memory: refusing a job that cannot fit before it starts, and returning what is freed.
 #pragma once
 
 #include <cstddef>
@@ -10,14 +9,14 @@
 
 namespace rfsmooth::cli {
 
-/// Bytes this process may still take: the least of what the machine has free, what its control group allows
-/// and what the address-space limit leaves. Nothing if none is known.
+/// Bytes that this process may still allocate: the least of the machine's free memory, the limit of its
+/// control group and the limit of its address space. None if none of them is known.
 std::optional<std::size_t> available_memory();
 
-/// An Error (out_of_memory) with both figures if `needed` bytes are not there.
+/// An Error (out_of_memory) with both figures if fewer than `needed` bytes are available.
 std::optional<Error> refuse_without_memory(std::string_view input, std::size_t needed);
 
-/// From now on freed arrays go back to the system at once. Call before anything large is allocated.
+/// From now on freed arrays return to the system at once. Call it before anything large is allocated.
 void give_memory_back();
 
 }  // namespace rfsmooth::cli

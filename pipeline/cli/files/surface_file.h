@@ -1,4 +1,4 @@
-/// A reconstructed surface as a file that keeps what the cloud's points had.
+/// A reconstructed surface as a file that keeps the fields of the cloud's points.
 #pragma once
 
 #include <rfsmooth/reconstruct.h>
@@ -8,9 +8,8 @@
 namespace rfsmooth::cli {
 
 /// Every vertex gets the fields of its row of `cloud` (Reconstruction::row), its own x, y, z in the cloud's
-/// types, and the surface's normal where the cloud has normals. A packed rgb or rgba field, as PCD has it,
-/// becomes red, green, blue (and alpha), which is what viewers of meshes look for. Other elements are left
-/// out.
+/// types, and the surface's normal if the cloud has normals. A packed rgb or rgba field, as in PCD, becomes
+/// red, green, blue (and alpha), as viewers of meshes expect. Other elements are dropped.
 pipeline::io::Cloud surface_file(pipeline::io::Cloud cloud, const Reconstruction& made,
                                  const Context& context);
 

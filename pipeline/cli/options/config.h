@@ -8,14 +8,15 @@
 
 namespace rfsmooth::cli {
 
+/// What a config file says.
 struct Config {
   std::vector<std::pair<std::string, std::string>> options;  ///< name and text
   std::vector<std::string> arguments;  ///< the report's input and output, if it has them
 };
 
 /// Reads `path`: a report (its "options", "input", "output") or an object of options. Names are checked
-/// against `command`. \throw Failure: input_unreadable (no JSON; names the byte), usage (another command's
-/// report, an unknown option, with a suggestion).
+/// against `command`. \throw Failure: input_unreadable (no JSON; says the byte), usage (another command's
+/// report, or an unknown option, with a suggestion).
 Config read_config(const std::string& path, const Command& command);
 
 }  // namespace rfsmooth::cli

@@ -1,4 +1,4 @@
-/// Help as text, made from the commands' own tables.
+/// Help texts, made from the tables of the commands' options.
 #pragma once
 
 #include <string>
@@ -17,9 +17,10 @@ std::string help_of(const Command& command, bool complete);
 /// "-o, --output FILE".
 std::string option_heading(const CommandOption& option);
 
-/// "0 to 1, default auto" and the like; "" if there is nothing to say.
+/// The limits and the default, as in "0 to 1, default auto"; "" if there are none.
 std::string option_limits(const CommandOption& option);
 
+/// An exit code and its meaning.
 struct ExitCode {
   int code;
   const char* meaning;

@@ -1,4 +1,4 @@
-/// Option values in JSON.
+/// Option values as JSON.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace rfsmooth::cli {
 
-/// A value as it would be typed: numbers, true and false become JSON's own, the rest strings.
+/// The JSON of a value as typed: numbers, true and false become JSON's own, the rest strings.
 nlohmann::ordered_json json_value(const std::string& text);
 
 /// All options that have a value, by name; `auto` ones are null.

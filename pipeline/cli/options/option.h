@@ -1,6 +1,6 @@
-/// An option of the command, seen as text. Every option of every sub-command comes from a `describe` table
-/// (rfsmooth/options.h); parsing, --help, man pages, completion, --config and the JSON report all work on
-/// this one form of it.
+/// An option of the command, as text. Every option of every sub-command comes from a `describe` table
+/// (rfsmooth/options.h). Parsing, --help, man pages, completion, --config and the JSON report all use this
+/// form.
 #pragma once
 
 #include <functional>
@@ -13,8 +13,10 @@
 
 namespace rfsmooth::cli {
 
+/// The kinds of values.
 enum class ValueKind { flag, integer, number, word, length, file };
 
+/// An option: how it is typed and described, and how its value is set and read.
 struct CommandOption {
   std::string name;     ///< long name without the dashes
   char short_name = 0;  ///< 0 = none
@@ -26,28 +28,29 @@ struct CommandOption {
   std::string range;           ///< "0 to 1", "at least 0", ""
   std::vector<std::string> choices;
 
-  /// Stores `text`, read strictly for this option; use `assign`.
+  /// Parses `text` strictly and stores it; call `assign` instead.
   std::function<void(const CommandOption& option, const std::string& text)> set;
   /// The value as it would be typed; nothing if it is auto or left out.
   std::function<std::optional<std::string>()> get;
-  /// To be called, if there is one, when every option has its value. \throw Failure (usage).
+  /// If set, to be called once every option has its value. \throw Failure (usage).
   std::function<void()> finish;
 };
 
-/// Reads `text` strictly and stores it. \throw Failure (usage) naming the option, the text and what is legal.
+/// Parses `text` strictly and stores it. \throw Failure (usage) naming the option, the text and the legal
+/// values.
 void assign(const CommandOption& option, const std::string& text);
 
 /// The word that stands for the value in help: NUMBER, LENGTH, FILE, ...
 std::string value_name(const CommandOption& option);
 
-/// Whether --no-NAME is understood: of flags that are on by default or auto.
+/// Whether --no-NAME is accepted: for flags that are on by default or auto.
 bool has_no_form(const CommandOption& option);
 
-/// The option's name as it is typed: "--alpha"; "--no-swap" of a flag that is on by default; both ways of a
-/// flag that is auto.
+/// The option's name as typed: "--alpha"; "--no-swap" for a flag that is on by default; both forms for a flag
+/// that is auto.
 std::vector<std::string> typed_names(const CommandOption& option);
 
-/// Visitor of a `describe` table that appends its options, bound to the fields it visits. The words in the
+/// A visitor of `describe` tables. It appends their options, bound to the fields visited. The strings in the
 /// table must be literals.
 class OptionCollector {
  public:
@@ -64,7 +67,7 @@ class OptionCollector {
     add_words(
         info, [&field] { return std::size_t(field); }, [&field](std::size_t k) { field = Enumeration(k); });
   }
-  /// --flow, and the options of every flow and modifier: all auto, which leaves them to the flow.
+  /// --flow, and the options of every flow and modifier; all default to auto, the flow's own default.
   void operator()(FlowOptions& field);
 
  private:
@@ -74,7 +77,7 @@ class OptionCollector {
   std::vector<CommandOption>& out_;
 };
 
-/// Appends the options of `fields`, which must outlive them.
+/// Appends the options of `fields`, which must outlive `out`.
 template <class Options>
 void collect(Options& fields, std::vector<CommandOption>& out) {
   Options::describe(fields, OptionCollector(out));

@@ -8,8 +8,8 @@
 
 namespace rfsmooth::cli {
 
-/// The candidate nearest to `word` by edit distance (insert, delete, replace, swap of neighbours; ties: the
-/// first), if it is near enough to be a misspelling: at most a third of the letters, at least one.
+/// The candidate with the least edit distance to `word` (insert, delete, replace, swap of neighbours; ties:
+/// the first). None if the distance is more than a third of the letters (at least one is allowed).
 std::optional<std::string> nearest(std::string_view word, const std::vector<std::string>& candidates);
 
 /// "; did you mean 'x'?" or "".

@@ -1,5 +1,5 @@
-/// Values as people type them, read strictly: the whole text must be the value ("1.5abc", "nan", "" are
-/// errors), and numbers print with as many digits as bring back the same bits.
+/// Typed values, parsed strictly: the whole text must be the value ("1.5abc", "nan" and "" are errors, for
+/// which the parsers return nothing). Numbers are printed with as many digits as restore the same bits.
 #pragma once
 
 #include <optional>
@@ -12,24 +12,23 @@
 
 namespace rfsmooth::cli {
 
-/// The finite number that is the whole of `text`; nothing otherwise.
+/// Parses a finite number.
 std::optional<double> read_number(std::string_view text);
 
-/// The whole number that is the whole of `text`; nothing otherwise or out of int's range.
+/// Parses a whole number in the range of int.
 std::optional<int> read_integer(std::string_view text);
 
-/// "0.02" (world units) or "2x" (times the mean spacing); nothing otherwise.
+/// Parses "0.02" (world units) or "2x" (times the mean spacing).
 std::optional<Length> read_length(std::string_view text);
 
-/// The three finite numbers "x,y,z"; nothing otherwise.
+/// Parses three finite numbers "x,y,z".
 std::optional<Eigen::Vector3d> read_point(std::string_view text);
 
 std::string to_text(double value);
 std::string to_text(const Length& value);
 std::string to_text(const Eigen::Vector3d& value);
 
-/// A message of the library as the command says it: options, which it puts between backticks, as they are
-/// typed ("`alpha`" becomes "--alpha").
+/// A message of the library in the command's words: option names between backticks become "--name".
 std::string with_dashes(const std::string& message);
 
 }  // namespace rfsmooth::cli

@@ -1,4 +1,4 @@
-/// A file that appears complete or not at all: written beside its target under another name, synced, renamed.
+/// A file that appears complete or not at all: written beside its target under another name, then renamed.
 #pragma once
 
 #include <filesystem>
@@ -11,22 +11,22 @@
 
 namespace rfsmooth::pipeline::io {
 
-/// Usage: construct, write, commit. Destroyed without commit, it leaves no trace. A symbolic link is
-/// followed: the file it names is written, the link stays. A target that is a device or a pipe is written to
+/// Usage: construct, write, commit. Without commit, the destructor removes the temporary file. A symbolic
+/// link is followed: the file it names is replaced, the link stays. A device or a pipe is written to
 /// directly. An existing file's permissions are kept.
 class AtomicFile : public Sink {
  public:
-  /// \throw Failure (cannot_write): the folder is missing or not writable, the target is a folder, or exists
-  /// and `replace` is false.
+  /// \throw Failure (cannot_write) if the folder is missing or not writable, the target is a folder, or it
+  /// exists and `replace` is false.
   AtomicFile(const std::filesystem::path& target, bool replace, const Context& context);
   ~AtomicFile() override;
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
 
-  /// \throw Failure (cannot_write), for a full disk say, or (cancelled).
+  /// \throw Failure (cannot_write), for example on a full disk, or (cancelled).
   void write(std::string_view bytes) override;
 
-  /// Syncs (unless told not to) and takes the target's name. \throw Failure (cannot_write).
+  /// Syncs if `sync` is set, then renames the file to the target. \throw Failure (cannot_write).
   void commit(bool sync);
 
  private:
@@ -39,7 +39,7 @@ class AtomicFile : public Sink {
   int file_ = -1;
 };
 
-/// What the constructor would refuse, found out before the work is done; creates nothing.
+/// Refuses in advance what the constructor would refuse; creates nothing. \throw Failure (cannot_write).
 void check_target(const std::filesystem::path& target, bool replace);
 
 }  // namespace rfsmooth::pipeline::io

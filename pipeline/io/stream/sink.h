@@ -1,4 +1,4 @@
-/// Where written bytes go: a file or a buffer.
+/// Where a writer puts its bytes: a file or a buffer.
 #pragma once
 
 #include <string>
@@ -6,14 +6,14 @@
 
 namespace rfsmooth::pipeline::io {
 
-/// Where a writer puts its bytes.
+/// The interface of all targets.
 class Sink {
  public:
   virtual ~Sink() = default;
   virtual void write(std::string_view bytes) = 0;
 };
 
-/// Keeps what is written in memory.
+/// Collects the bytes in memory.
 class BufferSink : public Sink {
  public:
   void write(std::string_view bytes) override { buffer.append(bytes); }

@@ -1,4 +1,4 @@
-/// Where bytes come from: an open file or a buffer. Sizes are known before anything is allocated.
+/// Where a reader gets its bytes: an open file or a buffer. The size is known before anything is allocated.
 #pragma once
 
 #include <cstdint>
@@ -16,11 +16,11 @@ namespace rfsmooth::pipeline::io {
 /// A file's bytes, mapped where that is possible.
 class Source {
  public:
-  /// Opens a file; what has no size (a pipe, a terminal) is read into memory first.
-  /// \throw Failure (input_unreadable): missing, a directory, not readable.
+  /// Opens a file; one without a size (a pipe, a terminal) is read into memory. \throw Failure
+  /// (input_unreadable) if it is missing, a directory or not readable.
   Source(const std::filesystem::path& path, const Context& context);
 
-  /// Reads from a buffer that outlives the source.
+  /// Reads from `bytes`, which must outlive the source.
   Source(std::string_view bytes, std::string name);
 
   ~Source();

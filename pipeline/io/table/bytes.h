@@ -1,4 +1,4 @@
-/// A growable buffer whose new bytes are not zeroed first: files are read straight into it.
+/// A growable buffer that does not initialise new bytes, so that files are read straight into it.
 #pragma once
 
 #include <vector>
@@ -7,7 +7,7 @@
 
 namespace rfsmooth::pipeline::io {
 
-/// Bytes that are not cleared first.
+/// Bytes; resize() leaves new ones indeterminate.
 using Bytes = std::vector<char, Unfilled<char>>;
 
 }  // namespace rfsmooth::pipeline::io

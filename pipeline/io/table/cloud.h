@@ -1,8 +1,8 @@
 /// A cloud (or mesh) file in memory, lossless: what is read and not changed is written back byte for byte.
 ///
-/// Only coordinates, and fields a caller adds or removes, change. Everything else - field order, types and
-/// names, rows with NaN, other PLY elements, comments, width x height, viewpoint - travels along.
-/// Not thread-safe for writing; distinct clouds are independent.
+/// Only coordinates, and fields that a caller adds or removes, change. Everything else is kept: field order,
+/// types and names, rows with NaN, other PLY elements, comments, width x height, viewpoint. One thread may
+/// change a cloud, or several may read it.
 #pragma once
 
 #include <array>
@@ -25,9 +25,9 @@ using rfsmooth::Format;
 std::string_view name_of(Format format);      ///< "ply", "pcd", "xyz", "off", "las"
 std::string_view name_of(Encoding encoding);  ///< as PLY and PCD headers write them ("binary_little_endian")
 
-/// A comment or obj_info line of a header, without its line end, and where it stands: before property `field`
-/// of element `element`; field 0 = before the element's own line, so that property k is field k + 1. Element
-/// kBeforeFormat: before PLY's format line.
+/// A comment or obj_info line of a header, without its line end, and its place: before property `field` - 1
+/// of element `element`. `field` 0: before the element's own line. `element` kBeforeFormat: before PLY's
+/// format line.
 struct Note {
   static constexpr std::size_t kBeforeFormat = std::size_t(-1);
   std::string line;
@@ -38,11 +38,11 @@ struct Note {
 /// What an XYZ file says before its first point, besides comments.
 struct XyzStyle {
   bool counted = false;              ///< a line with the number of points (.pts)
-  std::optional<std::string> names;  ///< a line that names the columns: what it starts with ("//", "# ", "")
+  std::optional<std::string> names;  ///< the start of a line that names the columns ("//", "# ", "")
   char separator = ' ';              ///< between those names
 };
 
-/// A file in memory: every element and field, also those nobody here understands.
+/// A file in memory: every element and field, known or not.
 struct Cloud {
   Format format = Format::ply;
   Encoding encoding = Encoding::binary_little_endian;
@@ -58,10 +58,9 @@ struct Cloud {
 
   // How the file was written, so that an unchanged one comes back the same.
   std::string newline = "\n";
-  std::string original_header;  ///< verbatim
-  std::string
-      original_canonical;  ///< what we would have written for it: as long as that stays, so does the original
-  std::string tail;        ///< bytes after the last row
+  std::string original_header;     ///< verbatim
+  std::string original_canonical;  ///< as we would write it; if that has not changed, the original is written
+  std::string tail;                ///< bytes after the last row
 
   Table& points() { return elements[vertex]; }
   const Table& points() const { return elements[vertex]; }
@@ -72,8 +71,8 @@ struct Cloud {
   const Table* element(std::string_view name) const;
 };
 
-/// The coordinates, n x 3 row-major, as doubles (of text: what the text says, whatever the type). O(n),
-/// parallel.
+/// The coordinates, n x 3 row-major, as doubles; those of text with all their digits, whatever the type.
+/// O(n), parallel.
 std::vector<double> positions(const Cloud& cloud, const Context& context = {});
 
 /// Writes n x 3 coordinates back, each in its own type, floats rounded to nearest. A coordinate equal to the
@@ -84,26 +83,27 @@ void set_positions(Cloud& cloud, const double* xyz, const Context& context = {})
 /// The field of the points with that name (the first of several), or none.
 std::optional<std::size_t> find_field(const Cloud& cloud, std::string_view name);
 
-/// A plain field of the points, one double per point. \throw std::invalid_argument if it is a list or an
+/// The values of a plain field, one double per point. \throw std::invalid_argument if it is a list or an
 /// array.
 std::vector<double> field_values(const Cloud& cloud, std::size_t field, const Context& context = {});
 
-/// Writes a field of the points, the one way in which any stage adds one (displacement, outlier, normals):
+/// Sets a field of the points (displacement, outlier, normals):
 ///
-/// - none of that name: it is appended behind the points' last field, as `type`; every other byte stays.
-/// - one of that name (the first of several): its values are replaced in place, in its own type.
+/// - if there is none of that name, it is appended behind the points' last field, as `type`; every other byte
+///   stays.
+/// - if there is one (the first of several), its values are replaced in place, in its own type.
 ///
-/// \throw Failure (usage) if the present one cannot take the values: `check_field` says so beforehand.
+/// \throw Failure (usage) if that one cannot take the values; `check_field` tells in advance.
 void set_field(Cloud& cloud, const std::string& name, Scalar type, const std::vector<double>& values,
                const Context& context = {});
 
-/// Refuses what `set_field` could not do: the field of that name is a list or an array, or holds whole
-/// numbers where `type` has fractions. \throw Failure (usage) naming field and type.
+/// Refuses what `set_field` cannot do: the field of that name is a list or an array, or an integer field
+/// where `type` is a float. \throw Failure (usage) naming field and type.
 void check_field(const Cloud& cloud, const std::string& name, Scalar type);
 
-/// Keeps the points `rows` (ascending or in any order); the result is unorganised unless all are kept in
-/// order. Other elements that name points by index (lists called vertex_indices or vertex_index, vertex1,
-/// vertex2) would be wrong and are dropped with a warning.
+/// Keeps the points `rows`, in that order. Unless these are all points in order, the result is not organised,
+/// and elements that name points by index (lists called vertex_indices or vertex_index; vertex1, vertex2) are
+/// dropped with a warning. \throw std::invalid_argument if there is no such row.
 void select_points(Cloud& cloud, const std::vector<std::size_t>& rows, const Context& context = {});
 
 /// A cloud of n points with fields x, y, z of `type` and nothing else.

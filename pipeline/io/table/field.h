@@ -1,4 +1,4 @@
-/// One property of a point (or of a face, an edge): its name and type as the file has them.
+/// A property of a point (or of a face, an edge): its name and type as in the file.
 #pragma once
 
 #include <cstddef>
@@ -36,8 +36,7 @@ struct Field {
 /// Reads the `type` at `p` (unaligned, little-endian) as a double (64-bit integers are rounded to nearest).
 double load(Scalar type, const char* p);
 
-/// Writes `value` at `p` as `type`: floats rounded to nearest; integers rounded to nearest, clamped to their
-/// range, NaN as 0.
+/// Writes `value` at `p` as `type`, rounded to nearest; for integers clamped to their range, NaN as 0.
 void store(Scalar type, char* p, double value);
 
 /// The value of `field` that is stored at `p`.

@@ -1,4 +1,4 @@
-/// Reading and writing the rows of a table, as bytes or as text, in a file of either byte order.
+/// Reads and writes the rows of a table, binary in either byte order or as text.
 #pragma once
 
 #include <cstdint>
@@ -15,11 +15,11 @@ struct BinaryCursor {
   const Source& source;
   std::uint64_t offset;  ///< next byte to read
   bool big_endian = false;
-  Bytes held = {};  ///< the rest of the file from `held_from`, once an element with lists needed it
+  Bytes held = {};  ///< the file from `held_from` on, once an element with lists needs it
   std::uint64_t held_from = 0;
 };
 
-/// Reads table.count rows of table.fields. The size promised is checked against the file before anything is
+/// Reads table.count rows of table.fields. The promised size is checked against the file before anything is
 /// allocated. \throw Failure naming the byte, what was expected and what was found.
 void read_binary_rows(Table& table, BinaryCursor& cursor, const Context& context);
 
@@ -36,23 +36,22 @@ struct TextCursor {
 /// Whether a line of a text body holds no values: blank, or a comment ('#' or '//').
 bool is_blank_or_comment(std::string_view line);
 
-/// The next line of the body with its line end; does not move on. Empty at the end.
+/// The next line of the body with its line end, empty at the end. Does not move the cursor.
 std::string_view peek_line(const TextCursor& cursor);
 
-/// Moves behind the next line.
+/// Moves the cursor behind the next line.
 void skip_line(TextCursor& cursor);
 
 /// Sets table.count to the number of lines left that hold values.
 void count_text_rows(Table& table, const TextCursor& cursor);
 
-/// Reads table.count lines and checks that each holds exactly the values its fields ask for. Blank lines and
-/// lines that start with '#' are kept as interludes. \throw Failure naming the line, what was expected and
-/// what was found.
+/// Reads table.count lines and checks that each holds exactly the values of its fields. Blank lines and
+/// comments are kept as interludes. \throw Failure naming the line, what was expected and what was found.
 void read_text_rows(Table& table, TextCursor& cursor, const Context& context);
 
-/// Writes the rows as bytes or as text; a table that is the other kind is converted on the way.
+/// Writes the rows as bytes; a text table is converted on the way.
 void write_binary_rows(const Table& table, bool big_endian, Sink& sink, const Context& context);
-/// See `write_binary_rows`.
+/// Writes the rows as text; a binary table is converted on the way.
 void write_text_rows(const Table& table, Sink& sink, const Context& context);
 
 }  // namespace rfsmooth::pipeline::io

@@ -1,7 +1,7 @@
-/// Rows of values as the file has them: a PLY element, or the points of a PCD, XYZ or OFF file.
+/// Rows of values as in the file: a PLY element, or the points of a PCD, XYZ or OFF file.
 ///
-/// Binary rows are kept as bytes (little-endian whatever the file was), ascii rows as their text, so that
-/// what nobody touched goes back bit for bit. Rows have a fixed size unless they hold lists or are text.
+/// Binary rows are kept as bytes (always little-endian), ascii rows as their text, so that unchanged values
+/// are written back bit for bit. Rows have a fixed size unless they hold lists or are text.
 #pragma once
 
 #include <cstdint>
@@ -17,13 +17,13 @@
 
 namespace rfsmooth::pipeline::io {
 
-/// Blank or comment lines of a text table, verbatim with their line ends, that stand before row `row`.
+/// Blank or comment lines of a text table before row `row`, verbatim with their line ends.
 struct Interlude {
   std::size_t row;
   std::string text;
 };
 
-/// An element of a file: rows of fields, kept as the file has them.
+/// An element of a file: rows of fields.
 struct Table {
   std::string name;           ///< "vertex", "face", ...
   std::vector<Field> fields;  ///< in file order; names may repeat
@@ -43,21 +43,20 @@ struct Table {
   std::string_view row(std::size_t i) const;
 };
 
-/// The values of plain fields `which` (their indices), count x which.size(), row-major, as doubles (parsed
-/// from the text where rows are text). Parallel. \throw std::invalid_argument if a field is not plain.
+/// The values of the plain fields with indices `which`: count x which.size(), row-major, as doubles.
+/// Parallel. \throw std::invalid_argument if a field is not plain.
 std::vector<double> gather(const Table& table, const std::vector<std::size_t>& which, const Context& context);
 
-/// The values of a list field (or of an array), row after row: row i has values[start[i]] .. values[start[i +
-/// 1]].
+/// The values of a list or array field: those of row i are values[start[i]] .. values[start[i + 1] - 1].
 struct Lists {
   std::vector<std::uint64_t> start;  ///< count + 1
   std::vector<double> values;
 };
-/// Reads the list `field` of every row.
+/// The values of `field` in every row.
 Lists gather_lists(const Table& table, std::size_t field, const Context& context);
 
-/// Writes values back into plain fields, each in its own type; a value that equals the present one (or both
-/// are NaN) keeps its bytes or its text. Text gets the fewest digits that round-trip.
+/// Sets the values of plain fields, each in its own type. A value that equals the present one (or both are
+/// NaN) keeps its bytes or its text. New text has the fewest digits that round-trip.
 void scatter(Table& table, const std::vector<std::size_t>& which, const double* values,
              const Context& context);
 
@@ -67,22 +66,21 @@ void append_field(Table& table, const Field& field, const double* values, const 
 /// Keeps the rows `which` in that order.
 void select(Table& table, const std::vector<std::size_t>& which);
 
-/// Keeps the fields `which`, in that order; text rows are written anew, values separated by a blank.
+/// Keeps the fields `which`, in that order. Text rows are rewritten, values separated by a blank.
 void project(Table& table, const std::vector<std::size_t>& which, const Context& context);
 
-/// Turns the array field `which` into a list, each row's count in front, and a list whose length is `count`
-/// in every row back into an array.
+/// Turns the array field `which` into a list, with each row's count in front.
 void insert_list_counts(Table& table, std::size_t which, Scalar count_type, const Context& context);
-/// See `insert_list_counts`.
+/// Turns the list field `which`, whose length is `count` in every row, back into an array.
 void remove_list_counts(Table& table, std::size_t which, std::size_t count, const Context& context);
 
 /// Whether float32 holds all the digits that the text of the plain fields `which` has.
 bool text_fits_float32(const Table& table, const std::vector<std::size_t>& which, const Context& context);
 
-/// The same rows as text, values separated by a blank, or as bytes in the fields' types.
-/// Both leave a table alone that is so already. Ragged values are dropped.
+/// Turns the rows into text, values separated by a blank. Does nothing if they are text. Ragged values are
+/// dropped.
 void make_text(Table& table, const Context& context);
-/// See `make_text`.
+/// Turns the rows into bytes in the fields' types. Does nothing if they are bytes. Ragged values are dropped.
 void make_binary(Table& table, const Context& context);
 
 }  // namespace rfsmooth::pipeline::io

@@ -1,4 +1,4 @@
-/// Walking and rebuilding the rows of a table: what the files that change tables share.
+/// Walking and rebuilding the rows of a table: shared by the files that change tables.
 #pragma once
 
 #include <cstring>
@@ -10,15 +10,15 @@
 
 namespace rfsmooth::pipeline::io {
 
-/// Rows handled as one piece of parallel work.
+/// Rows in a block of parallel work.
 inline constexpr std::size_t kRowsPerBlock = 8192;
 
-/// The count of type `type` that stands at p.
+/// The count, of type `type`, stored at p.
 inline std::size_t list_size(Scalar type, const char* p) {
   return std::size_t(load(type, p));
 }
 
-/// Where each of `which` starts in the binary row at `p`; offsets of fields behind a list differ from row to
+/// Finds where a field starts in a binary row; behind a list the offset differs from row to row.
 // row.
 struct Locator {
   explicit Locator(const Table& table) : fields(table.fields), fixed(!table.has_lists()) {
@@ -42,7 +42,7 @@ struct Locator {
   std::vector<std::size_t> offsets;
 };
 
-/// Calls body(field, words of that field) along a text row; a list's words come with its count in front.
+/// Calls body(field, words) for each field of a text row; the words of a list start with its count.
 template <class Body>
 void for_each_field(const Table& table, std::string_view row, Body&& body) {
   const char* p = row.data();

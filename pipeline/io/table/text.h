@@ -1,4 +1,4 @@
-/// Numbers and words of ascii files: parsing that refuses what is not a number, printing that round-trips.
+/// Numbers and words of ascii files: strict parsing, and printing that round-trips.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ inline bool is_separator(char c, Separators s) {
          (s == Separators::space_comma && (c == ',' || c == ';'));
 }
 
-/// The next word at or after `p`; empty (at `end`) if there is none. Moves `p` behind it.
+/// The next word at or after `p`; empty (at `end`) if there is none. Moves `p` behind the word.
 inline std::string_view next_word(const char*& p, const char* end, Separators s = Separators::space) {
   while (p != end && is_separator(*p, s)) ++p;
   const char* first = p;
@@ -30,13 +30,13 @@ inline std::string_view next_word(const char*& p, const char* end, Separators s 
   return {first, std::size_t(p - first)};
 }
 
-/// A real number: decimal or scientific, optional sign, nan and inf in the spellings of C, C++ and Windows.
-/// Too large or too small for double gives infinity or zero. Locale-free. Empty optional if it is anything
+/// Parses a real number: decimal or scientific, optional sign, nan and inf as spelled by C, C++ and Windows.
+/// Independent of the locale. Values beyond the range of double give infinity or zero. None if it is anything
 /// else.
 std::optional<double> parse_real(std::string_view word);
 
-/// A whole number in the range of the integer `type`; "3.0" and "1e3" are accepted.
-/// The value's bits, two's complement, little-endian in the low bytes.
+/// Parses a whole number in the range of the integer `type`; "3.0" and "1e3" are accepted. Returns its bits:
+/// two's complement, in the low bytes.
 std::optional<std::uint64_t> parse_integer(std::string_view word, Scalar type);
 
 /// Whether `word` can be a value of `type`.
@@ -48,10 +48,10 @@ void store_text(std::string_view word, Scalar type, char* p);
 /// Appends the fewest digits that give `value` back when read as `type`; "nan", "inf", "-inf".
 void append_number(std::string& out, double value, Scalar type);
 
-/// Appends the value at `p` (little-endian) likewise; 64-bit integers exactly.
+/// Appends the value stored at `p` (little-endian) in the same way; 64-bit integers exactly.
 void append_stored(std::string& out, const char* p, Scalar type);
 
-/// Whether a float32 holds all that `word`, a real number, says: its digits are those of some float.
+/// Whether a float32 represents all digits of the real number `word`.
 bool fits_float32(std::string_view word);
 
 }  // namespace rfsmooth::pipeline::io
