@@ -12,16 +12,16 @@
 ///    the usual r, wherever the plane is (beyond a rim it goes on).
 ///
 /// Where strays are many, they are neighbours of strays. So the outliers found are taken out and the points
-/// that had them as neighbours are tested again, until no more are found.
+/// that had them as neighbours are tested again, until no more are found (at most 20 rounds).
 ///
 /// A point is also an outlier, whatever has it as a neighbour, if it floats: r_i is more than four times both
 /// the median of the cloud and the lower decile of the 64 nearest, and the 24 nearest fill space (the least
 /// variance is more than 8 % of the sum) beyond three sigma.
 ///
 /// No single test suffices: a point in the tail of Gaussian noise is isolated but within 5 sigma, a corner is
-/// off its plane but not isolated, a sparse wall is isolated but flat. Isolation by the neighbours' density:
-/// Breunig et al. 2000 (LOF); the symmetric neighbourhood: Jin et al. 2006 (INFLO); surface variation: Pauly
-/// et al. 2002; their conjunction is ours.
+/// off its plane but not isolated, a sparse wall has a large r but is flat. Isolation by the neighbours'
+/// density: Breunig et al. 2000 (LOF); the symmetric neighbourhood: Jin et al. 2006 (INFLO); surface
+/// variation: Pauly et al. 2002; their conjunction is ours.
 #pragma once
 
 #include <vector>

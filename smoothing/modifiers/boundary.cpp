@@ -4,6 +4,7 @@
 #include <variant>
 
 #include "base/parallel.h"
+#include "rfs_mesh/edge_faces.h"
 #include "smoothing/integrators/explicit.h"
 #include "smoothing/modifiers/constraint.h"
 #include "smoothing/modifiers/pushback.h"
@@ -18,20 +19,12 @@ using rfsmooth::Edge;
 using rfsmooth::Mesh;
 
 std::vector<Edge> boundary_edges(const Mesh& mesh) {
-  std::vector<Edge> sides;
-  sides.reserve(3 * mesh.faces.size());
-  for (const Face& f : mesh.faces)
-    for (int k = 0; k < 3; ++k) sides.push_back({f[k], f[(k + 1) % 3]});
-  const auto key = [](const Edge& e) { return std::pair(std::min(e[0], e[1]), std::max(e[0], e[1])); };
-  std::sort(sides.begin(), sides.end(),
-            [&](const Edge& a, const Edge& b) { return key(a) != key(b) ? key(a) < key(b) : a < b; });
+  using rfs_mesh::EdgeFace;
   std::vector<Edge> single;
-  for (std::size_t s = 0; s < sides.size();) {
-    std::size_t end = s + 1;
-    while (end < sides.size() && key(sides[end]) == key(sides[s])) ++end;
-    if (end == s + 1) single.push_back(sides[s]);
-    s = end;
-  }
+  rfs_mesh::for_each_edge(rfs_mesh::edge_faces(mesh.faces), [&](const EdgeFace* first, const EdgeFace* last) {
+    if (last - first == 1)
+      single.push_back(first->forward ? Edge{first->a, first->b} : Edge{first->b, first->a});
+  });
   return single;
 }
 

@@ -13,11 +13,11 @@
 ///
 ///     (L x)_i = 2/(d + D) [(x_i - x_-)/d + (x_i - x_+)/D],    d, D the lengths to both neighbours.
 ///
-/// Implicit flows solve with their own dt; explicit ones step by lambda h^2 (automatic: by h^2 / 4), h the
-/// mean edge length of the boundary. Then implicit flows solve for the interior with the boundary at its new
-/// place; explicit ones step from its old place. Vertices with other than two boundary edges stay under
-/// "curve". The boundary is that of the mesh at the start; edge swaps do not change it. A flow is for one
-/// thread at a time; the free functions are thread safe.
+/// Implicit flows solve with their own dt and order; explicit ones step by lambda h^2 (automatic: by h^2 /
+/// 4), h the mean edge length of the boundary. Then implicit flows solve for the interior with the boundary
+/// at its new place; explicit ones step from its old place. Vertices with other than two boundary edges stay
+/// under "curve". The boundary is that of the mesh at the start; edge swaps do not change it. A flow is for
+/// one thread at a time; the free functions are thread safe.
 #pragma once
 
 #include <memory>
