@@ -12,7 +12,6 @@
 
 namespace rfsmooth::cli {
 
-/// One file to work on.
 struct Job {
   std::string input;   ///< a path, or "-" for standard input
   std::string output;  ///< a path, or "-" for standard output

@@ -11,7 +11,6 @@
 
 namespace rfsmooth::cli {
 
-/// The report of one run.
 class Report {
  public:
   /// \throw Failure (cannot_write) if `path` exists and `force` is not set, before any work is done.

@@ -10,7 +10,6 @@
 
 namespace rfsmooth::cli {
 
-/// The options of all these sub-commands.
 struct JobOptions {
   FileOptions files;
   RunOptions run;

@@ -14,7 +14,6 @@
 
 namespace rfsmooth::cli {
 
-/// The options of normals.
 struct NormalsFields {
   bool normals = false;
   std::optional<std::string> viewpoint;

@@ -16,7 +16,6 @@
 
 namespace rfsmooth::cli {
 
-/// The options that name the fields.
 struct ConstraintFields {
   std::optional<std::string> strength, fixed, axis, plane;
   std::optional<std::string> direction;  ///< empty: normals

@@ -8,7 +8,6 @@
 
 namespace rfsmooth::cli {
 
-/// Where the output goes, and how it is stored.
 struct FileOptions {
   std::optional<std::string> output;
   std::optional<std::string> format;
@@ -32,7 +31,6 @@ struct FileOptions {
   }
 };
 
-/// How the command runs.
 struct RunOptions {
   std::optional<int> threads;
   std::optional<std::string> report;

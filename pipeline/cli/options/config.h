@@ -8,7 +8,6 @@
 
 namespace rfsmooth::cli {
 
-/// What a config file says.
 struct Config {
   std::vector<std::pair<std::string, std::string>> options;  ///< name and text
   std::vector<std::string> arguments;  ///< the report's input and output, if it has them

@@ -20,7 +20,6 @@ std::string option_heading(const CommandOption& option);
 /// The limits and the default, as in "0 to 1, default auto"; "" if there are none.
 std::string option_limits(const CommandOption& option);
 
-/// An exit code and its meaning.
 struct ExitCode {
   int code;
   const char* meaning;

@@ -13,10 +13,8 @@
 
 namespace rfsmooth::cli {
 
-/// The kinds of values.
 enum class ValueKind { flag, integer, number, word, length, file };
 
-/// An option: how it is typed and described, and how its value is set and read.
 struct CommandOption {
   std::string name;     ///< long name without the dashes
   char short_name = 0;  ///< 0 = none

@@ -8,7 +8,6 @@
 
 namespace rfsmooth::cli {
 
-/// What was typed.
 struct Parsed {
   const Command* command = nullptr;  ///< null: none was named (help or version of the whole)
   Invocation invocation;
