@@ -17,10 +17,11 @@ namespace rfsmooth::test {
 namespace {
 
 constexpr double kSigma = 0.2;
-constexpr int kSide = 40;
+constexpr int kAcross = 40;
+constexpr double kSlope = 0.3;
 
-/// kSide x kSide points a metre apart in the plane z = 0 in UTM, with Gaussian noise of kSigma, in steps of
-/// `scale`.
+/// kAcross x kAcross points a metre apart in the plane z = kSlope x in UTM, with Gaussian noise of kSigma, in
+/// steps of `scale`.
 LasBytes survey(int minor, int format, double scale) {
   std::mt19937_64 engine(9);
   std::normal_distribution<double> noise(0, kSigma);
@@ -28,9 +29,9 @@ LasBytes survey(int minor, int format, double scale) {
   las.minor = minor;
   las.format = format;
   las.scale = {scale, scale, scale};
-  for (int i = 0; i < kSide; ++i)
-    for (int j = 0; j < kSide; ++j) {
-      const double p[] = {i + noise(engine), j + noise(engine), noise(engine)};
+  for (int i = 0; i < kAcross; ++i)
+    for (int j = 0; j < kAcross; ++j) {
+      const double p[] = {i + noise(engine), j + noise(engine), kSlope * i + noise(engine)};
       las.xyz.push_back({});
       for (std::size_t k = 0; k < 3; ++k) las.xyz.back()[k] = std::int32_t(std::lround(p[k] / scale));
     }
@@ -39,11 +40,14 @@ LasBytes survey(int minor, int format, double scale) {
 
 class LasCommand : public InFolder {
  protected:
-  /// Root of the mean square of z, the distance to the true plane.
+  /// Root of the mean square of the distances to the true plane.
   double rms(const std::string& name) const {
     const std::vector<double> xyz = pipeline::io::positions(read(at(name)));
     double sum = 0;
-    for (std::size_t k = 2; k < xyz.size(); k += 3) sum += xyz[k] * xyz[k];
+    for (std::size_t k = 0; k < xyz.size(); k += 3) {
+      const double height = xyz[k + 2] - kSlope * (xyz[k] - LasBytes().offset[0]);
+      sum += height * height / (1 + kSlope * kSlope);
+    }
     return std::sqrt(3 * sum / double(xyz.size()));
   }
 };
@@ -106,7 +110,7 @@ TEST_F(LasCommand, PointsThatDoNotMoveStayWhereTheyAreUnderARefinedScale) {
 TEST_F(LasCommand, RemovesMarksAndAddsFieldsAsInOtherFormats) {
   LasBytes las = survey(4, 6, 0.001);
   for (const int k : {0, 1, 2})
-    las.xyz[std::size_t(400 * k + 100)][2] = 9000 + 500 * k;  // metres above the plane
+    las.xyz[std::size_t(400 * k + 100)][2] += 9000 + 500 * k;  // metres above the plane
   put("in.las", las.bytes());
   ASSERT_EQ(run({"denoise", "--outliers", "remove", "in.las", "removed.las"}).code, 0);
   const std::string removed = take("removed.las");
@@ -159,7 +163,9 @@ TEST_F(LasCommand, EveryCommandReadsIt) {
 }
 
 TEST_F(LasCommand, ConversionsNameWhatIsLost) {
-  put("in.las", survey(4, 7, 0.001).bytes());
+  LasBytes las = survey(4, 7, 0.001);
+  las.undescribed = 0;
+  put("in.las", las.bytes());
   const Ran refused = run({"denoise", "in.las", "out.ply"});
   EXPECT_EQ(refused.code, 2);
   EXPECT_THAT(refused.err, AllOf(HasSubstr("the coordinate system"), HasSubstr("record 'copyist' 9"),

@@ -127,15 +127,19 @@ std::string scale_text(const std::array<double, 3>& scale) {
   return one ? fmt::format("{:g}", scale[0]) : fmt::format("{:g}", fmt::join(scale, " "));
 }
 
-/// Refines the scale of a LAS file that is to be written: rounding in steps of the noise costs half of what
-/// smoothing gained, in steps of a quarter of it 4 %.
+/// Refines the scale of a LAS cloud. For LAS to be written as far as it is coarse for the noise: rounding in
+/// steps of the noise costs half of what smoothing gained, in steps of a quarter of it 4 %. For other
+/// formats, which have no steps, as far as 32 bits go.
 void refine_scale(const DenoiseCommandOptions& options, const DenoiseReport& done, pipeline::io::Cloud& cloud,
                   const double* xyz, const Job& job, const Context& context, Console& console,
                   ordered_json& entry) {
   using pipeline::io::Format;
-  if (options.keep_scale || done.moved == 0 || cloud.format != Format::las ||
-      output_format(cloud, job.output, options.job.files) != Format::las)
+  if (done.moved == 0 || cloud.format != Format::las) return;
+  if (output_format(cloud, job.output, options.job.files) != Format::las) {
+    pipeline::io::refine_scale(cloud, std::numeric_limits<double>::min(), xyz, context);
     return;
+  }
+  if (options.keep_scale || done.noise <= 0) return;
   const double step = done.noise / 4;
   const pipeline::io::RefinedScale scale = pipeline::io::refine_scale(cloud, step, xyz, context);
   entry["scale"] = {{"before", scale.before}, {"after", scale.after}};

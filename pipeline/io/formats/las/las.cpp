@@ -10,9 +10,7 @@
 #include "pipeline/io/table/rows.h"
 
 namespace rfsmooth::pipeline::io {
-
-using namespace las;  // NOLINT(google-build-using-namespace)
-
+namespace las {
 namespace {
 
 constexpr std::size_t kLegacyReturns = 5, kReturns = 15;
@@ -137,8 +135,10 @@ std::vector<Field> fields_behind(const std::vector<Field>& fields, std::size_t r
 }
 
 }  // namespace
+}  // namespace las
 
 Cloud read_las(const Source& source, const Context& context) {
+  using namespace las;  // NOLINT(google-build-using-namespace)
   const Header header = read_header(source, context);
   const Bytes head = source.read(0, std::size_t(header.points), context);
   Cloud cloud;
@@ -168,6 +168,7 @@ Cloud read_las(const Source& source, const Context& context) {
 }
 
 void write_las(const Cloud& cloud, Sink& sink, const Context& context) {
+  using namespace las;  // NOLINT(google-build-using-namespace)
   const Table& points = cloud.points();
   std::string head = cloud.original_header;
   const Header was = read_header(head);
@@ -186,6 +187,7 @@ void write_las(const Cloud& cloud, Sink& sink, const Context& context) {
 }
 
 LasSummary las_summary(const Cloud& cloud) {
+  using namespace las;  // NOLINT(google-build-using-namespace)
   const Header h = read_header(cloud.original_header);
   LasSummary out{h.minor, h.point_format, {}, {}, records_of(cloud.original_header)};
   for (std::size_t k = 0; k < 3; ++k) {

@@ -11,9 +11,7 @@
 #include "pipeline/io/formats/las/las_scale.h"
 
 namespace rfsmooth::pipeline::io {
-
-using namespace las;  // NOLINT(google-build-using-namespace)
-
+namespace las {
 namespace {
 
 constexpr double kDegreesPerStep = 0.006;
@@ -222,12 +220,14 @@ void append_texts(std::string& head, const std::vector<Note>& notes) {
 }
 
 }  // namespace
+}  // namespace las
 
 bool is_las_field(const Field& field) {
-  return field.is_plain() && !field.name.empty() && field.name.size() <= kLongestName;
+  return field.is_plain() && !field.name.empty() && field.name.size() <= las::kLongestName;
 }
 
 Cloud las_of_plain(const Cloud& cloud, const std::vector<double>& coordinates, const Context& context) {
+  using namespace las;  // NOLINT(google-build-using-namespace)
   std::vector<std::size_t> finite;
   std::vector<double> xyz;
   for (std::size_t i = 0; i < cloud.size(); ++i) {

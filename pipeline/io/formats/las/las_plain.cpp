@@ -11,9 +11,7 @@
 #include "pipeline/io/formats/las/las_parts.h"
 
 namespace rfsmooth::pipeline::io {
-
-using namespace las;  // NOLINT(google-build-using-namespace)
-
+namespace las {
 namespace {
 
 // Names of other formats are one word.
@@ -96,14 +94,17 @@ bool is_text(const Record& r) {
 }
 
 }  // namespace
+}  // namespace las
 
 std::vector<Field> plain_fields(const Cloud& las) {
+  using namespace las;  // NOLINT(google-build-using-namespace)
   std::vector<Field> fields;
   for (Origin& o : origins_of(las.points(), point_format_of(las))) fields.push_back(std::move(o.field));
   return fields;
 }
 
 std::vector<std::string> las_losses(const Cloud& las) {
+  using namespace las;  // NOLINT(google-build-using-namespace)
   std::vector<std::string> lost;
   const LasSummary summary = las_summary(las);
   bool system = false;
@@ -119,6 +120,7 @@ std::vector<std::string> las_losses(const Cloud& las) {
 }
 
 Cloud plain_of_las(const Cloud& las, const Context& context) {
+  using namespace las;  // NOLINT(google-build-using-namespace)
   const Table& from = las.points();
   std::vector<Origin> origins = origins_of(from, point_format_of(las));
   const std::uint16_t divide = eight_bits(from, origins, context);

@@ -11,6 +11,7 @@
 #include "pipeline/io/formats/las/las_header.h"
 
 namespace rfsmooth::pipeline::io {
+namespace las {
 namespace {
 
 // int32 holds all powers of ten up to this one.
@@ -81,6 +82,7 @@ void apply(Table& points, std::size_t axis, const Change& change, const Context&
 }
 
 }  // namespace
+}  // namespace las
 
 bool RefinedScale::coarse(double step) const {
   return std::any_of(after.begin(), after.end(), [&](double scale) { return std::abs(scale) > step; });
@@ -107,6 +109,7 @@ double decimal_scale(double extent, double steps) {
 }
 
 RefinedScale refine_scale(Cloud& las, double step, const double* xyz, const Context& context) {
+  using namespace las;  // NOLINT(google-build-using-namespace)
   RefinedScale done;
   Table& points = las.points();
   for (std::size_t axis = 0; axis < 3; ++axis) {
