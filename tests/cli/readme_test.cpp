@@ -48,7 +48,9 @@ TEST(Readme, LinksOfThePagesLeadToFiles) {
   std::size_t seen = 0;
   for (const char* page :
        {"README.md", "CHANGELOG.md", "CONTRIBUTING.md", "clouds/README.md", "clouds/gallery.md",
-        "docs/FIGURES.md", "docs/FLOWS.md", "docs/GLOSSARY.md", "docs/GUARANTEES.md", "docs/STABILITY.md"})
+        "docs/FIGURES.md", "docs/FLOWS.md", "docs/GLOSSARY.md", "docs/GUARANTEES.md", "docs/STABILITY.md",
+        "docs/papers/README.md", "docs/papers/vollmer99.md", "docs/papers/desbrun99.md",
+        "docs/papers/ohtake00.md", "docs/papers/zhao-xu05.md", "docs/papers/kobbelt97.md"})
     for (const std::string& file : files_linked_in(text_of(page))) {
       EXPECT_TRUE(std::filesystem::exists((source / page).parent_path() / file)) << page << ": " << file;
       ++seen;
