@@ -23,7 +23,7 @@ Positions field(const Mesh& mesh, F&& f) {
 
 class EveryChart : public testing::TestWithParam<Chart> {};
 INSTANTIATE_TEST_SUITE_P(Charts, EveryChart,
-                         testing::Values(Chart::tangent, Chart::exponential, Chart::mixed));
+                         testing::Values(Chart::tangent, Chart::exponential, Chart::mixed, Chart::uniform));
 
 TEST_P(EveryChart, ConstantsHaveNoEnergyAndNothingIsNegative) {
   for (Mesh& mesh : support::all_small()) {
