@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
@@ -11,6 +10,7 @@
 #include "base/parallel.h"
 #include "clouds/render/rasterizer.h"
 #include "pipeline/io/mesh_file.h"
+#include "pipeline/io/point_fields.h"
 #include "rfs_mesh/search/neighbors.h"
 
 namespace rfsmooth::render {
@@ -89,37 +89,12 @@ ColorRange usual_range(std::vector<double> values) {
 }
 
 bool color_by_file(Scene& scene, const io::Cloud& cloud) {
-  const auto set = [&](auto&& color_of_row) {
-    for (std::size_t i = 0; i < scene.points.size(); ++i) scene.colors[i] = color_of_row(scene.row[i]);
-  };
-  const auto red = io::find_field(cloud, "red"), green = io::find_field(cloud, "green"),
-             blue = io::find_field(cloud, "blue");
-  if (red && green && blue) {
-    const std::vector<double> r = io::field_values(cloud, *red), g = io::field_values(cloud, *green),
-                              b = io::field_values(cloud, *blue);
-    float full = io::is_float(cloud.points().fields[*red].type) ? 1.0F : 255.0F;
-    // LAS has 16 bits for a colour; some programs use the lower 8.
-    if (cloud.points().fields[*red].type == io::Scalar::uint16)
-      for (const std::vector<double>* c : {&r, &g, &b})
-        for (const double value : *c)
-          if (value > 255) full = 65535.0F;
-    set([&](std::size_t i) { return Color(Color(float(r[i]), float(g[i]), float(b[i])) / full); });
-    return true;
+  const std::vector<io::Rgb> own = io::colors_of(cloud);
+  for (std::size_t i = 0; !own.empty() && i < scene.points.size(); ++i) {
+    const io::Rgb& c = own[scene.row[i]];
+    scene.colors[i] = Color(float(c[0]), float(c[1]), float(c[2])) / 255.0F;
   }
-  for (const char* name : {"rgb", "rgba"}) {
-    const auto packed = io::find_field(cloud, name);
-    if (!packed) continue;
-    const bool as_float = cloud.points().fields[*packed].type == io::Scalar::float32;
-    const std::vector<double> values = io::field_values(cloud, *packed);
-    set([&](std::size_t i) {
-      auto bits = std::uint32_t(as_float ? 0 : values[i]);
-      const auto f = float(values[i]);
-      if (as_float) std::memcpy(&bits, &f, sizeof bits);
-      return Color(Color(float(bits >> 16 & 255), float(bits >> 8 & 255), float(bits & 255)) / 255.0F);
-    });
-    return true;
-  }
-  return false;
+  return !own.empty();
 }
 
 Image draw(const Scene& scene, const Camera& camera, int width, int height, const DrawOptions& options) {

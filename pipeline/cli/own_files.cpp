@@ -64,7 +64,11 @@ void need_own_target(const Job& job, const std::optional<std::string>& named) {
                                      job.input, job.output)});
 }
 
-void need_no_cloud(const std::string& path, const char* what) {
+void check_no_cloud_target(const std::string& path, bool force, const char* what) {
+  pipeline::io::WriteOptions options;
+  options.force = force;
+  options.format = pipeline::io::Format::ply;  // any: the extension of a report stands for no cloud
+  value_or_throw(pipeline::io::check_output(path, options));
   if (holds_cloud(path))
     throw Failure({ErrorCode::cannot_write,
                    fmt::format("{}: is a cloud, which no {} replaces; remove it yourself", path, what)});

@@ -25,8 +25,8 @@ bool holds_cloud(const std::string& path);
 /// (cannot_write).
 void need_own_target(const Job& job, const std::optional<std::string>& named);
 
-/// Refuses to write something else, such as a report, over a cloud; `what` is its name in the message. \throw
-/// Failure (cannot_write).
-void need_no_cloud(const std::string& path, const char* what);
+/// Refuses, before any work, what a file that is no cloud ("report", "picture") could not be written to: a
+/// file that exists, without `force`, and with it a cloud. \throw Failure (cannot_write).
+void check_no_cloud_target(const std::string& path, bool force, const char* what);
 
 }  // namespace rfsmooth::cli

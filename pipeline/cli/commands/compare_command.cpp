@@ -11,6 +11,7 @@
 #include "pipeline/cli/deviation.h"
 #include "pipeline/cli/files/cloud_files.h"
 #include "pipeline/io/mesh_file.h"
+#include "pipeline/io/point_fields.h"
 
 namespace rfsmooth::cli {
 
@@ -64,22 +65,6 @@ struct ToText {
   }
 };
 
-std::vector<double> normals_of(const pipeline::io::Cloud& cloud, const Context& context) {
-  for (const auto& names : {std::array{"nx", "ny", "nz"}, std::array{"normal_x", "normal_y", "normal_z"}}) {
-    std::vector<double> normals(3 * cloud.size());
-    bool all = true;
-    for (std::size_t axis = 0; axis < 3 && all; ++axis) {
-      const auto field = pipeline::io::find_field(cloud, names[axis]);
-      all = field && cloud.points().fields[*field].is_plain();
-      if (!all) break;
-      const std::vector<double> values = pipeline::io::field_values(cloud, *field, context);
-      for (std::size_t i = 0; i < values.size(); ++i) normals[3 * i + axis] = values[i];
-    }
-    if (all) return normals;
-  }
-  return {};
-}
-
 /// The file of the truth: a mesh, or a clean cloud if it has no faces. Keeps what `view` points at.
 struct TruthFile {
   TruthFile(const std::string& path, const Context& context) {
@@ -126,7 +111,7 @@ int run_compare(const CompareCommandOptions& options, const Invocation& typed) {
   auto cloud = load_cloud(typed.arguments[0], context, unused);
   const TruthFile truth(typed.arguments[1], context);
   const std::vector<double> xyz = pipeline::io::positions(cloud, context),
-                            normals = normals_of(cloud, context);
+                            normals = pipeline::io::normals_of(cloud, context);
   CompareOptions compare_options;
   compare_options.signed_normals = options.signed_normals;
   const CompareReport report =

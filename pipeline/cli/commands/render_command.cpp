@@ -5,7 +5,6 @@
 #include "pipeline/cli/files/file_options.h"
 #include "pipeline/cli/other_program.h"
 #include "pipeline/cli/own_files.h"
-#include "pipeline/io/io.h"
 
 namespace rfsmooth::cli {
 
@@ -33,11 +32,7 @@ Command render_table(const std::shared_ptr<RenderOptions>& options) {
 void check_request(const RenderOptions& options, const Invocation& typed) {
   if (typed.arguments.empty()) throw Failure({ErrorCode::usage, "no input given"});
   if (!options.output) throw Failure({ErrorCode::usage, "no picture named: -o OUT.png"});
-  pipeline::io::WriteOptions any;
-  any.force = options.force;
-  any.format = pipeline::io::Format::ply;  // any: the extension of a picture stands for no cloud
-  value_or_throw(pipeline::io::check_output(*options.output, any));
-  need_no_cloud(*options.output, "picture");
+  check_no_cloud_target(*options.output, options.force, "picture");
 }
 
 }  // namespace

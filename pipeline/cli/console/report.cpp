@@ -11,12 +11,7 @@ namespace rfsmooth::cli {
 
 Report::Report(std::string command, const std::optional<std::string>& path, bool force)
     : command_(std::move(command)), path_(path.value_or("")), force_(force) {
-  if (!wanted() || path_ == "-") return;
-  pipeline::io::WriteOptions options;
-  options.force = force_;
-  options.format = pipeline::io::Format::ply;  // any: the extension of a report stands for no cloud
-  value_or_throw(pipeline::io::check_output(path_, options));
-  need_no_cloud(path_, "report");
+  if (wanted() && path_ != "-") check_no_cloud_target(path_, force_, "report");
 }
 
 void Report::write() const {

@@ -12,11 +12,7 @@ void TraceFile::check(const FileOptions& files, const Invocation& typed) const {
   if (!trace) return;
   if (plan_jobs(typed.arguments, files.output).size() > 1)
     throw Failure({ErrorCode::usage, "--trace is for one input; run the command once for each"});
-  pipeline::io::WriteOptions options;
-  options.force = files.force;
-  options.format = pipeline::io::Format::ply;  // any: the extension of a trace stands for no cloud
-  value_or_throw(pipeline::io::check_output(*trace, options));
-  need_no_cloud(*trace, "trace");
+  check_no_cloud_target(*trace, files.force, "trace");
 }
 
 void TraceFile::write(const std::vector<TraceRow>& rows, const FileOptions& files) const {

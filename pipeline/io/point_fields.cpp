@@ -1,0 +1,77 @@
+#include "pipeline/io/point_fields.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace rfsmooth::pipeline::io {
+
+namespace {
+
+std::uint8_t level(double value) {
+  return std::isfinite(value) ? std::uint8_t(std::lround(std::clamp(value, 0.0, 255.0))) : 0;
+}
+
+/// What a value of full brightness is times 255: floats go to 1, 16 bits of LAS to 65535, unless the program
+/// that wrote them used the lower 8.
+double to_levels(Scalar type, const std::array<std::vector<double>, 3>& colors) {
+  if (is_float(type)) return 255;
+  const auto above = [](const std::vector<double>& c) {
+    return std::any_of(c.begin(), c.end(), [](double value) { return value > 255; });
+  };
+  return type == Scalar::uint16 && std::any_of(colors.begin(), colors.end(), above) ? 255.0 / 65535 : 1;
+}
+
+/// The colours of one field of packed bits, which PCL keeps in a float or a whole number.
+std::vector<Rgb> unpacked_colors(const Cloud& cloud, std::size_t field, const Context& context) {
+  const bool as_float = cloud.points().fields[field].type == Scalar::float32;
+  const std::vector<double> values = field_values(cloud, field, context);
+  std::vector<Rgb> colors(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    auto bits = std::uint32_t(as_float ? 0 : std::int64_t(values[i]));
+    const auto number = float(values[i]);
+    if (as_float) std::memcpy(&bits, &number, sizeof bits);
+    colors[i] = {std::uint8_t(bits >> 16 & 255), std::uint8_t(bits >> 8 & 255), std::uint8_t(bits & 255)};
+  }
+  return colors;
+}
+
+}  // namespace
+
+std::vector<Rgb> colors_of(const Cloud& cloud, const Context& context) {
+  const auto plain = [&](const char* name) {
+    const auto field = find_field(cloud, name);
+    return field && cloud.points().fields[*field].is_plain() ? field : std::nullopt;
+  };
+  const std::array<std::optional<std::size_t>, 3> fields = {plain("red"), plain("green"), plain("blue")};
+  if (fields[0] && fields[1] && fields[2]) {
+    std::array<std::vector<double>, 3> values;
+    for (std::size_t k = 0; k < 3; ++k) values[k] = field_values(cloud, *fields[k], context);
+    const double full = to_levels(cloud.points().fields[*fields[0]].type, values);
+    std::vector<Rgb> colors(cloud.size());
+    for (std::size_t k = 0; k < 3; ++k)
+      for (std::size_t i = 0; i < colors.size(); ++i) colors[i][k] = level(values[k][i] * full);
+    return colors;
+  }
+  for (const char* name : {"rgb", "rgba"})
+    if (const auto field = plain(name)) return unpacked_colors(cloud, *field, context);
+  return {};
+}
+
+std::vector<double> normals_of(const Cloud& cloud, const Context& context) {
+  for (const auto& names : {std::array{"nx", "ny", "nz"}, std::array{"normal_x", "normal_y", "normal_z"}}) {
+    std::vector<double> normals(3 * cloud.size());
+    bool all = true;
+    for (std::size_t axis = 0; axis < 3 && all; ++axis) {
+      const auto field = find_field(cloud, names[axis]);
+      all = field && cloud.points().fields[*field].is_plain();
+      if (!all) break;
+      const std::vector<double> values = field_values(cloud, *field, context);
+      for (std::size_t i = 0; i < values.size(); ++i) normals[3 * i + axis] = values[i];
+    }
+    if (all) return normals;
+  }
+  return {};
+}
+
+}  // namespace rfsmooth::pipeline::io

@@ -1,0 +1,22 @@
+/// What several fields of a point say together: its colour (PLY: red green blue; PCD: rgb, rgba, packed) and
+/// its normal (PLY: nx ny nz; PCD: normal_x normal_y normal_z).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "pipeline/io/table/cloud.h"
+
+namespace rfsmooth::pipeline::io {
+
+/// Red, green, blue.
+using Rgb = std::array<std::uint8_t, 3>;
+
+/// One colour per point; empty if the cloud has none. Colours in floats are from 0 to 1. O(n).
+std::vector<Rgb> colors_of(const Cloud& cloud, const Context& context = {});
+
+/// n x 3; empty if the cloud has no normals. O(n).
+std::vector<double> normals_of(const Cloud& cloud, const Context& context = {});
+
+}  // namespace rfsmooth::pipeline::io
