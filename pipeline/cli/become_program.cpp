@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "pipeline/cli/options/text_values.h"
 #include "pipeline/cli/other_program.h"
 
 namespace rfsmooth::cli {
@@ -41,6 +42,13 @@ std::vector<std::string> as_typed(const Invocation& typed, const std::vector<Com
   }
   words.insert(words.end(), typed.arguments.begin(), typed.arguments.end());
   return words;
+}
+
+std::string command_line(const std::string& command, const Invocation& typed,
+                         const std::vector<CommandOption>& options) {
+  std::string line = "rfsmooth " + command;
+  for (const std::string& word : as_typed(typed, options)) line += ' ' + shell_quoted(word);
+  return line;
 }
 
 }  // namespace rfsmooth::cli

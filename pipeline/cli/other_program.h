@@ -1,4 +1,5 @@
-/// Sub-commands that are separate programs, because they link libraries that the command does not.
+/// What was typed, to be handed on: to programs of their own, which link what the command does not, and to
+/// people who want to do it again.
 #pragma once
 
 #include <string>
@@ -14,5 +15,9 @@ int become_program(const std::string& name, const std::vector<std::string>& argu
 
 /// The arguments that mean the same as `typed`.
 std::vector<std::string> as_typed(const Invocation& typed, const std::vector<CommandOption>& options);
+
+/// The same as one line for a shell.
+std::string command_line(const std::string& command, const Invocation& typed,
+                         const std::vector<CommandOption>& options);
 
 }  // namespace rfsmooth::cli

@@ -135,7 +135,7 @@ std::vector<std::string> options_in(const std::string& help) {
 
 TEST(Help, ShowsTheEverydayOptionsOnOneScreen) {
   for (const char* command :
-       {"denoise", "mesh", "smooth-mesh", "reconstruct", "info", "compare", "render", "flows"}) {
+       {"denoise", "mesh", "smooth-mesh", "reconstruct", "info", "compare", "render", "report", "flows"}) {
     const Ran shorter = rfsmooth({command, "-h"}), complete = rfsmooth({command, "--help-all"});
     EXPECT_EQ(shorter.code, 0);
     EXPECT_EQ(shorter.err, "");
@@ -154,7 +154,7 @@ TEST(Help, ShowsTheEverydayOptionsOnOneScreen) {
 
 TEST(Help, ManualPagesNameEveryOptionOfTheHelp) {
   for (const char* command :
-       {"denoise", "mesh", "smooth-mesh", "reconstruct", "info", "compare", "render", "flows"}) {
+       {"denoise", "mesh", "smooth-mesh", "reconstruct", "info", "compare", "render", "report", "flows"}) {
     const Ran help = rfsmooth({command, "--help-all"}), man = rfsmooth({"man", command});
     ASSERT_EQ(man.code, 0);
     EXPECT_THAT(man.out, ::testing::StartsWith(".TH "));
@@ -194,7 +194,8 @@ TEST(Help, ExitCodesAreDocumentedThereAndInTheReadme) {
 
 TEST(Help, ManualPagesAreCleanToTheirFormatter) {
   if (run_program("groff", {"--version"}).code != 0) GTEST_SKIP() << "no groff here";
-  for (const char* command : {"denoise", "mesh", "smooth-mesh", "info", "compare", "render", "flows"}) {
+  for (const char* command :
+       {"denoise", "mesh", "smooth-mesh", "info", "compare", "render", "report", "flows"}) {
     RunSetup setup;
     setup.input = rfsmooth({"man", command}).out;
     const Ran ran = run_program("groff", {"-man", "-Tutf8", "-ww", "-z"}, setup);
@@ -216,7 +217,8 @@ TEST_F(Installed, TheCommandItsManualPagesAndCompletions) {
     return run_program("gzip", {"-dc", at("usr/share/man/man1/" + name + ".1.gz")}).out;
   };
   EXPECT_EQ(page("rfsmooth"), rfsmooth({"man"}).out);
-  for (const char* command : {"denoise", "mesh", "smooth-mesh", "info", "compare", "render", "flows"})
+  for (const char* command :
+       {"denoise", "mesh", "smooth-mesh", "info", "compare", "render", "report", "flows"})
     EXPECT_EQ(page(std::string("rfsmooth-") + command), rfsmooth({"man", command}).out);
   EXPECT_EQ(text("share/bash-completion/completions/rfsmooth"), rfsmooth({"completion", "bash"}).out);
   EXPECT_EQ(text("share/zsh/site-functions/_rfsmooth"), rfsmooth({"completion", "zsh"}).out);

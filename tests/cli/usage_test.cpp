@@ -67,7 +67,8 @@ TEST(Usage, WordsWithoutACommandSuggestTheOneThatIsMeant) {
 }
 
 TEST(Usage, ErrorsPointToTheHelpOfTheirCommand) {
-  for (const char* command : {"denoise", "mesh", "smooth-mesh", "reconstruct", "info", "compare", "render"}) {
+  for (const char* command :
+       {"denoise", "mesh", "smooth-mesh", "reconstruct", "info", "compare", "render", "report"}) {
     const std::string pointer = std::string("see: rfsmooth ") + command + " --help\n";
     EXPECT_THAT(rfsmooth({command, "--no-such-option"}).err, HasSubstr(pointer));
     const Ran ran = rfsmooth({command});  // no files; "reconstruct" may lack its program

@@ -66,6 +66,7 @@ Command mesh_command();
 Command smooth_mesh_command();
 Command info_command();
 Command compare_command();
+Command report_command();
 Command flows_command();
 Command man_command();
 Command completion_command();

@@ -15,7 +15,12 @@
 #include "pipeline/cli/files/cloud_normals.h"
 #include "pipeline/cli/files/constraint_fields.h"
 #include "pipeline/cli/files/memory.h"
+#include "pipeline/cli/other_program.h"
+#include "pipeline/cli/own_files.h"
 #include "pipeline/io/formats/las/las_scale.h"
+#include "pipeline/io/point_fields.h"
+#include "pipeline/page/page.h"
+#include "pipeline/viewpoint.h"
 
 namespace rfsmooth::cli {
 
@@ -31,6 +36,7 @@ struct DenoiseCommandOptions {
   bool write_displacement = false;
   bool mark_outliers = false;
   bool keep_scale = false;
+  std::optional<std::string> html;
   NormalsFields normals;
   TraceFile trace;
   JobOptions job;
@@ -50,6 +56,9 @@ struct DenoiseCommandOptions {
             "LAS: keep the scale of the file, also where its steps are coarser than a quarter of the noise",
             ""},
         self.keep_scale);
+    visit(OptionInfo{"html", "a page to look at what was done, for browsers (see report); of one input",
+                     "file"},
+          self.html);
     NormalsFields::describe(self.normals, visit);
     TraceFile::describe(self.trace, visit);
   }
@@ -61,6 +70,7 @@ struct DenoiseCommandOptions {
 void enter(const DenoiseReport& done, const DenoiseCommandOptions& options, ordered_json& entry) {
   DenoiseCommandOptions used = options;
   used.denoise = done.effective;
+  used.html.reset();  // what is written beside the cloud is not how it was made
   entry["options"] = effective_options(used, options.job.files);
   entry["counts"] = {{"points", done.points},       {"finite", done.finite},    {"distinct", done.distinct},
                      {"moved", done.moved},         {"faces", done.faces},      {"edges", done.edges},
@@ -182,15 +192,42 @@ std::string summary(const DenoiseReport& done, const DenoiseCommandOptions& opti
       done.rms_move);
 }
 
-std::string denoise_cloud(const DenoiseCommandOptions& options, pipeline::io::Cloud& cloud, const Job& job,
-                          const Context& context, Console& console, std::vector<StageTime>& stages,
-                          ordered_json& entry) {
+/// What --html shows of a cloud as it was read.
+pipeline::PageContents page_before(const pipeline::io::Cloud& cloud, const Job& job, const Context& context) {
+  pipeline::PageContents contents;
+  contents.before = pipeline::page_side(job.input, cloud, context);
+  contents.colors = pipeline::io::colors_of(cloud, context);
+  contents.viewpoint = pipeline::recorded_viewpoint(cloud, contents.before.xyz.data(), context);
+  return contents;
+}
+
+/// And of what became of it; its normals only if they are of the new surface. Outliers that are to be removed
+/// are still there: the page shows them on one side.
+void page_after(const DenoiseReport& done, const DenoiseCommandOptions& options,
+                const pipeline::io::Cloud& cloud, const Job& job, const Context& context,
+                pipeline::PageContents& contents) {
+  contents.after = pipeline::page_side(job.output, cloud, context);
+  if (!options.normals.normals) contents.after.normals.clear();
+  contents.outlier = done.outlier;
+  for (std::size_t i = 0; options.removes() && i < done.outlier.size(); ++i)
+    if (done.outlier[i] != 0) std::fill_n(&contents.after.xyz[3 * i], 3, std::nan(""));
+  contents.figures = {{"outliers", std::to_string(done.outliers)},
+                      {"spacing", fmt::format("{:.4g}", done.spacing)},
+                      {"noise", fmt::format("{:.3g}", done.noise)}};
+  if (done.noise_left < done.noise)
+    contents.figures.emplace_back("about left of it", fmt::format("{:.3g}", done.noise_left));
+}
+
+std::string denoise_cloud(const DenoiseCommandOptions& options, pipeline::PageContents& page,
+                          pipeline::io::Cloud& cloud, const Job& job, const Context& context,
+                          Console& console, std::vector<StageTime>& stages, ordered_json& entry) {
   const std::size_t n = cloud.size();
   check_fields(options, cloud);
   if (const auto error = refuse_without_memory(job.input, rfsmooth::denoise_memory(n))) throw Failure(*error);
   std::vector<double> xyz = pipeline::io::positions(cloud, context);
   const std::vector<double> strength =
       options.strength_field ? strengths(cloud, *options.strength_field, context) : std::vector<double>{};
+  if (options.html) page = page_before(cloud, job, context);
   DenoiseOptions how = options.denoise;
   how.flow.trace = options.trace.trace.has_value();
   const DenoiseReport done =
@@ -219,8 +256,19 @@ std::string denoise_cloud(const DenoiseCommandOptions& options, pipeline::io::Cl
   enter(done, options, entry);
   if (some_removed) blank_outliers();  // normals are of the points that stay
   write_normals(options.normals, cloud, xyz.data(), job.output, options.job.files, context, stages, entry);
+  if (options.html) page_after(done, options, cloud, job, context, page);
   if (some_removed && !as_nan) remove_outliers(cloud, done.outlier, context);
   return summary(done, options);
+}
+
+/// \throw Failure.
+void write_page(const DenoiseCommandOptions& options, pipeline::PageContents page, const std::string& line) {
+  page.command = line;
+  Console console(options.job.talk);
+  const Context context = console.context(options.job.run.threads.value_or(0));
+  value_or_throw(pipeline::io::write_bytes(pipeline::make_page(page, context), *options.html,
+                                           options.job.files.force, context));
+  console.say(fmt::format("{}: open it in a browser", *options.html));
 }
 
 void check_denoise(const DenoiseCommandOptions& options, const Invocation& typed) {
@@ -228,6 +276,10 @@ void check_denoise(const DenoiseCommandOptions& options, const Invocation& typed
     throw Failure({ErrorCode::usage, "--mark-outliers has nothing to mark with --outliers smooth"});
   check(options.normals);
   options.trace.check(options.job.files, typed);
+  if (!options.html) return;
+  if (plan_jobs(typed.arguments, options.job.files.output).size() > 1)
+    throw Failure({ErrorCode::usage, "--html shows one cloud; several are named"});
+  check_no_cloud_target(*options.html, options.job.files.force, "page");
 }
 
 }  // namespace
@@ -253,12 +305,18 @@ Command denoise_command() {
   command.everyday = {"strength", "noise",   "flow",   "outliers", "normals", "output",
                       "force",    "threads", "report", "quiet",    "verbose"};
   polish(command);
-  command.on_cloud = {
-      [options](const Invocation& typed) { check_denoise(*options, typed); },
-      [options] { return denoising_stages(options->normals.normals); },
-      [options](auto&&... all) { return denoise_cloud(*options, std::forward<decltype(all)>(all)...); }};
-  command.run = [options, on_cloud = command.on_cloud](const Invocation& typed) {
-    return run_cloud_jobs("denoise", options->job, typed, on_cloud);
+  const auto page = std::make_shared<pipeline::PageContents>();
+  command.on_cloud = {[options](const Invocation& typed) { check_denoise(*options, typed); },
+                      [options] { return denoising_stages(options->normals.normals); },
+                      [options, page](auto&&... all) {
+                        return denoise_cloud(*options, *page, std::forward<decltype(all)>(all)...);
+                      }};
+  command.run = [options, page, on_cloud = command.on_cloud,
+                 known = command.options](const Invocation& typed) {
+    const int code = run_cloud_jobs("denoise", options->job, typed, on_cloud);
+    if (code == 0 && options->html)
+      write_page(*options, std::move(*page), command_line("denoise", typed, known));
+    return code;
   };
   return command;
 }

@@ -61,6 +61,12 @@ std::string to_text(const Eigen::Vector3d& value) {
   return fmt::format("{},{},{}", value.x(), value.y(), value.z());
 }
 
+std::string shell_quoted(const std::string& word) {
+  static const std::regex kPlain("[A-Za-z0-9_./:=,@%+-]+");
+  if (std::regex_match(word, kPlain)) return word;
+  return '\'' + std::regex_replace(word, std::regex("'"), "'\\''") + '\'';
+}
+
 std::string with_dashes(const std::string& message) {
   static const std::regex option("`([a-z-]+)`");
   return std::regex_replace(message, option, "--$1");

@@ -28,6 +28,9 @@ std::string to_text(double value);
 std::string to_text(const Length& value);
 std::string to_text(const Eigen::Vector3d& value);
 
+/// One word as a shell reads it: as it is, or between quotation marks.
+std::string shell_quoted(const std::string& word);
+
 /// A message of the library in the command's words: option names between backticks become "--name".
 std::string with_dashes(const std::string& message);
 

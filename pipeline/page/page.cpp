@@ -1,0 +1,212 @@
+#include "pipeline/page/page.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "base/parallel.h"
+#include "pipeline/page/assets.h"
+#include "pipeline/page/blocks.h"
+#include "pipeline/page/histogram.h"
+#include "pipeline/page/shown.h"
+#include "pipeline/page/text.h"
+
+namespace rfsmooth::pipeline {
+
+using Eigen::Vector3d;
+using nlohmann::ordered_json;
+
+namespace {
+
+Vector3d row_of(const std::vector<double>& xyz, std::size_t row) {
+  return {xyz[3 * row], xyz[3 * row + 1], xyz[3 * row + 2]};
+}
+
+/// Middle of the box around the rows, from which float32 is fine enough for a picture.
+Vector3d middle_of(const std::vector<double>& xyz, const std::vector<std::size_t>& rows) {
+  Vector3d low = row_of(xyz, rows.front()), high = low;
+  for (const std::size_t row : rows) {
+    low = low.cwiseMin(row_of(xyz, row));
+    high = high.cwiseMax(row_of(xyz, row));
+  }
+  return low + (high - low) / 2;
+}
+
+std::vector<Eigen::Vector3f> normals_shown(const std::vector<double>& normals,
+                                           const std::vector<std::size_t>& rows) {
+  std::vector<Eigen::Vector3f> shown;
+  for (std::size_t i = 0; i < rows.size() && !normals.empty(); ++i)
+    shown.emplace_back(row_of(normals, rows[i]).cast<float>());
+  return shown;
+}
+
+ShownPoints points_shown(const PageContents& contents, const std::vector<RowKind>& kinds,
+                         const std::vector<std::size_t>& rows, const Vector3d& centre) {
+  ShownPoints shown;
+  for (const std::size_t row : rows) {
+    shown.before.emplace_back(row_of(contents.before.xyz, row) - centre);
+    shown.after.emplace_back(kinds[row] == RowKind::removed
+                                 ? shown.before.back()
+                                 : Vector3d(row_of(contents.after.xyz, row) - centre));
+    shown.kinds.push_back(kinds[row]);
+    if (!contents.colors.empty()) shown.colors.push_back(contents.colors[row]);
+  }
+  shown.normals_before = normals_shown(contents.before.normals, rows);
+  shown.normals_after = normals_shown(contents.after.normals, rows);
+  return shown;
+}
+
+/// From where the page first looks, as directions: from the scanner's place, where it is known and beside the
+/// cloud, upright as cameras have it (y down); else at the broad side, a little from above.
+struct FirstLook {
+  Vector3d toward, up;  ///< from the cloud to the eye; up in the picture
+};
+
+FirstLook broadside_look(const Positions& points) {
+  Vector3d mean = Vector3d::Zero();
+  for (const Vector3d& p : points) mean += p / double(points.size());
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (const Vector3d& p : points) spread += (p - mean) * (p - mean).transpose();
+  const Eigen::Matrix3d axes = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors();
+  Vector3d toward = Vector3d::Zero();
+  // Eigenvectors have no sign: look from above and from the front (-y).
+  for (const auto& [axis, share] : {std::pair(0, 1.0), {1, 0.45}, {2, 0.3}})
+    toward += axes.col(axis) * (axes.col(axis).dot(Vector3d(0.2, -0.5, 1)) < 0 ? -share : share);
+  toward.normalize();
+  return {toward, std::abs(toward[2]) > 0.98 ? Vector3d::UnitY() : Vector3d::UnitZ()};
+}
+
+FirstLook first_look(const Positions& points, const std::optional<Vector3d>& viewpoint) {
+  if (viewpoint) {
+    Positions directions;
+    Vector3d mean = Vector3d::Zero();
+    for (const Vector3d& p : points) mean += (*viewpoint - p).stableNormalized() / double(points.size());
+    // A cloud all around it is not seen from there.
+    if (mean.norm() > 0.5)
+      return {mean.normalized(), std::abs(mean[2]) > 0.7 * mean.norm() ? Vector3d(-Vector3d::UnitY())
+                                                                       : Vector3d(Vector3d::UnitZ())};
+  }
+  return broadside_look(points);
+}
+
+ordered_json json_of(const Vector3d& v) {
+  return {v[0], v[1], v[2]};
+}
+
+/// What the page's script must know beside the planes; see viewer/decode.js.
+ordered_json about_of(const ShownPoints& shown, const PackedPoints& packed, const Vector3d& centre,
+                      const FirstLook& look, double top) {
+  double radius = 0;
+  for (const Vector3d& p : shown.before) radius = std::max(radius, p.norm());
+  for (const Vector3d& p : shown.after) radius = std::max(radius, p.norm());
+  auto blocks = ordered_json::array();
+  for (const PageBlock& b : packed.blocks)
+    blocks.push_back({{"count", b.count},
+                      {"kind", int(b.kind)},
+                      {"origin", json_of(b.origin)},
+                      {"step", b.step},
+                      {"unit", b.unit},
+                      {"reach", b.reach}});
+  return {{"shown", shown.before.size()},
+          {"centre", json_of(centre)},
+          {"radius", radius},
+          {"toward", json_of(look.toward)},
+          {"up", json_of(look.up)},
+          {"top", top},
+          {"scale", kScale},
+          {"colors", !shown.colors.empty()},
+          {"normals", {!shown.normals_before.empty(), !shown.normals_after.empty()}},
+          {"blocks", blocks}};
+}
+
+/// "1.23" and the like, of what is a length.
+std::string length_text(double value) {
+  return fmt::format("{:.4g}", value);
+}
+
+/// The figures of the page itself, and those it was given, as rows of a table.
+std::string rows_of_figures(const PageContents& contents, const std::vector<double>& moved,
+                            std::size_t removed, std::size_t shown) {
+  std::vector<double> finite;
+  std::size_t still = 0;
+  for (const double d : moved) {
+    if (std::isfinite(d)) finite.push_back(d);
+    still += std::size_t(d == 0);
+  }
+  std::vector<std::pair<std::string, std::string>> figures = {{"points", std::to_string(moved.size())}};
+  if (finite.size() + removed < moved.size())
+    figures.emplace_back("not finite", std::to_string(moved.size() - finite.size() - removed));
+  if (removed > 0) figures.emplace_back("removed", std::to_string(removed));
+  figures.emplace_back("moved", std::to_string(finite.size() - still));
+  if (!finite.empty()) {
+    double squares = 0;
+    for (const double d : finite) squares += d * d;
+    std::sort(finite.begin(), finite.end());
+    figures.emplace_back("largest move", length_text(finite.back()));
+    figures.emplace_back("rms of moves", length_text(std::sqrt(squares / double(finite.size()))));
+    figures.emplace_back("median move", length_text(finite[finite.size() / 2]));
+  }
+  figures.insert(figures.end(), contents.figures.begin(), contents.figures.end());
+  figures.emplace_back("points in this page", std::to_string(shown));
+  std::string rows;
+  for (const auto& [name, value] : figures)
+    rows += fmt::format("<tr><th>{}</th><td>{}</td></tr>\n", escaped(name), escaped(value));
+  return rows;
+}
+
+}  // namespace
+
+PageSide page_side(const std::filesystem::path& path, const io::Cloud& cloud, const Context& context) {
+  return {path.filename().string(), io::positions(cloud, context), io::normals_of(cloud, context)};
+}
+
+void need_same_size(const std::string& before_name, std::size_t before, const std::string& after_name,
+                    std::size_t after) {
+  if (before != after)
+    throw Failure(
+        {ErrorCode::usage,
+         fmt::format("{} has {} points and {} has {}: a page needs the same points in the same order",
+                     before_name, before, after_name, after)});
+}
+
+std::string make_page(const PageContents& contents, const Context& context) {
+  need_same_size(contents.before.name, contents.before.xyz.size() / 3, contents.after.name,
+                 contents.after.xyz.size() / 3);
+  std::string page;
+  in_arena(context, [&] {
+    const std::vector<double> moved = displacements(contents.before.xyz, contents.after.xyz);
+    const std::vector<RowKind> kinds =
+        kinds_of_rows(contents.before.xyz, contents.after.xyz, contents.outlier);
+    const std::vector<std::size_t> rows =
+        shown_rows(contents.before.xyz, moved, kinds, contents.points, context);
+    const Vector3d centre = middle_of(contents.before.xyz, rows);
+    const ShownPoints shown = points_shown(contents, kinds, rows, centre);
+    const PackedPoints packed = pack_points(shown, context);
+    const Histogram histogram = histogram_of(moved);
+    std::optional<Vector3d> viewpoint;
+    if (contents.viewpoint) viewpoint = *contents.viewpoint - centre;
+    const auto removed = std::size_t(std::count(kinds.begin(), kinds.end(), RowKind::removed));
+    page =
+        filled(kPageHtml,
+               {{"style", std::string(kPageCss)},
+                {"style-hash", base64(bytes_of_hex(kPageCssHash))},
+                {"script", std::string(kPageScript)},
+                {"script-hash", base64(bytes_of_hex(kPageScriptHash))},
+                {"before", escaped(contents.before.name)},
+                {"after", escaped(contents.after.name)},
+                {"command", escaped(contents.command)},
+                {"figures", rows_of_figures(contents, moved, removed, rows.size())},
+                {"histogram", svg_of(histogram)},
+                {"about",
+                 about_of(shown, packed, centre, first_look(shown.before, viewpoint), histogram.top).dump()},
+                {"points", base64(gzipped(packed.bytes))}});
+  });
+  return page;
+}
+
+}  // namespace rfsmooth::pipeline
