@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# The main job on two clouds, from nothing: installs what the command needs, builds it, cleans a scan of ours and a scanned
-# building (CGAL's, 100,000 points), and makes pictures of before and after: bash clouds/demo.sh
+# The main job on two noisy clouds, from nothing: installs what the command needs, builds it, cleans a torus with known noise and a
+# piece of a building as a laser saw it, and makes of each a picture and a page of before and after: bash clouds/demo.sh
 set -euo pipefail
 cd "$(dirname "$0")/.."
 . tests/packages.sh
-install_missing $core_packages libcgal-demo
+install_missing $core_packages
 
 cmake --preset release > /dev/null
 cmake --build --preset release --target rfsmooth_command rfsmooth_render_program
@@ -12,12 +12,9 @@ bin=build/release/bin
 out=clouds/out
 mkdir -p "$out"
 
-archive=$(dpkg -L libcgal-demo libcgal-dev 2> /dev/null | grep '/data\.tar\.gz$' | head -n 1)
-tar -xzf "$archive" -C "$out" --strip-components=2 --wildcards '*/points_3/building.ply'
-
-for cloud in clouds/l_part_scan.ply "$out/building.ply"; do
-  name=$(basename "$cloud" .ply)
-  "$bin/rfsmooth" denoise "$cloud" -o "$out/${name}_clean.ply" --force --report "$out/${name}_report.json"
-  "$bin/rfsmooth" render "$cloud" "$out/${name}_clean.ply" -o "$out/$name.png" --labels before,after --title "$name" --force --quiet
-  echo "  see $out/${name}_clean.ply and $out/$name.png"
+for cloud in clouds/torus_isotropic.pcd clouds/scans/laser_building.pcd; do
+  name=$(basename "$cloud" .pcd)
+  "$bin/rfsmooth" denoise "$cloud" -o "$out/${name}_clean.pcd" --force --report "$out/${name}_report.json" --html "$out/$name.html"
+  "$bin/rfsmooth" render "$cloud" "$out/${name}_clean.pcd" -o "$out/$name.png" --labels before,after --title "$name" --without-outliers --force --quiet
+  echo "  see $out/$name.html in a browser, $out/$name.png, and the cloud $out/${name}_clean.pcd"
 done

@@ -118,7 +118,9 @@ Picture make_picture(const PictureOptions& options, const Context& context) {
   std::vector<Scene> scenes;
   for (const io::Cloud& cloud : clouds) {
     scenes.push_back(make_scene(cloud, origin, context));
-    if (!scenes.back().is_mesh()) estimate_surfels(scenes.back(), options.neighbors, context);
+    if (scenes.back().is_mesh()) continue;
+    if (options.without_outliers) leave_out_outliers(scenes.back(), context);
+    estimate_surfels(scenes.back(), options.neighbors, context);
   }
   Picture made;
   made.colors = colorize(options, clouds, scenes);

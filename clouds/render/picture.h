@@ -23,6 +23,7 @@ struct PictureOptions {
   std::string field;                             ///< for color "field"
   std::optional<double> low, high;               ///< values at the ends of the colours; empty: from the data
   int levels = 256;                              ///< of brightness per colour
+  bool without_outliers = false;                 ///< leave out strays and mixed pixels of clouds
 };
 
 struct Picture {

@@ -11,6 +11,8 @@
 #include "clouds/render/rasterizer.h"
 #include "pipeline/io/mesh_file.h"
 #include "pipeline/io/point_fields.h"
+#include "pipeline/outliers.h"
+#include "rfs_mesh/points.h"
 #include "rfs_mesh/search/neighbors.h"
 
 namespace rfsmooth::render {
@@ -43,6 +45,21 @@ Scene make_scene(const io::Cloud& cloud, const Vector3d& origin, const Context& 
     if (index[e[0]] != kNone && index[e[1]] != kNone) scene.edges.push_back({index[e[0]], index[e[1]]});
   scene.colors.assign(scene.points.size(), kClay);
   return scene;
+}
+
+void leave_out_outliers(Scene& scene, const Context& context) {
+  const auto cloud =
+      value_or_throw(rfs_mesh::make_working_cloud(scene.points.front().data(), scene.points.size(), context));
+  const std::vector<char> outlier = pipeline::find_outliers(cloud.points, context);
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < scene.points.size(); ++i) {
+    if (outlier[cloud.of_input[i]] != 0) continue;
+    scene.points[kept] = scene.points[i];
+    scene.row[kept++] = scene.row[i];
+  }
+  scene.points.resize(kept);
+  scene.row.resize(kept);
+  scene.colors.resize(kept);
 }
 
 void estimate_surfels(Scene& scene, int neighbors, const Context& context) {

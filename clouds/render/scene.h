@@ -28,6 +28,10 @@ struct Scene {
 /// point.
 Scene make_scene(const pipeline::io::Cloud& cloud, const Eigen::Vector3d& origin, const Context& context);
 
+/// Takes strays and mixed pixels (pipeline/outliers.h) out of a scene without faces or edges, before its
+/// normals are estimated.
+void leave_out_outliers(Scene& scene, const Context& context);
+
 /// Normals from the `neighbors` nearest points each: few, so that noise shows as grain instead of being
 /// averaged away. Splats reach about as far as the sixth neighbour, at most three times the median (strays
 /// stay small).

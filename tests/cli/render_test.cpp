@@ -45,6 +45,21 @@ TEST_F(Render, DrawsTheEdgesOfAGraph) {
   EXPECT_FALSE(take("tree.png") == take("points.png"));
 }
 
+TEST_F(Render, LeavesOutOutliersIfAsked) {
+  BinaryPly cloud = noisy_plane(30);
+  put("clean.ply", cloud.bytes());
+  cloud.xyz.insert(cloud.xyz.end(), {15, 15, 200});
+  put("stray.ply", cloud.bytes());
+  const auto picture = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.end(), {"-o", "out.png", "--force", "--width", "100", "--height", "80"});
+    EXPECT_EQ(run(arguments).code, 0);
+    return take("out.png");
+  };
+  const std::string clean = picture({"render", "clean.ply", "--direction", "0,1,-0.5"});
+  EXPECT_FALSE(picture({"render", "stray.ply", "--direction", "0,1,-0.5"}) == clean);
+  EXPECT_TRUE(picture({"render", "stray.ply", "--direction", "0,1,-0.5", "--without-outliers"}) == clean);
+}
+
 TEST_F(Render, KeepsTheContractsOfTheCommand) {
   put("out.png", "mine");
   EXPECT_EQ(run({"render", "in.ply", "-o", "out.png"}).code, 5);

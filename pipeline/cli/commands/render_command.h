@@ -23,6 +23,7 @@ struct RenderOptions {
   std::string field;
   std::optional<double> low, high;
   int levels = 256;
+  bool without_outliers = false;
   bool force = false;
   TalkOptions talk;
 
@@ -54,6 +55,8 @@ struct RenderOptions {
     visit(OptionInfo{"edges", "draw the edges of faces", ""}, self.edges);
     visit(OptionInfo{"levels", "of brightness per colour; fewer make a smaller file", "", 2, 256},
           self.levels);
+    visit(OptionInfo{"without-outliers", "leave out points of clouds with no surface near them", ""},
+          self.without_outliers);
     visit(OptionInfo{"force", "replace an existing file", ""}, self.force);
     TalkOptions::describe(self.talk, visit);
   }

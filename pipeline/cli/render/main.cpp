@@ -56,6 +56,7 @@ rfsmooth::render::PictureOptions picture_options(const RenderOptions& options,
   out.low = options.low;
   out.high = options.high;
   out.levels = options.levels;
+  out.without_outliers = options.without_outliers;
   return out;
 }
 
