@@ -28,6 +28,7 @@ namespace {
 /// Takes over what the automatic smoother measured and chose.
 void enter(const AutomaticReport& found, DenoiseReport& report) {
   report.noise = found.noise;
+  report.measured = found.measured;
   report.noise_left = found.left;
   std::get<AutomaticOptions>(report.effective.flow.flow).noise = Length{found.noise, false};
   report.stranded = found.stranded;
@@ -160,6 +161,29 @@ void set_aside(const std::vector<char>& outlier, rfs_mesh::WorkingCloud& cloud, 
   }
 }
 
+/// Outliers that the tails of the noise explain are none: such points stood alone among calm ones, and are
+/// put onto the smoothed surface. `now`: the smoothed points; those landed are added.
+void land_tails(const double* xyz, const std::vector<double>& strength, const DenoiseOptions& options,
+                const Context& context, rfs_mesh::WorkingCloud& cloud, Positions& now,
+                DenoiseReport& report) {
+  const auto* automatic = std::get_if<AutomaticOptions>(&options.flow.flow);
+  if (automatic == nullptr || report.outliers == 0 || !(report.tail_times > 1)) return;
+  const rfs_mesh::SpatialIndex surface(now, context);
+  const double most =
+      smoothing::kFarthestMove * std::max(1.0, automatic->strength) * report.tail_times * report.noise;
+  for (std::size_t i = 0; i < report.outlier.size(); ++i) {
+    if (report.outlier[i] == 0) continue;
+    const Eigen::Vector3d was = Eigen::Vector3d(xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]) - cloud.origin;
+    Eigen::Vector3d landed = was;
+    if (!land(surface, most, landed)) continue;
+    if (!strength.empty()) landed = was + strength[i] * (landed - was);
+    cloud.of_input[i] = Index(now.size());
+    now.push_back(landed);
+    report.outlier[i] = 0;
+    --report.outliers;
+  }
+}
+
 DenoiseReport run(double* xyz, std::size_t n, const DenoiseOptions& options, const Context& context,
                   const std::vector<double>& strength) {
   DenoiseReport report;
@@ -225,6 +249,7 @@ DenoiseReport run(double* xyz, std::size_t n, const DenoiseOptions& options, con
   if (!std::holds_alternative<AutomaticOptions>(options.flow.flow)) reach = reaches(mesh, context);
   alternate(mesh, {{}, working_strengths(strength, cloud, mesh.positions.size())}, options, report, context);
   check_finite(mesh.positions, options, context);
+  land_tails(xyz, strength, options, context, cloud, mesh.positions, report);
   context.check_stop();
   commit(xyz, cloud, mesh.positions, reach, report);
   return report;

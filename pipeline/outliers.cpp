@@ -256,4 +256,17 @@ std::vector<char> find_outliers(const Positions& points, const Context& context)
   return find_outliers(index, index.nearest(int(kNear), context), context);
 }
 
+bool land(const rfs_mesh::SpatialIndex& surface, double most, Eigen::Vector3d& point) {
+  std::vector<Neighbor> around;
+  surface.nearest(point, 1, around);
+  if (around.empty()) return false;
+  surface.nearest(surface.points()[around.front().index], int(2 * kNear), around);
+  if (around.size() < 2 * kNear) return false;
+  const Plane plane = fit_plane(surface.points(), around);
+  const double off = plane.normal.dot(point - plane.centre);
+  if (!(std::abs(off) <= most)) return false;
+  point -= off * plane.normal;
+  return true;
+}
+
 }  // namespace rfsmooth::pipeline

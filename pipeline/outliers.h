@@ -40,4 +40,9 @@ std::vector<char> find_outliers(const Positions& points, const Context& context)
 std::vector<char> find_outliers(const rfs_mesh::SpatialIndex& index, const rfs_mesh::NeighborTable& near,
                                 const Context& context);
 
+/// Moves a point onto the surface that the indexed points lie on, smooth ones: onto the plane through 16 of
+/// them around the one nearest to it. False, and the point stays, if it is farther off than `most` (world
+/// units). O(log n).
+bool land(const rfs_mesh::SpatialIndex& surface, double most, Eigen::Vector3d& point);
+
 }  // namespace rfsmooth::pipeline

@@ -34,8 +34,17 @@ struct FlowReport {
   std::vector<TraceRow> trace;  ///< steps + 1 rows if asked for (FlowOptions::trace)
 };
 
+/// What a cloud itself shows of its noise. Lengths in world units.
+struct NoiseSummary {
+  double typical = 0;    ///< standard deviation along the normal, of the typical place
+  double loudest = 0;    ///< the same of the loudest tenth of the points, its least
+  double shared = 1;     ///< over how many neighbouring points it is about the same; 1: each has its own
+  bool stepped = false;  ///< whether a coordinate has few values, as depths of a camera do
+};
+
 /// What the automatic flow measured and chose.
 struct AutomaticReport {
+  NoiseSummary measured;
   double noise = 0;           ///< measured or stated, standard deviation along the normal, world units
   double guide_strength = 0;  ///< c of the guide's fairing, dimensionless
   double left = 0;            ///< estimate of the noise left, root mean square along the normal, world units

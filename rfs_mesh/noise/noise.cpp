@@ -102,6 +102,7 @@ std::vector<double> blend(const SpatialIndex& sites, const std::vector<double>& 
 struct Part {
   std::size_t m = kNarrowestScatter;
   double sigma = 0, shape = 0, shared = 1;
+  bool stepped = false;
   double least = 0;  ///< what counts as zero
   NoiseSites sites;
   std::vector<double> local;  ///< by site, world units
@@ -135,6 +136,7 @@ Part measure_part(const SpatialIndex& index, const Positions& where, const Conte
   part.least = start.least;
   if (!(start.least > 0)) return part;
   const SharedNoise shared = find_shared_noise(index, places, start, context);
+  part.stepped = shared.stepped;
   if (shared.points > 1) {
     start.sigma = shared.sigma;
     start.m = shared.m;
@@ -221,6 +223,7 @@ NoiseField measure_noise(const SpatialIndex& index, const Context& context) {
   Positions at;
   std::vector<double> local;
   Part part = measure_part(index, index.points(), context);
+  noise.stepped = part.stepped;
   for (int louder = 0;; ++louder) {
     noise.neighbours = part.m;
     noise.shared = part.shared;

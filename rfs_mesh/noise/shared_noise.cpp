@@ -81,13 +81,14 @@ double left_by_quadric(double points, double m) {
   return std::max(1e-3, (1 - q) / (1 - own));
 }
 
-/// k by least squares: what a quadric leaves of the noise, over its variance, at each m.
+/// k by least absolute deviations (in steps, the narrowest m may lie within one and show nothing): what a
+/// quadric leaves of the noise, over its variance, at each m.
 double fit_points(const std::vector<double>& m, const std::vector<double>& left) {
   double best = 1, least = std::numeric_limits<double>::infinity();
   for (double points = 1; points <= m.back(); points *= std::sqrt(2.0)) {
     double misfit = 0;
     for (std::size_t i = 0; i < m.size(); ++i)
-      misfit += std::pow(std::log(left_by_quadric(points, m[i]) / left[i]), 2);
+      misfit += std::abs(std::log(left_by_quadric(points, m[i]) / left[i]));
     if (misfit < least) {
       least = misfit;
       best = points;
@@ -129,15 +130,15 @@ SharedNoise find_shared_noise(const SpatialIndex& index, const Positions& places
     seen.push_back(variance);
   }
   SharedNoise found;
+  found.stepped = in_steps(index.points());
   if (seen.empty()) return found;  // nothing scatters, or too few points to tell
   double sill = 0;
   std::size_t at = 0;
-  const bool stepped = in_steps(index.points());
   // What a window from below saw much less of at the same m is the distance of two sheets.
-  if (!stepped && kTwoSheets * start.sigma * start.sigma < seen.front()) return found;
+  if (!found.stepped && kTwoSheets * start.sigma * start.sigma < seen.front()) return found;
   for (std::size_t i = 0; i + 1 < m.size(); ++i) {
     if (m[i + 1] != 2 * m[i] || m[i] < 2 * double(start.m)) continue;
-    if (!stepped && seen[i + 1] > kMostGrowthOfNoise * seen[i]) break;
+    if (!found.stepped && seen[i + 1] > kMostGrowthOfNoise * seen[i]) break;
     const double grows = std::pow(2, kShapePower), sure = (grows * seen[i] - seen[i + 1]) / (grows - 1);
     if (sure <= sill) continue;
     sill = sure;

@@ -32,6 +32,7 @@ struct SharedNoise {
   double sigma = 0;   ///< standard deviation along the normal at calm places, world units; 0: nothing found
   double points = 1;  ///< k
   std::size_t m = 0;  ///< points of a neighbourhood that is wide enough to show it
+  bool stepped = false;  ///< whether a coordinate has few values, as depths of a camera do
 };
 
 /// \param places where to look, at least one. \param start of the noise that points have of their own

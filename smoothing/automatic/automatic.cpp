@@ -57,6 +57,12 @@ std::vector<float> heights(const HeightField& field, const Context& context) {
   return all;
 }
 
+/// The share of a point's noise that stays in a prediction which has the share `own` of its height: that of
+/// all who share the noise (automatic.h).
+float own_of_all(float own, float shared) {
+  return own * shared / (1 + own * (shared - 1));
+}
+
 /// What the patches of one scale say.
 struct Scale {
   std::size_t members;
@@ -78,7 +84,7 @@ Scale try_scale(const HeightField& field, std::size_t members, const std::vector
   const Prediction& prediction = scale.prediction;
   for_each_index(context, field.size(), [&](std::size_t i) {
     const float e = (field.local()[i].height - prediction.height[i]) / float(sigma[i]);
-    const float own = prediction.own[i], of_all = own * shared / (1 + own * (shared - 1));
+    const float of_all = own_of_all(prediction.own[i], shared);
     const float risk = prediction.covered[i] != 0 ? e * e + 2 * of_all - 1 : before[i];
     scale.worse[i] = risk - before[i];
     before[i] = risk;
@@ -130,17 +136,55 @@ void mix(const HeightField& field, std::vector<Scale> scales, double shared, std
   mixture.average(height, own, context);
 }
 
+/// The variance that the residuals tell, over that which was measured: the median over places of
+/// sum e^2 / sigma^2 over sum (1 - own) around each. Half of the cloud is smooth enough for its patches.
+double told_by_residuals(const HeightField& field, const std::vector<float>& height,
+                         const std::vector<float>& own, const rfs_mesh::NoiseField& noise,
+                         const Context& context) {
+  constexpr std::size_t kPlaces = 20000;
+  constexpr double kSmoothed = 0.5;  // mean of 1 - own: elsewhere the data stayed, and tell nothing
+  constexpr double kMostSquare = kStrayFrom * kStrayFrom;
+  const std::size_t n = field.size(), places = std::min(n, kPlaces);
+  std::vector<double> told(places, -1);
+  for_each_index(context, places, [&](std::size_t place) {
+    const std::size_t at = place * n / places;
+    Eigen::Vector4d sums = Eigen::Vector4d::Zero();  // of weights, their squares, e^2 / sigma^2, 1 - own
+    const auto add = [&](std::size_t i, double weight) {
+      const double e = (field.height(i) - double(height[i])) / noise.local[i];
+      sums += weight * Eigen::Vector4d(1, weight, std::min(e * e, kMostSquare),
+                                       1 - double(own_of_all(own[i], float(noise.shared))));
+    };
+    add(at, 1);
+    for (const Index j : field.neighbors()[at])
+      add(j, double(same_sheet(field.local()[at].normal.dot(field.local()[j].normal))));
+    if (!(sums[3] > kSmoothed * sums[0])) return;
+    // The median of chi-square over its degrees of freedom, by Wilson and Hilferty 1931.
+    const double freedom = sums[0] * sums[0] / sums[1];
+    told[place] = sums[2] / sums[3] / std::pow(1 - 2 / (9 * freedom), 3);
+  });
+  told.erase(std::remove(told.begin(), told.end(), -1.0), told.end());
+  if (told.empty()) return 1;
+  const auto middle = told.begin() + std::ptrdiff_t(told.size() / 2);
+  std::nth_element(told.begin(), middle, told.end());
+  return *middle;
+}
+
 /// Root mean square error of the smoothed heights (automatic.h, step 5).
 double noise_left(const HeightField& field, const std::vector<float>& height, const std::vector<float>& own,
                   const rfs_mesh::NoiseField& noise, const Context& context) {
-  // The points that count, their variance, and their risk.
-  const Eigen::Vector3d sums = sum_over(context, field.size(), Eigen::Vector3d(0, 0, 0), [&](std::size_t i) {
-    const double e = field.height(i) - double(height[i]), share = double(own[i]),
-                 square = noise.local[i] * noise.local[i];
-    if (!(std::abs(e) <= kStrayFrom * std::max(noise.sigma, noise.local[i]))) return Eigen::Vector3d(0, 0, 0);
-    return Eigen::Vector3d(1, share * square, e * e + (2 * share - 1) * square);
-  });
-  return sums[0] > 0 ? std::sqrt(std::max({0.0, sums[1], sums[2]}) / sums[0]) : noise.sigma;
+  const double told = told_by_residuals(field, height, own, noise, context);
+  // The points that count, their variance, their risk, and their noise.
+  const Eigen::Vector4d sums =
+      sum_over(context, field.size(), Eigen::Vector4d(0, 0, 0, 0), [&](std::size_t i) {
+        const double e = field.height(i) - double(height[i]),
+                     share = double(own_of_all(own[i], float(noise.shared))),
+                     measured = noise.local[i] * noise.local[i], square = told * measured;
+        if (!(std::abs(e) <= kStrayFrom * std::max(noise.sigma, noise.local[i])))
+          return Eigen::Vector4d(0, 0, 0, 0);
+        return Eigen::Vector4d(1, share * square, e * e + (2 * share - 1) * square, measured);
+      });
+  if (!(sums[0] > 0)) return noise.sigma;
+  return std::sqrt(std::min(std::max({0.0, sums[1], sums[2]}), sums[3]) / sums[0]);
 }
 
 /// The guide of mesh.positions and the heights over it.
@@ -251,7 +295,7 @@ void land_hovering(const HeightField& field, const Pass& pass, const Mesh& mesh,
 /// the others. Returns the tails.
 Tails tame(const HeightField& field, const Pass& pass, const Mesh& mesh, Positions& data,
            rfs_mesh::NoiseField& noise, const Context& context) {
-  if (noise.shared > 1) return {};  // what neighbours share stands out as if it were tails
+  if (noise.shared > 1 || noise.stepped) return {};  // both stand out as if they were tails
   constexpr float kMostItsOwn = 0.8F;
   const std::vector<float> off = off_neighbours(field, pass, noise, context);
   constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();

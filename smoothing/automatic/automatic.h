@@ -20,10 +20,9 @@
 ///    cloud as a whole says that they are walls (hidden_sheets.h); those of a few sigma get their two sheets
 ///    fitted together (thin_walls.h).
 /// 5. What is left: the mean risk of the mixture, at least the variance that the data's own weight passes on,
-///    sum sigma^2 df/dz. Points farther than 5 sigma from the result stay where they are and do not count:
-///    strays are no noise. On the development shapes (10,000 points, noise of 0.2 to 2 spacings) the estimate
-///    is off by a quarter in the middle, at worst four times too high on a sphere, of which hardly anything
-///    is left: an error of 2 % in sigma is then as much.
+///    sum sigma^2 df/dz, both with the variance that the residuals tell where the surface is smooth: next to
+///    what little is left there, a few percent in sigma would be much. Points farther than 5 sigma from the
+///    result stay where they are and do not count: strays are no noise.
 ///
 /// Noise that k neighbours share (rfs_mesh/shared_noise.h) is that of n / k points, each seen k times: scales
 /// begin at k times as many points, c is k times as large, evidence counts a k-th, and of a prediction that

@@ -263,10 +263,10 @@ void slide_back(Positions& points, const Positions& before, double share, rfs_me
   points = std::move(back);
 }
 
-Equalized equalize(Positions& points, const Positions& before, double sigma, double spacing,
-                   rfs_mesh::NeighborTable table, const Context& context) {
+Equalized equalize(Positions& points, const Positions& before, const std::vector<double>& sigma,
+                   double spacing, rfs_mesh::NeighborTable table, const Context& context) {
   const std::size_t n = points.size();
-  if (n <= std::size_t(kNearOfFrame) || !(sigma > 0)) return {};
+  if (n <= std::size_t(kNearOfFrame)) return {};
   std::vector<Eigen::Vector3f> normals;
   const Near near(std::move(table), points, normals, context);
   RawArray<Frame> frames(n);
@@ -280,11 +280,11 @@ Equalized equalize(Positions& points, const Positions& before, double sigma, dou
     for (std::size_t k = 0; k < kPushers; ++k) inside[i] &= char(!frames[near[i][k]].rim);
   });
 
-  const double noise = sigma / (kShareUpTo * spacing);
-  const auto given_back = float(kShare / (1 + noise * noise * noise * noise));
   Positions now(n);
   std::vector<Eigen::Vector2f> start(n), moved(n, Eigen::Vector2f::Zero());
   for_each_index(context, n, [&](std::size_t i) {
+    const double noise = sigma[i] / (kShareUpTo * spacing);
+    const auto given_back = float(kShare / (1 + noise * noise * noise * noise));
     start[i] = given_back * frames[i].offset((before[i] - points[i]).cast<float>());
     now[i] = frames[i].slide(points[i], start[i]);
   });
@@ -296,10 +296,10 @@ Equalized equalize(Positions& points, const Positions& before, double sigma, dou
       const float reach = kReach * f.distance;
       Eigen::Vector2f force = f.offset(push(now, now[i], near[i].begin(), reach));
       if (f.slides) force = f.along * f.along.dot(force);
-      const double share = sigma / double(f.distance);
+      const double share = sigma[i] / double(f.distance);
       moved[i] += float(std::min(kStep, kGain * share * share)) * reach * force;
       const auto limit =
-          float(std::min(kMostMove * std::min(double(f.distance), spacing), kMostSigmas * sigma));
+          float(std::min(kMostMove * std::min(double(f.distance), spacing), kMostSigmas * sigma[i]));
       if (const float length = moved[i].norm(); length > limit) moved[i] *= limit / length;
       next[i] = f.slide(points[i], start[i] + moved[i]);
     });

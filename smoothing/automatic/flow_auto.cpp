@@ -64,6 +64,16 @@ class AutomaticFlow : public Flow {
 
 }  // namespace
 
+NoiseSummary summary_of(const rfs_mesh::NoiseField& noise) {
+  NoiseSummary summary{noise.sigma, noise.sigma, noise.shared, noise.stepped};
+  if (noise.local.empty()) return summary;
+  std::vector<double> local = noise.local;
+  const auto tenth = local.begin() + std::ptrdiff_t(9 * (local.size() - 1) / 10);
+  std::nth_element(local.begin(), tenth, local.end());
+  summary.loudest = *tenth;
+  return summary;
+}
+
 std::optional<AutomaticReport> smooth_automatically(Mesh& mesh, const AutomaticOptions& options,
                                                     const Context& context, Connectivity connectivity) {
   if (connectivity == Connectivity::used_up) std::vector<Face>().swap(mesh.faces);
@@ -75,8 +85,8 @@ std::optional<AutomaticReport> smooth_automatically(Mesh& mesh, const AutomaticO
     spacing = rfs_mesh::mean_spacing(index, context);
     noise = rfs_mesh::measure_noise(index, context);
   }
+  const NoiseSummary summary = summary_of(noise);
   const double sigma = options.noise ? options.noise->resolve(spacing) : measured(noise, spacing);
-  const double used = options.strength * sigma;
   noise = scaled(std::move(noise), sigma, options.strength, spacing);
   AutomaticReport report;
   rfs_mesh::NeighborTable near;
@@ -85,9 +95,11 @@ std::optional<AutomaticReport> smooth_automatically(Mesh& mesh, const AutomaticO
   mesh.positions.swap(smooth);
   const Positions before = std::move(smooth);
   report.noise = sigma;
+  report.measured = summary;
   if (report.guide_strength > 0) {
     if (options.equalize) {
-      const Equalized moved = equalize(mesh.positions, before, used, spacing, std::move(near), context);
+      const Equalized moved =
+          equalize(mesh.positions, before, noise.local, spacing, std::move(near), context);
       report.equalized = moved.rms;
       report.equalized_most = moved.largest;
     } else {  // back to where the guide took them from, so that they move along normals only

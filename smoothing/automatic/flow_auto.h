@@ -19,6 +19,9 @@ namespace rfsmooth::smoothing {
 /// 16,000, and on the development shapes the limit costs nothing.
 constexpr double kFarthestMove = 4;
 
+/// The measured noise in a few figures. O(n).
+NoiseSummary summary_of(const rfs_mesh::NoiseField& noise);
+
 /// Whether anybody will read more of the mesh than its positions; if not, its faces and rings are used up,
 /// which saves memory.
 enum class Connectivity { kept, used_up };

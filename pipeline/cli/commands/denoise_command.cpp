@@ -10,6 +10,7 @@
 #include <rfsmooth/denoise.h>
 
 #include "pipeline/cli/commands/command.h"
+#include "pipeline/cli/console/report.h"
 #include "pipeline/cli/console/trace_file.h"
 #include "pipeline/cli/files/cloud_jobs.h"
 #include "pipeline/cli/files/cloud_normals.h"
@@ -80,6 +81,7 @@ void enter(const DenoiseReport& done, const DenoiseCommandOptions& options, orde
   entry["counts"]["removed"] = options.removes() ? done.outliers : 0;
   entry["spacing"] = done.spacing;
   entry["noise"] = done.noise;
+  entry["noise_measured"] = json_of(done.measured);
   entry["noise_left"] = done.noise_left;
   entry["guide_strength"] = done.guide_strength;
   entry["tail_times"] = done.tail_times;
@@ -182,14 +184,16 @@ std::string said_of_outliers(const DenoiseReport& done, const DenoiseCommandOpti
 std::string summary(const DenoiseReport& done, const DenoiseCommandOptions& options) {
   const bool clean =
       std::holds_alternative<AutomaticOptions>(done.effective.flow.flow) && done.guide_strength == 0;
-  const std::string left = clean ? ", too little to smooth"
+  const std::string left = clean ? ", too little to smooth (--strength 2 does it all the same)"
                            : done.noise_left < done.noise
                                ? fmt::format(", about {:.3g} left", done.noise_left)
                                : "";
+  const std::string tails =
+      done.tail_times > 1 ? fmt::format(", some points {:.2g} times that", done.tail_times) : "";
   return fmt::format(
-      "{} points, {} finite{}\nnoise {:.3g}{}; spacing {:.4g}\nlargest move {:.4g}, rms {:.4g}", done.points,
-      done.finite, said_of_outliers(done, options), done.noise, left, done.spacing, done.largest_move,
-      done.rms_move);
+      "{} points, {} finite{}\nnoise {:.3g}{}{}{}; spacing {:.4g}\nlargest move {:.4g}, rms {:.4g}",
+      done.points, done.finite, said_of_outliers(done, options), done.noise,
+      clean ? "" : in_words(done.measured), tails, left, done.spacing, done.largest_move, done.rms_move);
 }
 
 /// What --html shows of a cloud as it was read.

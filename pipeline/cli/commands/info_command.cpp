@@ -10,11 +10,14 @@
 #include "pipeline/cli/commands/command.h"
 #include "pipeline/cli/commands/figures.h"
 #include "pipeline/cli/console/console.h"
+#include "pipeline/cli/console/report.h"
 #include "pipeline/cli/files/cloud_files.h"
+#include "pipeline/outliers.h"
 #include "rfs_mesh/fit/local_surface.h"
 #include "rfs_mesh/noise/noise.h"
 #include "rfs_mesh/points.h"
 #include "rfs_mesh/search/neighbors.h"
+#include "smoothing/automatic/flow_auto.h"
 
 namespace rfsmooth::cli {
 
@@ -41,12 +44,24 @@ ordered_json tenths(std::vector<double> field) {
   return json;
 }
 
+/// As `denoise` measures it: outliers, which it leaves where they are, have no part in it.
+rfs_mesh::NoiseField measure_noise(Positions points, const Context& context) {
+  const std::vector<char> outlier = pipeline::find_outliers(points, context);
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (outlier[i] == 0) points[kept++] = points[i];
+  points.resize(kept);
+  return rfs_mesh::measure_noise(rfs_mesh::SpatialIndex(points, context), context);
+}
+
 /// Finite and distinct points, bounding box, mean distance to the nearest other point.
 ordered_json measure(const pipeline::io::Cloud& cloud, const Context& context) {
   const std::vector<double> xyz = pipeline::io::positions(cloud, context);
-  ordered_json json = {{"finite", 0},      {"distinct", 0},         {"low", nullptr},
-                       {"high", nullptr},  {"spacing", nullptr},    {"spacing_field", nullptr},
-                       {"noise", nullptr}, {"noise_field", nullptr}};
+  ordered_json json = {{"finite", 0},           {"distinct", 0},
+                       {"low", nullptr},        {"high", nullptr},
+                       {"spacing", nullptr},    {"spacing_field", nullptr},
+                       {"noise", nullptr},      {"noise_measured", nullptr},
+                       {"noise_field", nullptr}};
   const auto working = rfs_mesh::make_working_cloud(xyz.data(), cloud.size(), context);
   if (!working.ok()) {
     if (working.error().code == ErrorCode::no_usable_points) return json;
@@ -69,11 +84,16 @@ ordered_json measure(const pipeline::io::Cloud& cloud, const Context& context) {
     const rfs_mesh::SpatialIndex index(points, context);
     json["spacing"] = rfs_mesh::mean_spacing(points, index.nearest(1, context), context);
     json["spacing_field"] = tenths(rfs_mesh::measure_spacing(index, context));
-    rfs_mesh::NoiseField noise = rfs_mesh::measure_noise(index, context);
+    rfs_mesh::NoiseField noise = measure_noise(points, context);
     json["noise"] = noise.sigma;
+    json["noise_measured"] = json_of(smoothing::summary_of(noise));
     json["noise_field"] = tenths(std::move(noise.local));
   });
   return json;
+}
+
+NoiseSummary noise_of(const ordered_json& json) {
+  return {json["typical"], json["loudest_tenth"], json["shared_by"], json["in_steps"]};
 }
 
 std::string vector_text(const ordered_json& v, int digits = 9) {
@@ -112,8 +132,9 @@ void print_text(const ordered_json& info) {
                info["spacing"].get<double>(), vector_text(info["spacing_field"], 6));
   if (!info["noise"].is_null())
     fmt::print(
-        "  noise     {:.6g} (standard deviation along the normal; over the cloud {} from calm to loud)\n",
-        info["noise"].get<double>(), vector_text(info["noise_field"], 6));
+        "  noise     {:.6g}{} (standard deviation along the normal; over the cloud {} from calm to loud)\n",
+        info["noise"].get<double>(), in_words(noise_of(info["noise_measured"])),
+        vector_text(info["noise_field"], 6));
   fmt::print("  fields   ");
   for (const auto& field : info["fields"]) {
     fmt::print(" {}:{}", field["name"].get<std::string>(), field["type"].get<std::string>());

@@ -34,4 +34,21 @@ nlohmann::ordered_json json_of(const std::vector<StageTime>& stages) {
   return object;
 }
 
+nlohmann::ordered_json json_of(const NoiseSummary& noise) {
+  return {{"typical", noise.typical},
+          {"loudest_tenth", noise.loudest},
+          {"shared_by", noise.shared},
+          {"in_steps", noise.stepped}};
+}
+
+std::string in_words(const NoiseSummary& noise) {
+  constexpr double kLouder = 1.1;  // the noise field says nothing of less (rfs_mesh/noise/noise.h)
+  std::string words;
+  if (noise.loudest > kLouder * noise.typical)
+    words += fmt::format(", {:.3g} in the loudest tenth", noise.loudest);
+  if (noise.shared >= 2) words += fmt::format(", shared by {:.0f} neighbours", noise.shared);
+  if (noise.stepped) words += ", depth in steps";
+  return words;
+}
+
 }  // namespace rfsmooth::cli

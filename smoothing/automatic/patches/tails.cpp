@@ -1,6 +1,7 @@
 #include "smoothing/automatic/patches/tails.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 
@@ -37,6 +38,25 @@ double share_of_far(const std::vector<float>& values, double unit) {
   return known > 0 ? double(far) / double(known) : 0;
 }
 
+/// How many of the values, in units, have each square: mean squares of bins that are narrow against any
+/// normal distribution, so that its parts are found in time that does not depend on n.
+struct Squares {
+  static constexpr std::size_t kBins = 1200;
+  std::array<double, kBins> count = {}, square = {};
+
+  Squares(const std::vector<float>& values, double unit) {
+    for (const float r : values) {
+      const double t = double(std::abs(r)) / unit;
+      if (!(t < kFarthestTail)) continue;
+      const auto bin = std::min(kBins - 1, std::size_t(t / kFarthestTail * kBins));
+      count[bin] += 1;
+      square[bin] += t * t;
+    }
+    for (std::size_t b = 0; b < kBins; ++b)
+      if (count[b] > 0) square[b] /= count[b];
+  }
+};
+
 }  // namespace
 
 double Tails::weight(double r) const {
@@ -53,19 +73,18 @@ Tails find_tails(const std::vector<float>& residuals, const std::vector<float>& 
   if (residuals.empty() || !(share_of_far(least, scale(least)) > kLeastFar)) return tails;
   const double unit = scale(residuals);
   if (!(unit > 0)) return tails;
-  std::vector<double> squares;
-  for (const float r : residuals)
-    if (const double t = double(r) / unit; std::abs(t) < kFarthestTail) squares.push_back(t * t);
+  const Squares squares(residuals, unit);
   double share = 0.1, narrow = 1, wide = 9;
   for (int round = 0; round < kTailRounds; ++round) {
     double sums[2] = {}, weights[2] = {};
-    for (const double square : squares) {
+    for (std::size_t bin = 0; bin < Squares::kBins; ++bin) {
+      const double count = squares.count[bin], square = squares.square[bin];
       const double a = (1 - share) / std::sqrt(narrow) * std::exp(-square / (2 * narrow)),
                    b = share / std::sqrt(wide) * std::exp(-square / (2 * wide)), is_wide = b / (a + b);
-      sums[0] += (1 - is_wide) * square;
-      sums[1] += is_wide * square;
-      weights[0] += 1 - is_wide;
-      weights[1] += is_wide;
+      sums[0] += count * (1 - is_wide) * square;
+      sums[1] += count * is_wide * square;
+      weights[0] += count * (1 - is_wide);
+      weights[1] += count * is_wide;
     }
     share = weights[1] / (weights[0] + weights[1]);
     narrow = sums[0] / weights[0];

@@ -154,6 +154,11 @@ TEST_F(DenoiseCommand, ReportOfTheAutomaticFlowSaysEverythingItChose) {
   EXPECT_EQ(report["options"]["noise"], report["noise"]);
   EXPECT_GT(report["noise"], 0);
   EXPECT_LT(report["noise_left"], report["noise"]);
+  const auto measured = nlohmann::json::parse(run({"info", "--json", "in.ply"}).out)["noise_measured"];
+  EXPECT_EQ(report["noise_measured"], measured) << "both say the same of a cloud";
+  EXPECT_EQ(measured["typical"], report["noise"]);
+  EXPECT_GE(measured["loudest_tenth"], 0.5 * measured["typical"].get<double>());
+  EXPECT_EQ(measured["in_steps"], false);
   EXPECT_GT(report["guide_strength"], 0);
   EXPECT_GT(report["equalized"]["rms"], 0);
   EXPECT_GT(report["largest_move"], report["rms_move"]);

@@ -43,7 +43,7 @@ rfs_mesh::NeighborTable near(const Positions& points) {
 /// Of points that nothing has smoothed: they are where they were before.
 smoothing::Equalized spread(Positions& points, double sigma, double spacing, const Context& context) {
   const Positions before = points;
-  return equalize(points, before, sigma, spacing, near(points), context);
+  return equalize(points, before, std::vector<double>(points.size(), sigma), spacing, near(points), context);
 }
 
 TEST(Equalize, EvensAClumpedSphereAndStaysOnIt) {
@@ -139,10 +139,23 @@ TEST(Equalize, WhatWasMovedSidewaysGoesBackWhereNoiseIsSmall) {
   for (const auto& [noise, share] : {std::pair{0.25, 0.75}, {4.0, 0.019}}) {
     Positions points = before;
     for (auto& p : points) p += aside;
-    equalize(points, before, noise, 1, near(points), {});
+    equalize(points, before, std::vector<double>(points.size(), noise), 1, near(points), {});
     for (std::size_t i = 0; i < points.size(); ++i)
       EXPECT_LT((points[i] - before[i] - (1 - share) * aside).norm(), 0.01) << noise;
   }
+}
+
+TEST(Equalize, PointsWithoutNoiseStayAmongThoseWithSome) {
+  Positions points = random_sphere(4000);
+  const Positions before = points;
+  std::vector<double> sigma(points.size(), 0.0);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (points[i].x() > 0) sigma[i] = 1;
+  EXPECT_GT(equalize(points, before, sigma, 1, near(points), {}).rms, 0);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (before[i].x() <= 0) {
+      ASSERT_LT((points[i] - before[i]).norm(), 1e-6);
+    }
 }
 
 TEST(Equalize, AnEvenCloudStaysAsItIs) {
