@@ -6,8 +6,8 @@
 #include <rfsmooth/compare.h>
 
 #include "pipeline/cli/commands/command.h"
-#include "pipeline/cli/commands/figures.h"
 #include "pipeline/cli/console/console.h"
+#include "pipeline/cli/console/figures.h"
 #include "pipeline/cli/deviation.h"
 #include "pipeline/cli/files/cloud_files.h"
 #include "pipeline/io/mesh_file.h"

@@ -8,8 +8,8 @@
 
 #include "base/parallel.h"
 #include "pipeline/cli/commands/command.h"
-#include "pipeline/cli/commands/figures.h"
 #include "pipeline/cli/console/console.h"
+#include "pipeline/cli/console/figures.h"
 #include "pipeline/cli/console/report.h"
 #include "pipeline/cli/files/cloud_files.h"
 #include "pipeline/outliers.h"

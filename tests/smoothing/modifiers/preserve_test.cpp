@@ -15,7 +15,9 @@ using rfsmooth::Mesh;
 namespace {
 
 FlowOptions laplacian(Preserve preserve) {
-  FlowOptions o{LaplacianOptions()};
+  LaplacianOptions ten;
+  ten.iterations = 10;
+  FlowOptions o{ten};
   o.modifiers.preserve = preserve;
   return o;
 }
