@@ -5,7 +5,8 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 . tests/packages.sh
-install_missing $core_packages libpcl-dev libcgal-dev libopen3d-dev dpkg-dev mmdebstrap
+install_missing $core_packages libpcl-dev libcgal-dev libopen3d-dev dpkg-dev mmdebstrap python3-dev python3-venv
+install_python
 
 cmake --preset package > /dev/null
 cmake --build --preset package
@@ -70,6 +71,16 @@ for part in pcl open3d cgal; do
   package=librfsmooth-$part-dev
   if wanted $package; then in_clean_system $package "$(deb librfsmooth-dev $package)" "$(consumer $part)"; fi
 done
+if wanted python3-rfsmooth; then
+  in_clean_system python3-rfsmooth "$(deb python3-rfsmooth)" '
+    cd /tmp
+    python3 -c "
+import numpy, rfsmooth
+points, file = rfsmooth.read(\"sphere_scan.ply\")
+clean, report = rfsmooth.denoise_structured(points)
+rfsmooth.write(\"clean.ply\", clean, file)
+print(\"said:\", rfsmooth.__version__, report[\"counts\"][\"moved\"], \"points moved\")"'
+fi
 if wanted rfsmooth-reconstruct; then
   in_clean_system rfsmooth-reconstruct "$(deb rfsmooth rfsmooth-reconstruct)" '
     rfsmooth reconstruct --method advancing-front --force /tmp/sphere_scan.ply /tmp/surface.ply

@@ -6,6 +6,7 @@ cd "$(dirname "$0")/.."
 install_missing $core_packages $test_packages
 
 preset=${1:-dev}
+[ "$preset" != dev ] || install_python
 cmake --preset "$preset" > /dev/null
 cmake --build --preset "$preset"
 ctest --preset "$preset" -j "$(nproc)"

@@ -83,6 +83,15 @@ if("cgal" IN_LIST components)
     DESCRIPTION "Surface reconstruction by CGAL's advancing front. Programs that link it are
 under the GPL.")
 endif()
+if(TARGET rfsmooth_python AND Python_VERSION VERSION_GREATER_EQUAL 3)
+  math(EXPR next "${Python_VERSION_MINOR} + 1")
+  debian_package(python NAME python3-rfsmooth SECTION python
+    DEPENDS "python3 (>= 3.${Python_VERSION_MINOR}), python3 (<< 3.${next}), python3-numpy"
+    SUGGESTS rfsmooth-reconstruct
+    SUMMARY "takes the noise out of 3-D scans - Python 3 module"
+    DESCRIPTION "Denoises numpy arrays of points, structured arrays as PDAL and laspy have
+them, and clouds of Open3D.")
+endif()
 if(TARGET rfsmooth_reconstruct)
   debian_package(reconstruct NAME rfsmooth-reconstruct SECTION science GPL
     DEPENDS "rfsmooth (= ${PROJECT_VERSION})"

@@ -47,6 +47,8 @@ forbid "PCL, Open3D and CGAL stay in their adapters" '(pcl|open3d|CGAL|rfsmooth/
 forbid "each adapter sees its own library" '(open3d|CGAL)/' pipeline/adapters/pcl include/rfsmooth/pcl
 forbid "each adapter sees its own library" '(pcl|CGAL)/' pipeline/adapters/open3d include/rfsmooth/open3d
 forbid "each adapter sees its own library" '(pcl|open3d)/' pipeline/adapters/cgal include/rfsmooth/cgal
+forbid "each adapter sees its own library" '(pcl|open3d|CGAL)/' pipeline/adapters/python
+forbid "nanobind stays in its adapter" 'nanobind/' include base rfs_mesh smoothing $(find_except pipeline adapters/python)
 forbid "TBB is seen by parallel.cpp only" '(tbb|oneapi)/' $(find_except base | grep -v '^base/parallel.cpp$') include rfs_mesh smoothing pipeline
 forbid "public headers include std and Eigen/Core only" '(Eigen/(Dense|Sparse|Eigen)|fmt|nlohmann|CLI|flann|tbb)' include
 complain "every header may be included twice" \

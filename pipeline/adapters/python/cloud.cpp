@@ -1,0 +1,227 @@
+#include "pipeline/adapters/python/cloud.h"
+
+#include <algorithm>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
+
+#include "pipeline/adapters/python/released.h"
+#include "pipeline/cli/files/cloud_files.h"
+#include "pipeline/io/mesh_file.h"
+
+namespace rfsmooth::python {
+
+namespace nb = nanobind;
+namespace io = pipeline::io;
+
+namespace {
+
+using Rows = nb::ndarray<const std::uint8_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+using Triples = nb::ndarray<const std::uint32_t, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
+using FieldText = std::tuple<std::string, std::string, std::size_t>;  ///< name, numpy's type, values per row
+
+/// A numpy array that owns what `values` held.
+template <class T, class... Options, class Values>
+nb::ndarray<nb::numpy, T, Options...> array_of(Values&& values, std::initializer_list<std::size_t> shape) {
+  auto* held = new std::decay_t<Values>(std::forward<Values>(values));
+  nb::capsule owner(held, [](void* p) noexcept { delete static_cast<std::decay_t<Values>*>(p); });
+  return nb::ndarray<nb::numpy, T, Options...>(reinterpret_cast<T*>(held->data()), shape, owner);
+}
+
+io::Scalar scalar_of(const std::string& name) {
+  for (int k = 0; k <= int(io::Scalar::float64); ++k)
+    if (io::name_of(io::Scalar(k)) == name) return io::Scalar(k);
+  throw std::invalid_argument("no file holds fields of type " + name);
+}
+
+io::Table table_of(const std::vector<FieldText>& fields, const Rows& rows, std::size_t count) {
+  io::Table table;
+  table.name = "vertex";
+  table.count = count;
+  for (const auto& [name, type, values] : fields) table.fields.push_back({name, scalar_of(type), values});
+  if (rows.size() != count * table.row_size()) throw std::invalid_argument("the rows have another size");
+  const char* const bytes = reinterpret_cast<const char*>(rows.data());
+  table.data.assign(bytes, bytes + rows.size());
+  return table;
+}
+
+/// The fields of a fixed size, in file order.
+std::vector<std::size_t> fixed_fields(const io::Table& table) {
+  std::vector<std::size_t> which;
+  for (std::size_t f = 0; f < table.fields.size(); ++f)
+    if (!table.fields[f].is_list()) which.push_back(f);
+  return which;
+}
+
+std::vector<FieldText> fields_of(const io::Cloud& cloud) {
+  std::vector<FieldText> fields;
+  for (const std::size_t f : fixed_fields(cloud.points())) {
+    const io::Field& field = cloud.points().fields[f];
+    fields.emplace_back(field.name, io::name_of(field.type), field.count);
+  }
+  return fields;
+}
+
+/// Which of those fields are the coordinates.
+std::tuple<std::size_t, std::size_t, std::size_t> coordinate_fields(const io::Cloud& cloud) {
+  const std::vector<std::size_t> fixed = fixed_fields(cloud.points());
+  const auto place = [&](std::size_t field) {
+    return std::size_t(std::find(fixed.begin(), fixed.end(), field) - fixed.begin());
+  };
+  return {place(cloud.xyz[0]), place(cloud.xyz[1]), place(cloud.xyz[2])};
+}
+
+/// Those fields of the points as bytes, row after row.
+nb::ndarray<nb::numpy, std::uint8_t, nb::ndim<1>> rows_of(const io::Cloud& cloud) {
+  io::Table table = cloud.points();
+  if (table.has_lists()) io::project(table, fixed_fields(table), {});
+  io::make_binary(table, {});
+  const std::size_t size = table.data.size();
+  return array_of<std::uint8_t, nb::ndim<1>>(std::move(table.data), {size});
+}
+
+io::Cloud cloud_of(const std::vector<FieldText>& fields, const Rows& rows, std::size_t count,
+                   const std::tuple<std::size_t, std::size_t, std::size_t>& xyz) {
+  io::Cloud cloud;
+  cloud.width = count;
+  cloud.xyz = {std::get<0>(xyz), std::get<1>(xyz), std::get<2>(xyz)};
+  cloud.elements.push_back(table_of(fields, rows, count));
+  for (const std::size_t f : cloud.xyz)
+    if (f >= fields.size()) throw std::invalid_argument("there is no such field");
+  return cloud;
+}
+
+bool same_fields(const io::Table& one, const io::Table& other) {
+  if (one.fields.size() != other.fields.size()) return false;
+  for (std::size_t f = 0; f < one.fields.size(); ++f) {
+    const io::Field &a = one.fields[f], &b = other.fields[f];
+    if (a.name != b.name || a.type != b.type || a.count != b.count || a.is_list() || b.is_list())
+      return false;
+  }
+  return true;
+}
+
+/// Puts rows in the place of the file's: fields of the same name (the first `known` of `fields`, in file
+/// order) get their values in place, the others come behind. What is equal keeps its bytes or text.
+void put_rows(io::Cloud& cloud, const std::vector<FieldText>& fields, const Rows& rows, std::size_t known) {
+  io::Table& table = cloud.points();
+  io::Table given = table_of(fields, rows, table.count);
+  const std::vector<std::size_t> fixed = fixed_fields(table);
+  if (known != fixed.size()) throw std::invalid_argument("the fields are not the file's");
+  if (!table.text && same_fields(table, given)) {
+    table.data = std::move(given.data);
+    return;
+  }
+  for (std::size_t f = 0; f < given.fields.size(); ++f) {
+    if (!given.fields[f].is_plain()) {
+      if (f >= known)
+        throw Failure({ErrorCode::usage, "a field of several values a row cannot be added to a file"});
+      continue;
+    }
+    const std::vector<double> values = io::gather(given, {f}, {});
+    if (f < known)
+      io::scatter(table, {fixed[f]}, values.data(), {});
+    else
+      io::append_field(table, given.fields[f], values.data(), {});
+  }
+}
+
+nb::ndarray<nb::numpy, double, nb::shape<-1, 3>> positions_of(const io::Cloud& cloud) {
+  return array_of<double, nb::shape<-1, 3>>(io::positions(cloud), {cloud.size(), 3});
+}
+
+nb::ndarray<nb::numpy, std::uint32_t, nb::shape<-1, 3>> faces_array(const io::Cloud& cloud) {
+  std::vector<Face> faces = io::faces_of(cloud);
+  const std::size_t count = faces.size();
+  return array_of<std::uint32_t, nb::shape<-1, 3>>(std::move(faces), {count, 3});
+}
+
+nb::ndarray<nb::numpy, std::uint32_t, nb::shape<-1, 2>> edges_array(const io::Cloud& cloud) {
+  std::vector<Edge> edges = io::edges_of(cloud);
+  const std::size_t count = edges.size();
+  return array_of<std::uint32_t, nb::shape<-1, 2>>(std::move(edges), {count, 2});
+}
+
+/// The kind of each edge, where the edges have one.
+std::optional<nb::ndarray<nb::numpy, std::uint8_t, nb::ndim<1>>> edge_kinds(const io::Cloud& cloud) {
+  const io::Table* const edges = cloud.element("edge");
+  if (edges == nullptr || edges->fields.size() < 3) return std::nullopt;
+  const std::vector<double> values = io::gather(*edges, {2}, {});
+  std::vector<std::uint8_t> kinds(values.begin(), values.end());
+  const std::size_t count = kinds.size();
+  return array_of<std::uint8_t, nb::ndim<1>>(std::move(kinds), {count});
+}
+
+void put_faces(io::Cloud& cloud, const Triples& triples) {
+  std::vector<Face> faces(triples.shape(0));
+  for (std::size_t i = 0; i < faces.size(); ++i)
+    for (std::size_t k = 0; k < 3; ++k) {
+      faces[i][k] = triples.data()[3 * i + k];
+      if (faces[i][k] >= cloud.size())
+        throw Failure({ErrorCode::usage, "face " + std::to_string(i) + ": names vertex " +
+                                             std::to_string(faces[i][k]) + " of " +
+                                             std::to_string(cloud.size())});
+    }
+  io::set_faces(cloud, faces);
+}
+
+io::Cloud read_file(const std::string& path) {
+  io::Cloud cloud;
+  released(nb::none(), 0, {}, [&](const Context& context, cli::Console&) {
+    std::vector<StageTime> unused;
+    cloud = cli::load_cloud(path, context, unused);
+  });
+  return cloud;
+}
+
+void write_file(const io::Cloud& cloud, const std::string& path, const std::optional<std::string>& format,
+                const std::optional<std::string>& encoding, bool force, bool drop_unsupported) {
+  io::WriteOptions options;
+  options.force = force;
+  options.drop_unsupported = drop_unsupported;
+  if (format && !(options.format = io::format_by_name(*format)))
+    throw Failure({ErrorCode::usage, "`format` is '" + *format + "'; no file is written so"});
+  if (encoding && !(options.encoding = io::encoding_by_name(*encoding)))
+    throw Failure({ErrorCode::usage, "`encoding` is '" + *encoding + "'; no file is written so"});
+  released(nb::none(), 0, {}, [&](const Context& context, cli::Console&) {
+    value_or_throw(io::write_cloud(cloud, path, options, context));
+  });
+}
+
+}  // namespace
+
+void bind_cloud(nb::module_& module) {
+  nb::class_<io::Cloud>(module, "Cloud")
+      .def(nb::new_(&cloud_of), nb::arg("fields"), nb::arg("rows"), nb::arg("count"), nb::arg("xyz"))
+      .def("__copy__", [](const io::Cloud& cloud) { return io::Cloud(cloud); })
+      .def_prop_ro("fields", &fields_of)
+      .def_prop_ro("xyz", &coordinate_fields)
+      .def_prop_ro("format", [](const io::Cloud& cloud) { return std::string(io::name_of(cloud.format)); })
+      .def_prop_ro("encoding",
+                   [](const io::Cloud& cloud) { return std::string(io::name_of(cloud.encoding)); })
+      .def_prop_ro("extent", [](const io::Cloud& c) { return std::pair(c.width, c.height); })
+      .def_prop_rw(
+          "viewpoint", [](const io::Cloud& cloud) { return cloud.viewpoint; },
+          [](io::Cloud& cloud, const std::string& viewpoint) { cloud.viewpoint = viewpoint; })
+      .def("__len__", &io::Cloud::size)
+      .def("rows", &rows_of)
+      .def("put_rows", &put_rows, nb::arg("fields"), nb::arg("rows"), nb::arg("known"))
+      .def("positions", &positions_of)
+      .def("faces", &faces_array)
+      .def("put_faces", &put_faces)
+      .def("edges", &edges_array)
+      .def("edge_kinds", &edge_kinds);
+  module.def("read_file", &read_file);
+  module.def("write_file", &write_file);
+}
+
+}  // namespace rfsmooth::python

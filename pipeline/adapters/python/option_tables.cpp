@@ -1,0 +1,110 @@
+#include "pipeline/adapters/python/option_tables.h"
+
+#include <map>
+#include <set>
+#include <stdexcept>
+
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <rfsmooth/flow.h>
+
+#include "pipeline/cli/files/cloud_jobs.h"
+
+namespace rfsmooth::python {
+
+namespace nb = nanobind;
+
+namespace {
+
+using Defaults = std::map<std::string, std::set<std::optional<std::string>>>;
+
+/// What every flow that has an option, or every modifier, starts it with.
+Defaults defaults_of_flows() {
+  Defaults defaults;
+  for (AnyFlow flow : rfsmooth::flows()) {
+    std::vector<cli::CommandOption> options;
+    std::visit([&](auto& fields) { cli::collect(fields, options); }, flow);
+    for (const cli::CommandOption& o : options) defaults[o.name].insert(o.get());
+  }
+  Modifiers modifiers;
+  std::vector<cli::CommandOption> options;
+  cli::collect(modifiers, options);
+  for (const cli::CommandOption& o : options) defaults[o.name].insert(o.get());
+  return defaults;
+}
+
+std::set<std::string> names_for_files() {
+  cli::JobOptions job;
+  std::vector<cli::CommandOption> options;
+  cli::collect(job, options);
+  std::set<std::string> names;
+  for (const cli::CommandOption& o : options) names.insert(o.name);
+  return names;
+}
+
+const char* name_of(cli::ValueKind kind) {
+  switch (kind) {
+    case cli::ValueKind::flag:
+      return "flag";
+    case cli::ValueKind::integer:
+      return "integer";
+    case cli::ValueKind::number:
+      return "number";
+    case cli::ValueKind::word:
+      return "word";
+    case cli::ValueKind::length:
+      return "length";
+    case cli::ValueKind::file:
+      return "file";
+  }
+  return "";
+}
+
+}  // namespace
+
+cli::Command command_of(const std::string& name) {
+  for (cli::Command& command : cli::all_commands())
+    if (command.name == name) return std::move(command);
+  throw std::invalid_argument("there is no sub-command " + name);
+}
+
+void assign_all(const cli::Command& command, const OptionTexts& options) {
+  std::vector<cli::CommandOption> known = command.options;
+  for (const auto& [name, text] : options) {
+    const cli::CommandOption* const option = cli::find_option(known, name);
+    if (option == nullptr) throw std::invalid_argument("there is no option " + name);
+    cli::assign(*option, text);
+  }
+  for (const cli::CommandOption& option : known)
+    if (option.finish) option.finish();
+  cli::Invocation typed;
+  typed.options = options;
+  if (command.on_cloud.check) command.on_cloud.check(typed);
+}
+
+nb::list option_table(const std::string& name) {
+  const std::set<std::string> elsewhere = names_for_files();
+  const Defaults of_flows = defaults_of_flows();
+  nb::list table;
+  for (const cli::CommandOption& o : command_of(name).options) {
+    if (elsewhere.count(o.name) > 0) continue;
+    nb::dict entry;
+    entry["name"] = o.name;
+    entry["kind"] = name_of(o.kind);
+    entry["optional"] = o.optional;
+    entry["choices"] = o.choices;
+    entry["help"] = o.help;
+    entry["unit"] = o.unit;
+    entry["range"] = o.range;
+    std::optional<std::string> value = o.get();
+    if (const auto flows = of_flows.find(o.name); flows != of_flows.end() && o.optional)
+      value = flows->second.size() == 1 ? *flows->second.begin() : std::nullopt;
+    entry["default"] = value;
+    table.append(entry);
+  }
+  return table;
+}
+
+}  // namespace rfsmooth::python

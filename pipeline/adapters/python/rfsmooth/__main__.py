@@ -1,0 +1,89 @@
+"""python -m rfsmooth: the command, and LAZ files besides."""
+
+import os
+import sys
+
+from . import _rfsmooth
+from ._error import Error
+from ._options import python_name
+
+_OF_LASPY = (".laz",) if _rfsmooth.reads_las else (".laz", ".las")
+_EXIT = {
+    "internal": 1,
+    "usage": 2,
+    "input_unreadable": 3,
+    "no_usable_points": 4,
+    "cannot_write": 5,
+    "out_of_memory": 6,
+    "not_installed": 127,
+    "cancelled": 130,
+}
+
+
+def _is_laspys(path):
+    return path.lower().endswith(_OF_LASPY)
+
+
+def _denoise_las(files, options):
+    """One LAS or LAZ file by laspy; says what the command would say."""
+    from . import las
+
+    if "output" in options:
+        files = [*files, options.pop("output")]
+    if len(files) != 2 or not all(_is_laspys(path) for path in files):
+        raise Error("usage", "LAZ goes to LAZ, one file at a time: rfsmooth denoise IN.laz OUT.laz")
+    of_files = {"keep_scale", "force", "threads", "quiet", "verbose", *las.denoise_file.table.entries}
+    for name in options:
+        if name not in of_files:
+            raise Error("usage", f"--{name} has no meaning for LAZ files here")
+    quiet = options.pop("quiet", False)
+    bar = not quiet and sys.stderr.isatty()
+    options.pop("verbose", None)
+    report = las.denoise_file(*files, progress=bar, **options)
+    if not quiet:
+        counts = report["counts"]
+        for line in (
+            f"{files[0]} -> {files[1]}: {counts['points']} points, {counts['outliers']} outliers",
+            f"noise {report['noise']:.3g}, about {report['noise_left']:.3g} left; spacing {report['spacing']:.4g}",
+            report["scale"],
+        ):
+            if line:
+                print(f"rfsmooth: {line}", file=sys.stderr)
+
+
+def _las_arguments(arguments):
+    """The files and options of a `denoise` that names a LAZ file; None for anything else."""
+    if arguments[:1] != ["denoise"] or not any(_is_laspys(a) for a in arguments) or {"-h", "--help", "--help-all"} & set(arguments):
+        return None
+    keep = "--keep-scale" in arguments
+    _, files, options = _rfsmooth.parse_command([a for a in arguments if a != "--keep-scale"])
+    values = {python_name(name): text for name, text in options}
+    flags = {"true": True, "false": False}
+    values = {name: flags.get(text, None if text == "auto" else text) for name, text in values.items()}
+    if "threads" in values:
+        values["threads"] = int(values["threads"] or 0)
+    return files, {**values, **({"keep_scale": True} if keep else {})}
+
+
+def main():
+    """Runs the command and ends the process with its exit code."""
+    arguments = sys.argv[1:]
+    try:
+        las = _las_arguments(arguments)
+        if las is not None:
+            _denoise_las(*las)
+            sys.exit(0)
+    except Error as error:
+        print(f"rfsmooth: error: {error}", file=sys.stderr)
+        sys.exit(_EXIT[error.code])
+    except KeyboardInterrupt:
+        print("rfsmooth: error: cancelled", file=sys.stderr)
+        sys.exit(130)
+    sys.stdout.flush()
+    sys.stderr.flush()
+    # The command closes standard output when it is done: nothing of Python's may come after it.
+    os._exit(_rfsmooth.run_command(arguments))
+
+
+if __name__ == "__main__":
+    main()

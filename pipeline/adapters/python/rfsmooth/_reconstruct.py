@@ -1,0 +1,53 @@
+"""The program rfsmooth-reconstruct, which links what the module does not."""
+
+import json
+import os
+import shutil
+import subprocess
+import tempfile
+
+from . import _rfsmooth
+from ._error import Error
+
+_CODES = {
+    1: "internal",
+    2: "usage",
+    3: "input_unreadable",
+    4: "no_usable_points",
+    5: "cannot_write",
+    6: "out_of_memory",
+    127: "not_installed",
+    130: "cancelled",
+}
+
+
+def _typed(name, text):
+    if text in ("true", "false"):
+        return f"--{name}" if text == "true" else f"--no-{name}"
+    return f"--{name}={text}"
+
+
+def run_reconstruct(cloud, options, threads):
+    """The surface as a Cloud with faces, and the report."""
+    program = shutil.which("rfsmooth-reconstruct")
+    if program is None:
+        raise Error("not_installed", "the program rfsmooth-reconstruct is not in PATH; it comes with the package of that name")
+    with tempfile.TemporaryDirectory(prefix="rfsmooth-") as folder:
+        source, target, report = (os.path.join(folder, name) for name in ("points.ply", "surface.ply", "report.json"))
+        _rfsmooth.write_file(cloud, source, None, None, False, False)
+        arguments = [_typed(name, text) for name, text in options if text != "auto"]
+        if threads:
+            arguments.append(f"--threads={threads}")
+        ran = subprocess.run(
+            [program, *arguments, "--quiet", f"--report={report}", source, target],
+            stdin=subprocess.DEVNULL,
+            stderr=subprocess.PIPE,
+            text=True,
+            check=False,
+        )
+        if ran.returncode != 0:
+            lines = [line for line in ran.stderr.splitlines() if ": error: " in line]
+            message = lines[0].split(": error: ", 1)[1] if lines else f"ended with {ran.returncode}: {ran.stderr}"
+            raise Error(_CODES.get(ran.returncode, "internal"), message.replace(source, "points"))
+        with open(report, encoding="utf-8") as file:
+            return _rfsmooth.read_file(target), json.load(file)

@@ -1,0 +1,116 @@
+"""LAS and LAZ files, read and written by laspy (pip install rfsmooth[laz]): header, VLRs, extra bytes and every other field
+come along.
+"""
+
+import os
+
+import numpy as np
+
+from . import _functions
+from ._error import Error
+from ._options import takes_options
+
+_INT32 = 2**31 - 1
+
+
+def _laspy(path):
+    try:
+        import laspy
+    except ImportError as missing:
+        raise Error(
+            "not_installed", f"{path}: LAZ files need laspy and lazrs: pip install 'rfsmooth[laz]'"
+        ) from missing
+    return laspy
+
+
+def _finer(scales, sigma):
+    """The scales, each divided by the power of ten that makes it a quarter of sigma or less."""
+    fine = np.array(scales, float)
+    powers = np.zeros(3, int)
+    for axis in range(3):
+        while sigma > 0 and fine[axis] > sigma / 4 and powers[axis] < 9:
+            powers[axis] += 1
+            fine[axis] = scales[axis] / 10.0 ** powers[axis]
+    return fine, powers
+
+
+def _rescale(las, sigma):
+    """Refines the scale of coordinates: old whole numbers times a power of ten, so that what does not move stays exact.
+    Returns what is to be said of it, or None. The finest that the range of whole numbers allows is taken.
+    """
+    header = las.header
+    fine, powers = _finer(header.scales, sigma)
+    for axis, name in enumerate("XYZ"):
+        values = np.asarray(las.points.array[name], np.int64)
+        largest = int(np.abs(values).max(initial=0))
+        while powers[axis] > 0 and largest * 10 ** int(powers[axis]) > _INT32:
+            powers[axis] -= 1
+        fine[axis] = header.scales[axis] / 10.0 ** powers[axis]
+        las.points.array[name] = (values * 10 ** int(powers[axis])).astype(np.int32)
+    if not powers.any():
+        return None
+    old = header.scales.copy()
+    header.scales = fine
+    las.points.scales = fine
+    return f"scale {old.tolist()} -> {fine.tolist()}: the old one is coarser than a quarter of the noise"
+
+
+def _store(las, xyz, moved):
+    """Writes the coordinates that moved back as whole numbers. Error if one does not fit."""
+    for axis, name in enumerate("XYZ"):
+        whole = np.rint((xyz[:, axis] - las.header.offsets[axis]) / las.header.scales[axis])
+        if np.abs(whole[moved]).max(initial=0) > _INT32:
+            raise Error("cannot_write", f"{name}: coordinates leave the range of the file's whole numbers")
+        las.points.array[name][moved] = whole[moved].astype(np.int32)
+
+
+@takes_options("denoise")
+def denoise_file(source, target, *, keep_scale=False, force=False, threads=0, progress=None, config=None, **options):
+    """Reads a LAS or LAZ file, takes the noise out and writes another; returns the report, whose "scale" says whether the
+    scale of coordinates was refined: it is, by a power of ten, where it is coarser than a quarter of the noise, since
+    rounding to it would cost what smoothing gained (keep_scale: not). A COPC file is written as LAZ, without its index.
+    normals and write_displacement have no place in these files; outliers may be removed.
+    """
+    source, target = os.fspath(source), os.fspath(target)
+    if os.path.exists(target) and not force:
+        raise Error("cannot_write", f"{target}: exists (--force replaces it)")
+    laspy = _laspy(source)
+    options = _functions._config(denoise_file.table, config, options)
+    for name in ("normals", "write_displacement", "mark_outliers"):
+        if options.get(name):
+            raise Error("usage", f"{source}: LAS has no field for --{name.replace('_', '-')}")
+    if options.get("outliers") == "mark":
+        raise Error("usage", f"{source}: LAS has no field for --outliers mark")
+    remove = options.get("outliers") == "remove"
+    try:
+        las = laspy.read(source)
+    except FileNotFoundError as missing:
+        raise Error("input_unreadable", f"{source}: {missing.strerror}") from missing
+    except Exception as broken:  # laspy's, lazrs's and struct's own
+        raise Error("input_unreadable", f"{source}: {broken}") from broken
+    xyz = np.stack([np.asarray(las.x), np.asarray(las.y), np.asarray(las.z)], axis=1)
+    asked = {**options, "outliers": "mark"} if remove else options
+    strength = asked.get("strength_field")
+    if isinstance(strength, str):
+        asked = {**asked, "strength_field": np.asarray(las[strength], float)}
+    clean, report = _functions.denoise(xyz, threads=threads, progress=progress, **asked)
+    report["scale"] = None if keep_scale else _rescale(las, report["noise"])
+    _store(las, clean, np.any(clean != xyz, axis=1))
+    if remove:
+        las.points = las.points[~report["fields"]["outlier"]]
+    las.header.vlrs = [v for v in las.header.vlrs if v.user_id != "copc"]
+    _write(las, target)
+    return report
+
+
+def _write(las, target):
+    """Complete or not at all."""
+    partial = f"{target}.rfsmooth-{os.getpid()}{os.path.splitext(target)[1]}"
+    try:
+        las.write(partial)
+        os.replace(partial, target)
+    except Exception as failed:
+        raise Error("cannot_write", f"{target}: {failed}") from failed
+    finally:
+        if os.path.exists(partial):
+            os.remove(partial)

@@ -1,0 +1,109 @@
+"""LAS and LAZ files through laspy: python -m rfsmooth, and rfsmooth.las."""
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import rfsmooth
+from conftest import error_of
+
+laspy = pytest.importorskip("laspy")
+import rfsmooth.las  # noqa: E402
+
+
+def scan(sphere, path, scale=1e-5, origin=(4e5, 5e6, 100), version="1.4", point_format=6):
+    """A scan with everything beside the coordinates."""
+    header = laspy.LasHeader(point_format=point_format, version=version)
+    header.offsets, header.scales = np.array(origin), np.full(3, scale)
+    header.add_extra_dim(laspy.ExtraBytesParams("amplitude", "f4", "of the echo"))
+    header.vlrs.append(laspy.VLR("someone", 7, "theirs", b"kept"))
+    las = laspy.LasData(header)
+    las.xyz = sphere + origin
+    las.intensity = np.arange(len(sphere)) % 65536
+    las.classification = np.arange(len(sphere)) % 20
+    las.gps_time = np.arange(len(sphere)) / 7
+    las.amplitude = np.linspace(0, 1, len(sphere)).astype("f4")
+    las.write(path)
+
+
+def command(*arguments):
+    return subprocess.run([sys.executable, "-m", "rfsmooth", *map(str, arguments)], capture_output=True, text=True)
+
+
+@pytest.mark.parametrize("name", ["a.laz", "a.las"])
+def test_everything_but_the_coordinates_is_kept(sphere, tmp_path, name):
+    source, target = tmp_path / name, tmp_path / f"clean_{name}"
+    scan(sphere, source)
+    rfsmooth.las.denoise_file(source, target)
+    before, after = laspy.read(source), laspy.read(target)
+    assert error_of(after.xyz - [4e5, 5e6, 100]) < 0.5 * error_of(sphere)
+    for dimension in before.point_format.dimension_names:
+        if dimension not in ("X", "Y", "Z"):
+            assert np.array_equal(before[dimension], after[dimension]), dimension
+    assert [(v.user_id, v.record_id, v.record_data_bytes()) for v in before.header.vlrs] == [
+        (v.user_id, v.record_id, v.record_data_bytes()) for v in after.header.vlrs
+    ]
+    for what in ("version", "point_format", "system_identifier", "creation_date"):
+        assert getattr(before.header, what) == getattr(after.header, what)
+    assert np.allclose(after.header.mins, after.xyz.min(axis=0)) and np.allclose(after.header.maxs, after.xyz.max(axis=0))
+
+
+def test_a_coarse_scale_is_refined_and_what_stays_stays_exact(sphere, tmp_path):
+    sphere = np.vstack([sphere, [[3, 3, 3]]])  # an outlier: it does not move
+    scan(sphere, tmp_path / "a.laz", scale=0.02)
+    report = rfsmooth.las.denoise_file(tmp_path / "a.laz", tmp_path / "b.laz")
+    before, after = laspy.read(tmp_path / "a.laz"), laspy.read(tmp_path / "b.laz")
+    times = before.header.scales / after.header.scales
+    assert np.allclose(times, 10) or np.allclose(times, 100)
+    assert np.all(after.header.scales <= report["noise"] / 4) and "coarser" in report["scale"]
+    assert after.X[-1] == before.X[-1] * round(times[0])
+    kept = rfsmooth.las.denoise_file(tmp_path / "a.laz", tmp_path / "c.laz", keep_scale=True)
+    coarse = laspy.read(tmp_path / "c.laz")
+    assert kept["scale"] is None and np.array_equal(coarse.header.scales, before.header.scales)
+    moved = np.asarray(after.xyz)[:-1] - [4e5, 5e6, 100]
+    assert error_of(moved) < error_of(np.asarray(coarse.xyz)[:-1] - [4e5, 5e6, 100])
+
+
+def test_python_m_rfsmooth(sphere, tmp_path):
+    scan(sphere, tmp_path / "a.laz", scale=0.02)
+    ran = command("denoise", "--strength", "0.5", "--keep-scale", tmp_path / "a.laz", tmp_path / "b.laz")
+    assert ran.returncode == 0 and ran.stdout == "" and "noise" in ran.stderr, ran.stderr
+    rfsmooth.las.denoise_file(tmp_path / "a.laz", tmp_path / "c.laz", strength=0.5, keep_scale=True)
+    assert np.array_equal(laspy.read(tmp_path / "b.laz").xyz, laspy.read(tmp_path / "c.laz").xyz)
+    again = command("denoise", tmp_path / "a.laz", tmp_path / "b.laz")
+    assert again.returncode == 5 and "exists" in again.stderr
+    assert command("denoise", "--force", "-q", tmp_path / "a.laz", tmp_path / "b.laz").stderr == ""
+    assert command("denoise", tmp_path / "none.laz", tmp_path / "d.laz").returncode == 3
+    (tmp_path / "broken.laz").write_bytes((tmp_path / "a.laz").read_bytes()[:300])
+    assert command("denoise", tmp_path / "broken.laz", tmp_path / "d.laz").returncode == 3
+    assert command("denoise", "--strenth", "1", tmp_path / "a.laz", tmp_path / "d.laz").returncode == 2
+    assert not (tmp_path / "d.laz").exists()
+
+
+def test_outliers_are_removed_with_their_record(sphere, tmp_path):
+    scan(np.vstack([[[3, 3, 3]], sphere]), tmp_path / "a.laz")
+    rfsmooth.las.denoise_file(tmp_path / "a.laz", tmp_path / "b.laz", outliers="remove")
+    after = laspy.read(tmp_path / "b.laz")
+    assert len(after) == len(sphere) and np.array_equal(after.intensity, (np.arange(len(sphere)) + 1) % 65536)
+
+
+def test_without_laspy_it_says_what_to_install(sphere, tmp_path):
+    scan(sphere, tmp_path / "a.laz")
+    hidden = "import sys; sys.modules['laspy'] = None; sys.argv = ['rfsmooth', 'denoise', sys.argv[1], sys.argv[2]];"
+    hidden += "from rfsmooth.__main__ import main; main()"
+    ran = subprocess.run(
+        [sys.executable, "-c", hidden, str(tmp_path / "a.laz"), str(tmp_path / "b.laz")], capture_output=True, text=True
+    )
+    assert ran.returncode == 127 and "pip install 'rfsmooth[laz]'" in ran.stderr
+
+
+def test_other_files_go_to_the_command(sphere, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    rfsmooth.write("a.ply", sphere)
+    ran = command("denoise", "a.ply", "b.ply")
+    assert ran.returncode == 0 and "noise" in ran.stderr
+    assert np.array_equal(rfsmooth.read("b.ply")[1].positions(), rfsmooth.denoise(sphere)[0])
+    assert command("--version").stdout == f"rfsmooth {rfsmooth.__version__}\n"
+    assert command("denoise").returncode == 2
