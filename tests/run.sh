@@ -5,6 +5,7 @@ cd "$(dirname "$0")/.."
 . tests/packages.sh
 install_missing $core_packages $test_packages
 
+export CCACHE_BASEDIR=${CCACHE_BASEDIR:-$PWD} CCACHE_NOHASHDIR=1  # what several build folders compile alike is compiled once
 preset=${1:-dev}
 [ "$preset" != dev ] || install_python
 cmake --preset "$preset" > /dev/null

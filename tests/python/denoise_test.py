@@ -134,7 +134,7 @@ def test_mistakes_are_errors_that_say_what(sphere):
     assert caught.value.code == "usage" and str(caught.value) == "strength is 20; it must be between 0 and 10"
     with pytest.raises(rfsmooth.Error, match="lambda has no meaning for the flow 'auto'"):
         rfsmooth.denoise(sphere, lambda_=0.5)
-    with pytest.raises(rfsmooth.Error, match="did you mean taubin"):
+    with pytest.raises(rfsmooth.Error, match="did you mean 'taubin'"):
         rfsmooth.denoise(sphere, flow="taubn")
     with pytest.raises(TypeError, match="did you mean 'strength'"):
         rfsmooth.denoise(sphere, strenght=1)

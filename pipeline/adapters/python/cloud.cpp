@@ -1,6 +1,7 @@
 #include "pipeline/adapters/python/cloud.h"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -80,11 +81,16 @@ std::tuple<std::size_t, std::size_t, std::size_t> coordinate_fields(const io::Cl
   return {place(cloud.xyz[0]), place(cloud.xyz[1]), place(cloud.xyz[2])};
 }
 
-/// Those fields of the points as bytes, row after row.
-nb::ndarray<nb::numpy, std::uint8_t, nb::ndim<1>> rows_of(const io::Cloud& cloud) {
-  io::Table table = cloud.points();
+/// A copy with those fields only, as bytes.
+io::Table fixed_part(io::Table table) {
   if (table.has_lists()) io::project(table, fixed_fields(table), {});
   io::make_binary(table, {});
+  return table;
+}
+
+/// Those fields of the points as bytes, row after row.
+nb::ndarray<nb::numpy, std::uint8_t, nb::ndim<1>> rows_of(const io::Cloud& cloud) {
+  io::Table table = fixed_part(cloud.points());
   const std::size_t size = table.data.size();
   return array_of<std::uint8_t, nb::ndim<1>>(std::move(table.data), {size});
 }
@@ -110,6 +116,25 @@ bool same_fields(const io::Table& one, const io::Table& other) {
   return true;
 }
 
+/// Whether two tables, whose fields up to `field` are the same, have the same bytes in it.
+bool same_column(const io::Table& one, const io::Table& other, std::size_t field) {
+  std::size_t begin = 0;
+  for (std::size_t f = 0; f < field; ++f) begin += io::size_of(one.fields[f].type) * one.fields[f].count;
+  const std::size_t size = io::size_of(one.fields[field].type) * one.fields[field].count;
+  for (std::size_t i = 0; i < one.count; ++i)
+    if (one.row(i).substr(begin, size) != other.row(i).substr(begin, size)) return false;
+  return true;
+}
+
+/// `now`, which the text of a file says with more digits than its type holds, but for what is not as
+/// `before`.
+std::vector<double> changed(const std::vector<double>& before, const std::vector<double>& given,
+                            std::vector<double> now) {
+  for (std::size_t i = 0; i < now.size(); ++i)
+    if (given[i] != before[i] && !(std::isnan(given[i]) && std::isnan(before[i]))) now[i] = given[i];
+  return now;
+}
+
 /// Puts rows in the place of the file's: fields of the same name (the first `known` of `fields`, in file
 /// order) get their values in place, the others come behind. What is equal keeps its bytes or text.
 void put_rows(io::Cloud& cloud, const std::vector<FieldText>& fields, const Rows& rows, std::size_t known) {
@@ -121,17 +146,20 @@ void put_rows(io::Cloud& cloud, const std::vector<FieldText>& fields, const Rows
     table.data = std::move(given.data);
     return;
   }
+  const io::Table before = fixed_part(table);
   for (std::size_t f = 0; f < given.fields.size(); ++f) {
-    if (!given.fields[f].is_plain()) {
-      if (f >= known)
-        throw Failure({ErrorCode::usage, "a field of several values a row cannot be added to a file"});
-      continue;
-    }
-    const std::vector<double> values = io::gather(given, {f}, {});
-    if (f < known)
+    if (f < known && same_column(before, given, f)) continue;
+    if (!given.fields[f].is_plain())
+      throw Failure({ErrorCode::usage, "field '" + given.fields[f].name +
+                                           "': several values a row can be changed in binary files only, "
+                                           "and not be added"});
+    std::vector<double> values = io::gather(given, {f}, {});
+    if (f < known) {
+      values = changed(io::gather(before, {f}, {}), values, io::gather(table, {fixed[f]}, {}));
       io::scatter(table, {fixed[f]}, values.data(), {});
-    else
+    } else {
       io::append_field(table, given.fields[f], values.data(), {});
+    }
   }
 }
 
@@ -161,16 +189,10 @@ std::optional<nb::ndarray<nb::numpy, std::uint8_t, nb::ndim<1>>> edge_kinds(cons
   return array_of<std::uint8_t, nb::ndim<1>>(std::move(kinds), {count});
 }
 
+/// Triangles whose corners are points there are.
 void put_faces(io::Cloud& cloud, const Triples& triples) {
   std::vector<Face> faces(triples.shape(0));
-  for (std::size_t i = 0; i < faces.size(); ++i)
-    for (std::size_t k = 0; k < 3; ++k) {
-      faces[i][k] = triples.data()[3 * i + k];
-      if (faces[i][k] >= cloud.size())
-        throw Failure({ErrorCode::usage, "face " + std::to_string(i) + ": names vertex " +
-                                             std::to_string(faces[i][k]) + " of " +
-                                             std::to_string(cloud.size())});
-    }
+  for (std::size_t i = 0; i < faces.size(); ++i) std::copy_n(triples.data() + 3 * i, 3, faces[i].begin());
   io::set_faces(cloud, faces);
 }
 

@@ -89,7 +89,7 @@ nb::list option_table(const std::string& name) {
   const Defaults of_flows = defaults_of_flows();
   nb::list table;
   for (const cli::CommandOption& o : command_of(name).options) {
-    if (elsewhere.count(o.name) > 0) continue;
+    if (elsewhere.count(o.name) > 0 || o.kind == cli::ValueKind::file) continue;
     nb::dict entry;
     entry["name"] = o.name;
     entry["kind"] = name_of(o.kind);

@@ -57,11 +57,12 @@ def _las_arguments(arguments):
         return None
     keep = "--keep-scale" in arguments
     _, files, options = _rfsmooth.parse_command([a for a in arguments if a != "--keep-scale"])
-    values = {python_name(name): text for name, text in options}
     flags = {"true": True, "false": False}
-    values = {name: flags.get(text, None if text == "auto" else text) for name, text in values.items()}
-    if "threads" in values:
-        values["threads"] = int(values["threads"] or 0)
+    values = {python_name(name): flags.get(text, text) for name, text in options}
+    threads = values.get("threads", "auto")
+    if threads != "auto" and not (threads.isdecimal() and int(threads) > 0):
+        raise Error("usage", f"--threads is '{threads}'; it must be a whole number, 1 or more")
+    values["threads"] = 0 if threads == "auto" else int(threads)
     return files, {**values, **({"keep_scale": True} if keep else {})}
 
 

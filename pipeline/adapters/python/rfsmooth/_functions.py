@@ -1,6 +1,7 @@
 """The functions that users call. Each works on copies: what is given is never changed."""
 
 import json
+import operator
 import os
 from typing import NamedTuple, Optional
 
@@ -37,6 +38,14 @@ def _config(table, config, given):
     return {**table.from_config(config), **given}
 
 
+def _threads(threads):
+    """A whole number, 0 or more."""
+    threads = operator.index(threads)
+    if threads < 0:
+        raise ValueError("threads must be 0 (all cores) or more")
+    return threads
+
+
 def _fields_given(options, n):
     """Takes arrays out of the options that name fields: their names take their place."""
     fields = {}
@@ -49,7 +58,7 @@ def _fields_given(options, n):
 def _run(function, options, cloud, threads, progress, name="points"):
     texts = function.table.texts(options)
     with listener(progress) as listening:
-        report = _rfsmooth.run_on_cloud(function.table.command, texts, cloud, name, threads, listening)
+        report = _rfsmooth.run_on_cloud(function.table.command, texts, cloud, name, _threads(threads), listening)
     return json.loads(report)
 
 
@@ -152,7 +161,7 @@ def reconstruct(points, *, threads=0, config=None, **options):
     """
     cloud = _arrays.cloud_of_points(_arrays.as_points(points))
     texts = reconstruct.table.texts(_config(reconstruct.table, config, options))
-    file, report = run_reconstruct(cloud, texts, threads)
+    file, report = run_reconstruct(cloud, texts, _threads(threads))
     return Mesh(file.positions(), file.faces(), file.edges()), report
 
 
@@ -170,7 +179,7 @@ def compare(points, truth, faces=None, *, normals=None, signed_normals=False, th
     deviation = np.empty(len(given))
     with listener(progress) as listening:
         report = _rfsmooth.compare(
-            given, normals, true_points, corners, signed_normals, threads, listening, deviation
+            given, normals, true_points, corners, signed_normals, _threads(threads), listening, deviation
         )
     return deviation, json.loads(report)
 
@@ -184,7 +193,7 @@ def normals(points, *, viewpoint=None, threads=0, progress=None):
     if viewpoint is not None:
         viewpoint = [float(v) for v in viewpoint]
     with listener(progress) as listening:
-        report = _rfsmooth.normals(given, made, viewpoint, threads, listening)
+        report = _rfsmooth.normals(given, made, viewpoint, _threads(threads), listening)
     return made, json.loads(report)
 
 

@@ -92,11 +92,13 @@ class Table:
 
 def takes_options(command):
     """Decorates a function that ends in **options: its signature and help name every option."""
-    table = Table(command)
 
     def decorate(function):
+        table = Table(command)
         signature = inspect.signature(function)
         own = list(signature.parameters.values())[:-1]
+        for parameter in own:
+            table.entries.pop(parameter.name, None)
         first = [p for p in own if p.kind != inspect.Parameter.KEYWORD_ONLY]
         last = [p for p in own if p.kind == inspect.Parameter.KEYWORD_ONLY]
         function.__signature__ = signature.replace(parameters=first + table.parameters() + last)

@@ -92,15 +92,24 @@ def denoise_file(source, target, *, keep_scale=False, force=False, threads=0, pr
     asked = {**options, "outliers": "mark"} if remove else options
     strength = asked.get("strength_field")
     if isinstance(strength, str):
+        if strength not in las.point_format.dimension_names:
+            raise Error("usage", f"{source}: the points have no field '{strength}'")
         asked = {**asked, "strength_field": np.asarray(las[strength], float)}
     clean, report = _functions.denoise(xyz, threads=threads, progress=progress, **asked)
     report["scale"] = None if keep_scale else _rescale(las, report["noise"])
     _store(las, clean, np.any(clean != xyz, axis=1))
     if remove:
         las.points = las.points[~report["fields"]["outlier"]]
-    las.header.vlrs = [v for v in las.header.vlrs if v.user_id != "copc"]
+    _forget_index(las)
     _write(las, target)
     return report
+
+
+def _forget_index(las):
+    """That of a COPC file: it says where points are that have moved."""
+    las.vlrs = [record for record in las.vlrs if record.user_id != "copc"]
+    if las.evlrs:
+        las.evlrs = [record for record in las.evlrs if record.user_id != "copc"]
 
 
 def _write(las, target):
