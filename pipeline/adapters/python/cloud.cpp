@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -50,8 +51,8 @@ io::Table table_of(const std::vector<FieldText>& fields, const Rows& rows, std::
   table.count = count;
   for (const auto& [name, type, values] : fields) table.fields.push_back({name, scalar_of(type), values});
   if (rows.size() != count * table.row_size()) throw std::invalid_argument("the rows have another size");
-  const char* const bytes = reinterpret_cast<const char*>(rows.data());
-  table.data.assign(bytes, bytes + rows.size());
+  table.data.resize(rows.size());
+  if (rows.size() > 0) std::memcpy(table.data.data(), rows.data(), rows.size());
   return table;
 }
 
