@@ -21,7 +21,7 @@
 #include "pipeline/adapters/python/cloud.h"
 #include "pipeline/adapters/python/option_tables.h"
 #include "pipeline/adapters/python/released.h"
-#include "pipeline/cli/commands/figures.h"
+#include "pipeline/cli/console/figures.h"
 #include "pipeline/cli/console/report.h"
 #include "pipeline/cli/files/cloud_files.h"
 #include "pipeline/cli/options/parse.h"

@@ -31,7 +31,9 @@ class Table:
 
     def __init__(self, command):
         self.command = command
-        self.entries = {python_name(e["name"]): e for e in _rfsmooth.option_table(command)}
+        entries = {python_name(e["name"]): e for e in _rfsmooth.option_table(command)}
+        entries.pop("html", None)  # a page for people who have typed a command
+        self.entries = entries
 
     def parameters(self):
         """As inspect has them: keyword-only, with defaults."""
@@ -69,7 +71,7 @@ class Table:
         return {
             python_name(name): value
             for name, value in options.items()
-            if name not in ("format", "encoding", "drop-unsupported")  # of files
+            if value is not None and name not in ("format", "encoding", "drop-unsupported")  # chosen anew; of files
         }
 
     def _text(self, name, value):
