@@ -10,6 +10,8 @@
 #include <thread>
 #include <utility>
 
+#include <nanobind/stl/string.h>
+
 namespace rfsmooth::python {
 
 namespace nb = nanobind;

@@ -9,7 +9,7 @@ import os
 try:
     from . import _rfsmooth
 except ImportError:  # stub.py, which runs before there is a package
-    import _rfsmooth
+    import _rfsmooth  # type: ignore[no-redef]
 
 
 def python_name(name):
@@ -31,9 +31,7 @@ class Table:
 
     def __init__(self, command):
         self.command = command
-        entries = {python_name(e["name"]): e for e in _rfsmooth.option_table(command)}
-        entries.pop("html", None)  # a page for people who have typed a command
-        self.entries = entries
+        self.entries = {python_name(e["name"]): e for e in _rfsmooth.option_table(command)}
 
     def parameters(self):
         """As inspect has them: keyword-only, with defaults."""
