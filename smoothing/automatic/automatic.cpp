@@ -10,6 +10,7 @@
 
 #include "base/parallel.h"
 #include "smoothing/automatic/hidden_sheets.h"
+#include "smoothing/automatic/learned/last_step.h"
 #include "smoothing/automatic/mixture.h"
 #include "smoothing/automatic/patches/height_field.h"
 #include "smoothing/automatic/patches/patches.h"
@@ -111,13 +112,29 @@ void average_near(const HeightField& field, std::vector<Scale>& scales, const Co
   }
 }
 
-/// The mixture of the data and all scales, by their evidence.
+/// What the learned step is told of the scales.
+std::vector<ScalesSay> tell(const std::vector<Scale>& scales, std::size_t n, const Context& context) {
+  std::vector<ScalesSay> told(n);
+  for (std::size_t t = 0; t < kTold; ++t) {
+    const Scale& scale = scales[told_scale(t, scales.size())];
+    for_each_index(context, n, [&](std::size_t i) {
+      const bool covered = scale.prediction.covered[i] != 0;
+      const float near = scale.worse[i];
+      told[i][t] = {covered ? scale.prediction.height[i] : std::numeric_limits<float>::quiet_NaN(),
+                    covered ? scale.prediction.own[i] : 1, near, scale.mean.empty() ? near : scale.mean[i]};
+    });
+  }
+  return told;
+}
+
+/// The mixture of the data and all scales, by their evidence. `told`: for the learned step; null: not taken.
 void mix(const HeightField& field, std::vector<Scale> scales, double shared, std::vector<float>& height,
-         std::vector<float>& own, const Context& context) {
+         std::vector<float>& own, std::vector<ScalesSay>* told, const Context& context) {
   const auto alone = float(1 / shared);
   // The data themselves are the first candidate: no error against themselves, all their own.
   Mixture mixture(heights(field, context));
   average_near(field, scales, context);
+  if (told != nullptr) *told = tell(scales, field.size(), context);
   for (Scale& scale : scales) {
     // A wide patch is judged over its own width, but must not be far off anywhere near the point either: the
     // few points that it misses by sigmas would be outvoted.
@@ -227,11 +244,12 @@ class Ladder {
 struct Pass {
   std::vector<float> height, own;  ///< n: of the mixture, as in Prediction
   std::vector<float> wide;         ///< n: of the scale that looks for tails
+  std::vector<ScalesSay> told;     ///< n, or empty without the learned step
   std::vector<Index> several;      ///< places where the scale that looks for walls sees several sheets
   std::size_t members_seeing = 0;  ///< of that scale
 };
 
-Pass smooth_heights(const HeightField& field, const rfs_mesh::NoiseField& noise, double spacing,
+Pass smooth_heights(const HeightField& field, const rfs_mesh::NoiseField& noise, double spacing, bool learned,
                     const Context& context) {
   constexpr std::size_t kTailMembers = 64;
   const double share = noise.sigma / spacing;
@@ -254,7 +272,7 @@ Pass smooth_heights(const HeightField& field, const rfs_mesh::NoiseField& noise,
     pass.wide = scale.prediction.height;
     if (scale.members >= kTailMembers && &scale != &scales.front()) break;
   }
-  mix(field, std::move(scales), noise.shared, pass.height, pass.own, context);
+  mix(field, std::move(scales), noise.shared, pass.height, pass.own, learned ? &pass.told : nullptr, context);
   return pass;
 }
 
@@ -324,8 +342,8 @@ Tails tame(const HeightField& field, const Pass& pass, const Mesh& mesh, Positio
 }  // namespace
 
 Positions automatic_smoothing(Mesh& mesh, bool keep_rings, rfs_mesh::NoiseField noise, double spacing,
-                              AutomaticReport& report, rfs_mesh::NeighborTable& near,
-                              const Context& context) {
+                              bool learned, AutomaticReport& report, rfs_mesh::NeighborTable& near,
+                              const Context& context, LearnedSites* sites) {
   near = {};
   const std::size_t n = mesh.positions.size();
   report = {};
@@ -340,7 +358,7 @@ Positions automatic_smoothing(Mesh& mesh, bool keep_rings, rfs_mesh::NoiseField 
   for (double& limit : most) limit = kStrayFrom * std::max(limit, noise.sigma);
   auto field = raise_field(mesh, noise.sigma, report, context);
   context.report("smooth", 0.1);
-  Pass pass = smooth_heights(*field, noise, spacing, context);
+  Pass pass = smooth_heights(*field, noise, spacing, learned, context);
   Positions data = mesh.positions;  // as tamed
   if (const Tails tails = tame(*field, pass, mesh, data, noise, context); tails.share > 0) {
     report.tail_times = tails.times;
@@ -348,19 +366,30 @@ Positions automatic_smoothing(Mesh& mesh, bool keep_rings, rfs_mesh::NoiseField 
     report.guide_strength = guide_strength();
     mesh.positions.swap(data);
     field = raise_field(mesh, noise.sigma, report, context);
-    pass = smooth_heights(*field, noise, spacing, context);
+    pass = smooth_heights(*field, noise, spacing, learned, context);
     mesh.positions.swap(data);
   }
   if (!keep_rings) mesh.one_ring = {};
-  split_hidden_sheets(*field, noise.sigma, pass.height, pass.own, context);
-
-  Positions smooth = mesh.positions;
-  for_each_index(context, n, [&](std::size_t i) {
-    const Eigen::Vector3d move =
-        field->guide()[i] + double(pass.height[i]) * field->normal(i) - mesh.positions[i];
-    if (move.allFinite() && move.norm() <= most[i]) smooth[i] += move;
-  });
+  const HiddenSheets hidden = split_hidden_sheets(*field, noise.sigma, pass.height, pass.own, context);
+  const auto smooth_at = [&](std::size_t i, float height) -> Eigen::Vector3d {
+    const Eigen::Vector3d &from = mesh.positions[i],
+                          move = field->guide()[i] + double(height) * field->normal(i) - from;
+    return move.allFinite() && move.norm() <= most[i] ? from + move : from;
+  };
+  Positions smooth(n);
+  for_each_index(context, n, [&](std::size_t i) { smooth[i] = smooth_at(i, pass.height[i]); });
+  const Positions one_sheet = learned ? smooth : Positions();
   part_thin_walls(*field, data, pass.several, pass.members_seeing, noise, smooth, context);
+  // Models of two sheets that a whole cloud or a whole patch speaks for know more than the network sees from
+  // a point.
+  if (learned && hidden.split == 0) {
+    std::vector<float> height = pass.height;
+    report.learned = take_learned_step(*field, data, {pass.told, pass.own, pass.height}, noise, spacing,
+                                       height, sites, context);
+    for_each_index(context, n, [&](std::size_t i) {
+      if (smooth[i] == one_sheet[i]) smooth[i] = smooth_at(i, height[i]);
+    });
+  }
   report.left = noise_left(*field, pass.height, pass.own, noise, context);
   near = field->release_neighbors();
   return smooth;

@@ -18,7 +18,8 @@
 ///    edges and thin parts narrow ones, and where every patch is worse than the data the data stay.
 /// 4. Walls thinner than the noise, which look like one sheet with more of it, are taken apart where the
 ///    cloud as a whole says that they are walls (hidden_sheets.h); those of a few sigma get their two sheets
-///    fitted together (thin_walls.h).
+///    fitted together (thin_walls.h). Where neither found anything but patches contradict each other, a
+///    learned step goes on towards the surface (learned/last_step.h).
 /// 5. What is left: the mean risk of the mixture, at least the variance that the data's own weight passes on,
 ///    sum sigma^2 df/dz, both with the variance that the residuals tell where the surface is smooth: next to
 ///    what little is left there, a few percent in sigma would be much. Points farther than 5 sigma from the
@@ -41,6 +42,7 @@
 
 #include "rfs_mesh/noise/noise.h"
 #include "rfs_mesh/search/neighbors.h"
+#include "smoothing/automatic/learned/last_step.h"
 
 namespace rfsmooth::smoothing {
 
@@ -50,7 +52,9 @@ namespace rfsmooth::smoothing {
 /// \param near out: the nearest of every point on the guide (height_field.h); empty if nothing moved.
 /// O(n log n); about 500 bytes a point beside the mesh. Parallel, the same bits for any number of
 /// threads. Of the report, `noise` and what was equalized are the flow's to enter (flow_auto.cpp).
+/// \param learned whether the learned step is taken. \param sites what it would be given, instead of it.
 Positions automatic_smoothing(Mesh& mesh, bool keep_rings, rfs_mesh::NoiseField noise, double spacing,
-                              AutomaticReport& report, rfs_mesh::NeighborTable& near, const Context& context);
+                              bool learned, AutomaticReport& report, rfs_mesh::NeighborTable& near,
+                              const Context& context, LearnedSites* sites = nullptr);
 
 }  // namespace rfsmooth::smoothing

@@ -75,7 +75,8 @@ NoiseSummary summary_of(const rfs_mesh::NoiseField& noise) {
 }
 
 std::optional<AutomaticReport> smooth_automatically(Mesh& mesh, const AutomaticOptions& options,
-                                                    const Context& context, Connectivity connectivity) {
+                                                    const Context& context, Connectivity connectivity,
+                                                    LearnedSites* sites) {
   if (connectivity == Connectivity::used_up) std::vector<Face>().swap(mesh.faces);
   if (mesh.positions.size() < 2) return {};
   double spacing = 0;
@@ -90,8 +91,8 @@ std::optional<AutomaticReport> smooth_automatically(Mesh& mesh, const AutomaticO
   noise = scaled(std::move(noise), sigma, options.strength, spacing);
   AutomaticReport report;
   rfs_mesh::NeighborTable near;
-  Positions smooth =
-      automatic_smoothing(mesh, connectivity == Connectivity::kept, noise, spacing, report, near, context);
+  Positions smooth = automatic_smoothing(mesh, connectivity == Connectivity::kept, noise, spacing,
+                                         options.learned, report, near, context, sites);
   mesh.positions.swap(smooth);
   const Positions before = std::move(smooth);
   report.noise = sigma;

@@ -108,6 +108,10 @@ TEST_F(Flags, ThatAreAutoCanBeTurnedOnAndOff) {
   EXPECT_TRUE(equalized({}));
   EXPECT_TRUE(equalized({"--equalize"}));
   EXPECT_FALSE(equalized({"--no-equalize"}));
+  for (const bool learned : {true, false}) {
+    EXPECT_TRUE(equalized({learned ? "--learned" : "--no-learned"}));
+    EXPECT_EQ(nlohmann::json::parse(take("r.json"))["options"]["learned"], learned);
+  }
   const std::string help = rfsmooth({"denoise", "--help-all"}).out;
   EXPECT_THAT(help, HasSubstr("--equalize, --no-equalize"));
   for (const char* shell : {"bash", "zsh"})

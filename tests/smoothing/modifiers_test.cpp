@@ -10,7 +10,6 @@
 #include "tests/support/meshes.h"
 
 using namespace rfsmooth;
-using namespace rfsmooth::smoothing;
 using Eigen::Vector3d;
 using rfsmooth::Mesh;
 

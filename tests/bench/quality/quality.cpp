@@ -1,4 +1,5 @@
 /// The quality benchmark: rfsmooth beside every peer on the development shapes (../README.md).
+#include <algorithm>
 #include <cstdio>
 
 #include <CLI/CLI.hpp>
@@ -52,7 +53,7 @@ int run(int argc, char** argv) {
   plan.cache = default_cache();
   plan.threads = 2;
   bool quick = false, all = false, peers_only = false, no_peers = false, no_goals = false;
-  std::vector<std::string> options, extra;
+  std::vector<std::string> options, extra, noises;
   std::string csv;
   CLI::App app{"rfsmooth beside its peers on the development shapes"};
   app.add_flag("--quick", quick, "six shapes, 10,000 points, the strongest peers: minutes from nothing");
@@ -64,6 +65,7 @@ int run(int argc, char** argv) {
   app.add_option("--threads", plan.threads, "for every tool")->capture_default_str();
   app.add_option("--shapes", plan.shapes, "only these; the path of an OFF file is one, too");
   app.add_option("--sizes", plan.sizes, "numbers of points")->capture_default_str();
+  app.add_option("--noises", noises, "only these: \"gaussian 2%\" ...");
   app.add_option("--tier", plan.most_tier, "0: only the strong quick peers, 1: all but WLOP, 2: all")
       ->capture_default_str();
   app.add_option("--options", options, "options of denoise for every run of ours: flow=hc no-swap ...");
@@ -76,6 +78,11 @@ int run(int argc, char** argv) {
     plan.noises.resize(3);
     plan.most_tier = 0;
   }
+
+  const auto unwanted = [&](const Noise& noise) {
+    return !noises.empty() && std::find(noises.begin(), noises.end(), noise.name()) == noises.end();
+  };
+  plan.noises.erase(std::remove_if(plan.noises.begin(), plan.noises.end(), unwanted), plan.noises.end());
 
   Cases cases(plan);
   if (!no_peers) std::fprintf(stderr, "%zu runs of peers made\n", run_peers(plan, cases));

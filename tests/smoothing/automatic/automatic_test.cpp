@@ -41,7 +41,7 @@ rfs_mesh::NoiseField even(double sigma, std::size_t n) {
 
 Positions smoothed(Mesh mesh, const rfs_mesh::NoiseField& noise, AutomaticReport& report) {
   rfs_mesh::NeighborTable near;
-  return automatic_smoothing(mesh, true, noise, spacing(mesh.positions), report, near, {});
+  return automatic_smoothing(mesh, true, noise, spacing(mesh.positions), true, report, near, {});
 }
 
 Positions smoothed(const Mesh& mesh, double sigma, AutomaticReport& report) {

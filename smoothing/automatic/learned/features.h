@@ -1,0 +1,91 @@
+/// What the learned step (last_step.h) is told about a point: numbers that the automatic smoother knows
+/// there.
+///
+/// All lengths are in units of s, the noise around the point (at most the cloud's figure: walls make the
+/// field too high), heights along the point's normal n over the guide, from P = g + h n, the place that the
+/// mixture gave it. So a cloud that is turned, moved or made larger has the same features. To turn the
+/// normals round changes the sign of the odd ones and nothing else of the even ones.
+///
+/// From the scales (patches.h): the four narrowest and the widest, the widest in place of those that are not
+/// there.
+///     even: own, the evidence near and wide (automatic.h); odd: f_m - h
+/// Of the point: r = z - h, what smoothing took; the share of its own height.
+/// Moments around it: means of r, r^3 / 6 (odd), r^2, r^4 / 6 (even) over points of the same sheet within 3
+/// and 6 s; these and own, (f_0 - h)^2 and (f_2 - h)^2 (even) over the near neighbours of near neighbours,
+/// four times. Histograms: heights of the data around P in bins of 0.75 from -4.5 to 4.5 s, over discs of 3
+/// and 6 s, as sums (even) and differences (odd) of bins that mirror each other; how many points there are.
+/// Other sheets within 5 s: mean height of the smoothed points around (odd; of those that face the same way,
+/// and the other way), their mean square, and how they face.
+/// Second moments of the data within 6 s: along n and the two along the surface, and the offsets of the mean.
+/// Of the cloud: s in spacings, s over the field's noise.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "rfs_mesh/noise/noise.h"
+#include "rfs_mesh/search/neighbors.h"
+#include "smoothing/automatic/patches/height_field.h"
+
+namespace rfsmooth::smoothing {
+
+/// What the scales said of one point.
+struct ScaleSays {
+  float height, own, near, wide;  ///< height: world units, NaN where the scale had nothing to say
+};
+constexpr std::size_t kTold = 5;  ///< scales that features are made of
+using ScalesSay = std::array<ScaleSays, kTold>;
+
+/// The scale that stands at place t of ScalesSay, of `count` scales.
+constexpr std::size_t told_scale(std::size_t t, std::size_t count) {
+  return t + 1 < kTold && t < count ? t : count - 1;
+}
+
+/// Heights as the mixture left them, and what it knew. All n.
+struct Smoothed {
+  const std::vector<ScalesSay>& scales;
+  const std::vector<float>& own;
+  const std::vector<float>& height;
+};
+
+/// The features of the points of a field. Const functions are thread safe.
+class Features {
+ public:
+  static constexpr std::size_t kEven = 5 * 3 + 1 + 9 + 14 + 2 + 4 + 4 + 2;
+  static constexpr std::size_t kOdd = 5 + 1 + 6 + 12 + 3 + 1;
+
+  /// The features of one point.
+  struct Row {
+    std::array<float, kEven> even;
+    std::array<float, kOdd> odd;
+  };
+
+  /// The arguments outlive it. `spacing`: world units. O(n), parallel, the same bits for any number of
+  /// threads.
+  Features(const HeightField& field, const Positions& data, const Smoothed& smoothed,
+           const rfs_mesh::NoiseField& noise, double spacing, const Context& context);
+
+  /// s, world units.
+  float scale(std::size_t i) const { return float(std::min(noise_.local[i], noise_.sigma)); }
+
+  /// P, world units.
+  Eigen::Vector3d place(std::size_t i) const {
+    return field_.guide()[i] + double(smoothed_.height[i]) * field_.normal(i);
+  }
+
+  /// O(points within 6.5 s). `near`: to work in.
+  void fill(std::size_t i, Row& row, std::vector<rfs_mesh::Neighbor>& near) const;
+
+ private:
+  float residual(std::size_t i) const;                 ///< r, clipped
+  float candidate(std::size_t i, float height) const;  ///< f - h, clipped; 0 for NaN
+
+  const HeightField& field_;
+  const Positions& data_;
+  const Smoothed smoothed_;
+  const rfs_mesh::NoiseField& noise_;
+  double spacing_;
+  std::vector<HeightField::Columns> pooled_;  ///< n: moments
+};
+
+}  // namespace rfsmooth::smoothing

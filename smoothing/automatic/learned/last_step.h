@@ -1,0 +1,39 @@
+/// The learned last step of the automatic smoother: how far along its normal from where the mixture put it
+/// the surface is.
+///
+/// Where a wall, a leg or an ear is thinner than four or five sigma, quadrics over sheets that the noise has
+/// mixed do not hold it, and the mixture must choose between candidates that are all wrong. What the right
+/// place is still shows in what is known around the point (features.h): how residuals scatter, how the data
+/// lie across the surface, what the scales made of it. A small network (network.h), trained on shapes with
+/// known surfaces to come as near to them as possible in the mean square, turns that into a step along the
+/// normal.
+///
+/// It is asked where some patch is worse than the one of half as many points, so where there is anything that
+/// quadrics do not follow; not where neighbours share their noise, nor where there is less of it than
+/// kLeastNoise spacings. Trained on shapes that tests/bench/train makes, with noise that is white, along the
+/// ray, with tails, and louder in places. Differs from networks that denoise: it sees nothing but invariants,
+/// and moves nothing but a height.
+#pragma once
+
+#include <vector>
+
+#include "smoothing/automatic/learned/features.h"
+
+namespace rfsmooth::smoothing {
+
+/// What the step was given, for training.
+struct LearnedSites {
+  std::vector<Index> point;
+  std::vector<Features::Row> features;
+  Positions place, normal;   ///< P and n
+  std::vector<float> scale;  ///< s, world units
+};
+
+/// Moves `height` (n; as Smoothed::height has it) by what the network says. Returns the number of points that
+/// it was asked for. `sites`: if given, filled, and nothing is moved. O(n) times the points within 6.5 sigma;
+/// parallel, the same bits for any number of threads.
+std::size_t take_learned_step(const HeightField& field, const Positions& data, const Smoothed& smoothed,
+                              const rfs_mesh::NoiseField& noise, double spacing, std::vector<float>& height,
+                              LearnedSites* sites, const Context& context);
+
+}  // namespace rfsmooth::smoothing

@@ -1,0 +1,104 @@
+#include "smoothing/automatic/learned/last_step.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include <rfsmooth/connect.h>
+
+#include "clouds/shapes/sampling.h"
+#include "clouds/shapes/shapes.h"
+#include "smoothing/automatic/flow_auto.h"
+#include "smoothing/automatic/learned/network.h"
+
+using namespace rfsmooth;
+using namespace rfsmooth::smoothing;
+
+namespace {
+
+constexpr double kSigma = 0.05;
+
+/// A ring whose tube has a radius of 1.6 sigma, or one that is thick.
+constexpr double kLimb = 0.08, kThick = 0.4;
+
+/// A ring's cloud with noise, as a rough mesh.
+Mesh noisy_ring(double tube) {
+  Positions points = clouds::sample(*clouds::make_torus(1, tube), 5000, 3);
+  clouds::add_noise(points, kSigma, 4);
+  return value_or_throw(connect(points, {}, {})).mesh;
+}
+
+double mean_square(const Positions& points, double tube) {
+  const auto ring = clouds::make_torus(1, tube);
+  double sum = 0;
+  for (const auto& p : points) sum += std::pow(ring->signed_distance(p), 2);
+  return sum / double(points.size());
+}
+
+Positions smoothed(Mesh mesh, bool learned, double sigma = kSigma, const Context& context = {}) {
+  AutomaticOptions options;
+  options.noise = Length{sigma, false};
+  options.learned = learned;
+  const auto report = smooth_automatically(mesh, options, context);
+  EXPECT_EQ(report->learned > 0, learned);
+  return mesh.positions;
+}
+
+TEST(LearnedStep, IsOddInTheNormal) {
+  Features::Row row;
+  clouds::Random random(1);
+  for (float& x : row.even) x = float(random.uniform(0, 1));
+  for (float& x : row.odd) x = float(random.normal());
+  const Network network;
+  const float offset = network.offset(row);
+  for (float& x : row.odd) x = -x;
+  EXPECT_NE(offset, 0);
+  EXPECT_EQ(network.offset(row), -offset);
+  row.odd.fill(0);
+  EXPECT_EQ(network.offset(row), 0);
+}
+
+TEST(LearnedStep, BringsThePointsOfLimbsNearerToTheirSurface) {
+  const Mesh mesh = noisy_ring(kLimb);
+  EXPECT_LT(mean_square(smoothed(mesh, true), kLimb), 0.8 * mean_square(smoothed(mesh, false), kLimb));
+}
+
+TEST(LearnedStep, DoesThickPartsNoHarm) {
+  const Mesh mesh = noisy_ring(kThick);
+  EXPECT_LT(mean_square(smoothed(mesh, true), kThick), 1.02 * mean_square(smoothed(mesh, false), kThick));
+}
+
+TEST(LearnedStep, TurnsAndGrowsWithTheCloud) {
+  const Mesh mesh = noisy_ring(kLimb);
+  const Eigen::Affine3d motion = Eigen::Translation3d(3, -2, 1) *
+                                 Eigen::AngleAxisd(1, Eigen::Vector3d(1, 2, 3).normalized()) *
+                                 Eigen::Scaling(20.0);
+  Mesh moved = mesh;
+  for (auto& p : moved.positions) p = motion * p;
+  const Positions here = smoothed(mesh, true), there = smoothed(moved, true, 20 * kSigma);
+  std::size_t off = 0;
+  for (std::size_t i = 0; i < here.size(); ++i)
+    off += (motion * here[i] - there[i]).norm() > 0.02 * 20 * kSigma;
+  EXPECT_LT(off, here.size() / 500);  // those for which rounding decides which points are theirs
+}
+
+TEST(LearnedStep, IsTheSameForAnyNumberOfThreads) {
+  const Mesh mesh = noisy_ring(kLimb);
+  Context one, three;
+  one.threads = 1;
+  three.threads = 3;
+  EXPECT_EQ(smoothed(mesh, true, kSigma, one), smoothed(mesh, true, kSigma, three));
+}
+
+TEST(LearnedStep, LeavesLittleNoiseAlone) {
+  Mesh mesh = noisy_ring(kLimb);
+  AutomaticOptions options;
+  options.noise = Length{0.1, true};
+  const auto report = smooth_automatically(mesh, options, {});
+  EXPECT_EQ(report->learned, 0U);
+  EXPECT_GT(report->guide_strength, 0);
+}
+
+}  // namespace
