@@ -110,8 +110,9 @@ void fill_small_holes(const Positions& at, double quality, std::vector<Face>& fa
   const Holes holes(at, quality, faces, context);
   std::vector<Filling> fillings =
       collect<Filling>(context, at.size(), [&](std::size_t a, auto&& emit) { holes.find(Index(a), emit); });
-  std::stable_sort(fillings.begin(), fillings.end(),
-                   [](const Filling& x, const Filling& y) { return x.quality > y.quality; });
+  std::sort(fillings.begin(), fillings.end(), [](const Filling& x, const Filling& y) {
+    return x.quality != y.quality ? x.quality > y.quality : x.face < y.face;
+  });
   std::set<Edge> taken;
   for (const Filling& filling : fillings) {
     std::array<Edge, 3> edges;

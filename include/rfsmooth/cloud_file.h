@@ -82,7 +82,8 @@ class CloudFile {
   /// n x 3 row-major, as doubles whatever the file's type.
   std::vector<double> positions(const Context& context = {}) const;
   /// Sets n x 3 coordinates, each rounded to nearest in its field's type (LAS: to the file's scale; a warning
-  /// is logged for what 32 bits cannot say). A coordinate that equals the present one keeps its bytes or text.
+  /// is logged for what 32 bits cannot say). A coordinate that equals the present one keeps its bytes or
+  /// text.
   void set_positions(const double* xyz, const Context& context = {});
 
   /// Names of the points' fields, in file order; names may repeat.
