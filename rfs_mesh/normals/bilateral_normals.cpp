@@ -24,8 +24,8 @@ constexpr double kOfScatter = 230;      // radians per (r / R)^2
 constexpr double kCalmest = 0.05;       // radians: what normals of a flat place may differ by
 constexpr double kLeastMost = 0.02, kGreatestMost = 0.5;  // radians: bounds of the most
 
-constexpr std::size_t kLanes = 8;  // numbers side by side in registers
-using Lanes = Eigen::Array<float, int(kLanes), 1>;
+constexpr std::size_t kNormalLanes = 8;  // numbers side by side in registers
+using Lanes = Eigen::Array<float, int(kNormalLanes), 1>;
 
 /// A point and its normal, side by side in memory. Single precision is far finer than the calmest angle.
 struct Oriented {
@@ -73,7 +73,7 @@ struct Ring {
   std::vector<float> d, nx, ny, nz;  // squared distance over that of the rim; normal
 
   void gather(const Oriented& here, Adjacency::Row row, const std::vector<Oriented>& all, double per_square) {
-    const std::size_t padded = (row.size() + kLanes - 1) / kLanes * kLanes;
+    const std::size_t padded = (row.size() + kNormalLanes - 1) / kNormalLanes * kNormalLanes;
     d.assign(padded, 1);
     for (auto* const n : {&nx, &ny, &nz}) n->resize(padded);
     for (std::size_t k = 0; k < row.size(); ++k) {
@@ -89,7 +89,7 @@ struct Ring {
 /// The weighted sum of the ring's normals, each turned to the side of n. Lanes are added up in one order.
 Vector3d weighted_sum(const Ring& ring, const Eigen::Vector3f& n, float per_unlike) {
   Lanes x = Lanes::Zero(), y = x, z = x;
-  for (std::size_t first = 0; first < ring.d.size(); first += kLanes) {
+  for (std::size_t first = 0; first < ring.d.size(); first += kNormalLanes) {
     const auto at = [first](const std::vector<float>& of) {
       return Eigen::Map<const Lanes>(of.data() + first);
     };

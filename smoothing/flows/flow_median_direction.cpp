@@ -45,7 +45,7 @@ class MedianDirectionSpeed : public Speed {
     const double cosine = m.dot(curvature) / H;
     if (std::abs(cosine) <= options_.least_cosine) return Vector3d::Zero();
     const Vector3d along = H / cosine * m;
-    const Vector3d F = cosine > 0 ? along : Vector3d(2 * curvature - along);
+    Vector3d F = cosine > 0 ? along : Vector3d(2 * curvature - along);
     if (options_.scheme == Scheme::printed) return F;
     const double longest = U / std::max(options_.lambda, 1e-300);
     return F.norm() > longest ? Vector3d(longest / F.norm() * F) : F;

@@ -105,7 +105,8 @@ double times_power_of_ten(double value, int power) {
 
 double decimal_scale(double extent, double steps) {
   if (!(extent > 0)) return 1e-3;
-  return times_power_of_ten(1, int(std::ceil(std::log10(extent / steps))));
+  const int power = int(std::ceil(std::log10(extent / steps)));
+  return times_power_of_ten(1.0, power);
 }
 
 RefinedScale refine_scale(Cloud& las, double step, const double* xyz, const Context& context) {
