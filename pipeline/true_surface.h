@@ -19,6 +19,7 @@
 
 namespace rfsmooth::pipeline {
 
+/// An axis-aligned box.
 using Box = Eigen::AlignedBox3d;
 
 /// Boxes of items, halved along the longest axis. The same tree for the same items, whatever the machine.

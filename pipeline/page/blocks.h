@@ -36,6 +36,7 @@ struct ShownPoints {
   std::vector<Eigen::Vector3f> normals_before, normals_after;  ///< or empty
 };
 
+/// Neighbouring points with an origin and units of their own.
 struct PageBlock {
   std::size_t count = 0;
   RowKind kind = RowKind::surface;  ///< of all its points
@@ -45,6 +46,7 @@ struct PageBlock {
                      ///< theirs, world units
 };
 
+/// Blocks of points, and their numbers as bytes.
 struct PackedPoints {
   std::vector<PageBlock> blocks;
   std::string bytes;  ///< the planes

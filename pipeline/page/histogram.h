@@ -13,6 +13,7 @@ namespace rfsmooth::pipeline {
 inline constexpr std::array<std::string_view, 5> kScale = {"#440154", "#3a528b", "#21918c", "#5ec962",
                                                            "#fde724"};
 
+/// How far the points of a page moved.
 struct Histogram {
   std::size_t still = 0;            ///< how many did not move at all
   std::vector<std::size_t> counts;  ///< of the others: bars of equal width from 0 to `top`

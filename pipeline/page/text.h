@@ -14,6 +14,7 @@ std::string escaped(std::string_view text);
 /// gzip of the bytes, always the same for the same bytes. \throw std::bad_alloc
 std::string gzipped(std::string_view bytes);
 
+/// RFC 4648, with padding.
 std::string base64(std::string_view bytes);
 
 /// The bytes that hexadecimal digits stand for.

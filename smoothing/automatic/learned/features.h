@@ -34,6 +34,7 @@ struct ScaleSays {
   float height, own, near, wide;  ///< height: world units, NaN where the scale had nothing to say
 };
 constexpr std::size_t kTold = 5;  ///< scales that features are made of
+/// What those scales say of a point.
 using ScalesSay = std::array<ScaleSays, kTold>;
 
 /// The scale that stands at place t of ScalesSay, of `count` scales.
