@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
 #include "base/parallel.h"
@@ -55,6 +56,20 @@ std::optional<Vector3d> recorded_viewpoint(const io::Cloud& cloud, const double*
   if (values != kDefault) return viewpoint;
   if (cloud.organised() && seen_from(viewpoint, xyz, cloud.width, cloud.height, context)) return viewpoint;
   return std::nullopt;
+}
+
+Vector3d broadside(const Positions& points) {
+  Vector3d mean = Vector3d::Zero();
+  for (const Vector3d& p : points) mean += p / double(points.size());
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (const Vector3d& p : points) spread += (p - mean) * (p - mean).transpose() / double(points.size());
+  const Eigen::Matrix3d axes = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors();
+  Vector3d thin = axes.col(0), middle = axes.col(1), wide = axes.col(2);
+  // Eigenvectors have no sign: look from above and from the front (-y).
+  const Vector3d preferred(0.2, -0.5, 1);
+  for (Vector3d* axis : {&thin, &middle, &wide})
+    if (axis->dot(preferred) < 0) *axis = -*axis;
+  return -(thin + 0.45 * middle + 0.3 * wide).normalized();
 }
 
 }  // namespace rfsmooth::pipeline

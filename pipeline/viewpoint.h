@@ -1,4 +1,4 @@
-/// The viewpoint of a cloud, as far as its file tells.
+/// The viewpoint of a cloud, as far as its file tells, and one to look at it from.
 ///
 /// A PCD file's VIEWPOINT is the scanner's place, but writers also put the default "0 0 0 1 0 0 0" there if
 /// they know of none. Any other value is believed, also a rotation at the origin. The default is believed if
@@ -13,6 +13,7 @@
 #include <Eigen/Core>
 
 #include <rfsmooth/context.h>
+#include <rfsmooth/mesh.h>
 
 #include "pipeline/io/table/cloud.h"
 
@@ -27,5 +28,9 @@ bool seen_from(const Eigen::Vector3d& viewpoint, const double* xyz, std::size_t 
 /// points of a PCD file are in world coordinates.
 std::optional<Eigen::Vector3d> recorded_viewpoint(const io::Cloud& cloud, const double* xyz,
                                                   const Context& context);
+
+/// The direction in which to look at the broad side of a cloud of at least one point from above and the
+/// front, turned a little so that depth shows. Unit. O(n).
+Eigen::Vector3d broadside(const Positions& points);
 
 }  // namespace rfsmooth::pipeline

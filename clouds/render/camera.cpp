@@ -4,29 +4,15 @@
 #include <cmath>
 #include <vector>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
+
+#include "pipeline/viewpoint.h"
 
 namespace rfsmooth::render {
 
 using Eigen::Vector3d;
 
 namespace {
-
-/// A look at the broad side, turned a little so that depth shows.
-Vector3d broadside(const Positions& points) {
-  Vector3d mean = Vector3d::Zero();
-  for (const Vector3d& p : points) mean += p / double(points.size());
-  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-  for (const Vector3d& p : points) spread += (p - mean) * (p - mean).transpose() / double(points.size());
-  const Eigen::Matrix3d axes = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors();
-  Vector3d thin = axes.col(0), middle = axes.col(1), wide = axes.col(2);
-  // Eigenvectors have no sign: look from above and from the front (-y).
-  const Vector3d preferred(0.2, -0.5, 1);
-  for (Vector3d* axis : {&thin, &middle, &wide})
-    if (axis->dot(preferred) < 0) *axis = -*axis;
-  return -(thin + 0.45 * middle + 0.3 * wide).normalized();
-}
 
 std::pair<double, double> range_without_strays(std::vector<double> values) {
   const auto cut = std::ptrdiff_t(values.size() / 66);
@@ -41,7 +27,8 @@ std::pair<double, double> range_without_strays(std::vector<double> values) {
 
 Camera::Camera(const Positions& points, const CameraOptions& options, int width, int height)
     : middle_(0.5 * width, 0.5 * height) {
-  toward_ = -options.direction.value_or(points.empty() ? Vector3d(0, 1, 0) : broadside(points)).normalized();
+  toward_ = -options.direction.value_or(points.empty() ? Vector3d(0, 1, 0) : pipeline::broadside(points))
+                 .normalized();
   Vector3d up = options.up.value_or(std::abs(toward_[2]) > 0.98 ? Vector3d::UnitY() : Vector3d::UnitZ());
   if (up.cross(toward_).norm() < 1e-6 * up.norm()) up = toward_.unitOrthogonal();
   right_ = up.cross(toward_).normalized();

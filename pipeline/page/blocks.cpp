@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Geometry>
+
 #include "base/parallel.h"
 #include "rfs_mesh/search/neighbors.h"
 
@@ -50,13 +52,11 @@ std::vector<PageBlock> cut(const ShownPoints& shown) {
 /// Positions of a block's points from `first` on: chooses origin, step and unit, and fills the planes.
 void pack_block(const ShownPoints& shown, std::size_t first, PageBlock& block, std::size_t places,
                 std::size_t moves, Planes& planes) {
-  Vector3d low = shown.before[first], high = low;
-  for (std::size_t i = first; i < first + block.count; ++i) {
-    low = low.cwiseMin(shown.before[i]);
-    high = high.cwiseMax(shown.before[i]);
-  }
+  Eigen::AlignedBox3d box;
+  for (std::size_t i = first; i < first + block.count; ++i) box.extend(shown.before[i]);
+  const Vector3d& low = box.min();
   block.origin = low;
-  block.step = (high - low).maxCoeff() / kSteps;
+  block.step = box.sizes().maxCoeff() / kSteps;
   Positions decoded(block.count, low);
   std::array<int, 3> last{};
   for (std::size_t k = 0; k < block.count; ++k)

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <filesystem>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -15,6 +14,7 @@
 #include "pipeline/page/histogram.h"
 #include "pipeline/page/shown.h"
 #include "pipeline/page/text.h"
+#include "pipeline/viewpoint.h"
 
 namespace rfsmooth::pipeline {
 
@@ -29,12 +29,9 @@ Vector3d row_of(const std::vector<double>& xyz, std::size_t row) {
 
 /// Middle of the box around the rows, from which float32 is fine enough for a picture.
 Vector3d middle_of(const std::vector<double>& xyz, const std::vector<std::size_t>& rows) {
-  Vector3d low = row_of(xyz, rows.front()), high = low;
-  for (const std::size_t row : rows) {
-    low = low.cwiseMin(row_of(xyz, row));
-    high = high.cwiseMax(row_of(xyz, row));
-  }
-  return low + (high - low) / 2;
+  Eigen::AlignedBox3d box;
+  for (const std::size_t row : rows) box.extend(row_of(xyz, row));
+  return box.min() + box.sizes() / 2;
 }
 
 std::vector<Eigen::Vector3f> normals_shown(const std::vector<double>& normals,
@@ -67,23 +64,8 @@ struct FirstLook {
   Vector3d toward, up;  ///< from the cloud to the eye; up in the picture
 };
 
-FirstLook broadside_look(const Positions& points) {
-  Vector3d mean = Vector3d::Zero();
-  for (const Vector3d& p : points) mean += p / double(points.size());
-  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-  for (const Vector3d& p : points) spread += (p - mean) * (p - mean).transpose();
-  const Eigen::Matrix3d axes = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors();
-  Vector3d toward = Vector3d::Zero();
-  // Eigenvectors have no sign: look from above and from the front (-y).
-  for (const auto& [axis, share] : {std::pair(0, 1.0), {1, 0.45}, {2, 0.3}})
-    toward += axes.col(axis) * (axes.col(axis).dot(Vector3d(0.2, -0.5, 1)) < 0 ? -share : share);
-  toward.normalize();
-  return {toward, std::abs(toward[2]) > 0.98 ? Vector3d::UnitY() : Vector3d::UnitZ()};
-}
-
 FirstLook first_look(const Positions& points, const std::optional<Vector3d>& viewpoint) {
   if (viewpoint) {
-    Positions directions;
     Vector3d mean = Vector3d::Zero();
     for (const Vector3d& p : points) mean += (*viewpoint - p).stableNormalized() / double(points.size());
     // A cloud all around it is not seen from there.
@@ -91,7 +73,8 @@ FirstLook first_look(const Positions& points, const std::optional<Vector3d>& vie
       return {mean.normalized(), std::abs(mean[2]) > 0.7 * mean.norm() ? Vector3d(-Vector3d::UnitY())
                                                                        : Vector3d(Vector3d::UnitZ())};
   }
-  return broadside_look(points);
+  const Vector3d toward = -broadside(points);
+  return {toward, std::abs(toward[2]) > 0.98 ? Vector3d::UnitY() : Vector3d::UnitZ()};
 }
 
 ordered_json json_of(const Vector3d& v) {
@@ -163,6 +146,14 @@ std::string rows_of_figures(const PageContents& contents, const std::vector<doub
 
 PageSide page_side(const std::filesystem::path& path, const io::Cloud& cloud, const Context& context) {
   return {path.filename().string(), io::positions(cloud, context), io::normals_of(cloud, context)};
+}
+
+PageContents page_before(const std::filesystem::path& path, const io::Cloud& cloud, const Context& context) {
+  PageContents contents;
+  contents.before = page_side(path, cloud, context);
+  contents.colors = io::colors_of(cloud, context);
+  contents.viewpoint = recorded_viewpoint(cloud, contents.before.xyz.data(), context);
+  return contents;
 }
 
 void need_same_size(const std::string& before_name, std::size_t before, const std::string& after_name,

@@ -43,6 +43,9 @@ struct PageContents {
 /// A side as the file of that name has it.
 PageSide page_side(const std::filesystem::path& path, const io::Cloud& cloud, const Context& context);
 
+/// Contents with all that the file before says: its side, colours and viewpoint.
+PageContents page_before(const std::filesystem::path& path, const io::Cloud& cloud, const Context& context);
+
 /// \throw Failure (usage) if the numbers of points differ.
 void need_same_size(const std::string& before_name, std::size_t before, const std::string& after_name,
                     std::size_t after);

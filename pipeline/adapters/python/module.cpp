@@ -23,6 +23,7 @@
 #include "pipeline/adapters/python/released.h"
 #include "pipeline/cli/console/figures.h"
 #include "pipeline/cli/console/report.h"
+#include "pipeline/cli/exit_code.h"
 #include "pipeline/cli/files/cloud_files.h"
 #include "pipeline/cli/options/parse.h"
 #include "pipeline/cli/program.h"
@@ -146,6 +147,16 @@ const char* name_of(ErrorCode code) {
   return "internal";
 }
 
+/// The exit code of the command by the name of an error.
+nb::dict exit_codes() {
+  nb::dict codes;
+  for (const ErrorCode code :
+       {ErrorCode::internal, ErrorCode::usage, ErrorCode::input_unreadable, ErrorCode::no_usable_points,
+        ErrorCode::cannot_write, ErrorCode::out_of_memory, ErrorCode::not_installed, ErrorCode::cancelled})
+    codes[name_of(code)] = cli::exit_code(code);
+  return codes;
+}
+
 /// A Failure becomes rfsmooth.Error.
 void raise_error(const std::exception_ptr& thrown, void*) {
   try {
@@ -166,6 +177,7 @@ NB_MODULE(_rfsmooth, module) {
   using namespace rfsmooth::python;
   nb::register_exception_translator(raise_error);
   module.attr("version") = rfsmooth::kVersion;
+  module.attr("exit_codes") = exit_codes();
   module.attr("reads_las") = rfsmooth::pipeline::io::format_by_name("las").has_value();
   bind_cloud(module);
   module.def("option_table", &option_table);

@@ -19,9 +19,7 @@
 #include "pipeline/cli/other_program.h"
 #include "pipeline/cli/own_files.h"
 #include "pipeline/io/formats/las/las_scale.h"
-#include "pipeline/io/point_fields.h"
 #include "pipeline/page/page.h"
-#include "pipeline/viewpoint.h"
 
 namespace rfsmooth::cli {
 
@@ -196,17 +194,8 @@ std::string summary(const DenoiseReport& done, const DenoiseCommandOptions& opti
       clean ? "" : in_words(done.measured), tails, left, done.spacing, done.largest_move, done.rms_move);
 }
 
-/// What --html shows of a cloud as it was read.
-pipeline::PageContents page_before(const pipeline::io::Cloud& cloud, const Job& job, const Context& context) {
-  pipeline::PageContents contents;
-  contents.before = pipeline::page_side(job.input, cloud, context);
-  contents.colors = pipeline::io::colors_of(cloud, context);
-  contents.viewpoint = pipeline::recorded_viewpoint(cloud, contents.before.xyz.data(), context);
-  return contents;
-}
-
-/// And of what became of it; its normals only if they are of the new surface. Outliers that are to be removed
-/// are still there: the page shows them on one side.
+/// What --html shows of what became of the cloud; its normals only if they are of the new surface. Outliers
+/// that are to be removed are still there: the page shows them on one side.
 void page_after(const DenoiseReport& done, const DenoiseCommandOptions& options,
                 const pipeline::io::Cloud& cloud, const Job& job, const Context& context,
                 pipeline::PageContents& contents) {
@@ -231,7 +220,7 @@ std::string denoise_cloud(const DenoiseCommandOptions& options, pipeline::PageCo
   std::vector<double> xyz = pipeline::io::positions(cloud, context);
   const std::vector<double> strength =
       options.strength_field ? strengths(cloud, *options.strength_field, context) : std::vector<double>{};
-  if (options.html) page = page_before(cloud, job, context);
+  if (options.html) page = pipeline::page_before(job.input, cloud, context);
   DenoiseOptions how = options.denoise;
   how.flow.trace = options.trace.trace.has_value();
   const DenoiseReport done =

@@ -11,10 +11,8 @@
 #include "pipeline/cli/options/text_values.h"
 #include "pipeline/cli/other_program.h"
 #include "pipeline/cli/own_files.h"
-#include "pipeline/io/point_fields.h"
 #include "pipeline/outliers.h"
 #include "pipeline/page/page.h"
-#include "pipeline/viewpoint.h"
 #include "rfs_mesh/fit/local_surface.h"
 #include "rfs_mesh/noise/noise.h"
 #include "rfs_mesh/points.h"
@@ -91,11 +89,8 @@ std::vector<char> marked_outliers(const pipeline::io::Cloud& cloud, const Contex
 /// The contents of the page, for clouds of the same size.
 pipeline::PageContents contents_of(const pipeline::io::Cloud& before, const pipeline::io::Cloud& after,
                                    const Invocation& typed, const Context& context) {
-  pipeline::PageContents contents;
-  contents.before = pipeline::page_side(typed.arguments[0], before, context);
+  pipeline::PageContents contents = pipeline::page_before(typed.arguments[0], before, context);
   contents.after = pipeline::page_side(typed.arguments[1], after, context);
-  contents.colors = pipeline::io::colors_of(before, context);
-  contents.viewpoint = pipeline::recorded_viewpoint(before, contents.before.xyz.data(), context);
   contents.outlier = marked_outliers(after, context);
   const Measured measured = measure_cloud(contents.before.xyz, contents.outlier.empty(), context);
   if (contents.outlier.empty()) contents.outlier = measured.outlier;
@@ -138,12 +133,10 @@ Command report_command() {
   command.usage = {"[options] BEFORE AFTER -o OUT.html"};
   command.description =
       "BEFORE and AFTER are files of the same points in the same order, as denoise leaves them. The page is "
-      "one "
-      "HTML file that loads nothing: a slider between before and after, the points shaded, in their own "
-      "colours, "
-      "by how far they moved or with the outliers marked, a cross-section, the figures, and a histogram of "
-      "the "
-      "displacements. A field 'outlier' of AFTER says which points are outliers; else they are searched for. "
+      "one HTML file that loads nothing: a slider between before and after, the points shaded, in their own "
+      "colours, by how far they moved or with the outliers marked, a cross-section, the figures, and a "
+      "histogram of the displacements. A field 'outlier' of AFTER says which points are outliers; else they "
+      "are searched for. "
       "rfsmooth denoise --html makes the same page on the way.";
   collect(*options, command.options);
   polish(command);

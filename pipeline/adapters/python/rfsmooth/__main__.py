@@ -8,16 +8,6 @@ from ._error import Error
 from ._options import python_name
 
 _OF_LASPY = (".laz",) if _rfsmooth.reads_las else (".laz", ".las")
-_EXIT = {
-    "internal": 1,
-    "usage": 2,
-    "input_unreadable": 3,
-    "no_usable_points": 4,
-    "cannot_write": 5,
-    "out_of_memory": 6,
-    "not_installed": 127,
-    "cancelled": 130,
-}
 
 
 def _is_laspys(path):
@@ -76,7 +66,7 @@ def main():
             sys.exit(0)
     except Error as error:
         print(f"rfsmooth: error: {error}", file=sys.stderr)
-        sys.exit(_EXIT[error.code])
+        sys.exit(_rfsmooth.exit_codes[error.code])
     except KeyboardInterrupt:
         print("rfsmooth: error: cancelled", file=sys.stderr)
         sys.exit(130)

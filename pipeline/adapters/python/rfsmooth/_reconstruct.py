@@ -9,16 +9,7 @@ import tempfile
 from . import _rfsmooth
 from ._error import Error
 
-_CODES = {
-    1: "internal",
-    2: "usage",
-    3: "input_unreadable",
-    4: "no_usable_points",
-    5: "cannot_write",
-    6: "out_of_memory",
-    127: "not_installed",
-    130: "cancelled",
-}
+_CODES = {exit_code: code for code, exit_code in _rfsmooth.exit_codes.items()}
 
 
 def _typed(name, text):
