@@ -14,9 +14,9 @@ namespace {
 
 constexpr double kRightAngle = 1.57079632679489662;
 
-/// An edge with one face: its other end, and the face.
+/// An edge with one face, as one of its ends sees it, and the face.
 struct RimEdge {
-  Index other, face;
+  Index end, other, face;
 };
 
 /// What fills a hole, wound against the face beside its first edge.
@@ -29,15 +29,11 @@ class Holes {
  public:
   Holes(const Positions& at, double quality, const std::vector<Face>& faces, const Context& context)
       : at_(at), quality_(quality), faces_(faces), around_(vertex_faces(at.size(), faces, context)) {
+    rim_ =
+        collect<RimEdge>(context, at.size(), [&](std::size_t a, auto&& emit) { find_rim(Index(a), emit); });
     start_.assign(at.size() + 1, 0);
-    for_each_index(context, at.size(),
-                   [&](std::size_t a) { start_[a + 1] = Index(rim_of(Index(a)).size()); });
+    for (const RimEdge& edge : rim_) ++start_[edge.end + 1];
     for (std::size_t a = 0; a < at.size(); ++a) start_[a + 1] += start_[a];
-    rim_.resize(start_.back());
-    for_each_index(context, at.size(), [&](std::size_t a) {
-      const std::vector<RimEdge> edges = rim_of(Index(a));
-      std::copy(edges.begin(), edges.end(), rim_.begin() + start_[a]);
-    });
   }
 
   /// Every filling whose lowest corner is a; they may want the same edges.
@@ -61,21 +57,20 @@ class Holes {
   }
 
  private:
-  /// The edges of a that have one face, by their other ends.
-  std::vector<RimEdge> rim_of(Index a) const {
+  /// Emits the edges of a that have one face, by their other ends.
+  template <class Emit>
+  void find_rim(Index a, Emit&& emit) const {
     std::vector<RimEdge> all;
     for (const Index f : around_[a])
       for (const Index b : faces_[f])
-        if (b != a) all.push_back({b, f});
+        if (b != a) all.push_back({a, b, f});
     std::sort(all.begin(), all.end(), [](const RimEdge& x, const RimEdge& y) {
       return std::tie(x.other, x.face) < std::tie(y.other, y.face);
     });
-    std::vector<RimEdge> rim;
     for (std::size_t i = 0, end = 0; i < all.size(); i = end) {
       while (end < all.size() && all[end].other == all[i].other) ++end;
-      if (end - i == 1) rim.push_back(all[i]);
+      if (end - i == 1) emit(all[i]);
     }
-    return rim;
   }
 
   const RimEdge* rim_edge(Index a, Index b) const {
