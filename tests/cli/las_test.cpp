@@ -73,19 +73,31 @@ TEST_F(LasCommand, ChangesCoordinatesAndBoxOnly) {
 }
 
 TEST_F(LasCommand, RoundingToACoarseScaleCostsMoreThanRefiningIt) {
-  put("in.las", survey(2, 1, kSigma).bytes());
-  ASSERT_EQ(run({"denoise", "--drop-unsupported", "in.las", "unrounded.ply"}).code, 0);
-  const Ran refined = run({"denoise", "in.las", "refined.las"}),
-            kept = run({"denoise", "--keep-scale", "in.las", "kept.las"});
-  ASSERT_EQ(refined.code + kept.code, 0) << refined.err << kept.err;
-  EXPECT_THAT(refined.err, AllOf(HasSubstr("scale 0.2 is coarse"), HasSubstr("refined to 0.02"),
-                                 HasSubstr("--keep-scale")));
-  EXPECT_THAT(kept.err, Not(HasSubstr("refined")));
-  const double best = rms("unrounded.ply");
-  EXPECT_LT(rms("refined.las"), 1.02 * std::hypot(best, 0.02 / std::sqrt(12)));  // rounding to 0.02 adds that
-  EXPECT_GT(rms("kept.las"), 1.2 * best);
-  EXPECT_EQ(LasBytes::get<double>(take("refined.las"), 131), 0.02);
-  EXPECT_EQ(LasBytes::get<double>(take("kept.las"), 131), kSigma);
+  for (const double share : {1.0, 0.4}) {
+    const double scale = share * kSigma;
+    put("in.las", survey(2, 1, scale).bytes());
+    ASSERT_EQ(run({"denoise", "--force", "--drop-unsupported", "in.las", "unrounded.ply"}).code, 0);
+    const Ran refined = run({"denoise", "--force", "in.las", "refined.las"}),
+              kept = run({"denoise", "--force", "--keep-scale", "in.las", "kept.las"});
+    ASSERT_EQ(refined.code + kept.code, 0) << refined.err << kept.err;
+    EXPECT_THAT(refined.err,
+                AllOf(HasSubstr(" is coarse"), HasSubstr("refined to "), HasSubstr("--keep-scale")));
+    EXPECT_THAT(kept.err, Not(HasSubstr("refined")));
+    const double best = rms("unrounded.ply"), steps = scale / LasBytes::get<double>(take("refined.las"), 131);
+    EXPECT_LT(rms("refined.las"), 1.02 * best) << scale;
+    EXPECT_GT(rms("kept.las"), std::hypot(best, 0.9 * scale / std::sqrt(12))) << scale;
+    EXPECT_NEAR(std::log10(steps), std::round(std::log10(steps)), 1e-12);
+    EXPECT_EQ(LasBytes::get<double>(take("kept.las"), 131), scale);
+  }
+}
+
+TEST_F(LasCommand, AnIndexBesideTheOutputIsSaidToBeStale) {
+  put("in.las", survey(2, 1, 0.001).bytes());
+  EXPECT_THAT(run({"denoise", "in.las", "out.las"}).err, Not(HasSubstr("index")));
+  put("out.lax", "LASX");
+  EXPECT_THAT(run({"denoise", "--force", "in.las", "out.las"}).err,
+              HasSubstr("out.lax: an index of other points"));
+  EXPECT_EQ(take("out.lax"), "LASX");
 }
 
 TEST_F(LasCommand, PointsThatDoNotMoveStayWhereTheyAreUnderARefinedScale) {

@@ -41,6 +41,34 @@ def test_only_what_changed_changes(tmp_path):
     assert (tmp_path / "b.ply").read_text() == text.replace("\n4 5.0", "\n4.25 5.0")
 
 
+def test_coordinates_alone_are_written_into_the_file(tmp_path):
+    path = SOURCE / "tests" / "pipeline" / "io" / "fixtures" / "pcl_ascii.pcd"
+    points, file = rfsmooth.read(path)
+    xyz = file.positions()
+    assert np.isnan(xyz).any()
+    rfsmooth.write(tmp_path / "same.pcd", xyz, file)
+    assert (tmp_path / "same.pcd").read_bytes() == path.read_bytes()
+    xyz[0] = [0.5, 0.25, 0.125]
+    rfsmooth.write(tmp_path / "moved.pcd", xyz, file)
+    moved, again = rfsmooth.read(tmp_path / "moved.pcd")
+    assert np.array_equal(again.positions(), xyz, equal_nan=True) and moved.dtype == points.dtype
+    with pytest.raises(ValueError, match="the file has"):
+        rfsmooth.write(tmp_path / "few.pcd", xyz[1:], file)
+
+
+def test_coordinates_alone_are_written_into_a_las_file(sphere, tmp_path):
+    rfsmooth.write(tmp_path / "fine.las", sphere + [4e5, 5e6, 100])
+    rows, file = rfsmooth.read(tmp_path / "fine.las")
+    assert rows["x"].dtype.kind == "i" and np.allclose(file.positions(), sphere + [4e5, 5e6, 100], atol=1e-8, rtol=0)
+    moved = file.positions() + [0.5, 0.25, -0.125]
+    rfsmooth.write(tmp_path / "moved.las", moved, file)
+    again, seen = rfsmooth.read(tmp_path / "moved.las")
+    assert again.dtype == rows.dtype and np.allclose(seen.positions(), moved, atol=1e-8, rtol=0)
+    assert np.array_equal(again["intensity"], rows["intensity"])
+    with pytest.warns(UserWarning, match="beyond"):
+        rfsmooth.write(tmp_path / "far.las", moved * 1000, file)
+
+
 def test_a_field_that_is_added_comes_last(sphere, tmp_path):
     rfsmooth.write(tmp_path / "a.ply", sphere)
     points, file = rfsmooth.read(tmp_path / "a.ply")

@@ -56,7 +56,7 @@ def test_a_coarse_scale_is_refined_and_what_stays_stays_exact(sphere, tmp_path):
     before, after = laspy.read(tmp_path / "a.laz"), laspy.read(tmp_path / "b.laz")
     times = before.header.scales / after.header.scales
     assert np.allclose(times, 10) or np.allclose(times, 100)
-    assert np.all(after.header.scales <= report["noise"] / 4) and "coarser" in report["scale"]
+    assert np.all(after.header.scales <= report["noise_left"] / 2) and "coarser" in report["scale"]
     assert after.X[-1] == before.X[-1] * round(times[0])
     kept = rfsmooth.las.denoise_file(tmp_path / "a.laz", tmp_path / "c.laz", keep_scale=True)
     coarse = laspy.read(tmp_path / "c.laz")
@@ -106,3 +106,14 @@ def test_other_files_go_to_the_command(sphere, tmp_path, monkeypatch):
     assert np.array_equal(rfsmooth.read("b.ply")[1].positions(), rfsmooth.denoise(sphere)[0])
     assert command("--version").stdout == f"rfsmooth {rfsmooth.__version__}\n"
     assert command("denoise").returncode == 2
+
+
+def test_coordinates_are_written_into_a_coarse_file_in_steps_as_fine_as_asked_for(sphere, tmp_path):
+    scan(sphere, tmp_path / "a.las", scale=0.02)
+    rows, file = rfsmooth.read(tmp_path / "a.las")
+    clean, _ = rfsmooth.denoise(file.positions())
+    for name, scale, steps in (("kept.las", None, 0.02), ("finer.las", 0.003, 0.002)):
+        rfsmooth.write(tmp_path / name, clean, file, scale=scale)
+        after = laspy.read(tmp_path / name)
+        assert np.allclose(after.header.scales, steps) and np.array_equal(after.intensity, rows["intensity"])
+        assert np.abs(after.xyz - clean).max() <= steps * 0.5001

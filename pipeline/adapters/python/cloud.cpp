@@ -18,6 +18,7 @@
 
 #include "pipeline/adapters/python/released.h"
 #include "pipeline/cli/files/cloud_files.h"
+#include "pipeline/io/formats/las/las_scale.h"
 #include "pipeline/io/mesh_file.h"
 
 namespace rfsmooth::python {
@@ -29,6 +30,7 @@ namespace {
 
 using Rows = nb::ndarray<const std::uint8_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 using Triples = nb::ndarray<const std::uint32_t, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
+using Coordinates = nb::ndarray<const double, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
 using FieldText = std::tuple<std::string, std::string, std::size_t>;  ///< name, numpy's type, values per row
 
 /// A numpy array that owns what `values` held.
@@ -168,6 +170,16 @@ nb::ndarray<nb::numpy, double, nb::shape<-1, 3>> positions_of(const io::Cloud& c
   return array_of<double, nb::shape<-1, 3>>(io::positions(cloud), {cloud.size(), 3});
 }
 
+/// n x 3 coordinates in world units, each written in the file's own type; of LAS in its scale, which is
+/// refined first where it is coarser than `scale`.
+void put_positions(io::Cloud& cloud, const Coordinates& xyz, const std::optional<double>& scale) {
+  if (xyz.shape(0) != cloud.size()) throw std::invalid_argument("not one position for each point");
+  released(nb::none(), 0, {}, [&](const Context& context, cli::Console&) {
+    if (scale && cloud.format == io::Format::las) io::refine_scale(cloud, *scale, xyz.data(), context);
+    io::set_positions(cloud, xyz.data(), context);
+  });
+}
+
 nb::ndarray<nb::numpy, std::uint32_t, nb::shape<-1, 3>> faces_array(const io::Cloud& cloud) {
   std::vector<Face> faces = io::faces_of(cloud);
   const std::size_t count = faces.size();
@@ -239,6 +251,7 @@ void bind_cloud(nb::module_& module) {
       .def("rows", &rows_of)
       .def("put_rows", &put_rows, nb::arg("fields"), nb::arg("rows"), nb::arg("known"))
       .def("positions", &positions_of)
+      .def("put_positions", &put_positions, nb::arg("xyz"), nb::arg("scale").none())
       .def("faces", &faces_array)
       .def("put_faces", &put_faces)
       .def("edges", &edges_array)

@@ -77,6 +77,7 @@ _TYPES = {
     "encoding": "str | None",
     "force": "bool",
     "drop_unsupported": "bool",
+    "scale": "float | None",
 }
 _EXCEPTIONS = {("compare", "faces"): "ArrayLike | None", ("info", "points"): "ArrayLike | str | PathLike[str]"}
 _RESULTS = {

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <memory>
 
@@ -52,7 +53,7 @@ struct DenoiseCommandOptions {
     visit(
         OptionInfo{
             "keep-scale",
-            "LAS: keep the scale of the file, also where its steps are coarser than a quarter of the noise",
+            "LAS: keep the scale of the file, also where its steps are coarser than half of the noise left",
             ""},
         self.keep_scale);
     visit(OptionInfo{"html", "a page to look at what was done, for browsers (see report); of one input",
@@ -137,9 +138,8 @@ std::string scale_text(const std::array<double, 3>& scale) {
   return one ? fmt::format("{:g}", scale[0]) : fmt::format("{:g}", fmt::join(scale, " "));
 }
 
-/// Refines the scale of a LAS cloud. For LAS to be written as far as it is coarse for the noise: rounding in
-/// steps of the noise costs half of what smoothing gained, in steps of a quarter of it 4 %. For other
-/// formats, which have no steps, as far as 32 bits go.
+/// Refines the scale of a LAS cloud. For LAS to be written as far as it is coarse for what is left of the
+/// noise. For other formats, which have no steps, as far as 32 bits go.
 void refine_scale(const DenoiseCommandOptions& options, const DenoiseReport& done, pipeline::io::Cloud& cloud,
                   const double* xyz, const Job& job, const Context& context, Console& console,
                   ordered_json& entry) {
@@ -150,7 +150,7 @@ void refine_scale(const DenoiseCommandOptions& options, const DenoiseReport& don
     return;
   }
   if (options.keep_scale || done.noise <= 0) return;
-  const double step = done.noise / 4;
+  const double step = pipeline::io::finest_needed(done.noise, done.noise_left);
   const pipeline::io::RefinedScale scale = pipeline::io::refine_scale(cloud, step, xyz, context);
   entry["scale"] = {{"before", scale.before}, {"after", scale.after}};
   if (scale.refined())
@@ -163,6 +163,15 @@ void refine_scale(const DenoiseCommandOptions& options, const DenoiseReport& don
         fmt::format("{}: scale {} is coarse for noise of {:.3g}, but 32 bits hold no finer one of so large a "
                     "cloud",
                     job.input, scale_text(scale.after), done.noise));
+}
+
+/// An index lies beside the LAS file it is of.
+void warn_of_index(const DenoiseCommandOptions& options, const pipeline::io::Cloud& cloud, const Job& job,
+                   Console& console) {
+  if (output_format(cloud, job.output, options.job.files) != pipeline::io::Format::las) return;
+  const std::filesystem::path index = std::filesystem::path(job.output).replace_extension(".lax");
+  if (std::filesystem::exists(index))
+    console.warn(fmt::format("{}: an index of other points: make it anew", index.string()));
 }
 
 bool keeps_grid(const pipeline::io::Cloud& cloud) {
@@ -235,6 +244,7 @@ std::string denoise_cloud(const DenoiseCommandOptions& options, pipeline::PageCo
   warn_if_coarse(cloud, pipeline::io::positions(cloud, context), done.spacing, job.input, console);
   if (as_nan) blank_outliers();
   refine_scale(options, done, cloud, xyz.data(), job, context, console, entry);
+  warn_of_index(options, cloud, job, console);
   const std::vector<double> before =
       options.write_displacement ? pipeline::io::positions(cloud, context) : std::vector<double>{};
   pipeline::io::set_positions(cloud, xyz.data(), context);

@@ -36,6 +36,7 @@ def _denoise_las(files, options):
             f"{files[0]} -> {files[1]}: {counts['points']} points, {counts['outliers']} outliers",
             f"noise {report['noise']:.3g}, about {report['noise_left']:.3g} left; spacing {report['spacing']:.4g}",
             report["scale"],
+            report["index"],
         ):
             if line:
                 print(f"rfsmooth: {line}", file=sys.stderr)

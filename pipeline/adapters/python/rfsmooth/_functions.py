@@ -206,27 +206,28 @@ def info(points):
 
 
 def read(path):
-    """Reads a file (PLY, PCD, XYZ, OFF; told by the content). Returns its points as a structured array, and a Cloud: the file
+    """Reads a file (PLY, PCD, XYZ, LAS, OFF; told by the content). Returns its points as a structured array, and a Cloud: the file
     with all that stands beside them, for `write`. Fields that are lists stay in the file.
     """
     file = _rfsmooth.read_file(os.fspath(path))
     return _arrays.structured(file), file
 
 
-def write(path, points, file=None, *, format=None, encoding=None, force=False, drop_unsupported=False):
+def write(path, points, file=None, *, format=None, encoding=None, force=False, drop_unsupported=False, scale=None):
     """Writes points, a structured array or n x 3, by the path's extension; complete or not at all. With the `file` that they
     were read from, everything else in it comes along, and what did not change keeps its bytes or its text. format,
-    encoding, force, drop_unsupported: as of the command.
+    encoding, force, drop_unsupported: as of the command. scale: of n x 3 into a LAS file, the largest step that coordinates
+    may be rounded to; a coarser one is refined by a power of ten.
     """
     array = np.asarray(points)
     if array.dtype.names is None:
-        cloud = _arrays.cloud_of_points(_arrays.as_points(array))
-        if file is not None:
-            table = _arrays.structured(file)
-            _check_rows(array, table)
-            for f, column in zip(file.xyz, array.T):
-                table[table.dtype.names[f]] = column
-            cloud = _with_rows(file, table)
+        xyz = _arrays.as_points(array)
+        if file is None:
+            cloud = _arrays.cloud_of_points(xyz)
+        else:
+            _check_rows(xyz, file)
+            cloud = file.__copy__()
+            cloud.put_positions(xyz.astype(np.float64, copy=False), scale)
     elif file is not None:
         cloud = _with_rows(file, array)
     else:
@@ -236,15 +237,15 @@ def write(path, points, file=None, *, format=None, encoding=None, force=False, d
     _rfsmooth.write_file(cloud, os.fspath(path), format, encoding, force, drop_unsupported)
 
 
-def _check_rows(array, table):
-    if len(array) != len(table):
-        raise ValueError(f"the file has {len(table)} points, the array {len(array)}")
+def _check_rows(array, file):
+    if len(array) != len(file):
+        raise ValueError(f"the file has {len(file)} points, the array {len(array)}")
 
 
 def _with_rows(file, array):
     """A copy of `file` with the rows of `array`: its fields in place, others behind them."""
+    _check_rows(array, file)
     table = _arrays.structured(file)
-    _check_rows(array, table)
     names = table.dtype.names
     if not set(names) <= set(array.dtype.names):
         raise ValueError(f"fields are missing: {', '.join(set(names) - set(array.dtype.names))}")

@@ -6,7 +6,7 @@ import os
 
 import numpy as np
 
-from . import _functions
+from . import _functions, _rfsmooth
 from ._error import Error
 from ._options import takes_options
 
@@ -23,23 +23,23 @@ def _laspy(path):
     return laspy
 
 
-def _finer(scales, sigma):
-    """The scales, each divided by the power of ten that makes it a quarter of sigma or less."""
+def _finer(scales, step):
+    """The scales, each divided by the power of ten that makes it `step` or less."""
     fine = np.array(scales, float)
     powers = np.zeros(3, int)
     for axis in range(3):
-        while sigma > 0 and fine[axis] > sigma / 4 and powers[axis] < 9:
+        while fine[axis] > step and powers[axis] < 9:
             powers[axis] += 1
             fine[axis] = scales[axis] / 10.0 ** powers[axis]
     return fine, powers
 
 
-def _rescale(las, sigma):
+def _rescale(las, step):
     """Refines the scale of coordinates: old whole numbers times a power of ten, so that what does not move stays exact.
     Returns what is to be said of it, or None. The finest that the range of whole numbers allows is taken.
     """
     header = las.header
-    fine, powers = _finer(header.scales, sigma)
+    fine, powers = _finer(header.scales, step)
     for axis, name in enumerate("XYZ"):
         values = np.asarray(las.points.array[name], np.int64)
         largest = int(np.abs(values).max(initial=0))
@@ -47,12 +47,13 @@ def _rescale(las, sigma):
             powers[axis] -= 1
         fine[axis] = header.scales[axis] / 10.0 ** powers[axis]
         las.points.array[name] = (values * 10 ** int(powers[axis])).astype(np.int32)
-    if not powers.any():
-        return None
     old = header.scales.copy()
     header.scales = fine
     las.points.scales = fine
-    return f"scale {old.tolist()} -> {fine.tolist()}: the old one is coarser than a quarter of the noise"
+    still = "; 32 bits hold no finer one of so large a cloud" if np.any(fine > step) else ""
+    if powers.any():
+        return f"scale {old.tolist()} -> {fine.tolist()}: the old one is coarser than half of the noise left{still}"
+    return f"scale {old.tolist()} is coarser than half of the noise left{still}" if still else None
 
 
 def _store(las, xyz, moved):
@@ -67,8 +68,9 @@ def _store(las, xyz, moved):
 @takes_options("denoise")
 def denoise_file(source, target, *, keep_scale=False, force=False, threads=0, progress=None, config=None, **options):
     """Reads a LAS or LAZ file, takes the noise out and writes another; returns the report, whose "scale" says whether the
-    scale of coordinates was refined: it is, by a power of ten, where it is coarser than a quarter of the noise, since
-    rounding to it would cost what smoothing gained (keep_scale: not). A COPC file is written as LAZ, without its index.
+    scale of coordinates was refined: it is, by a power of ten, where it is coarser than half of the noise left, since
+    rounding to it would cost what smoothing gained (keep_scale: not). A COPC file is written as LAZ, without its index;
+    "index" says if a LAX index of other points lies beside the target.
     normals and write_displacement have no place in these files; outliers may be removed.
     """
     source, target = os.fspath(source), os.fspath(target)
@@ -96,12 +98,16 @@ def denoise_file(source, target, *, keep_scale=False, force=False, threads=0, pr
             raise Error("usage", f"{source}: the points have no field '{strength}'")
         asked = {**asked, "strength_field": np.asarray(las[strength], float)}
     clean, report = _functions.denoise(xyz, threads=threads, progress=progress, **asked)
-    report["scale"] = None if keep_scale else _rescale(las, report["noise"])
+    step = _rfsmooth.finest_needed(report["noise"], report["noise_left"])
+    refine = step > 0 and report["counts"]["moved"] > 0 and not keep_scale
+    report["scale"] = _rescale(las, step) if refine else None
     _store(las, clean, np.any(clean != xyz, axis=1))
     if remove:
         las.points = las.points[~report["fields"]["outlier"]]
     _forget_index(las)
     _write(las, target)
+    index = os.path.splitext(target)[0] + ".lax"
+    report["index"] = f"{index} is an index of other points: make it anew" if os.path.exists(index) else None
     return report
 
 

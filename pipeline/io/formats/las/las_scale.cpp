@@ -109,6 +109,10 @@ double decimal_scale(double extent, double steps) {
   return times_power_of_ten(1.0, power);
 }
 
+double finest_needed(double noise, double left) {
+  return (left < noise ? left : noise / 10) / 2;
+}
+
 RefinedScale refine_scale(Cloud& las, double step, const double* xyz, const Context& context) {
   using namespace las;  // NOLINT(google-build-using-namespace)
   RefinedScale done;

@@ -18,6 +18,12 @@ struct RefinedScale {
   bool coarse(double step) const;
 };
 
+/// The coarsest step that costs one per cent at most of what smoothing reached: half of the noise that it
+/// left, as rounding to steps q adds q / sqrt(12) in every direction and sqrt(1 + 1 / 48) is 1.01. `left` as
+/// large as the noise is not known: then a tenth of the noise is taken for it, as little as smoothing leaves
+/// of white noise on smooth shapes. World units; 0 without noise.
+double finest_needed(double noise, double left);
+
 /// Gives each axis of a LAS cloud a scale of at most `step`, the old one over a power of ten, before
 /// coordinates `xyz` (n x 3) are set: integers become 10^k times what they were, so that points stay where
 /// they are to the last digit. As far as both old and new coordinates fit into 32 bits; the offset stays if
