@@ -153,6 +153,27 @@ class Page(unittest.TestCase):
         browser.click("#strays")
         self.assertLess(red(browser.picture("#view")), with_strays - 50, "strays can be left out")
 
+    def WhereNoPointIsThePageIsWhite(self):
+        browser = self.browse(self.make(*waves(3000, 0.1)))
+        self.set(browser, mode="outliers", slider=1)  # all points are of one grey, darkened where others stand out
+        picture = browser.picture("#view")
+        shades = {picture[y][x] for x, y in self.free(picture, -100)}
+        self.assertIn((255, 255, 255), shades)
+        self.assertGreater(len(shades), 20)
+        self.assertEqual([shade for shade in shades if 200 <= shade[0] < 255], [])
+
+    def WhatMovesIsDrawnOfFewerPointsAndAllOfThemWhenItRests(self):
+        browser = self.browse(self.make(*waves(20000, 0.1)))
+        whole = browser.picture("#view")
+        self.set(browser, frame=1e-3)  # no time at all
+        browser.ask("POST", "/execute/async", {"args": [], "script": """
+            const [done] = arguments, view = document.getElementById('view');
+            view.dispatchEvent(new WheelEvent('wheel', {deltaY: 0, cancelable: true}));
+            requestAnimationFrame(() => requestAnimationFrame(() => { window.moving = rfsmooth.state.every; done(); }));"""})
+        self.assertEqual(browser.run("return moving"), 16)
+        browser.wait_for("rfsmooth.state.every === 1")
+        self.assertEqual(browser.picture("#view"), whole)
+
     def ACrossSectionShowsASlab(self):
         browser = self.browse(self.make(*waves(20000, 0.1)))
         whole = browser.picture("#view")

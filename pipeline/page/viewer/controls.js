@@ -2,7 +2,10 @@
 
 const element = id => document.getElementById(id);
 const canvas = element('view');
-const state = {slider: 0.5, mode: 'shaded', size: 1, strays: true, slab: [0, 0, 0], slabAt: 0, slabHalf: kSlabless};
+const state = {slider: 0.5, mode: 'shaded', size: 1, strays: true, slab: [0, 0, 0], slabAt: 0, slabHalf: kSlabless,
+  frame: 40,  // milliseconds: while something moves as many points are drawn as there is time for, and all when it rests
+  every: 1    // of so many points one was drawn last
+};
 
 async function start() {
   const gl = canvas.getContext('webgl2', {alpha: false, antialias: false, depth: false, preserveDrawingBuffer: true});
@@ -27,20 +30,29 @@ async function start() {
       some.push(block.origin.map((x, axis) => x + block.step * points.place[4 * (block.first + i) + axis]));
   if (some.length === 0) some.push(about.blocks[0].origin);
 
-  let dense = 1, waiting = false;
+  const kRest = 250;  // milliseconds
+  let dense = 1, waiting = false, resting = 0, thinned = 1;
   function paint() {
     waiting = false;
     dense = window.devicePixelRatio || 1;
     const width = Math.max(1, Math.round(canvas.clientWidth * dense)), height = Math.max(1, Math.round(canvas.clientHeight * dense));
     if (canvas.width !== width || canvas.height !== height) [canvas.width, canvas.height] = [width, height];
     painter.resize(width, height);
-    painter.draw(state, dense);
+    state.every = resting ? thinned : 1;
+    const wanted = state.every * painter.draw(state, dense) / state.frame;
+    thinned = Math.max(1, Math.min(2 ** Math.ceil(Math.log2(wanted)), kMostThinned));
     element('slider').style.left = 100 * state.slider + '%';
     element('slider').setAttribute('aria-valuenow', Math.round(100 * state.slider));
   }
   function repaint() {
     if (!waiting) requestAnimationFrame(paint);
     waiting = true;
+  }
+  /** The same for what goes on moving. */
+  function move() {
+    clearTimeout(resting);
+    resting = setTimeout(() => { resting = 0; repaint(); }, kRest);
+    repaint();
   }
 
   function home() {
@@ -49,7 +61,7 @@ async function start() {
   }
   function slide(share) {
     state.slider = Math.max(0, Math.min(1, share));
-    repaint();
+    move();
   }
   function show(mode) {
     const input = document.querySelector(`input[value=${mode}]`);
@@ -69,19 +81,19 @@ async function start() {
       const heights = Float64Array.from(some, p => dot(p, along)).sort();
       slabRange = [heights[0], heights[heights.length - 1]];
       element('place').value = 0;
-      if (choice !== 'here') {
-        camera.look(along[1] ? [0, -1, 0] : along);
-        camera.fit(some, canvas.clientWidth, canvas.clientHeight);
-      }
     }
     cut();
+    if (!along || choice === 'here') return;
+    camera.look(along[1] ? [0, -1, 0] : along);
+    const inside = some.filter(p => Math.abs(dot(p, along) - state.slabAt) <= state.slabHalf);
+    camera.fit(inside.length ? inside : some, canvas.clientWidth, canvas.clientHeight);
   }
   function cut() {
     const [low, high] = slabRange, half = (high - low) / 2;
     const off = element('section').value === 'none';
     state.slabAt = (low + high) / 2 + half * Number(element('place').value);
     state.slabHalf = off ? kSlabless : Math.max(half * 2 ** Number(element('thickness').value), 1e-6 * about.radius);
-    repaint();
+    move();
   }
 
   for (const input of document.querySelectorAll('input[name=mode]')) input.addEventListener('change', () => show(input.value));
@@ -89,7 +101,7 @@ async function start() {
   const strays = about.blocks.some(block => block.kind !== kSurface);
   document.querySelector('input[value=outliers]').disabled = element('strays').disabled = !strays;
   element('strays').addEventListener('change', event => { state.strays = event.target.checked; repaint(); });
-  element('size').addEventListener('input', event => { state.size = 2 ** Number(event.target.value); repaint(); });
+  element('size').addEventListener('input', event => { state.size = 2 ** Number(event.target.value); move(); });
   element('section').addEventListener('change', event => section(event.target.value));
   element('place').addEventListener('input', cut);
   element('thickness').addEventListener('input', cut);
@@ -132,7 +144,7 @@ async function start() {
     } else {
       turn(nowX - x, nowY - y);
     }
-    repaint();
+    move();
   });
   function turn(x, y) {
     camera.turn -= x / 200;
@@ -142,7 +154,7 @@ async function start() {
   canvas.addEventListener('wheel', event => {
     event.preventDefault();
     camera.near(Math.exp(-event.deltaY * (event.deltaMode ? 0.03 : 0.001)), ...fromMiddle(event.clientX, event.clientY));
-    repaint();
+    move();
   }, {passive: false});
 
   const modes = ['shaded', 'colors', 'moves', 'outliers'];
@@ -161,7 +173,7 @@ async function start() {
     else if (modes[key - 1]) show(modes[key - 1]);
     else return;
     event.preventDefault();
-    repaint();
+    move();
   });
   new ResizeObserver(repaint).observe(canvas);
 

@@ -54,21 +54,25 @@ precision highp float;
 uniform sampler2D colors, depths;
 uniform float pixels;  // of the screen along the whole depth
 uniform float strength;
-uniform ivec2 rings;   // pixels from the place that is shaded to what is looked at around it
+uniform ivec2 around[16];  // pixels from the place that is shaded to what is looked at: eight on a ring, eight on a wider one
+uniform vec2 rings;        // their radii, pixels
 out vec4 pixel;
 void main() {
   ivec2 here = ivec2(gl_FragCoord.xy), last = textureSize(depths, 0) - 1;
   float depth = texelFetch(depths, here, 0).r, sum = 0.0;
-  for (int ring = 0; ring < 2; ++ring)
-    for (int k = 0; k < 8; ++k) {
-      float angle = 0.785398 * (float(k) + 0.5 * float(ring));
-      ivec2 there = clamp(here + ivec2(round(float(rings[ring]) * vec2(cos(angle), sin(angle)))), ivec2(0), last);
-      sum += clamp((depth - texelFetch(depths, there, 0).r) * pixels / float(rings[ring]), 0.0, 4.0);
-    }
+  if (depth == 1.0) {  // nothing is there
+    pixel = vec4(1);
+    return;
+  }
+  for (int k = 0; k < 16; ++k) {
+    ivec2 there = clamp(here + around[k], ivec2(0), last);
+    sum += clamp((depth - texelFetch(depths, there, 0).r) * pixels / (k < 8 ? rings.x : rings.y), 0.0, 4.0);
+  }
   pixel = vec4(texelFetch(colors, here, 0).rgb * exp(-strength * sum / 16.0), 1);
 }`;
 
 const kClay = [0.86, 0.82, 0.75], kStray = [0.86, 0.1, 0.1], kGrey = [0.78, 0.78, 0.78], kSlabless = 1e30;
+const kMostThinned = 16;  // WebGL steps over 255 bytes at most
 const kSurface = 0, kOutlier = 1, kRemoved = 2;  // RowKind of shown.h
 
 class Painter {
@@ -84,23 +88,27 @@ class Painter {
       gl.bufferData(gl.ARRAY_BUFFER, data, gl.STATIC_DRAW);
       return made;
     };
-    const place = buffer(points.place), move = buffer(points.move), color = points.color && buffer(points.color);
-    this.sides = [0, 1].map(side => {
-      const array = gl.createVertexArray();
-      gl.bindVertexArray(array);
-      const attribute = (slot, from, size, type, normalized) => {
-        if (!from) return;
-        gl.bindBuffer(gl.ARRAY_BUFFER, from);
-        gl.enableVertexAttribArray(slot);
-        gl.vertexAttribPointer(slot, size, type, normalized, 0, 0);
-      };
-      attribute(0, place, 4, gl.UNSIGNED_SHORT, false);
-      attribute(1, move, 4, gl.BYTE, false);
-      attribute(2, color, 4, gl.UNSIGNED_BYTE, true);
-      attribute(3, points.normal[side] && buffer(points.normal[side]), 4, gl.BYTE, false);
-      return {array, lit: points.normal[side] ? 1 : 0, frame: gl.createFramebuffer(), textures: []};
-    });
-    gl.bindVertexArray(null);
+    this.buffers = {place: buffer(points.place), move: buffer(points.move), color: points.color && buffer(points.color)};
+    this.sides = points.normal.map(normal => ({arrays: {}, normal: normal && buffer(normal), lit: normal ? 1 : 0,
+                                               frame: gl.createFramebuffer(), textures: []}));
+  }
+
+  /** What a side is drawn from: every so many points. */
+  arrays(side, every) {
+    if (side.arrays[every]) return side.arrays[every];
+    const gl = this.gl, array = gl.createVertexArray();
+    gl.bindVertexArray(array);
+    const attribute = (slot, from, bytes, type, normalized) => {
+      if (!from) return;
+      gl.bindBuffer(gl.ARRAY_BUFFER, from);
+      gl.enableVertexAttribArray(slot);
+      gl.vertexAttribPointer(slot, 4, type, normalized, 4 * bytes * every, 0);
+    };
+    attribute(0, this.buffers.place, 2, gl.UNSIGNED_SHORT, false);
+    attribute(1, this.buffers.move, 1, gl.BYTE, false);
+    attribute(2, this.buffers.color, 1, gl.UNSIGNED_BYTE, true);
+    attribute(3, side.normal, 1, gl.BYTE, false);
+    return side.arrays[every] = array;
   }
 
   program(vertex, fragment, attributes) {
@@ -138,9 +146,10 @@ class Painter {
     }
   }
 
-  /** Draws what `state` (controls.js) says; `dense`: pixels of the canvas per pixel of the screen. */
+  /** Draws what `state` (controls.js) says; `dense`: pixels of the canvas per pixel of the screen. Returns how long it took,
+      milliseconds. */
   draw(state, dense) {
-    const gl = this.gl, scale = camera.scale * dense, border = Math.round(state.slider * this.width);
+    const gl = this.gl, scale = camera.scale * dense, border = Math.round(state.slider * this.width), start = performance.now();
     // Wider than the points, whose own outlines say nothing.
     const size = Math.min(24, this.reach * scale * state.size);
     const rings = [Math.round(Math.max(1.5 * dense, 0.6 * size)), Math.round(Math.max(4 * dense, 1.2 * size))];
@@ -153,18 +162,32 @@ class Painter {
       const [from, to, margin] = parts[which];
       if (from === to) return;
       gl.bindFramebuffer(gl.FRAMEBUFFER, side.frame);
-      gl.scissor(Math.max(0, from + Math.min(0, margin)), 0, to - from + rings[1], this.height);
-      this.drawPoints(state, which, scale, depthRange, dense);
+      const low = Math.max(0, from + Math.min(0, margin)), wide = to - from + rings[1];
+      gl.scissor(low, 0, wide, this.height);
+      this.drawPoints(state, which, scale, depthRange, dense, [low, low + wide]);
       gl.bindFramebuffer(gl.FRAMEBUFFER, null);
       gl.scissor(from, 0, to - from, this.height);
       this.drawDome(side, state, 2 * depthRange * scale, rings);
     });
+    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));  // waits until it is done
+    return performance.now() - start;
   }
 
-  drawPoints(state, which, scale, depthRange, dense) {
+  /** Whether a block may have points in these columns of the picture. */
+  inSight(block, scale, {right, up}, [low, high]) {
+    const away = block.origin.map((x, axis) => x + 32768 * block.step - camera.target[axis]);
+    const radius = (1.8 * 32768 * block.step + 1.8 * 128 * block.unit) * scale + 64;
+    const x = this.width / 2 + dot(away, right) * scale, y = dot(away, up) * scale;
+    return x + radius > low && x - radius < high && Math.abs(y) < this.height / 2 + radius;
+  }
+
+  drawPoints(state, which, scale, depthRange, dense, columns) {
     const gl = this.gl, {made, at} = this.points, side = this.sides[which], axes = camera.axes();
+    const every = state.every;
+    // Few of many have the place of all. In a slab the points lie side by side: small, or they hide how they scatter.
+    const larger = state.size * Math.sqrt(every) * (state.slabHalf < kSlabless ? 0.35 : 1);
     gl.useProgram(made);
-    gl.bindVertexArray(side.array);
+    gl.bindVertexArray(this.arrays(side, every));
     gl.enable(gl.DEPTH_TEST);
     gl.clearColor(1, 1, 1, 1);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
@@ -177,14 +200,16 @@ class Painter {
       gl.uniform1f(at(name), value);
     for (const block of about.blocks) {
       if (block.kind !== kSurface && (!state.strays || block.kind === kRemoved && which === 1)) continue;
+      if (!this.inSight(block, scale, axes, columns)) continue;
       const marked = state.mode === 'outliers' && block.kind !== kSurface;
       gl.uniform3fv(at('origin'), block.origin);
       gl.uniform1f(at('stride'), block.step);
       gl.uniform1f(at('unit'), block.unit);
-      gl.uniform1f(at('reach'), marked ? Math.max(2 * block.reach, 5 * dense / scale) : block.reach * state.size);
+      gl.uniform1f(at('reach'), marked ? Math.max(2 * block.reach, 5 * dense / scale) : block.reach * larger);
       gl.uniform1i(at('mode'), {shaded: 0, colors: 1, moves: 2, outliers: 0}[state.mode]);
       gl.uniform3fv(at('plain'), marked ? kStray : state.mode === 'outliers' ? kGrey : kClay);
-      gl.drawArrays(gl.POINTS, block.first, block.count);
+      const first = Math.ceil(block.first / every);
+      gl.drawArrays(gl.POINTS, first, Math.ceil((block.first + block.count) / every) - first);
     }
     gl.bindVertexArray(null);
   }
@@ -201,7 +226,12 @@ class Painter {
     gl.uniform1i(at('depths'), 1);
     gl.uniform1f(at('pixels'), pixels);
     gl.uniform1f(at('strength'), state.mode === 'shaded' ? 1.1 : 0.7);
-    gl.uniform2i(at('rings'), ...rings);
+    const around = [...Array(16).keys()].flatMap(k => {
+      const radius = rings[k >> 3], angle = Math.PI / 4 * (k + 0.5 * (k >> 3));
+      return [Math.round(radius * Math.cos(angle)), Math.round(radius * Math.sin(angle))];
+    });
+    gl.uniform2iv(at('around'), around);
+    gl.uniform2f(at('rings'), ...rings);
     gl.drawArrays(gl.TRIANGLES, 0, 3);
   }
 }
