@@ -6,8 +6,9 @@ source=$1 work=$2 python=$3
 rm -rf "$work"
 mkdir -p "$work"
 export CCACHE_BASEDIR=${CCACHE_BASEDIR:-$source} CCACHE_NOHASHDIR=1  # as the tests were compiled: see tests/run.sh
-# Compiled as the tests are: ccache has the library already.
-"$python" -m pip wheel -q --no-deps -w "$work/built" "$source" --config-settings build-dir="$source/build/wheel" \
+# Compiled as the tests are: ccache has the library already, and nanobind where it stays in one place. What pyproject.toml wants
+# for a build is checked to be there.
+PATH="$(dirname "$python"):$PATH" "$python" -m pip wheel -q --no-deps --no-build-isolation --check-build-dependencies -w "$work/built" "$source" --config-settings build-dir="$source/build/wheel" \
   --config-settings cmake.build-type=RelWithDebInfo --config-settings cmake.define.CMAKE_CXX_FLAGS_RELWITHDEBINFO="-O2 -g1" --config-settings cmake.define.RFSMOOTH_WARNINGS_AS_ERRORS=ON \
   > "$work/build.log" 2>&1 || { tail -n 40 "$work/build.log"; exit 1; }
 PATH="$(dirname "$python"):$PATH" "$python" -m auditwheel -v repair -w "$work/repaired" "$work"/built/*.whl > "$work/repair.log" 2>&1 ||
