@@ -1,4 +1,4 @@
-"""Clouds of Open3D from the package index."""
+"""Clouds of Open3D, as the package index has it and as Debian has it."""
 
 import numpy as np
 import pytest
