@@ -31,7 +31,7 @@ async function start() {
   if (some.length === 0) some.push(about.blocks[0].origin);
 
   const kRest = 250;  // milliseconds
-  let dense = 1, waiting = false, resting = 0, thinned = 1;
+  let dense = 1, waiting = false, resting = 0, thinned = about.shown > 1e5 ? kMostThinned : 1;
   function paint() {
     waiting = false;
     dense = window.devicePixelRatio || 1;
@@ -57,7 +57,7 @@ async function start() {
 
   function home() {
     camera.home(some, canvas.clientWidth, canvas.clientHeight);
-    repaint();
+    move();
   }
   function slide(share) {
     state.slider = Math.max(0, Math.min(1, share));
