@@ -88,6 +88,20 @@ def test_outliers_are_removed_with_their_record(sphere, tmp_path):
     assert len(after) == len(sphere) and np.array_equal(after.intensity, (np.arange(len(sphere)) + 1) % 65536)
 
 
+def test_indexes_that_no_longer_hold_are_said(sphere, tmp_path):
+    scan(sphere, tmp_path / "a.laz")
+    assert rfsmooth.las.denoise_file(tmp_path / "a.laz", tmp_path / "b.laz")["index"] is None
+    las = laspy.read(tmp_path / "a.laz")
+    las.vlrs.append(laspy.VLR("copc", 1, "info", bytes(160)))
+    las.write(tmp_path / "copc.laz")
+    ran = command("denoise", tmp_path / "copc.laz", tmp_path / "c.laz")
+    assert ran.returncode == 0 and "COPC is left out" in ran.stderr, ran.stderr
+    assert "copc" not in {record.user_id for record in laspy.read(tmp_path / "c.laz").vlrs}
+    (tmp_path / "c.lax").write_bytes(b"LASX")
+    ran = command("denoise", "--force", tmp_path / "a.laz", tmp_path / "c.laz")
+    assert ran.returncode == 0 and "c.lax is an index of other points" in ran.stderr, ran.stderr
+
+
 def test_without_laspy_it_says_what_to_install(sphere, tmp_path):
     scan(sphere, tmp_path / "a.laz")
     hidden = "import sys; sys.modules['laspy'] = None; sys.argv = ['rfsmooth', 'denoise', sys.argv[1], sys.argv[2]];"

@@ -70,7 +70,7 @@ def denoise_file(source, target, *, keep_scale=False, force=False, threads=0, pr
     """Reads a LAS or LAZ file, takes the noise out and writes another; returns the report, whose "scale" says whether the
     scale of coordinates was refined: it is, by a power of ten, where it is coarser than half of the noise left, since
     rounding to it would cost what smoothing gained (keep_scale: not). A COPC file is written as LAZ, without its index;
-    "index" says if a LAX index of other points lies beside the target.
+    "index" says so, or that a LAX index of other points lies beside the target.
     normals and write_displacement have no place in these files; outliers may be removed.
     """
     source, target = os.fspath(source), os.fspath(target)
@@ -104,18 +104,21 @@ def denoise_file(source, target, *, keep_scale=False, force=False, threads=0, pr
     _store(las, clean, np.any(clean != xyz, axis=1))
     if remove:
         las.points = las.points[~report["fields"]["outlier"]]
-    _forget_index(las)
+    report["index"] = "the index of COPC is left out" if _forget_index(las) else None
     _write(las, target)
-    index = os.path.splitext(target)[0] + ".lax"
-    report["index"] = f"{index} is an index of other points: make it anew" if os.path.exists(index) else None
+    beside = os.path.splitext(target)[0] + ".lax"
+    if os.path.exists(beside):
+        report["index"] = f"{beside} is an index of other points: make it anew"
     return report
 
 
 def _forget_index(las):
-    """That of a COPC file: it says where points are that have moved."""
+    """That of a COPC file: it says where points are that have moved. Returns whether there was one."""
+    had = len(las.vlrs) + len(las.evlrs or [])
     las.vlrs = [record for record in las.vlrs if record.user_id != "copc"]
     if las.evlrs:
         las.evlrs = [record for record in las.evlrs if record.user_id != "copc"]
+    return len(las.vlrs) + len(las.evlrs or []) < had
 
 
 def _write(las, target):
