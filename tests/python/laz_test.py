@@ -88,6 +88,19 @@ def test_outliers_are_removed_with_their_record(sphere, tmp_path):
     assert len(after) == len(sphere) and np.array_equal(after.intensity, (np.arange(len(sphere)) + 1) % 65536)
 
 
+@pytest.mark.parametrize("names", [("a.las", "b.laz"), ("a.laz", "b.las")])
+def test_las_becomes_laz_and_back(sphere, tmp_path, names):
+    source, target = (tmp_path / name for name in names)
+    scan(sphere, source)
+    ran = command("denoise", source, target)
+    assert ran.returncode == 0, ran.stderr
+    assert (target.read_bytes()[104] & 128 != 0) == (target.suffix == ".laz")  # LAZ marks the point format so
+    after = laspy.read(target)
+    assert error_of(after.xyz - [4e5, 5e6, 100]) < 0.5 * error_of(sphere)
+    assert np.array_equal(after.intensity, laspy.read(source).intensity)
+    assert command("denoise", tmp_path / "none.laz", tmp_path / "c.ply").returncode == 2
+
+
 def test_indexes_that_no_longer_hold_are_said(sphere, tmp_path):
     scan(sphere, tmp_path / "a.laz")
     assert rfsmooth.las.denoise_file(tmp_path / "a.laz", tmp_path / "b.laz")["index"] is None

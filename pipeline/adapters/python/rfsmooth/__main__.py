@@ -20,8 +20,8 @@ def _denoise_las(files, options):
 
     if "output" in options:
         files = [*files, options.pop("output")]
-    if len(files) != 2 or not all(_is_laspys(path) for path in files):
-        raise Error("usage", "LAZ goes to LAZ, one file at a time: rfsmooth denoise IN.laz OUT.laz")
+    if len(files) != 2 or not all(path.lower().endswith((".las", ".laz")) for path in files):
+        raise Error("usage", "LAZ goes to LAZ or LAS, one file at a time: rfsmooth denoise IN.laz OUT.laz")
     of_files = {"keep_scale", "force", "threads", "quiet", "verbose", *las.denoise_file.table.entries}
     for name in options:
         if name not in of_files:
