@@ -19,7 +19,7 @@ void main() {
   vec3 seen = vec3(dot(d, right), dot(d, up), dot(d, toward));
   gl_Position = vec4(seen.xy * scale * 2.0 / screen, -seen.z / depthRange, 1.0);
   if (abs(dot(p, slab) - slabAt) > slabHalf) gl_Position = vec4(0, 0, 2, 1);  // clipped
-  gl_PointSize = clamp(reach * scale, 1.5, 64.0);
+  gl_PointSize = clamp(reach * scale, 2.5, 64.0);
   if (mode == 0) shade = plain;
   if (mode == 1) shade = color;
   if (mode == 2) {
