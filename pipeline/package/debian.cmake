@@ -83,10 +83,11 @@ if("cgal" IN_LIST components)
     DESCRIPTION "Surface reconstruction by CGAL's advancing front. Programs that link it are
 under the GPL.")
 endif()
-if(TARGET rfsmooth_python AND Python_VERSION VERSION_GREATER_EQUAL 3)
-  math(EXPR next "${Python_VERSION_MINOR} + 1")
+if(TARGET rfsmooth_python)
+  get_target_property(minor rfsmooth_python RFSMOOTH_PYTHON_MINOR)
+  math(EXPR next "${minor} + 1")
   debian_package(python NAME python3-rfsmooth SECTION python
-    DEPENDS "python3 (>= 3.${Python_VERSION_MINOR}), python3 (<< 3.${next}), python3-numpy"
+    DEPENDS "python3 (>= 3.${minor}), python3 (<< 3.${next}), python3-numpy"
     SUGGESTS rfsmooth-reconstruct
     SUMMARY "takes the noise out of 3-D scans - Python 3 module"
     DESCRIPTION "Denoises numpy arrays of points, structured arrays as PDAL and laspy have
