@@ -225,7 +225,8 @@ class Painter {
     gl.uniform1i(at('colors'), 0);
     gl.uniform1i(at('depths'), 1);
     gl.uniform1f(at('pixels'), pixels);
-    gl.uniform1f(at('strength'), state.mode === 'shaded' ? 1.1 : 0.7);
+    const sliced = state.slabHalf < kSlabless;  // points beside each other are no shape
+    gl.uniform1f(at('strength'), sliced ? 0.25 : state.mode === 'shaded' ? 1.1 : 0.7);
     const around = [...Array(16).keys()].flatMap(k => {
       const radius = rings[k >> 3], angle = Math.PI / 4 * (k + 0.5 * (k >> 3));
       return [Math.round(radius * Math.cos(angle)), Math.round(radius * Math.sin(angle))];
