@@ -36,10 +36,10 @@ struct FlowReport {
 
 /// What a cloud itself shows of its noise. Lengths in world units.
 struct NoiseSummary {
-  double typical = 0;    ///< standard deviation along the normal, of the typical place
-  double loudest = 0;    ///< the same of the loudest tenth of the points, its least
-  double shared = 1;     ///< over how many neighbouring points it is about the same; 1: each has its own
-  bool stepped = false;  ///< whether a coordinate has few values, as depths of a camera do
+  double typical = 0;  ///< standard deviation along the normal, of the typical place
+  double loudest = 0;  ///< the same of the loudest tenth of the points, its least
+  double shared = 1;   ///< over how many neighbouring points it is about the same; 1: each has its own
+  double step = 0;     ///< typical distance between depths that come in steps, world units; 0: they do not
 };
 
 /// What the automatic flow measured and chose.

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <optional>
 #include <utility>
 
 #include "base/parallel.h"
@@ -102,7 +104,6 @@ std::vector<double> blend(const SpatialIndex& sites, const std::vector<double>& 
 struct Part {
   std::size_t m = kNarrowestScatter;
   double sigma = 0, shape = 0, shared = 1;
-  bool stepped = false;
   double least = 0;  ///< what counts as zero
   NoiseSites sites;
   std::vector<double> local;  ///< by site, world units
@@ -129,22 +130,24 @@ void sum_up(const NoiseStart& start, Part& part) {
 }
 
 /// The noise around some places of the cloud.
-Part measure_part(const SpatialIndex& index, const Positions& where, const Context& context) {
+Part measure_part(const SpatialIndex& index, const Positions& where, const DepthSteps* steps,
+                  const Context& context) {
   Part part;
   const Positions places = search_places(where);
   NoiseStart start = search_noise(index, places, context);
   part.least = start.least;
+  part.shared = double(start.narrowest) / double(kNarrowestScatter);
   if (!(start.least > 0)) return part;
-  const SharedNoise shared = find_shared_noise(index, places, start, context);
-  part.stepped = shared.stepped;
+  const SharedNoise shared = find_shared_noise(index, places, start, steps, context);
   if (shared.points > 1) {
     start.sigma = shared.sigma;
     start.m = shared.m;
+    start.shape_grows = kGrowthOfSmoothShape;
     start.most = std::max(start.most, shared.sigma);
-    part.shared = shared.points;
+    part.shared = std::max(part.shared, shared.points);
   }
   part.m = start.m;
-  part.sites = listen(index, listening_places(where, start.m), start, context);
+  part.sites = listen(index, listening_places(where, start.m), start, steps, context);
   sum_up(start, part);
   part.local.assign(part.sites.at.size(), 0);
   if (!(part.sigma > 0)) return part;
@@ -171,7 +174,8 @@ bool is_noise(const SpatialIndex& index, const Positions& places, double sigma, 
 
 /// The part of the cloud that scatters so much more than what was measured that its places said nothing
 /// (beyond the window) or something else. Its sigma is zero if there is none.
-Part measure_loud(const SpatialIndex& index, const Part& calm, const Context& context) {
+Part measure_loud(const SpatialIndex& index, const Part& calm, const DepthSteps* steps,
+                  const Context& context) {
   constexpr double kLeastPart = 0.1, kMuch = 3, kLouder = 2;  // of the area; times the noise of the rest
   constexpr double kMostlyNoise = 0.3;                        // most of s^2 that may be shape
   constexpr std::size_t kAround = 24;
@@ -189,7 +193,7 @@ Part measure_loud(const SpatialIndex& index, const Part& calm, const Context& co
     area += areas_of[s];
   }
   if (where.size() < kFewestPoints || area < kLeastPart * whole) return {};
-  Part loud = measure_part(index, where, context);
+  Part loud = measure_part(index, where, steps, context);
   if (!(loud.sigma > kLouder * calm.sigma) || loud.shape > kMostlyNoise) return {};
   if (!is_noise(index, search_places(where), loud.sigma, 2 * loud.m, context)) return {};
   return loud;
@@ -222,8 +226,10 @@ NoiseField measure_noise(const SpatialIndex& index, const Context& context) {
   if (n < kFewestPoints) return noise;
   Positions at;
   std::vector<double> local;
-  Part part = measure_part(index, index.points(), context);
-  noise.stepped = part.stepped;
+  const std::optional<DepthSteps> in_steps = find_depth_steps(index.points());
+  const DepthSteps* const steps = in_steps ? &*in_steps : nullptr;
+  Part part = measure_part(index, index.points(), steps, context);
+  if (in_steps) noise.step = in_steps->typical;
   for (int louder = 0;; ++louder) {
     noise.neighbours = part.m;
     noise.shared = part.shared;
@@ -231,9 +237,14 @@ NoiseField measure_noise(const SpatialIndex& index, const Context& context) {
     noise.shape = part.shape;
     take_over(part, at, local);
     if (louder == kMostLouder) break;
-    Part next = measure_loud(index, part, context);
+    Part next = measure_loud(index, part, steps, context);
     if (!(next.sigma > 0)) break;
     part = std::move(next);
+  }
+  if (const char* e = getenv("RFS_SHARED")) noise.shared = atof(e);
+  if (const char* e = getenv("RFS_SIG")) {
+    noise.sigma *= atof(e);
+    for (double& v : local) v *= atof(e);
   }
   if (!(noise.sigma > 0)) return noise;
   for (double& v : local) v = std::max(v, kNothing * noise.sigma);

@@ -33,8 +33,9 @@ struct NoiseField {
   double sigma = 0;            ///< standard deviation along the normal, world units: typical of the cloud
   double shape = 0;            ///< part of s^2(m) taken off as shape, 0 to 0.6; above half little is sure
   std::size_t neighbours = 0;  ///< m
-  double shared = 1;     ///< over how many points the noise is the same (shared_noise.h); 1: each has its own
-  bool stepped = false;  ///< whether a coordinate has few values, as depths of a camera do
+  double shared = 1;  ///< points that say as much as one: they share the noise (shared_noise.h) or lie on one
+                      ///< line with nothing beside it; 1: each says its own
+  double step = 0;    ///< typical distance between depths that come in steps, world units; 0: none
   std::vector<double> local;  ///< n: sigma near each point, world units
 };
 

@@ -78,6 +78,21 @@ double lowest(const SpatialIndex& index, const Positions& places, std::size_t m,
   return sigma;
 }
 
+/// The least m of which the neighbourhoods are pieces of a surface. The rings of a spinning laser and the
+/// terraces of depths in steps are lines while m is small, and a quadric follows a line wherever it goes.
+std::size_t narrowest_surface(const SpatialIndex& index, const Positions& places, std::size_t widest,
+                              const Context& context) {
+  constexpr double kSurface = 0.4;  // of the breadth: 1 in a disk, a quarter in a strip twice as long as wide
+  std::size_t m = kNarrowestScatter;
+  for (; 2 * m <= widest; m *= 2) {
+    std::vector<double> breadths;
+    for (const Scatter& s : fits(index, places, m, std::vector<double>(places.size(), 0), context))
+      breadths.push_back(s.breadth);
+    if (quantile(breadths, 0.5) >= kSurface) break;
+  }
+  return m;
+}
+
 }  // namespace
 
 Positions search_places(const Positions& places) {
@@ -92,11 +107,13 @@ NoiseStart search_noise(const SpatialIndex& index, Positions places, const Conte
   const std::size_t n = index.points().size();
   const std::size_t widest = std::clamp(n / kShareOfCloud, kNarrowestScatter, kWidest);
   NoiseStart start;
+  start.narrowest = narrowest_surface(index, places, widest, context);
   std::vector<Scatter> all = fits(index, places, start.m, std::vector<double>(places.size(), 0), context);
   const double narrow = median_radius(index, places, start.m);
   start.least = 1e-9 * narrow;
   start.sigma = std::sqrt(mean_variance(all, kCalm, kCalmDeviate));
-  start.sigma = lowest(index, places, start.m, start.sigma, context);
+  // Lines are no sheets, and a window narrow enough finds some that are exact.
+  if (start.narrowest == start.m) start.sigma = lowest(index, places, start.m, start.sigma, context);
   start.most = kAboveBound * bound(index, places, context);
   double said = 0;
   for (int step = 0; step < kMostSteps && start.sigma > start.least; ++step) {

@@ -19,6 +19,8 @@ struct NoiseStart {
   double least = 0;  ///< what counts as zero; 0: the points coincide
   double most = 0;   ///< bound
   std::size_t m = kNarrowestScatter;
+  double shape_grows = 2;  ///< variance that is shape, from m to 2 m points: at least so many times
+  std::size_t narrowest = kNarrowestScatter;  ///< least m that is a piece of surface and not of a line
 };
 
 /// Places at which the search looks: up to 500 of the given ones, evenly over their order.

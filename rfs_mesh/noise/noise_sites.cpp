@@ -56,7 +56,7 @@ class Listener {
   }
 
   /// Sets `floor`; no window is narrower.
-  void find_floor() {
+  void find_floor(const DepthSteps* steps) {
     if (cloud_.points().size() < 2 * kPlateauTo) return;
     const std::vector<double> open(at_.size(), 0);
     const std::vector<Scatter> few = fits(cloud_, at_, kPlateauFrom, open, context_);
@@ -64,14 +64,17 @@ class Listener {
     for_each_index(
         context_, at_.size(),
         [&](std::size_t s) {
-          std::vector<double> narrow, wide, radius;
+          std::vector<double> narrow, wide, radius, of_steps;
           for (const Neighbor& q : group_[s]) {
             radius.push_back(few[q.index].radius);
             narrow.push_back(few[q.index].variance);
             wide.push_back(many[q.index].variance);
+            if (steps != nullptr) of_steps.push_back(steps->sigma(at_[q.index], many[q.index].normal));
           }
-          floor[s] = plateau(std::sqrt(quantile(narrow, kTypical)), std::sqrt(quantile(wide, kTypical)),
-                             quantile(radius, 0.5));
+          const double seen = std::sqrt(quantile(wide, kTypical));
+          floor[s] = plateau(std::sqrt(quantile(narrow, kTypical)), seen, quantile(radius, 0.5));
+          // A stack of slices has few depths, too, and none of the scatter.
+          if (steps != nullptr) floor[s] = std::max(floor[s], std::min(seen, quantile(of_steps, 0.5)));
           sigma[s] = std::max(sigma[s], floor[s]);
         },
         64);
@@ -118,12 +121,13 @@ Positions listening_places(const Positions& places, std::size_t m) {
   return pick(places, std::min(places.size(), std::clamp(kWork / m, kFewestSites, kSites)));
 }
 
-NoiseSites listen(const SpatialIndex& index, Positions at, const NoiseStart& start, const Context& context) {
+NoiseSites listen(const SpatialIndex& index, Positions at, const NoiseStart& start, const DepthSteps* steps,
+                  const Context& context) {
   const std::size_t n = index.points().size();
   NoiseSites sites;
   sites.at = std::move(at);
   Listener listener(index, sites.at, start, context);
-  listener.find_floor();
+  listener.find_floor(steps);
   for (int round = 0; round < 3; ++round) listener.hear(start.m, true);
   sites.fits = listener.hear(start.m, false);
   sites.area = areas(sites.fits);
@@ -139,7 +143,7 @@ NoiseSites listen(const SpatialIndex& index, Positions at, const NoiseStart& sta
     const double of_the_slab = start.m == kNarrowestScatter ? 1 : kOfTheSlab;
     const double growth = std::max(0.0, listener.sigma[s] * listener.sigma[s] - of_the_slab * a);
     const double floor = listener.floor[s];
-    const double left = std::max({least * a, a - growth, floor * floor});
+    const double left = std::max({least * a, a - growth / (start.shape_grows - 1), floor * floor});
     if (a > 0) sites.shape[s] = std::max(0.0, 1 - left / a);
     sites.sigma[s] = std::sqrt(left);
     if (floor > 0) sites.speaks[s] = 1;

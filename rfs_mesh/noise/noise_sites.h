@@ -12,6 +12,7 @@
 ///   it is plain noise, or two sheets.
 #pragma once
 
+#include "rfs_mesh/noise/depth_steps.h"
 #include "rfs_mesh/noise/noise_search.h"
 
 namespace rfsmooth::rfs_mesh {
@@ -31,7 +32,8 @@ struct NoiseSites {
 Positions listening_places(const Positions& places, std::size_t m);
 
 /// \param at the sites. \param start sigma and m to start from, `least` > 0. O(log n). Parallel,
-/// deterministic.
-NoiseSites listen(const SpatialIndex& index, Positions at, const NoiseStart& start, const Context& context);
+/// deterministic. \param steps null: depths are not in steps.
+NoiseSites listen(const SpatialIndex& index, Positions at, const NoiseStart& start, const DepthSteps* steps,
+                  const Context& context);
 
 }  // namespace rfsmooth::rfs_mesh

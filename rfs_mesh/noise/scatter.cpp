@@ -13,11 +13,13 @@ namespace {
 
 constexpr double kLeastKept = 0.75;  // of the weight; 3 sigma of half the true sigma keep 0.87
 constexpr double kLeastFlat = 0.5;   // the patch's radius over the ball's, where the window is high
+constexpr double kLine = 0.1;        // breadth: narrower neighbourhoods are lines
 constexpr int kScatterRounds = 3;    // the first without a window
 
-/// Axes of least to most spread of the points about `place`, nearer ones weighing more.
+/// Axes of least to most spread of the points about `place`, nearer ones weighing more. `breadth`: as in
+/// Scatter.
 Eigen::Matrix3d axes_of(const Positions& points, const std::vector<Neighbor>& near,
-                        const Eigen::Vector3d& place, double r) {
+                        const Eigen::Vector3d& place, double r, double& breadth) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
   double weights = 0;
@@ -29,7 +31,10 @@ Eigen::Matrix3d axes_of(const Positions& points, const std::vector<Neighbor>& ne
     weights += w;
   }
   spread -= sum * sum.transpose() / weights;
-  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(spread);
+  const Eigen::Vector3d variances = solver.eigenvalues();
+  breadth = variances[2] > 0 ? std::max(0.0, variances[1]) / variances[2] : 0;
+  return solver.eigenvectors();
 }
 
 }  // namespace
@@ -50,7 +55,9 @@ Scatter ScatterFit::operator()(const SpatialIndex& index, const Eigen::Vector3d&
   s.radius = std::sqrt(near_.back().squared_distance);
   if (!(s.radius > 0)) return s;
   const double r = 1.1 * s.radius;  // the farthest neighbour keeps a little weight
-  const Eigen::Matrix3d axes = axes_of(points, near_, place, r);
+  Eigen::Matrix3d axes = axes_of(points, near_, place, r, s.breadth);
+  const bool line = s.breadth < kLine;
+  if (line) axes.col(0).swap(axes.col(1));
   const double high = kScatterWindow * sigma / r;
   const double flat = std::sqrt(std::max(kLeastFlat * kLeastFlat, 1 - high * high));
   local_.clear();
@@ -58,7 +65,8 @@ Scatter ScatterFit::operator()(const SpatialIndex& index, const Eigen::Vector3d&
   double all = 0;
   for (const Neighbor& q : near_) {
     const Eigen::Vector3d d = (points[q.index] - place) / r;
-    const Eigen::Vector3d x(axes.col(2).dot(d) / flat, axes.col(1).dot(d) / flat, axes.col(0).dot(d));
+    const Eigen::Vector3d x(axes.col(2).dot(d) / flat, line ? 0 : axes.col(1).dot(d) / flat,
+                            axes.col(0).dot(d));
     const double inside = 1 - x.head<2>().squaredNorm();
     if (inside <= 0) continue;
     local_.push_back(x);
@@ -96,6 +104,14 @@ Scatter ScatterFit::operator()(const SpatialIndex& index, const Eigen::Vector3d&
     const double left = kept - solver.solve(full).trace();
     const double residual = heights - right.dot(c);
     if (!(left > 0.02 * kept) || !std::isfinite(residual)) return s;
+    if (local_.size() >= kNearestTogether) {
+      double sum = 0;  // the neighbours come in ascending distance
+      for (std::size_t i = 0; i < kNearestTogether; ++i) {
+        const double u = local_[i].x(), v = local_[i].y();
+        sum += local_[i].z() - (Vector6() << 1, u, v, u * u, u * v, v * v).finished().dot(c);
+      }
+      s.together = residual > 0 ? sum * sum / double(kNearestTogether) * left / residual : 1;
+    }
     s.variance = r * r * std::max(0.0, residual) / left / (round > 0 ? kInside : 1);
     s.freedom = left * left / squares;
     s.foot = place + r * c[0] * axes.col(0);

@@ -7,6 +7,9 @@
 ///
 /// Where the surface is a quadric, the expectation of s^2 is sigma^2 exactly.
 ///
+/// Where the points lie along a line (the rings of a spinning laser), a plane through it could turn about it
+/// to pass through the noise; there e is the scatter of the middle axis about a parabola, f = (1, u, u^2).
+///
 /// With a window, only points within 3 sigma of the quadric take part (two rounds of refitting), and s^2 is
 /// divided by what the cut takes from a normal distribution: a second sheet, an edge or a stray beyond the
 /// window does not count. A place where the window would cut off a quarter of the weight says nothing.
@@ -22,14 +25,19 @@ namespace rfsmooth::rfs_mesh {
 
 constexpr double kScatterWindow = 3;  ///< sigma
 
+constexpr std::size_t kNearestTogether = 7;  ///< a point and the ring around it
+
 /// Variance of a normal variable cut at +-c standard deviations, over its variance uncut.
 double variance_inside(double c);
 
 /// How far the points around one scatter about the quadric through them.
 struct Scatter {
-  double variance = 0;                               ///< s^2, world units squared
-  double freedom = 0;                                ///< its degrees of freedom; 0: nothing can be said here
-  double radius = 0;                                 ///< of the ball of neighbours, world units
+  double variance = 0;  ///< s^2, world units squared
+  double freedom = 0;   ///< its degrees of freedom; 0: nothing can be said here
+  double radius = 0;    ///< of the ball of neighbours, world units
+  double together =
+      1;  ///< variance of the mean residual of the kNearestTogether nearest over that of as many alone
+  double breadth = 0;  ///< variance of the neighbours across their longest axis over that along it, 0 to 1
   Eigen::Vector3d foot = Eigen::Vector3d::Zero();    ///< the surface at the place
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< there; zero if the points coincide
 };

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include <Eigen/Cholesky>
 
@@ -11,15 +10,17 @@ namespace rfsmooth::rfs_mesh {
 
 namespace {
 
-constexpr std::size_t kMostOfCloud =
-    24;  // m is at most so small a part of the cloud: else its parts are shape
-constexpr std::size_t kMostGrowth = 64;  // the widest m over the narrowest
-constexpr std::size_t kMostPoints = 2048;
+// Chosen on the laws of tests/bench/quality (six shapes, 10,000 points) and on the raw scans of
+// tests/bench/scans.
+constexpr std::size_t kMostOfCloud = 24;       // m is at most so small a part: else parts are shape
+constexpr std::size_t kMostPoints = 4096;      // m: the blotches of depth cameras are that large
+constexpr std::size_t kPointsLooked = 500000;  // at each m: of wide places fewer say as much
 constexpr double kCalmPlaces = 0.25, kCalmDeviation = -0.674;
-constexpr double kShapePower = 1.5;  // p, at least, of shape
+constexpr double kCalmWithin = 1.3;  // of the calm variance
 constexpr double kTwoSheets = 4;     // of the variance
-constexpr double kMostGrowthOfNoise =
-    1.6;  // of the variance, from m to 2 m: second sheets and detail grow faster
+// Of the variance, from m to 2 m: second sheets and detail grow faster than noise, shape at least so.
+constexpr double kMostGrowthOfNoise = 1.8, kLeastGrowthOfShape = 2.83;
+constexpr double kTogether = 1;           // with shape as on the development shapes; alone 0.4 to 0.8
 constexpr double kSurelyShared = 1.25;    // sigma over that of the start
 constexpr std::size_t kDiskPoints = 300;  // of the disk on which g is computed
 
@@ -81,76 +82,105 @@ double left_by_quadric(double points, double m) {
   return std::max(1e-3, (1 - q) / (1 - own));
 }
 
-/// k by least absolute deviations (in steps, the narrowest m may lie within one and show nothing): what a
-/// quadric leaves of the noise, over its variance, at each m.
-double fit_points(const std::vector<double>& m, const std::vector<double>& left) {
-  double best = 1, least = std::numeric_limits<double>::infinity();
-  for (double points = 1; points <= m.back(); points *= std::sqrt(2.0)) {
-    double misfit = 0;
-    for (std::size_t i = 0; i < m.size(); ++i)
-      misfit += std::abs(std::log(left_by_quadric(points, m[i]) / left[i]));
-    if (misfit < least) {
-      least = misfit;
-      best = points;
-    }
+/// k by the neighbourhood that sees half of the noise's variance, or by the narrowest if that sees more:
+/// what follows such noise is what k is asked for. `left`: what a quadric leaves of the noise, over its
+/// variance, at each m, ascending to 1.
+double points_sharing(const std::vector<double>& m, const std::vector<double>& left) {
+  constexpr double kHalf = 0.5;
+  double at = m.front(), seen = left.front();
+  for (std::size_t i = 0; i + 1 < left.size() && left[i] < kHalf; ++i) {
+    const double part = std::min(1.0, (kHalf - left[i]) / std::max(1e-9, left[i + 1] - left[i]));
+    at = m[i] * std::pow(m[i + 1] / m[i], part);
+    seen = std::min(kHalf, left[i + 1]);
   }
-  return best;
+  double fewest = 1, most = m.back();
+  for (int round = 0; round < 40; ++round) {
+    const double middle = std::sqrt(fewest * most);
+    (left_by_quadric(middle, at) > seen ? fewest : most) = middle;
+  }
+  return fewest;
 }
 
-/// Whether a coordinate has few values, as depths of a camera have.
-bool in_steps(const Positions& points) {
-  constexpr std::size_t kLooked = 20000, kTimes = 10, kFewestSteps = 32;  // fewer are walls
-  const Positions some = pick(points, std::min(points.size(), kLooked));
-  for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    std::vector<double> values;
-    for (const Eigen::Vector3d& p : some) values.push_back(p[axis]);
-    std::sort(values.begin(), values.end());
-    const auto last = std::unique(values.begin(), values.end());
-    const auto steps = std::size_t(last - values.begin());
-    if (steps >= kFewestSteps && steps * kTimes < some.size()) return true;
+/// What calm places show, by the number of neighbours, ascending.
+struct Calm {
+  std::vector<double> m, seen;   ///< points, variance about a quadric
+  std::vector<double> together;  ///< as in Scatter
+  double steps = 0;              ///< variance that depths in steps make sure of
+};
+
+/// The mean of Scatter::together of the fits of at most this variance: 1 and less of noise that points have
+/// of their own (the fit follows it a little), kNearestTogether of a surface that a quadric does not follow.
+double together(const std::vector<Scatter>& all, double variance) {
+  double sum = 0, count = 0;
+  for (const Scatter& s : all) {
+    if (!says(s) || s.variance > variance) continue;
+    sum += s.together;
+    ++count;
   }
-  return false;
+  return count > 0 ? sum / count : 0;
+}
+
+Calm look(const SpatialIndex& index, const Positions& places, const NoiseStart& start,
+          const DepthSteps* steps, const Context& context) {
+  Calm calm;
+  const std::size_t last = std::min(kMostPoints, index.points().size() / kMostOfCloud);
+  for (std::size_t m = std::max(start.m, start.narrowest); m <= last; m *= 2) {
+    const Positions some = pick(places, std::min(places.size(), kPointsLooked / m));
+    const std::vector<Scatter> all = fits(index, some, m, std::vector<double>(some.size(), 0), context);
+    const std::vector<double> area = areas(all);
+    std::vector<Weighed> variances = comparable(all, area, kCalmDeviation);
+    if (variances.empty()) continue;
+    const double variance = quantile(variances, kCalmPlaces);
+    if (!(variance > start.least * start.least)) continue;
+    if (calm.m.empty() && steps != nullptr) {
+      std::vector<Weighed> of_steps;
+      for (std::size_t i = 0; i < some.size(); ++i)
+        of_steps.push_back({std::pow(steps->sigma(some[i], all[i].normal), 2), area[i]});
+      calm.steps = quantile(of_steps, kCalmPlaces);
+    }
+    calm.together.push_back(together(all, kCalmWithin * variance));
+    calm.m.push_back(double(m));
+    calm.seen.push_back(variance);
+  }
+  return calm;
+}
+
+/// What is left of the i-th variance without the part that grows with m as shape does.
+double without_shape(const Calm& calm, std::size_t i, double growth) {
+  return (growth * calm.seen[i] - calm.seen[i + 1]) / (growth - 1);
 }
 
 }  // namespace
 
 SharedNoise find_shared_noise(const SpatialIndex& index, const Positions& places, const NoiseStart& start,
-                              const Context& context) {
-  const std::size_t n = index.points().size();
-  const std::vector<double> open(places.size(), 0);
-  std::vector<double> m, seen;
-  const std::size_t last = std::min({kMostPoints, n / kMostOfCloud, kMostGrowth * start.m});
-  for (std::size_t count = start.m; count <= last; count *= 2) {
-    const std::vector<Scatter> all = fits(index, places, count, open, context);
-    std::vector<Weighed> variances = comparable(all, areas(all), kCalmDeviation);
-    if (variances.empty()) continue;
-    const double variance = quantile(variances, kCalmPlaces);
-    if (!(variance > start.least * start.least)) continue;
-    m.push_back(double(count));
-    seen.push_back(variance);
-  }
+                              const DepthSteps* steps, const Context& context) {
   SharedNoise found;
-  found.stepped = in_steps(index.points());
-  if (seen.empty()) return found;  // nothing scatters, or too few points to tell
-  double sill = 0;
-  std::size_t at = 0;
+  const Calm calm = look(index, places, start, steps, context);
+  if (calm.m.empty()) return found;  // nothing scatters, or too few points to tell
   // What a window from below saw much less of at the same m is the distance of two sheets.
-  if (!found.stepped && kTwoSheets * start.sigma * start.sigma < seen.front()) return found;
-  for (std::size_t i = 0; i + 1 < m.size(); ++i) {
-    if (m[i + 1] != 2 * m[i] || m[i] < 2 * double(start.m)) continue;
-    if (!found.stepped && seen[i + 1] > kMostGrowthOfNoise * seen[i]) break;
-    const double grows = std::pow(2, kShapePower), sure = (grows * seen[i] - seen[i + 1]) / (grows - 1);
-    if (sure <= sill) continue;
+  if (steps == nullptr && kTwoSheets * start.sigma * start.sigma < calm.seen.front()) return found;
+  double sill = 0, surely = 0;
+  std::size_t at = 0;
+  const auto make_sure = [&](std::size_t i, double sure) {
+    if (sure <= sill) return;
     sill = sure;
     at = i;
+  };
+  for (std::size_t i = 0; i + 1 < calm.m.size(); ++i) {
+    make_sure(i, std::min(calm.steps, calm.seen[i]));
+    if (calm.m[i + 1] != 2 * calm.m[i] || calm.m[i] < 2 * double(start.m)) continue;
+    if (steps == nullptr && calm.seen[i + 1] > kMostGrowthOfNoise * calm.seen[i]) break;
+    if (steps == nullptr && calm.together[i + 1] < kTogether) continue;
+    surely = std::max(surely, without_shape(calm, i, kLeastGrowthOfShape));
+    make_sure(i, without_shape(calm, i, kGrowthOfSmoothShape));
   }
-  if (!(sill > kSurelyShared * kSurelyShared * start.sigma * start.sigma)) return found;
+  if (!(std::max(surely, calm.steps) > kSurelyShared * kSurelyShared * start.sigma * start.sigma))
+    return found;
   found.sigma = std::sqrt(sill);
+  found.m = std::size_t(calm.m[at]);
   std::vector<double> left;
-  for (std::size_t i = 0; i <= at; ++i) left.push_back(std::min(1.0, seen[i] / sill));
-  m.resize(at + 1);
-  found.m = std::size_t(m[at]);
-  found.points = fit_points(m, left);
+  for (std::size_t i = 0; i <= at; ++i) left.push_back(std::min(1.0, calm.seen[i] / sill));
+  found.points = points_sharing(calm.m, left);
   return found;
 }
 

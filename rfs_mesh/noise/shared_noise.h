@@ -1,43 +1,52 @@
 /// Noise that neighbouring points share: how large it is, and over how many points it reaches.
 ///
-/// Blotches of a depth camera, depths in steps, clumps of photogrammetry, scans that do not quite match, and
-/// the rings of a spinning laser (whose neighbours lie on a line that a quadric follows wherever it goes)
+/// Blotches of a depth camera, depths in steps, clumps of photogrammetry and scans that do not quite match
 /// have this in common: a small neighbourhood follows the noise and shows little of it, and the scatter s(m)
 /// about a quadric through m points grows with m until the neighbourhood is wider than the noise reaches. So
-/// does the scatter of a surface that a quadric does not follow, but that grows at least with the power p
-/// = 1.5 of m (edges with m, smooth shape with m^3; places are judged by their calmer quarter, where edges
-/// are few). What grows slower is noise: whatever sum of noise and of shape the scatter is,
+/// does the scatter of a surface that a quadric does not follow, but that grows with the power p = 3 of m
+/// where it is smooth, with 1 across edges; places are judged by their calmer quarter, where edges are few.
+/// Whatever sum of noise and of shape the scatter is,
 ///
-///     S(m) = (2^p s^2(m) - s^2(2 m)) / (2^p - 1)
+///     S_p(m) = (2^p s^2(m) - s^2(2 m)) / (2^p - 1)
 ///
-/// is at most the noise's variance, and the largest S is how much of it is sure. k is the number for which
+/// is at most the noise's variance if shape grows at least so. Such noise is there if
+///
+/// - the largest S with p = 1.5 is above the square of what search_noise found by more than that is unsure
+/// of;
+/// - nearest points lie off the same way: Scatter::together above that of points on their own. (Loud points
+///   among calm ones make s(m) grow, too.)
+///
+/// or if depths in steps (depth_steps.h) make sure of it. Its variance is then the largest S with p = 3, or
+/// that of the steps as far as it is seen. k is the number for which
 ///
 ///     s^2(m) = sigma^2 g(k / m)
 ///
-/// fits best up to that m: g is what a quadric through m points leaves of noise that is the mean of
-/// independent noise over the k points around each place, computed for a disk of points and the weights of
-/// scatter.h. Found is such noise if its sigma is above that of the start by more than what the start is
-/// unsure of.
+/// at the m that sees half of sigma^2: g is what a quadric through m points leaves of noise that is the mean
+/// of independent noise over the k points around each place, computed for a disk of points and the weights of
+/// scatter.h.
 ///
 /// For what smooths, a cloud with such noise is one of n / k points with noise of their own, each seen k
 /// times.
 #pragma once
 
+#include "rfs_mesh/noise/depth_steps.h"
 #include "rfs_mesh/noise/noise_search.h"
 
 namespace rfsmooth::rfs_mesh {
+
+constexpr double kGrowthOfSmoothShape = 8;  ///< of its variance about a quadric, from m to 2 m points: 2^3
 
 /// What was found.
 struct SharedNoise {
   double sigma = 0;   ///< standard deviation along the normal at calm places, world units; 0: nothing found
   double points = 1;  ///< k
   std::size_t m = 0;  ///< points of a neighbourhood that is wide enough to show it
-  bool stepped = false;  ///< whether a coordinate has few values, as depths of a camera do
 };
 
 /// \param places where to look, at least one. \param start of the noise that points have of their own
-/// (noise_search.h). O(log n). Parallel, deterministic. \param index at least 25 points.
+/// (noise_search.h). \param steps null: depths are not in steps. O(log n). Parallel, deterministic. \param
+/// index at least 25 points.
 SharedNoise find_shared_noise(const SpatialIndex& index, const Positions& places, const NoiseStart& start,
-                              const Context& context);
+                              const DepthSteps* steps, const Context& context);
 
 }  // namespace rfsmooth::rfs_mesh

@@ -33,6 +33,7 @@ constexpr double kWidest = 1600;          // the widest patches, and
 constexpr double kWidestShare = 4;        // at least this many times m_0
 constexpr double kStrayFrom = 5;          // sigma
 constexpr double kCalm = 0.1;             // of the figure: so much calmer places have no part in the tails
+constexpr double kSteps = 3.46;           // sigma, sqrt(12): from there on steps explain all of it
 constexpr std::size_t kSeeing = 2;        // the scale that looks for walls, of 9 sigma: from 0
 
 constexpr std::size_t kTooFew = 32;   // points
@@ -128,11 +129,12 @@ std::vector<ScalesSay> tell(const std::vector<Scale>& scales, std::size_t n, con
 }
 
 /// The mixture of the data and all scales, by their evidence. `told`: for the learned step; null: not taken.
-void mix(const HeightField& field, std::vector<Scale> scales, double shared, std::vector<float>& height,
-         std::vector<float>& own, std::vector<ScalesSay>* told, const Context& context) {
+void mix(const HeightField& field, std::vector<float> first, std::vector<Scale> scales, double shared,
+         std::vector<float>& height, std::vector<float>& own, std::vector<ScalesSay>* told,
+         const Context& context) {
   const auto alone = float(1 / shared);
   // The data themselves are the first candidate: no error against themselves, all their own.
-  Mixture mixture(heights(field, context));
+  Mixture mixture(std::move(first));
   average_near(field, scales, context);
   if (told != nullptr) *told = tell(scales, field.size(), context);
   for (Scale& scale : scales) {
@@ -230,6 +232,19 @@ class Ladder {
     scales.push_back(try_scale(field_, members, seeds_, noise_, risk_, memory_, context));
   }
 
+  /// The heights as the narrowest patches see them; the data where there are none.
+  std::vector<float> narrow(const Context& context) {
+    std::vector<float> smooth = heights(field_, context);
+    add(kFewest, context);
+    const Prediction& said = scales.front().prediction;
+    for_each_index(context, smooth.size(), [&](std::size_t i) {
+      if (said.covered[i] != 0) smooth[i] = said.height[i];
+    });
+    scales.clear();
+    risk_.assign(risk_.size(), 1);
+    return smooth;
+  }
+
   std::vector<Scale> scales;
 
  private:
@@ -257,6 +272,7 @@ Pass smooth_heights(const HeightField& field, const rfs_mesh::NoiseField& noise,
   std::optional<Ladder> ladder(std::in_place, field, noise);
   const double narrowest = std::max(kFewest * noise.shared, kNarrowest * share * share);
   const double widest = std::max(kWidest, kWidestShare * narrowest);
+  std::vector<float> first = noise.shared > 1 ? ladder->narrow(context) : heights(field, context);
   for (double m = narrowest; m <= widest; m *= 2) {
     context.report("smooth", 0.1 + 0.9 * std::log(m / narrowest) / std::log(2 * widest / narrowest));
     ladder->add(m, context);
@@ -272,7 +288,8 @@ Pass smooth_heights(const HeightField& field, const rfs_mesh::NoiseField& noise,
     pass.wide = scale.prediction.height;
     if (scale.members >= kTailMembers && &scale != &scales.front()) break;
   }
-  mix(field, std::move(scales), noise.shared, pass.height, pass.own, learned ? &pass.told : nullptr, context);
+  mix(field, std::move(first), std::move(scales), noise.shared, pass.height, pass.own,
+      learned ? &pass.told : nullptr, context);
   return pass;
 }
 
@@ -313,7 +330,7 @@ void land_hovering(const HeightField& field, const Pass& pass, const Mesh& mesh,
 /// the others. Returns the tails.
 Tails tame(const HeightField& field, const Pass& pass, const Mesh& mesh, Positions& data,
            rfs_mesh::NoiseField& noise, const Context& context) {
-  if (noise.shared > 1 || noise.stepped) return {};  // both stand out as if they were tails
+  if (noise.step > kSteps * noise.sigma) return {};  // they stand out as if they were tails
   constexpr float kMostItsOwn = 0.8F;
   const std::vector<float> off = off_neighbours(field, pass, noise, context);
   constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
@@ -334,6 +351,7 @@ Tails tame(const HeightField& field, const Pass& pass, const Mesh& mesh, Positio
       data[i] -= (1 - tails.weight(double(relative[i]))) * double(off[i]) * field.normal(i);
   });
   land_hovering(field, pass, mesh, tails, noise, data, context);
+  if (noise.shared > 1) return tails;  // what points share is not of their tails
   noise.sigma *= tails.narrow;
   for (double& local : noise.local) local *= tails.narrow;
   return tails;

@@ -28,7 +28,8 @@
 /// Noise that k neighbours share (rfs_mesh/shared_noise.h) is that of n / k points, each seen k times: scales
 /// begin at k times as many points, c is k times as large, evidence counts a k-th, and of a prediction that
 /// has the share `own` of the point's height k own / (1 + (k - 1) own) is the point's and its neighbours'
-/// noise.
+/// noise. What such points have of their own beside it is noise for sure: in place of the data the patches of
+/// 16 points are the first candidate, so that where every wide patch is worse the points are left calm.
 ///
 /// Where some points are several times noisier than their neighbours (tails.h), steps 1 to 3 are done twice,
 /// the second time with those drawn towards the surface that the others show.

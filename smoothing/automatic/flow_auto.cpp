@@ -65,7 +65,7 @@ class AutomaticFlow : public Flow {
 }  // namespace
 
 NoiseSummary summary_of(const rfs_mesh::NoiseField& noise) {
-  NoiseSummary summary{noise.sigma, noise.sigma, noise.shared, noise.stepped};
+  NoiseSummary summary{noise.sigma, noise.sigma, noise.shared, noise.step};
   if (noise.local.empty()) return summary;
   std::vector<double> local = noise.local;
   const auto tenth = local.begin() + std::ptrdiff_t(9 * (local.size() - 1) / 10);

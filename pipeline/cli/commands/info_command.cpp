@@ -93,7 +93,7 @@ ordered_json measure(const pipeline::io::Cloud& cloud, const Context& context) {
 }
 
 NoiseSummary noise_of(const ordered_json& json) {
-  return {json["typical"], json["loudest_tenth"], json["shared_by"], json["in_steps"]};
+  return {json["typical"], json["loudest_tenth"], json["shared_by"], json["depth_step"]};
 }
 
 std::string vector_text(const ordered_json& v, int digits = 9) {

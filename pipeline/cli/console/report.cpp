@@ -38,7 +38,7 @@ nlohmann::ordered_json json_of(const NoiseSummary& noise) {
   return {{"typical", noise.typical},
           {"loudest_tenth", noise.loudest},
           {"shared_by", noise.shared},
-          {"in_steps", noise.stepped}};
+          {"depth_step", noise.step}};
 }
 
 std::string in_words(const NoiseSummary& noise) {
@@ -47,7 +47,7 @@ std::string in_words(const NoiseSummary& noise) {
   if (noise.loudest > kLouder * noise.typical)
     words += fmt::format(", {:.3g} in the loudest tenth", noise.loudest);
   if (noise.shared >= 2) words += fmt::format(", shared by {:.0f} neighbours", noise.shared);
-  if (noise.stepped) words += ", depth in steps";
+  if (noise.step > 0) words += fmt::format(", depth in steps of {:.3g}", noise.step);
   return words;
 }
 

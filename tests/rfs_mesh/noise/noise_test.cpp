@@ -210,6 +210,65 @@ TEST(Noise, OfTwoCleanSheetsTwoSpacingsApartIsNotTheirDistance) {
   EXPECT_LT(measured(points).sigma, 0.0005);
 }
 
+/// 40,000 points of a square of side 1, spacing about 1/200, at heights that `height` gives them.
+Positions square(const std::function<double(double, double)>& height) {
+  std::mt19937_64 engine(9);
+  std::uniform_real_distribution<double> uniform;
+  Positions points;
+  for (int i = 0; i < 40000; ++i) {
+    const double x = uniform(engine), y = uniform(engine);
+    points.emplace_back(x, y, height(x, y));
+  }
+  return points;
+}
+
+TEST(Noise, ThatNeighboursShareIsSeenWholeAndCounted) {
+  constexpr int kSide = 60;  // blotches of 11 points
+  constexpr double kSigma = 0.003;
+  std::mt19937_64 engine(4);
+  std::normal_distribution<double> normal(0, kSigma);
+  std::vector<double> blotch((kSide + 1) * kSide);
+  for (double& z : blotch) z = normal(engine);
+  const NoiseField noise = measured(square(
+      [&](double x, double y) { return blotch[std::size_t(x * kSide) * kSide + std::size_t(y * kSide)]; }));
+  EXPECT_NEAR(noise.sigma / kSigma, 1, 0.2);
+  EXPECT_GT(noise.shared, 4);
+  EXPECT_LT(noise.shared, 30);
+}
+
+TEST(Noise, WithLoudPointsAmongTheOthersIsNotShared) {
+  std::mt19937_64 engine(4);
+  std::normal_distribution<double> normal(0, 0.002);
+  std::bernoulli_distribution loud(0.2);
+  const NoiseField noise =
+      measured(square([&](double, double) { return (loud(engine) ? 4 : 1) * normal(engine); }));
+  EXPECT_EQ(noise.shared, 1);
+}
+
+TEST(Noise, OfFewDepthsIsTheirRounding) {
+  constexpr double kStep = 0.02;  // four spacings; terraces are twice as wide
+  const auto depth = [](double x, double y) { return 0.5 * x + 0.1 * y; };
+  const NoiseField noise =
+      measured(square([&](double x, double y) { return kStep * std::round(depth(x, y) / kStep); }));
+  EXPECT_NEAR(noise.step, kStep, 1e-12);
+  const double along_normal = kStep / std::sqrt(12.0) / Eigen::Vector3d(0.5, 0.1, 1).norm();
+  EXPECT_NEAR(noise.sigma / along_normal, 1, 0.2);
+}
+
+TEST(Noise, OfRingsIsThatAcrossThem) {
+  constexpr double kGap = 0.1, kStep = 0.005;  // twenty times farther apart than their points
+  std::mt19937_64 engine(4);
+  for (const double sigma : {0.0, 0.002}) {
+    std::normal_distribution<double> normal(0, 1);
+    Positions points;
+    for (double y = 0; y < 2; y += kGap)
+      for (double x = 0; x < 2; x += kStep)
+        points.emplace_back(x + kStep / 4 * normal(engine), y, 0.1 * x * x + sigma * normal(engine));
+    const NoiseField noise = measured(points);
+    EXPECT_NEAR(noise.sigma, sigma, 0.2 * sigma + 1e-6);
+  }
+}
+
 TEST(Spacing, FollowsTheDensityAndIsExactOnAGrid) {
   Positions points;
   for (int i = 0; i < 60; ++i)

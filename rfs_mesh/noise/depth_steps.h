@@ -1,0 +1,34 @@
+/// Depths in steps: a camera that measures by disparity or by time knows few depths, and its points lie on
+/// terraces.
+///
+/// Found where one coordinate, and only one, has a tenth as many values as there are points; where two have,
+/// the points are on a grid of their own. Between two steps every depth is as likely, so a surface of normal
+/// n has noise of at least |n . axis| gap / sqrt(12) from them.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "rfs_mesh/points.h"
+
+namespace rfsmooth::rfs_mesh {
+
+/// The steps of one coordinate.
+struct DepthSteps {
+  Eigen::Index axis = 2;
+  std::vector<double> depths;  ///< ascending, at least two
+
+  /// Mean distance of the steps on both sides of the one nearest to a depth. O(log n).
+  double gap(double depth) const;
+
+  /// Standard deviation along the normal of a surface there.
+  double sigma(const Eigen::Vector3d& at, const Eigen::Vector3d& normal) const;
+
+  /// The gap in the middle of the points that were looked at.
+  double typical = 0;
+};
+
+/// Looks at up to 20,000 points. Nothing where there are no steps.
+std::optional<DepthSteps> find_depth_steps(const Positions& points);
+
+}  // namespace rfsmooth::rfs_mesh
