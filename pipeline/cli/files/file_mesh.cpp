@@ -72,6 +72,7 @@ void put_refined(io::Cloud& cloud, const FileMesh& file, const std::vector<doubl
     for (Index& v : face) v = Index(row[v]);
   io::Cloud refined = io::make_cloud(all.data(), all.size() / 3, cloud.points().fields[cloud.xyz[0]].type);
   io::set_faces(refined, faces);
+  refined.encoding = cloud.encoding;
   cloud = std::move(refined);
 }
 

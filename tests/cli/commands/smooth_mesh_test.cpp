@@ -214,11 +214,11 @@ TEST_F(SmoothMesh, WhatNeedsASurfaceWithoutHolesIsRefusedForClouds) {
   }
 }
 
+/// What comes as text stays text.
 TEST_F(SmoothMesh, RefineQuadruplesTheFacesThroughTheGivenVertices) {
   const auto before = rows_of(bumpy_grid(""), kMeshSide * kMeshSide);
   put("in.ply", bumpy_grid(""));
-  const Ran ran =
-      run({"smooth-mesh", "in.ply", "fine.ply", "--iterations", "0", "--refine", "1", "--encoding", "ascii"});
+  const Ran ran = run({"smooth-mesh", "in.ply", "fine.ply", "--iterations", "0", "--refine", "1"});
   ASSERT_EQ(ran.code, 0) << ran.err;
   const nlohmann::json in = nlohmann::json::parse(run({"info", "--json", "fine.ply"}).out);
   EXPECT_EQ(in["points"], (2 * kMeshSide - 1) * (2 * kMeshSide - 1));
