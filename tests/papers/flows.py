@@ -133,11 +133,22 @@ def vollmer_original(mesh, x, free, steps, alpha):
     return x
 
 
-def vollmer_hc_step(mesh, q, o, free, alpha, beta):
-    """Algorithm 1."""
-    p = move(q, mesh.T @ q - q, free)
+def vollmer_push_back(mesh, p, q, o, free, alpha, beta):
+    """The second half of algorithm 1 for any step from q to p (section 6)."""
     b = np.where(free[:, None], p - (alpha * o + (1 - alpha) * q), 0)
     return move(p, -(beta * b + (1 - beta) * (mesh.T @ b)), free)
+
+
+def vollmer_pushed_back(mesh, x, free, steps, alpha, beta, step):
+    o = x
+    for _ in range(steps):
+        x = vollmer_push_back(mesh, step(x), x, o, free, alpha, beta)
+    return x
+
+
+def vollmer_hc_step(mesh, q, o, free, alpha, beta):
+    """Algorithm 1."""
+    return vollmer_push_back(mesh, move(q, mesh.T @ q - q, free), q, o, free, alpha, beta)
 
 
 def vollmer_hc(mesh, x, free, steps, alpha, beta):
@@ -224,14 +235,18 @@ def ohtake_median(mesh, x, free, steps, lambda_, epsilon):
     return x
 
 
-def ohtake_threshold(mesh, x, free, steps, lambda_, rings):
-    """(14) around (7): T = mean of |H| over the first ring, or the first and second, computed once."""
+def ohtake_ring_threshold(mesh, x, rings):
+    """T of (14): mean of |H| over the first ring, or the first and second."""
     reach = mesh.adjacent
     if rings == 2:
         reach = (reach.astype(int) @ reach.astype(int) + reach) > 0
         np.fill_diagonal(reach, False)
     h = mesh.edge(x) ** 2 * np.linalg.norm(mesh.Hn(x), axis=1)
-    threshold = (reach @ h) / reach.sum(1)
+    return (reach @ h) / reach.sum(1)
+
+
+def ohtake_threshold(mesh, x, free, steps, lambda_, threshold):
+    """(14) around (7), T computed once."""
     for _ in range(steps):
         f = mesh.edge(x) ** 2 * mesh.Hn(x)
         size = np.linalg.norm(f, axis=1)
@@ -253,11 +268,11 @@ def desbrun_operator(mesh, x, kind):
     return mesh.edge(x) ** 2 * laplacian(mesh.cotangents(x)) / (4 * mesh.ring_area(x))[:, None]
 
 
-def desbrun_implicit(mesh, x, free, steps, dt, kind, order):
-    """(9) and 2.6: (I - dt L) X = X_n, or (I + dt L^2) X = X_n; rows of fixed vertices vanish (2.7)."""
+def desbrun_implicit(mesh, x, free, steps, dt, kind, first, second):
+    """(9) and 2.6: (I - first dt L + second dt L^2) X = X_n; rows of fixed vertices vanish (2.7)."""
     for _ in range(steps):
         op = np.where(free[:, None], desbrun_operator(mesh, x, kind), 0)
-        x = np.linalg.solve(np.eye(mesh.n) + dt * np.linalg.matrix_power(op, order), x)
+        x = np.linalg.solve(np.eye(mesh.n) + dt * (first * op + second * op @ op), x)
     return x
 
 
@@ -319,7 +334,8 @@ def around(mesh, i):
 
 
 def kobbelt_chart(mesh, x, n, i, kind):
-    """Section 4: orthogonal projection, exponential map by lengths and angles, or even angles and lengths."""
+    """Section 4: orthogonal projection, exponential map by lengths and angles, even angles and lengths, or the mean
+    of the last two, once the even one is turned to where the two fit best."""
     order, closed = around(mesh, i)
     d = x[order] - x[i]
     if kind == "tangent":
@@ -332,10 +348,13 @@ def kobbelt_chart(mesh, x, n, i, kind):
     total = sum(turn)
     scale = 2 * np.pi / total if closed else min(1, 2 * np.pi / total)
     angle = scale * np.r_[0, np.cumsum(turn)][: len(order)]
-    if kind == "uniform":
-        angle = scale * total * np.arange(len(order)) / max(1, len(order) - (not closed))
-        length = np.full(len(order), length.mean())
-    return order, length[:, None] * np.c_[np.cos(angle), np.sin(angle)]
+    true = length * np.exp(1j * angle)
+    even = scale * total * np.arange(len(order)) / max(1, len(order) - (not closed))
+    if closed:  # the one turn for which the directions of the two are closest
+        even = even + np.angle(np.exp(1j * (angle - even)).sum())
+    uniform = length.mean() * np.exp(1j * even)
+    chart = {"exponential": true, "uniform": uniform, "mixed": (true + uniform) / 2}[kind]
+    return order, np.c_[chart.real, chart.imag]
 
 
 def kobbelt_fairing(mesh, x, free, dt, kind):

@@ -79,6 +79,29 @@ def part(k=4):
     return weld(sorted(quads))
 
 
+def cube(k):
+    """[-1, 1]^3 with k squares along an edge."""
+    square, quads = [(0, 0), (1, 0), (1, 1), (0, 1)], []
+    for axis in range(3):
+        for side in (0, k):
+            for i in range(k):
+                for j in range(k):
+                    quad = [np.roll([side, i + a, j + b], axis) for a, b in (square if side else square[::-1])]
+                    quads.append(quad)
+    x, faces = weld(quads)
+    return 2 * x / k - 1, faces
+
+
+def noisy_torus_points(n, seed, times_spacing=0.5):
+    """Points of a torus of radii 1 and 0.4, even over its area, with noise in times their mean spacing."""
+    rng = np.random.default_rng(seed)
+    u, v = 2 * np.pi * rng.random((2, 8 * n))
+    keep = rng.random(8 * n) < (1 + 0.4 * np.cos(v)) / 1.4
+    u, v = u[keep][:n], v[keep][:n]
+    x = np.c_[(1 + 0.4 * np.cos(v)) * np.cos(u), (1 + 0.4 * np.cos(v)) * np.sin(u), 0.4 * np.sin(v)]
+    return x + times_spacing * np.sqrt(4 * np.pi**2 * 0.4 / n) / 2 * rng.standard_normal(x.shape)
+
+
 def noisy(mesh, seed, times_edge=0.08):
     x, faces = mesh
     edge = np.linalg.norm(x[faces[:, 0]] - x[faces[:, 1]], axis=1).mean()
