@@ -320,7 +320,7 @@ def ohtake_4():
     """Figure 4: a noisy torus of two sampling rates."""
     rows, files = ohtake_rows("o4", noisy(torus(70, 28, 0.7), 0.12), torus_error, 4)
     table("Ohtake 4: torus of two sampling rates", ["flow", "roughness, degrees", "error", "unevenness of edges"], rows)
-    picture("ohtake-4", [files[k] for k in (0, 1, 2, 4, 5)], ["noisy", "Laplacian", "Taubin", "curvature", "(11)"], "--edges")
+    picture("ohtake-4", [files[k] for k in (0, 2, 3, 4, 5)], ["noisy", "Taubin", "bilaplacian", "curvature", "(11)"])
 
 
 @figure
