@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # gallery.sh [BIN]: every flow of the registry on one noisy cloud: a picture each in clouds/pictures/flows, the page clouds/gallery.md, and
-# the table of flows in docs/FLOWS.md. BIN holds rfsmooth, virtual_scanner and render_cloud. A flow that is added needs no line here.
+# the table of flows in docs/FLOWS.md. BIN holds rfsmooth, rfsmooth-render and virtual_scanner. A flow that is added needs no line here.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 bin=$(realpath "${1:-$here/../build/release/bin}")
@@ -9,7 +9,7 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 mkdir -p "$pictures"
 
-look=(--width 360 --height 270 --force)
+look=(--width 360 --height 270 --force --quiet)
 number() { sed -n "s/.*\"$2\": \\([-0-9.e]*\\),*/\\1/p" "$1" | head -n 1; }
 distance() { # of CLOUD to the true surface: root mean square, and how much the volume changed in percent
   "$bin/rfsmooth" compare "$1" "$work/truth.ply" --json > "$work/compare.json"
@@ -19,7 +19,7 @@ distance() { # of CLOUD to the true surface: root mean square, and how much the 
 
 "$bin/virtual_scanner" truth l_part "$work/truth.ply" > /dev/null
 "$bin/virtual_scanner" sample l_part "$work/noisy.ply" --points 12000 --noise 0.5 --encoding binary --seed 9 > /dev/null
-"$bin/render_cloud" "$work/noisy.ply" -o "$pictures/noisy.png" "${look[@]}" > /dev/null
+"$bin/rfsmooth" render "$work/noisy.ply" -o "$pictures/noisy.png" "${look[@]}"
 distance "$work/noisy.ply"
 noise=$rms
 
@@ -27,7 +27,7 @@ cells=("![the noisy cloud](pictures/flows/noisy.png)<br>**the noisy cloud**<br>v
 "$bin/rfsmooth" flows --markdown > "$work/table.md"
 while read -r flow summary; do
   if "$bin/rfsmooth" denoise --flow "$flow" "$work/noisy.ply" -o "$work/out.ply" --force --quiet 2> "$work/error"; then
-    "$bin/render_cloud" "$work/out.ply" -o "$pictures/$flow.png" "${look[@]}" > /dev/null
+    "$bin/rfsmooth" render "$work/out.ply" -o "$pictures/$flow.png" "${look[@]}"
     distance "$work/out.ply"
     left=$(awk -v a="$rms" -v b="$noise" 'BEGIN { printf "%.0f", 100 * a / b }')
     cells+=("![$flow](pictures/flows/$flow.png)<br>**$flow**: $summary<br>leaves $left % of the error, volume $volume %")

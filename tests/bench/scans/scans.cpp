@@ -55,7 +55,7 @@ std::vector<fs::path> files_of(const Settings& settings) {
   return files;
 }
 
-/// What render_cloud takes to put before, ours and MLS side by side.
+/// What `rfsmooth render` takes to put before, ours and MLS side by side.
 void write_clouds(const fs::path& folder, const std::string& name, const std::array<Cleaned, 4>& tools) {
   constexpr std::array<const char*, 3> kWritten = {"_raw.ply", "_ours.ply", "_mls.ply"};
   fs::create_directories(folder);

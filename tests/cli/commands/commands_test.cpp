@@ -1,7 +1,6 @@
 /// info, mesh, smooth-mesh and compare.
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <map>
 #include <random>
 #include <sstream>
@@ -164,12 +163,6 @@ TEST_F(Commands, CoordinatesThatFloatsCannotHoldAreWarnedOf) {
     EXPECT_THAT(said("double.ply"), ::testing::Not(HasSubstr("float32")));
     EXPECT_THAT(said("near.ply"), ::testing::Not(HasSubstr("float32")));
   }
-}
-
-TEST_F(Commands, TheTerrainInUtmFloatsIsWarnedOf) {
-  const std::string scan = RFSMOOTH_SCANS_DIR "/terrain_samp11-utm.pcd";
-  if (!std::filesystem::exists(scan)) GTEST_SKIP() << "no " << scan;
-  EXPECT_THAT(run({"info", scan}).err, HasSubstr("float32"));
 }
 
 TEST_F(Commands, SmoothMeshMovesVerticesAndKeepsFaces) {
