@@ -1,5 +1,7 @@
 /// An array that does not initialise its elements. The threads that fill a large array are then the first to
-/// touch its pages, each its own part. clear() and resize() keep the memory. Thread safety as of std::vector.
+/// touch its pages, each its own part. clear() and resize() keep the memory. Unlike a vector (unfilled.h),
+/// one that grows by a little takes a little more memory, not twice as much: patches grow so, and are what a
+/// large cloud needs most memory for. Thread safety as of std::vector.
 #pragma once
 
 #include <algorithm>

@@ -9,6 +9,9 @@
 /// Only what you set changes. Everything else comes back byte for byte: field order, types and names, rows
 /// with NaN, other PLY elements, comments, width x height, viewpoint.
 ///
+/// Reading and writing can be cancelled; what reads or changes the file in memory runs to its end, with the
+/// threads and the log of the context that it is given.
+///
 /// Several threads may read one object; only one may change it, while no other reads. A moved-from object can
 /// only be assigned to or destroyed.
 #pragma once

@@ -19,6 +19,17 @@ struct CloudFile::Contents {
   }
 };
 
+namespace {
+
+/// For what is over in no time and must not leave a cloud half changed.
+Context to_the_end(Context context) {
+  context.progress = nullptr;
+  context.stop = nullptr;
+  return context;
+}
+
+}  // namespace
+
 CloudFile::CloudFile(std::unique_ptr<Contents> contents) : contents_(std::move(contents)) {}
 CloudFile::CloudFile(const CloudFile& other) : contents_(std::make_unique<Contents>(*other.contents_)) {}
 CloudFile& CloudFile::operator=(const CloudFile& other) {
@@ -67,11 +78,11 @@ std::array<std::size_t, 2> CloudFile::extent() const {
 }
 
 std::vector<double> CloudFile::positions(const Context& context) const {
-  return io::positions(contents_->cloud, context);
+  return io::positions(contents_->cloud, to_the_end(context));
 }
 
 void CloudFile::set_positions(const double* xyz, const Context& context) {
-  io::set_positions(contents_->cloud, xyz, context);
+  io::set_positions(contents_->cloud, xyz, to_the_end(context));
 }
 
 std::vector<std::string> CloudFile::field_names() const {
@@ -83,7 +94,7 @@ std::vector<std::string> CloudFile::field_names() const {
 std::optional<std::vector<double>> CloudFile::field(std::string_view name, const Context& context) const {
   const auto which = io::find_field(contents_->cloud, name);
   if (!which || !contents_->cloud.points().fields[*which].is_plain()) return std::nullopt;
-  return io::field_values(contents_->cloud, *which, context);
+  return io::field_values(contents_->cloud, *which, to_the_end(context));
 }
 
 Result<Done> CloudFile::set_field(const std::string& name, const std::vector<double>& values,
@@ -91,13 +102,13 @@ Result<Done> CloudFile::set_field(const std::string& name, const std::vector<dou
   if (values.size() != size()) throw std::invalid_argument("set_field: not one value per point");
   return guarded([&] {
     io::check_field(contents_->cloud, name, io::Scalar::float32);
-    io::set_field(contents_->cloud, name, io::Scalar::float32, values, context);
+    io::set_field(contents_->cloud, name, io::Scalar::float32, values, to_the_end(context));
     return Done{};
   });
 }
 
 void CloudFile::select(const std::vector<std::size_t>& rows, const Context& context) {
-  io::select_points(contents_->cloud, rows, context);
+  io::select_points(contents_->cloud, rows, to_the_end(context));
 }
 
 Result<std::vector<Face>> CloudFile::faces(const Context& context) const {

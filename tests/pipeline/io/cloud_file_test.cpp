@@ -1,3 +1,4 @@
+#include <atomic>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -52,6 +53,24 @@ TEST(CloudFile, FieldsAndFacesAreReadAndWritten) {
   EXPECT_EQ(file.size(), 2U);
   EXPECT_EQ(copy.size(), 4U);
   EXPECT_EQ(file.field("noise").value(), (std::vector<double>{0, 3}));
+}
+
+/// A cloud that is half changed would be nobody's.
+TEST(CloudFile, WhatChangesItInMemoryRunsToItsEnd) {
+  auto file = CloudFile::parse(kFile, "mesh.ply").value();
+  const std::atomic<bool> stop{true};
+  Context context;
+  context.stop = &stop;
+  context.progress = [](std::string_view, double) { return false; };
+  EXPECT_EQ(file.serialize({}, context).error().code, ErrorCode::cancelled);
+  std::vector<double> xyz = file.positions(context);
+  ASSERT_EQ(xyz.size(), 12U);
+  for (double& c : xyz) c += 1;
+  file.set_positions(xyz.data(), context);
+  EXPECT_EQ(file.positions(), xyz);
+  ASSERT_TRUE(file.set_field("noise", {0, 1, 2, 3}, context).ok());
+  file.select({0, 3}, context);
+  EXPECT_EQ(file.field("noise", context).value(), (std::vector<double>{0, 3}));
 }
 
 TEST(CloudFile, AFileOnDiskIsReplacedOnlyWhenAskedTo) {
