@@ -5,7 +5,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
-namespace rfsmooth::smoothing {
+namespace rfsmooth::rfs_mesh {
 
 namespace {
 
@@ -81,4 +81,4 @@ Eigen::Vector3d plane_normal(const Positions& points, std::size_t i, Adjacency::
   return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(matrix).eigenvectors().col(0);
 }
 
-}  // namespace rfsmooth::smoothing
+}  // namespace rfsmooth::rfs_mesh

@@ -4,10 +4,10 @@
 
 #include <rfsmooth/mesh.h>
 
-namespace rfsmooth::smoothing {
+namespace rfsmooth::rfs_mesh {
 
 /// Unit length; not finite if the points do not span a plane. `near`: indices of the neighbours, without i.
 /// O(|near|).
 Eigen::Vector3d plane_normal(const Positions& points, std::size_t i, Adjacency::Row near);
 
-}  // namespace rfsmooth::smoothing
+}  // namespace rfsmooth::rfs_mesh

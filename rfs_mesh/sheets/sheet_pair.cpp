@@ -6,7 +6,7 @@
 
 #include "base/small_cholesky.h"
 
-namespace rfsmooth::smoothing {
+namespace rfsmooth::rfs_mesh {
 
 namespace {
 
@@ -154,4 +154,4 @@ void SheetPair::judge(const std::vector<SheetPoint>& points) {
                 of_place < kMostOfPlace * (squares - mean) && apart_[0] < kFarApart && known > kKnown * all;
 }
 
-}  // namespace rfsmooth::smoothing
+}  // namespace rfsmooth::rfs_mesh

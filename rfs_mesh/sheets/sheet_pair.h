@@ -13,7 +13,7 @@
 
 #include <Eigen/Core>
 
-namespace rfsmooth::smoothing {
+namespace rfsmooth::rfs_mesh {
 
 /// A height over a plane.
 struct SheetPoint {
@@ -65,4 +65,4 @@ class SheetPair {
   bool convincing_ = false;
 };
 
-}  // namespace rfsmooth::smoothing
+}  // namespace rfsmooth::rfs_mesh

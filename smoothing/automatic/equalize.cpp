@@ -122,7 +122,7 @@ class Near {
     const auto width = std::size_t(table_.k);
     for_each_index(context, points.size(), [&](std::size_t i) {
       pick(points, points[i], table_.items.data() + i * width, width);
-      normals[i] = plane_normal(points, i, (*this)[i]).cast<float>();
+      normals[i] = rfs_mesh::plane_normal(points, i, (*this)[i]).cast<float>();
     });
   }
 

@@ -50,7 +50,7 @@ class Walls {
     moves_.assign(seeds.size() * members_, Move());
     for_blocks(context, seeds.size(), 16, [&](std::size_t begin, std::size_t end) {
       rfs_mesh::WideNeighbors near(field_.index(), members_);
-      std::vector<SheetPoint> points(members_);
+      std::vector<rfs_mesh::SheetPoint> points(members_);
       for (std::size_t s = begin; s < end; ++s) fit(seeds[s], near, points, moves_.data() + s * members_);
     });
     for (const Move& move : moves_) {
@@ -76,7 +76,8 @@ class Walls {
     return axis;
   }
 
-  void fit(Index seed, rfs_mesh::WideNeighbors& near, std::vector<SheetPoint>& points, Move* moves) const {
+  void fit(Index seed, rfs_mesh::WideNeighbors& near, std::vector<rfs_mesh::SheetPoint>& points,
+           Move* moves) const {
     const Vector3d& centre = field_.guide()[seed];
     near.find(centre);
     const double square = 1.1 * double(near.farthest());  // a little beyond the farthest
@@ -89,7 +90,7 @@ class Walls {
       const Vector3d r(near.x()[k], near.y()[k], near.z()[k]);
       const double inside = 1 - double(near.squared()[k]) / square;
       const float cosine = std::abs(float(normal.dot(field_.normal(i))));
-      SheetPoint& p = points[k];
+      rfs_mesh::SheetPoint& p = points[k];
       p.u = u.dot(r) * in_radii;
       p.v = v.dot(r) * in_radii;
       p.height = normal.dot(data_[i] - centre) / sigma;
@@ -97,10 +98,10 @@ class Walls {
       p.weight = inside * inside * double(same_sheet(cosine));
       weights += p.weight;
     }
-    const SheetPair sheets(points);
+    const rfs_mesh::SheetPair sheets(points);
     if (!sheets.convincing()) return;
     for (std::size_t k = 0; k < members_; ++k) {
-      const SheetPoint& p = points[k];
+      const rfs_mesh::SheetPoint& p = points[k];
       const Index i = near.index()[k];
       const double height = sheets.nearer(p), inside = 1 - double(near.squared()[k]) / square;
       if (std::abs(p.height - height) > kStray || std::abs(normal.dot(field_.normal(i))) < kPlaced) continue;

@@ -28,7 +28,7 @@ HeightField::HeightField(Positions guide, rfs_mesh::KdTree tree, rfs_mesh::Neigh
   for_each_index(context, size(), [&](std::size_t i) {
     const auto row = near_[i];
     const Eigen::Vector3d normal =
-        plane_normal(guide_, i, {row.begin(), row.begin() + std::min(row.size(), kPlane)});
+        rfs_mesh::plane_normal(guide_, i, {row.begin(), row.begin() + std::min(row.size(), kPlane)});
     local_[i].normal = normal.allFinite() ? Eigen::Vector3f(normal.cast<float>()) : Eigen::Vector3f::UnitZ();
   });
   orient(context);

@@ -109,7 +109,7 @@ void normal_ours(benchmark::State& state) {
   const Disk disk;
   for (auto _ : state)
     benchmark::DoNotOptimize(
-        plane_normal(disk.points, 0, {disk.near.data(), disk.near.data() + disk.near.size()}));
+        rfs_mesh::plane_normal(disk.points, 0, {disk.near.data(), disk.near.data() + disk.near.size()}));
 }
 BENCHMARK(normal_ours);
 

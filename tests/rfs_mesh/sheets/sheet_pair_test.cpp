@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-using namespace rfsmooth::smoothing;
+using namespace rfsmooth::rfs_mesh;
 
 namespace {
 
