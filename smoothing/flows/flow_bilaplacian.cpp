@@ -9,7 +9,9 @@
 #include "smoothing/integrators/explicit.h"
 #include "smoothing/operators/operator.h"
 
-namespace rfsmooth::smoothing {
+namespace rfsmooth {
+
+using namespace smoothing;
 
 namespace {
 
@@ -29,12 +31,6 @@ class BilaplacianSpeed : public Speed {
 };
 
 }  // namespace
-
-}  // namespace rfsmooth::smoothing
-
-namespace rfsmooth {
-
-using namespace smoothing;
 
 std::unique_ptr<Flow> BilaplacianOptions::start(const Mesh&, const Constraints&, const Context&) const {
   return make_explicit(std::make_unique<BilaplacianSpeed>(), lambda, Update::simultaneous);

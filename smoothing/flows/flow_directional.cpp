@@ -36,7 +36,9 @@
 #include "smoothing/operators/operator.h"
 #include "smoothing/operators/surface.h"
 
-namespace rfsmooth::smoothing {
+namespace rfsmooth {
+
+using namespace smoothing;
 
 namespace {
 
@@ -202,12 +204,6 @@ class DirectionalSpeed : public Speed {
 };
 
 }  // namespace
-
-}  // namespace rfsmooth::smoothing
-
-namespace rfsmooth {
-
-using namespace smoothing;
 
 std::unique_ptr<Flow> DirectionalOptions::start(const Mesh& mesh, const Constraints&,
                                                 const Context& context) const {

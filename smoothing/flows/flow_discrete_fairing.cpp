@@ -7,27 +7,27 @@
 /// of a regular mesh dt E is 16 times the squared umbrella. The interpolating use, with refinement, is
 /// refine.h.
 #include "base/parallel.h"
-#include "smoothing/integrators/solver.h"
+#include "smoothing/integrators/solved_flow.h"
 #include "smoothing/operators/divided_difference.h"
 
-namespace rfsmooth::smoothing {
+namespace rfsmooth {
+
+using namespace smoothing;
 
 namespace {
 
 using Eigen::Vector3d;
 
-class DiscreteFairing : public Flow {
+class DiscreteFairing : public SolvedFlow {
  public:
   DiscreteFairing(const Mesh& mesh, const DiscreteFairingOptions& options, AllowedMoves allowed,
                   const Context& context)
-      : chart_(options.chart),
+      : SolvedFlow(options),
+        chart_(options.chart),
         dt_(options.dt),
         allowed_(std::move(allowed)),
         first_(mesh.positions),
-        differences_(mesh, chart_, context) {
-    solver_.tolerance = options.tolerance;
-    solver_.linf = options.norm == Norm::linf;
-  }
+        differences_(mesh, chart_, context) {}
 
   void step(Mesh& mesh, const Context& context) override {
     const std::size_t n = mesh.positions.size();
@@ -52,7 +52,7 @@ class DiscreteFairing : public Flow {
       });
     };
     const Positions start = x;
-    iterations_ += conjugate_gradients(product, diagonal, w, b, x, allowed_, solver_, context).iterations;
+    count(conjugate_gradients(product, diagonal, w, b, x, allowed_, solver_, context));
     for_each_index(context, n, [&](std::size_t i) {
       const Vector3d p = mesh.positions[i] + allowed_(i, x[i] - start[i]);
       if (p.allFinite()) mesh.positions[i] = p;
@@ -64,8 +64,6 @@ class DiscreteFairing : public Flow {
     first.positions = first_;
     differences_ = DividedDifferences(first, chart_, context);
   }
-  int solver_iterations() const override { return iterations_; }
-  bool applies_constraints() const override { return true; }
 
  private:
   Chart chart_;
@@ -73,17 +71,9 @@ class DiscreteFairing : public Flow {
   AllowedMoves allowed_;
   Positions first_;
   DividedDifferences differences_;
-  SolverOptions solver_;
-  int iterations_ = 0;
 };
 
 }  // namespace
-
-}  // namespace rfsmooth::smoothing
-
-namespace rfsmooth {
-
-using namespace smoothing;
 
 std::unique_ptr<Flow> DiscreteFairingOptions::start(const Mesh& mesh, const Constraints& constraints,
                                                     const Context& context) const {

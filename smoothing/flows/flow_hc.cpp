@@ -11,7 +11,9 @@
 #include "smoothing/modifiers/constraint.h"
 #include "smoothing/modifiers/pushback.h"
 
-namespace rfsmooth::smoothing {
+namespace rfsmooth {
+
+using namespace smoothing;
 
 namespace {
 
@@ -54,12 +56,6 @@ class SimultaneousHc : public Flow {
 };
 
 }  // namespace
-
-}  // namespace rfsmooth::smoothing
-
-namespace rfsmooth {
-
-using namespace smoothing;
 
 std::unique_ptr<Flow> HcOptions::start(const Mesh& mesh, const Constraints& constraints,
                                        const Context&) const {

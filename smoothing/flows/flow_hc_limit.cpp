@@ -8,20 +8,20 @@
 /// side gains c (D - W) r with r the fixed neighbours' share of T x. Constraints to an axis or a plane, and
 /// strengths, are HC's own per-step rules and are refused here.
 #include "base/parallel.h"
-#include "smoothing/integrators/solver.h"
+#include "smoothing/integrators/solved_flow.h"
 
-namespace rfsmooth::smoothing {
+namespace rfsmooth {
+
+using namespace smoothing;
 
 namespace {
 
 using Eigen::Vector3d;
 
-class HcLimit : public Flow {
+class HcLimit : public SolvedFlow {
  public:
   HcLimit(const Mesh& mesh, const HcLimitOptions& options, const Constraints& constraints)
-      : beta_(options.beta), c_((1 - beta_) / options.alpha), original_(mesh.positions) {
-    solver_.tolerance = options.tolerance;
-    solver_.linf = options.norm == Norm::linf;
+      : SolvedFlow(options), beta_(options.beta), c_((1 - beta_) / options.alpha), original_(mesh.positions) {
     fixed_.assign(mesh.positions.size(), 0);
     for (const HardConstraint& constraint : constraints.hard) fixed_.at(constraint.vertex) = 1;
   }
@@ -79,30 +79,19 @@ class HcLimit : public Flow {
       b[i] = beta_ * degree(i) * (original_[i] - centre) + (1 - beta_) * w +
              c_ * (degree(i) * share[i] - movable_sum(share, i));
     });
-    iterations_ += conjugate_gradients(product, diagonal, mass, b, x, {}, solver_, context).iterations;
+    count(conjugate_gradients(product, diagonal, mass, b, x, {}, solver_, context));
     for_each_index(context, n, [&](std::size_t i) {
       if (const Vector3d p = x[i] + centre; !still(i) && p.allFinite()) mesh.positions[i] = p;
     });
   }
 
-  int solver_iterations() const override { return iterations_; }
-  bool applies_constraints() const override { return true; }
-
  private:
   double beta_, c_;
   Positions original_;
   std::vector<char> fixed_;
-  SolverOptions solver_;
-  int iterations_ = 0;
 };
 
 }  // namespace
-
-}  // namespace rfsmooth::smoothing
-
-namespace rfsmooth {
-
-using namespace smoothing;
 
 std::unique_ptr<Flow> HcLimitOptions::start(const Mesh& mesh, const Constraints& constraints,
                                             const Context&) const {

@@ -11,23 +11,24 @@
 #include <cmath>
 
 #include "base/parallel.h"
-#include "smoothing/integrators/solver.h"
+#include "smoothing/integrators/solved_flow.h"
 
-namespace rfsmooth::smoothing {
+namespace rfsmooth {
+
+using namespace smoothing;
 
 namespace {
 
-class ImplicitFlow : public Flow {
+class ImplicitFlow : public SolvedFlow {
  public:
   ImplicitFlow(const ImplicitOptions& options, AllowedMoves allowed)
-      : source_(options.op, options.keep_weights, options.scheme),
+      : SolvedFlow(options),
+        source_(options.op, options.keep_weights, options.scheme),
         printed_(options.scheme == Scheme::printed && options.order == 2),
         allowed_(std::move(allowed)) {
     const double dt = options.dt, m = options.mixture;
     a_[options.order - 1] = dt * (1 - m);
     a_[0] += dt * m;
-    solver_.tolerance = options.tolerance;
-    solver_.linf = options.norm == Norm::linf;
   }
 
   void step(Mesh& mesh, const Context& context) override {
@@ -46,20 +47,16 @@ class ImplicitFlow : public Flow {
       });
     }
     const Positions before = mesh.positions;
-    iterations_ += solve(system, before, mesh.positions, allowed_, solver_, context).iterations;
+    count(solve(system, before, mesh.positions, allowed_, solver_, context));
   }
 
   void connectivity_changed(const Mesh&, const Context&) override { source_.connectivity_changed(); }
-  int solver_iterations() const override { return iterations_; }
-  bool applies_constraints() const override { return true; }
 
  private:
   OperatorSource source_;
   bool printed_;
   AllowedMoves allowed_;
   std::array<double, 4> a_ = {0, 0, 0, 0};
-  SolverOptions solver_;
-  int iterations_ = 0;
 };
 
 /// The least value of 1 + dt [(1 - m) k^order + m k] over eigenvalues k >= 0.
@@ -73,12 +70,6 @@ double least_eigenvalue(const ImplicitOptions& options) {
 }
 
 }  // namespace
-
-}  // namespace rfsmooth::smoothing
-
-namespace rfsmooth {
-
-using namespace smoothing;
 
 std::unique_ptr<Flow> ImplicitOptions::start(const Mesh& mesh, const Constraints& constraints,
                                              const Context&) const {

@@ -8,7 +8,9 @@
 /// (4). lambda multiplies the step of every variant.
 #include "smoothing/integrators/umbrella_speed.h"
 
-namespace rfsmooth::smoothing {
+namespace rfsmooth {
+
+using namespace smoothing;
 
 namespace {
 
@@ -39,12 +41,6 @@ class AnchoredSpeed : public Speed {
 };
 
 }  // namespace
-
-}  // namespace rfsmooth::smoothing
-
-namespace rfsmooth {
-
-using namespace smoothing;
 
 std::unique_ptr<Flow> LaplacianOptions::start(const Mesh& mesh, const Constraints& constraints,
                                               const Context&) const {

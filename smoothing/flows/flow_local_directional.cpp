@@ -21,7 +21,9 @@
 #include "smoothing/operators/operator.h"
 #include "smoothing/operators/surface.h"
 
-namespace rfsmooth::smoothing {
+namespace rfsmooth {
+
+using namespace smoothing;
 
 namespace {
 
@@ -95,12 +97,6 @@ class LocalDirectionalSpeed : public Speed {
 };
 
 }  // namespace
-
-}  // namespace rfsmooth::smoothing
-
-namespace rfsmooth {
-
-using namespace smoothing;
 
 std::unique_ptr<Flow> LocalDirectionalOptions::start(const Mesh&, const Constraints&, const Context&) const {
   return make_explicit(std::make_unique<LocalDirectionalSpeed>(*this), lambda, Update::simultaneous);

@@ -14,7 +14,9 @@
 #include "smoothing/integrators/curvature_speed.h"
 #include "smoothing/integrators/umbrella_speed.h"
 
-namespace rfsmooth::smoothing {
+namespace rfsmooth {
+
+using namespace smoothing;
 
 namespace {
 
@@ -57,12 +59,6 @@ class MedianDirectionSpeed : public Speed {
 };
 
 }  // namespace
-
-}  // namespace rfsmooth::smoothing
-
-namespace rfsmooth {
-
-using namespace smoothing;
 
 std::unique_ptr<Flow> MedianDirectionOptions::start(const Mesh&, const Constraints&, const Context&) const {
   return make_explicit(std::make_unique<MedianDirectionSpeed>(*this), lambda, Update::simultaneous);

@@ -10,7 +10,9 @@
 #include "smoothing/integrators/umbrella_speed.h"
 #include "smoothing/operators/surface.h"
 
-namespace rfsmooth::smoothing {
+namespace rfsmooth {
+
+using namespace smoothing;
 
 namespace {
 
@@ -47,12 +49,6 @@ class ModifiedCurvatureSpeed : public Speed {
 };
 
 }  // namespace
-
-}  // namespace rfsmooth::smoothing
-
-namespace rfsmooth {
-
-using namespace smoothing;
 
 std::unique_ptr<Flow> ModifiedCurvatureOptions::start(const Mesh&, const Constraints&, const Context&) const {
   return make_explicit(std::make_unique<ModifiedCurvatureSpeed>(lambda, tangential, scheme), lambda,

@@ -8,7 +8,9 @@
 #include "smoothing/integrators/explicit.h"
 #include "smoothing/integrators/umbrella_speed.h"
 
-namespace rfsmooth::smoothing {
+namespace rfsmooth {
+
+using namespace smoothing;
 
 namespace {
 
@@ -29,12 +31,6 @@ class TaubinFlow : public Flow {
 };
 
 }  // namespace
-
-}  // namespace rfsmooth::smoothing
-
-namespace rfsmooth {
-
-using namespace smoothing;
 
 std::unique_ptr<Flow> TaubinOptions::start(const Mesh& mesh, const Constraints& constraints,
                                            const Context&) const {
