@@ -184,25 +184,25 @@ void land_tails(const double* xyz, const std::vector<double>& strength, const De
   }
 }
 
-DenoiseReport run(double* xyz, std::size_t n, const DenoiseOptions& options, const Context& context,
-                  const std::vector<double>& strength) {
-  DenoiseReport report;
-  report.points = n;
-  report.effective = options;
-  rfs_mesh::WorkingCloud cloud;
-  {
-    const Stopwatch watch(report.seconds, "prepare");
-    context.report("prepare", 0);
-    cloud = value_or_throw(rfs_mesh::make_working_cloud(xyz, n, context));
-    report.finite = cloud.finite();
-    report.distinct = cloud.points.size();
-    if (options.flow.modifiers.preserve ==
-        Preserve::height_field) {  // measured from the caller's own plane z = 0
-      for (Eigen::Vector3d& p : cloud.points) p.z() += cloud.origin.z();
-      cloud.origin.z() = 0;
-    }
-    std::vector<Index>().swap(cloud.multiplicity);  // nobody asks
+/// The points to work on.
+rfs_mesh::WorkingCloud prepare(const double* xyz, std::size_t n, const DenoiseOptions& options,
+                               const Context& context, DenoiseReport& report) {
+  const Stopwatch watch(report.seconds, "prepare");
+  context.report("prepare", 0);
+  auto cloud = value_or_throw(rfs_mesh::make_working_cloud(xyz, n, context));
+  report.finite = cloud.finite();
+  report.distinct = cloud.points.size();
+  if (options.flow.modifiers.preserve == Preserve::height_field) {  // measured from the caller's own z = 0
+    for (Eigen::Vector3d& p : cloud.points) p.z() += cloud.origin.z();
+    cloud.origin.z() = 0;
   }
+  std::vector<Index>().swap(cloud.multiplicity);  // nobody asks
+  return cloud;
+}
+
+/// The rough mesh of the points, less those that are outliers and set aside.
+Connection connected(rfs_mesh::WorkingCloud& cloud, const DenoiseOptions& options,
+                               const Context& context, DenoiseReport& report) {
   ConnectOptions connect = options.connect;
   connect.tree_of_points = false;
   // Points that no face reaches have no surface to be smoothed onto: as in the paper their edges go, and
@@ -230,21 +230,31 @@ DenoiseReport run(double* xyz, std::size_t n, const DenoiseOptions& options, con
       near = rfs_mesh::nearest_left(near, outlier, *index, context);
     }
   }
-  auto connection = value_or_throw(rfs_mesh::connect(std::move(*index), std::move(near), connect, context));
-  index.reset();
+  return value_or_throw(rfs_mesh::connect(std::move(*index), std::move(near), connect, context));
+}
+
+/// What the connection says of the cloud. Of the rest only the mesh is needed while smoothing.
+Mesh told_of(Connection connection, DenoiseReport& report) {
   report.seconds.insert(report.seconds.end(), connection.seconds.begin(), connection.seconds.end());
   report.spacing = connection.noise.spacing;
-  report.noise = connection.noise.sigma;
+  report.noise = report.noise_left = connection.noise.sigma;
   report.sdg_edges = connection.sdg.size();
   report.bridges = connection.bridges.size();
   report.faceless = connection.faceless;
-  Mesh mesh = std::move(connection.mesh);
-  connection = {};                 // the tree, the graph and the surfaces are not needed while smoothing
-  Positions().swap(cloud.points);  // nor these: the mesh has them, and the caller
-  report.faces = mesh.faces.size();
-  report.edges = mesh.edge_count();
+  report.faces = connection.mesh.faces.size();
+  report.edges = connection.mesh.edge_count();
+  return std::move(connection.mesh);
+}
 
-  report.noise_left = report.noise;
+DenoiseReport run(double* xyz, std::size_t n, const DenoiseOptions& options, const Context& context,
+                  const std::vector<double>& strength) {
+  DenoiseReport report;
+  report.points = n;
+  report.effective = options;
+  rfs_mesh::WorkingCloud cloud = prepare(xyz, n, options, context, report);
+  Mesh mesh = told_of(connected(cloud, options, context, report), report);
+  Positions().swap(cloud.points);  // the mesh has them, and the caller
+
   std::vector<double> reach;  // the automatic smoother keeps to its own
   if (!std::holds_alternative<AutomaticOptions>(options.flow.flow)) reach = reaches(mesh, context);
   alternate(mesh, {{}, working_strengths(strength, cloud, mesh.positions.size())}, options, report, context);

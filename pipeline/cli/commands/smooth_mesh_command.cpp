@@ -107,6 +107,36 @@ void make_agree(Mesh& mesh) {
   if (others > 0 && others < turned.size()) mesh.faces = std::move(turned);
 }
 
+/// Writes the refined mesh into the cloud.
+void refine_file(const After& after, pipeline::io::Cloud& cloud, FileMesh& file,
+                 const std::vector<double>& rows, const Job& job, const Context& context, Console& console) {
+  const auto sharp =
+      after.sharp_angle ? sharp_edges(file.mesh, *after.sharp_angle, context) : std::vector<Edge>{};
+  Mesh fine = value_or_fail(smoothing::refine(file.mesh, after.refine, context, sharp), job.input);
+  const bool more = cloud.points().fields.size() > 3;
+  put_refined(cloud, file, rows, fine);
+  file.mesh = std::move(fine);
+  if (more)
+    console.warn(job.input + ": a refined mesh has new points; only x, y, z and triangles are written");
+}
+
+/// Adds the field of ridges and ravines. \throw Failure for OFF, which cannot hold it.
+void mark_ridges(const After& after, pipeline::io::Cloud& cloud, FileMesh& file, const Job& job,
+                 const Context& context) {
+  if (cloud.format == pipeline::io::Format::off)
+    throw Failure({ErrorCode::usage, job.input + ": OFF cannot hold the field of --ridges; use PLY"});
+  make_agree(file.mesh);
+  const std::vector<int> kind = smoothing::ridges_and_ravines(file.mesh, after.ridge_curvature, context);
+  std::vector<double> field(cloud.size(), 0);
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    // Rows behind the given ones are the refined vertices, in their order.
+    const std::size_t given = file.of_row.size();
+    const std::size_t v = i < given ? file.of_row[i] : file.before.size() + i - given;
+    if (v != kNone) field[i] = kind[v];
+  }
+  pipeline::io::set_field(cloud, "ridge", pipeline::io::Scalar::int8, field, context);
+}
+
 std::string smooth_file(const SmoothMeshCommandOptions& options, pipeline::io::Cloud& cloud, const Job& job,
                         const Context& context, Console& console, std::vector<StageTime>& stages,
                         ordered_json& entry) {
@@ -125,37 +155,18 @@ std::string smooth_file(const SmoothMeshCommandOptions& options, pipeline::io::C
   options.trace.write(done.trace, options.job.files);
   bool moved = false;
   const std::vector<double> rows = file.moved_rows(moved);
-  const bool stale_normals = moved && has_normals(cloud) && options.after.refine.levels == 0;
   const std::size_t points = cloud.size(), faces = file.mesh.faces.size();
   if (options.after.refine.levels > 0) {
     watch.next("refine");
-    const auto sharp = options.after.sharp_angle ? sharp_edges(file.mesh, *options.after.sharp_angle, context)
-                                                 : std::vector<Edge>{};
-    Mesh fine = value_or_fail(smoothing::refine(file.mesh, options.after.refine, context, sharp), job.input);
-    const bool more = cloud.points().fields.size() > 3;
-    put_refined(cloud, file, rows, fine);
-    file.mesh = std::move(fine);
-    if (more)
-      console.warn(job.input + ": a refined mesh has new points; only x, y, z and triangles are written");
+    refine_file(options.after, cloud, file, rows, job, context, console);
   } else {
     pipeline::io::set_positions(cloud, rows.data(), context);
+    if (moved && has_normals(cloud))
+      console.warn(fmt::format("{}: the normals are kept; they now describe the old positions", job.input));
   }
-  if (stale_normals)
-    console.warn(fmt::format("{}: the normals are kept; they now describe the old positions", job.input));
   if (options.after.ridges) {
     watch.next("ridges");
-    if (cloud.format == pipeline::io::Format::off)
-      throw Failure({ErrorCode::usage, job.input + ": OFF cannot hold the field of --ridges; use PLY"});
-    make_agree(file.mesh);
-    const std::vector<int> kind =
-        smoothing::ridges_and_ravines(file.mesh, options.after.ridge_curvature, context);
-    std::vector<double> field(cloud.size(), 0);
-    for (std::size_t i = 0; i < field.size(); ++i) {
-      // Rows behind the given ones are the refined vertices, in their order.
-      const std::size_t v = i < file.of_row.size() ? file.of_row[i] : file.before.size() + i - points;
-      if (v != kNone) field[i] = kind[v];
-    }
-    pipeline::io::set_field(cloud, "ridge", pipeline::io::Scalar::int8, field, context);
+    mark_ridges(options.after, cloud, file, job, context);
   }
 
   entry["options"] = effective_options(options, options.job.files);
