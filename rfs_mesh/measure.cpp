@@ -29,14 +29,6 @@ double dihedral_angle(const Vector3d& p, const Vector3d& q, const Vector3d& r, c
   return M_PI - std::atan2(sine, cosine);
 }
 
-Positions face_normals(const Mesh& mesh, const Context& context) {
-  Positions normals(mesh.faces.size());
-  for_each_index(context, normals.size(), [&](std::size_t f) {
-    normals[f] = face_cross(mesh.positions, mesh.faces[f]).stableNormalized();
-  });
-  return normals;
-}
-
 Positions vertex_normals(const Mesh& mesh, const Context& context) {
   const Adjacency around = vertex_faces(mesh, context);
   Positions normals(mesh.positions.size());
@@ -75,64 +67,6 @@ double mean_edge_length(const Mesh& mesh, const Context& context) {
     return sum;
   });
   return twice / double(mesh.one_ring.items.size());
-}
-
-namespace {
-
-Index opposite(const Face& f, Index a, Index b) {
-  for (const Index v : f)
-    if (v != a && v != b) return v;
-  return kNone;
-}
-
-bool has_corner(const Face& f, Index v) {
-  return f[0] == v || f[1] == v || f[2] == v;
-}
-
-}  // namespace
-
-double dihedral_angle_sum(const Mesh& mesh, const Context& context) {
-  const Adjacency around = vertex_faces(mesh, context);
-  const auto& at = mesh.positions;
-  return sum_over(context, mesh.one_ring.size(), 0.0, [&](std::size_t a) {
-    double sum = 0;
-    for (const Index b : mesh.one_ring[a]) {
-      if (b < a) continue;
-      Index across[2], count = 0;
-      for (const Index f : around[a])
-        if (has_corner(mesh.faces[f], b) && count++ < 2)
-          across[count - 1] = opposite(mesh.faces[f], Index(a), b);
-      if (count == 2) sum += dihedral_angle(at[a], at[b], at[across[0]], at[across[1]]);
-    }
-    return sum;
-  });
-}
-
-EdgeCensus edge_census(const Mesh& mesh, const Context& context) {
-  const Adjacency around = vertex_faces(mesh, context);
-  return reduce_blocks(
-      context, mesh.one_ring.size(), EdgeCensus{},
-      [&](std::size_t begin, std::size_t end) {
-        EdgeCensus c;
-        for (std::size_t a = begin; a < end; ++a) {
-          if (around.degree(a) == 0) ++c.faceless;
-          for (const Index b : mesh.one_ring[a]) {
-            if (b < a) continue;
-            int faces = 0;
-            for (const Index f : around[a]) faces += has_corner(mesh.faces[f], b);
-            ++(faces == 0 ? c.loose : faces == 1 ? c.rim : faces == 2 ? c.inner : c.crowded);
-          }
-        }
-        return c;
-      },
-      [](EdgeCensus a, const EdgeCensus& b) {
-        a.loose += b.loose;
-        a.rim += b.rim;
-        a.inner += b.inner;
-        a.crowded += b.crowded;
-        a.faceless += b.faceless;
-        return a;
-      });
 }
 
 }  // namespace rfsmooth::rfs_mesh

@@ -26,9 +26,6 @@ double face_quality(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Ei
 double dihedral_angle(const Eigen::Vector3d& p, const Eigen::Vector3d& q, const Eigen::Vector3d& r,
                       const Eigen::Vector3d& s);
 
-/// m unit normals by the right-hand rule; zero for degenerate faces.
-Positions face_normals(const Mesh& mesh, const Context& context);
-
 /// n unit normals: the mean of the incident faces' normals, weighted by area; zero if there are none or they
 /// cancel. Neighbours' normals agree only if the faces are oriented alike.
 Positions vertex_normals(const Mesh& mesh, const Context& context);
@@ -42,20 +39,5 @@ double signed_volume(const Mesh& mesh, const Context& context);
 
 /// Mean length of the edges of the one-ring (faces' and loose edges); 0 without edges.
 double mean_edge_length(const Mesh& mesh, const Context& context);
-
-/// The sum of `dihedral_angle` over the edges with exactly two faces. Edge swaps never lower it (Vollmer et
-/// al. section 7).
-double dihedral_angle_sum(const Mesh& mesh, const Context& context);
-
-/// How the faces meet at the edges.
-struct EdgeCensus {
-  std::size_t loose = 0;     ///< edges of the one-ring without a face
-  std::size_t rim = 0;       ///< edges with one face
-  std::size_t inner = 0;     ///< edges with two faces
-  std::size_t crowded = 0;   ///< edges with more; an RFS-mesh has none
-  std::size_t faceless = 0;  ///< vertices without a face
-};
-/// Counts the edges by their faces.
-EdgeCensus edge_census(const Mesh& mesh, const Context& context);
 
 }  // namespace rfsmooth::rfs_mesh

@@ -8,6 +8,7 @@
 #include <rfsmooth/connect.h>
 
 #include "rfs_mesh/measure.h"
+#include "tests/support/edge_census.h"
 #include "tests/support/shapes.h"
 
 namespace rfsmooth::rfs_mesh {
@@ -68,7 +69,7 @@ TEST(SmallHoles, TheRoughMeshHasNone) {
   std::vector<Face> faces = mesh.faces;
   fill_small_holes(points, kQuality, faces, {});
   EXPECT_EQ(faces.size(), mesh.faces.size());
-  EXPECT_EQ(edge_census(mesh, {}).crowded, 0u);
+  EXPECT_EQ(test::edge_census(mesh).crowded, 0u);
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 
 #include <rfsmooth/connect.h>
 
-#include "rfs_mesh/measure.h"
+#include "tests/support/edge_census.h"
 #include "tests/support/kruskal.h"
 
 namespace rfsmooth::test {
@@ -19,7 +19,7 @@ inline void expect_sound(const Connection& c, std::size_t n) {
   EXPECT_EQ(c.emst.size(), n == 0 ? 0 : n - 1);
   EXPECT_EQ(c.surfaces.size(), n);
   EXPECT_TRUE(std::is_sorted(c.sdg.begin(), c.sdg.end()));
-  const rfs_mesh::EdgeCensus census = rfs_mesh::edge_census(c.mesh, {});
+  const EdgeCensus census = edge_census(c.mesh);
   EXPECT_EQ(census.crowded, 0u) << "an edge has more than two faces";
   EXPECT_EQ(census.loose, c.mesh.loose_edges.size()) << "an edge without a face is not listed as loose";
   EXPECT_EQ(census.faceless, c.faceless);

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "rfs_mesh/measure.h"
+#include "tests/support/edge_census.h"
 #include "tests/support/shapes.h"
 #include "tests/support/test_ground.h"
 
@@ -189,7 +190,7 @@ TEST_P(FacesOfShape, FacesOfTheFlattestPairAtAllTheirEdgesStayAndNoEdgeHasMoreTh
   }
   ASSERT_GT(crowded, 100u);
   Mesh mesh = mesh_of(at, kept.faces);
-  EXPECT_EQ(edge_census(mesh, {}).crowded, 0u);
+  EXPECT_EQ(test::edge_census(mesh).crowded, 0u);
   const std::vector<Face> stayed = all_unordered(kept.faces);
   std::size_t winners = 0;
   for (std::size_t f = 0; f < proposed_.faces.size(); ++f) {
