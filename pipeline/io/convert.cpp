@@ -255,7 +255,8 @@ Encoding target_encoding(const Cloud& cloud, Format format, std::optional<Encodi
 }
 
 bool is_writable_as_is(const Cloud& cloud, Format format) {
-  if (format != cloud.format || format != Format::off) return format == cloud.format;
+  if (format != cloud.format) return false;
+  if (format != Format::off) return true;
   const std::vector<std::size_t> in_order = off_fields(cloud);
   const std::vector<Field>& fields = cloud.points().fields;
   std::size_t named = 0;  // OFF keeps unnamed columns between the named ones, ahead of texture coordinates

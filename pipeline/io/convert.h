@@ -24,7 +24,7 @@ std::vector<std::string> what_is_lost(const Cloud& cloud, Format format, Encodin
 
 /// The cloud as one of `format`, without what is lost. Arrays (PCD's COUNT) become PLY lists and back; width
 /// x height and viewpoint become obj_info lines (num_cols, num_rows, viewpoint) and back; comments stay
-/// comments. LAS: plain_of_las and las_of_plain.
+/// comments. To and from LAS by way of a cloud of plain numbers (las_plain.h).
 Cloud convert(const Cloud& cloud, Format format, const Context& context);
 
 }  // namespace rfsmooth::pipeline::io

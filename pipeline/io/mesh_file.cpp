@@ -8,9 +8,6 @@
 namespace rfsmooth::pipeline::io {
 namespace {
 
-using rfsmooth::Edge;
-using rfsmooth::Face;
-
 std::optional<std::size_t> polygon_field(const Table& table) {
   for (std::size_t f = 0; f < table.fields.size(); ++f)
     if (table.fields[f].is_list() &&

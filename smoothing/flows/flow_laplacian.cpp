@@ -6,6 +6,7 @@
 ///
 /// Vollmer, Mencl, Mueller 1999, sections 3.1, 3.2, 3.3; weights of Ohtake, Belyaev, Bogaevski 2000, (3),
 /// (4). lambda multiplies the step of every variant.
+#include "base/parallel.h"
 #include "smoothing/integrators/umbrella_speed.h"
 
 namespace rfsmooth {
@@ -24,7 +25,8 @@ class AnchoredSpeed : public Speed {
 
   void evaluate(const Mesh& mesh, Positions& speed, const Context& context) override {
     umbrella_->evaluate(mesh, speed, context);
-    for (Index i = 0; i < speed.size(); ++i) speed[i] = anchored(mesh, i, speed[i]);
+    for_each_index(context, speed.size(),
+                   [&](std::size_t i) { speed[i] = anchored(mesh, Index(i), speed[i]); });
   }
 
   Vector3d at(const Mesh& mesh, Index i) override { return anchored(mesh, i, umbrella_->at(mesh, i)); }

@@ -9,7 +9,7 @@ using Complex = std::complex<double>;
 using Eigen::Vector4f;
 
 std::optional<std::vector<double>> inverse_polynomial(double a1, double a2, double reduction, int most) {
-  if (a1 * a1 > 3.9 * a2) return std::nullopt;
+  if (a1 * a1 > 3.9 * a2) return std::nullopt;  // from 4 a2 on the roots are real
   const Complex first = Complex(-a1, std::sqrt(4 * a2 - a1 * a1)) / (2 * a2) - 1.0, second = std::conj(first);
   // T_(m-1) and T_m at the two roots.
   Complex below1 = 1, here1 = first, below2 = 1, here2 = second;
@@ -28,9 +28,9 @@ std::optional<std::vector<double>> inverse_polynomial(double a1, double a2, doub
     if (!std::isfinite(a) || !std::isfinite(b)) return std::nullopt;
   } while (std::abs(a) + std::abs(b) > reduction);
 
-  // p has degree m - 2: m - 1 nodes determine it.
+  // p has degree m - 2: its values at m - 1 Chebyshev nodes determine it.
   const int nodes = m - 1;
-  std::vector<double> value(static_cast<std::size_t>(nodes)), coefficients(value.size(), 0);
+  std::vector<double> value(std::size_t(nodes), 0), coefficients(value.size(), 0);
   const auto angle = [&](int j) { return M_PI * (j + 0.5) / nodes; };
   for (int j = 0; j < nodes; ++j) {
     const double k = 1 + std::cos(angle(j));
@@ -48,7 +48,7 @@ std::optional<std::vector<double>> inverse_polynomial(double a1, double a2, doub
 void apply_polynomial(const std::vector<double>& coefficients, const Adjacency& rows, Vectors<Vector4f>& v,
                       Vectors<Vector4f>& d, const Context& context) {
   const std::size_t n = v.size();
-  /// t(L) v = minus the neighbours' mean.
+  // t(L) x = L x - x: minus the mean of the neighbours.
   const auto shifted = [&](const Vectors<Vector4f>& x, std::size_t i) {
     const Index begin = rows.start[i], end = rows.start[i + 1];
     if (begin == end) return Vector4f(-x[i]);

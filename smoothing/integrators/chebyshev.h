@@ -21,7 +21,9 @@ namespace rfsmooth::smoothing {
 /// a2): meeting both then loses digits, and the first power dominates. a1 >= 0, a2 > 0.
 std::optional<std::vector<double>> inverse_polynomial(double a1, double a2, double reduction, int most);
 
-/// d = p(L) v, L the umbrella (I - mean of the neighbours; zero without neighbours). Overwrites v.
+/// d = p(L) v, L the umbrella (I - mean of the neighbours; zero without neighbours). `coefficients`: of
+/// inverse_polynomial. v and d have a row for each of `rows`; v is overwritten. Parallel, O(edges) for each
+/// coefficient.
 void apply_polynomial(const std::vector<double>& coefficients, const Adjacency& rows,
                       Vectors<Eigen::Vector4f>& v, Vectors<Eigen::Vector4f>& d, const Context& context);
 

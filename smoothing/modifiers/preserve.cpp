@@ -14,9 +14,11 @@
 namespace rfsmooth::smoothing {
 
 using Eigen::Vector3d;
-using rfsmooth::Face;
 
 namespace {
+
+constexpr double kRestored = 1e-9;       // of its size: far above rounding, far below what a user could see
+constexpr double kLargestScaling = 0.9;  // a t of -1 would shrink the mesh to a point
 
 class Preserving : public WrappedFlow {
  public:
@@ -57,11 +59,12 @@ class Preserving : public WrappedFlow {
       const double probe = 1e-4 * std::max(span, 1e-300);
       const double slope = (at(t + probe) - at(t - probe)) / (2 * probe);
       const double next = t + gap / slope;
-      if (!std::isfinite(next) || (invariant_ != Preserve::height_field && std::abs(next) > 0.9)) break;
+      if (!std::isfinite(next) || (invariant_ != Preserve::height_field && std::abs(next) > kLargestScaling))
+        break;
       t = next;
       value = at(t);
     }
-    value = at(t);
+    value = at(t);  // the last probe was elsewhere
     if (!(std::abs(target_ - value) <= kRestored * size_)) give_up(value, direction);
     for_each_index(context, n, [&](std::size_t i) {
       if (direction[i] != Vector3d::Zero() && moved[i].allFinite()) mesh.positions[i] = moved[i];
@@ -110,7 +113,7 @@ class Preserving : public WrappedFlow {
         {ErrorCode::usage,
          fmt::format("the {} cannot be kept: a step takes it from {:.6g} to {:.6g}, and the {} of {} "
                      "vertices that the boundary rule and the constraints let move cannot bring it "
-                     "back; fix fewer vertices, or do without --preserve",
+                     "back; fix fewer vertices, or do without `preserve`",
                      what, target_, value, movable, direction.size())});
   }
 
@@ -124,7 +127,6 @@ class Preserving : public WrappedFlow {
   Preserve invariant_;
   AllowedMoves allowed_;
   std::vector<Face> faces_;
-  static constexpr double kRestored = 1e-9;  // far above rounding, far below what a user could see
   double target_ = 0, size_ = 0;
 };
 
