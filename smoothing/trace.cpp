@@ -15,7 +15,6 @@ namespace {
 
 /// Root mean square turn of the normal across the edges with two faces, degrees.
 double roughness(const Mesh& mesh) {
-  constexpr double kPi = 3.14159265358979323846;
   double sum = 0;
   std::size_t edges = 0;
   using rfs_mesh::EdgeFace;
@@ -24,12 +23,12 @@ double roughness(const Mesh& mesh) {
     const auto opposite = [&](const EdgeFace& at) {
       return mesh.positions[mesh.faces[at.face][(at.corner + 2) % 3]];
     };
-    const double turn = kPi - rfs_mesh::dihedral_angle(mesh.positions[first->a], mesh.positions[first->b],
-                                                       opposite(first[0]), opposite(first[1]));
+    const double turn = M_PI - rfs_mesh::dihedral_angle(mesh.positions[first->a], mesh.positions[first->b],
+                                                        opposite(first[0]), opposite(first[1]));
     sum += turn * turn;
     ++edges;
   });
-  return edges > 0 ? 180 / kPi * std::sqrt(sum / double(edges)) : 0;
+  return edges > 0 ? 180 / M_PI * std::sqrt(sum / double(edges)) : 0;
 }
 
 /// The enclosed volume, if the mesh encloses one.

@@ -11,10 +11,6 @@
 
 namespace rfsmooth::pipeline {
 
-using rfsmooth::Edge;
-using rfsmooth::Face;
-using rfsmooth::Mesh;
-
 namespace {
 
 constexpr std::size_t kLongestRim = 1000;

@@ -12,10 +12,6 @@
 
 namespace rfsmooth::pipeline {
 
-using rfsmooth::Edge;
-using rfsmooth::Face;
-using rfsmooth::Mesh;
-
 namespace {
 
 class Parting {

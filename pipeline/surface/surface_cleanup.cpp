@@ -9,9 +9,6 @@
 
 namespace rfsmooth::pipeline {
 
-using rfsmooth::Face;
-using rfsmooth::Mesh;
-
 std::vector<Index> nearest_points(const Mesh& mesh, const Positions& points, const Context& context) {
   const rfs_mesh::SpatialIndex index(points, context);
   std::vector<Index> nearest(mesh.positions.size());

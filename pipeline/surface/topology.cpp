@@ -5,8 +5,6 @@
 
 namespace rfsmooth::pipeline {
 
-using rfsmooth::Face;
-
 Topology topology(std::size_t n, const std::vector<Face>& faces) {
   Topology found;
   found.faces = faces.size();

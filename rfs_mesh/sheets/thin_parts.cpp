@@ -33,7 +33,6 @@ constexpr double kLeastTurned = 0.12;
 constexpr int kMiddleCount = 64;
 constexpr double kPower = -0.75;
 constexpr double kThinnest = 1e-4;  // of C's eigenvalues, beside the largest
-constexpr double kPi = 3.14159265358979323846;
 
 /// What is tried: out of walls or of slits, and how near e must come to be believed.
 struct Try {
@@ -74,7 +73,7 @@ class ThinParts {
     for_each_index(context, m, [&](std::size_t s) {
       const Adjacency::Row row = around_[s];
       const std::size_t count = std::min(kOfArea, row.size());
-      area_[s] = kPi * (at_[row[count - 1]] - at_[s]).squaredNorm() / double(count);
+      area_[s] = M_PI * (at_[row[count - 1]] - at_[s]).squaredNorm() / double(count);
     });
   }
 

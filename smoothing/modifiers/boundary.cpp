@@ -14,9 +14,6 @@
 namespace rfsmooth::smoothing {
 
 using Eigen::Vector3d;
-using rfsmooth::Adjacency;
-using rfsmooth::Edge;
-using rfsmooth::Mesh;
 
 std::vector<Edge> boundary_edges(const Mesh& mesh) {
   using rfs_mesh::EdgeFace;

@@ -15,12 +15,8 @@ namespace rfsmooth::smoothing {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-using rfsmooth::Adjacency;
-using rfsmooth::Mesh;
 
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// The neighbours of i in the order in which its faces go around, and whether they close; empty if they do
 /// not go around exactly once or leave a neighbour out.
@@ -95,10 +91,10 @@ std::vector<Vector2d> chart_of(const Mesh& mesh, const Adjacency& faces, const V
     }
   }
   if (!(total > 0)) return chart;
-  const double scale = fan.closed ? 2 * kPi / total : std::min(1.0, 2 * kPi / total);
+  const double scale = fan.closed ? 2 * M_PI / total : std::min(1.0, 2 * M_PI / total);
   /// The angle of neighbour k in the uniform chart; around a whole fan from wherever one starts to count.
   const auto even = [&](std::size_t k) {
-    return fan.closed ? 2 * kPi * double(k) / double(m)
+    return fan.closed ? 2 * M_PI * double(k) / double(m)
                       : scale * total * double(k) / double(std::max<std::size_t>(1, m - 1));
   };
   // Turned to lie on the other chart as well as it can, so that it does not matter where that is.

@@ -13,9 +13,6 @@ namespace rfsmooth::smoothing {
 namespace {
 
 using Eigen::Vector3d;
-using rfsmooth::Edge;
-using rfsmooth::Face;
-using rfsmooth::Mesh;
 
 /// Half-edge s of triangle t runs from corner s to corner s + 1; opposite is corner s + 2.
 struct HalfEdge {

@@ -17,7 +17,6 @@ namespace rfsmooth::smoothing {
 
 using Eigen::Vector3d;
 using rfs_mesh::face_cross;
-using rfsmooth::Face;
 
 namespace {
 

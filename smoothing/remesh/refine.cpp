@@ -12,9 +12,6 @@
 namespace rfsmooth::smoothing {
 
 using Eigen::Vector3d;
-using rfsmooth::Edge;
-using rfsmooth::Face;
-using rfsmooth::Mesh;
 
 namespace {
 

@@ -9,8 +9,6 @@
 
 namespace rfsmooth::smoothing {
 
-using rfsmooth::Mesh;
-
 bool is_scattered(const Mesh& mesh, const Context& context) {
   // Smaller meshes fit the cache; 16384 vertices further on, a neighbour has left a core's own cache.
   // Measured at 1M vertices in random order: reordering costs as much as it saves in about three explicit

@@ -15,9 +15,6 @@ namespace rfsmooth::smoothing {
 using Eigen::Vector3d;
 using rfs_mesh::face_cross;
 using rfs_mesh::vertex_normals;
-using rfsmooth::Adjacency;
-using rfsmooth::Face;
-using rfsmooth::Mesh;
 
 PrincipalCurvatures principal_curvatures(const Mesh& mesh, const Context& context) {
   const std::size_t n = mesh.positions.size();

@@ -6,7 +6,6 @@ namespace rfsmooth::cli {
 
 namespace io = pipeline::io;
 using Eigen::Vector3d;
-using rfsmooth::Face;
 
 FileMesh file_mesh(const io::Cloud& cloud, const std::string& name, const Context& context,
                    bool own_heights) {

@@ -14,8 +14,6 @@ namespace rfsmooth::cli {
 
 namespace {
 
-using rfsmooth::FlowOptions;
-
 /// As typed.
 struct Given {
   std::string flow;
