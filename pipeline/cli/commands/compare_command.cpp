@@ -164,13 +164,10 @@ Command compare_command() {
   command.usage = {"[options] CLOUD TRUTH"};
   command.description =
       "TRUTH is a mesh (PLY with faces, OFF) or a clean cloud. Prints the root of the mean square, the "
-      "median, "
-      "the 95th percentile and the largest of the distances between them in the units of the file; -o writes "
-      "the cloud coloured by them. Then what papers compare by: against a mesh distances to the surface, "
-      "P2M, "
-      "shrinkage; against a cloud: Chamfer distance; evenness of the cloud; the error of its normals if it "
-      "has "
-      "some. Points that are not finite are left out.";
+      "median, the 95th percentile and the largest of the distances between them in the units of the file; "
+      "-o writes the cloud coloured by them. Then what papers compare by: against a mesh distances to the "
+      "surface, P2M, shrinkage; against a cloud: Chamfer distance; evenness of the cloud; the error of its "
+      "normals if it has some. Points that are not finite are left out.";
   collect(*options, command.options);
   polish(command);
   command.run = [options](const Invocation& typed) { return run_compare(*options, typed); };

@@ -26,12 +26,11 @@ struct MeshOptions {
 
   template <class Self, class Visit>
   static void describe(Self& self, Visit&& visit) {
-    OptionInfo stage{
-        "stage",
-        "what to write: the tree that is used, the surface description graph made from it (edges: "
-        "lines in MeshLab, Open3D and rfsmooth render; CloudCompare shows points only), the "
-        "RFS-mesh; or the tree of the points as they are, noise and all",
-        ""};
+    OptionInfo stage{"stage",
+                     "what to write: the tree that is used, the surface description graph made from it "
+                     "(edges: lines in MeshLab, Open3D and rfsmooth render; CloudCompare shows points only), "
+                     "the RFS-mesh; or the tree of the points as they are, noise and all",
+                     ""};
     stage.choices = {"emst", "sdg", "rfs", "emst-points"};
     visit(stage, self.stage);
     ConnectOptions::describe(self.connect, visit);
@@ -169,10 +168,8 @@ Command mesh_command() {
       "and the surface description graph (sdg), faces for the RFS-mesh (rfs; edges of points without a face "
       "are kept as edges). The graph has all edges of the tree; its property kind is 0 for those, 1 for the "
       "added ones, and 2 for edges of the tree that are no neighbourhood (bridges). In noise both stand on "
-      "the "
-      "points' shadows on the surface. Only the stages up to that one are run. Points that are not finite "
-      "are "
-      "left out, coincident ones become one vertex.\n\n"
+      "the points' shadows on the surface. Only the stages up to that one are run. Points that are not "
+      "finite are left out, coincident ones become one vertex.\n\n"
       "Edges are lines in MeshLab, in Open3D (read_line_set) and for rfsmooth render; CloudCompare reads no "
       "edges from any PLY and shows the points only. Faces open everywhere.";
   collect(options->mesh, command.options);

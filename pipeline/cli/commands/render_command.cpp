@@ -17,9 +17,8 @@ Command render_table(const std::shared_ptr<RenderOptions>& options) {
   command.usage = {"[options] IN... -o OUT.png"};
   command.description =
       "Draws each input from the same place, the one where the first fills the picture: points as small "
-      "discs "
-      "shaded by their neighbourhood, so that noise shows as grain, or faces, or edges. No screen is needed. "
-      "rfsmooth render before.ply after.ply -o pair.png --labels before,after\n\n"
+      "discs shaded by their neighbourhood, so that noise shows as grain, or faces, or edges. No screen is "
+      "needed. rfsmooth render before.ply after.ply -o pair.png --labels before,after\n\n"
       "The work is done by the program rfsmooth-render; without it the exit code is 127.";
   collect(*options, command.options);
   command.everyday = {"output", "labels", "title",  "direction", "up",

@@ -31,11 +31,12 @@ struct ReportCommandOptions {
   template <class Self, class Visit>
   static void describe(Self& self, Visit&& visit) {
     visit(OptionInfo{"output", "the page, HTML", "file"}, self.output);
-    visit(OptionInfo{"points",
-                     "how many to show at most, or all; three quarters are chosen evenly, the others moved "
-                     "farthest",
-                     ""},
-          self.points);
+    visit(
+        OptionInfo{
+            "points",
+            "how many to show at most, or all; three quarters are chosen evenly, the others moved farthest",
+            ""},
+        self.points);
     visit(OptionInfo{"force", "replace an existing file", ""}, self.force);
     visit(OptionInfo{"threads", "threads to use; auto: all cores; the result is the same", "", 1, 1024},
           self.threads);
@@ -136,8 +137,7 @@ Command report_command() {
       "one HTML file that loads nothing: a slider between before and after, the points shaded, in their own "
       "colours, by how far they moved or with the outliers marked, a cross-section, the figures, and a "
       "histogram of the displacements. A field 'outlier' of AFTER says which points are outliers; else they "
-      "are searched for. "
-      "rfsmooth denoise --html makes the same page on the way.";
+      "are searched for. rfsmooth denoise --html makes the same page on the way.";
   collect(*options, command.options);
   polish(command);
   command.run = [options, known = command.options](const Invocation& typed) {
