@@ -12,6 +12,7 @@
 #include "pipeline/cli/files/cloud_jobs.h"
 #include "pipeline/cli/files/constraint_fields.h"
 #include "pipeline/cli/files/file_mesh.h"
+#include "rfs_mesh/edge_faces.h"
 #include "rfs_mesh/measure.h"
 #include "smoothing/operators/surface.h"
 #include "smoothing/remesh/refine.h"
@@ -77,24 +78,19 @@ struct SmoothMeshCommandOptions {
 };
 
 /// The edges between two faces whose normals turn by more than `degrees`.
-std::vector<Edge> sharp_edges(const Mesh& mesh, double degrees, const Context& context) {
-  const Adjacency around = vertex_faces(mesh, context);
+std::vector<Edge> sharp_edges(const Mesh& mesh, double degrees) {
+  using rfs_mesh::EdgeFace;
   const double least = std::cos(degrees * M_PI / 180);
+  const auto normal = [&](const EdgeFace& at) {
+    return rfs_mesh::face_cross(mesh.positions, mesh.faces[at.face]).normalized();
+  };
   std::vector<Edge> sharp;
-  for (Index a = 0; a < mesh.positions.size(); ++a)
-    for (const Index b : mesh.one_ring[a]) {
-      if (b < a) continue;
-      std::vector<Eigen::Vector3d> normals;
-      for (const Index f : around[a]) {
-        const Face& face = mesh.faces[f];
-        if (face[0] != b && face[1] != b && face[2] != b) continue;
-        const bool along = (face[0] == a && face[1] == b) || (face[1] == a && face[2] == b) ||
-                           (face[2] == a && face[0] == b);
-        normals.push_back((along ? 1 : -1) * rfs_mesh::face_cross(mesh.positions, face).normalized());
-      }
-      // Turned to run along the edge alike, the normals of a flat pair are opposite.
-      if (normals.size() == 2 && -normals[0].dot(normals[1]) < least) sharp.push_back({a, b});
-    }
+  rfs_mesh::for_each_edge(rfs_mesh::edge_faces(mesh.faces), [&](const EdgeFace* first, const EdgeFace* last) {
+    if (last - first != 2) return;
+    const double cosine = normal(first[0]).dot(normal(first[1]));  // faces that run the same way disagree
+    if ((first[0].forward == first[1].forward ? -cosine : cosine) < least)
+      sharp.push_back({first->a, first->b});
+  });
   return sharp;
 }
 
@@ -110,8 +106,7 @@ void make_agree(Mesh& mesh) {
 /// Writes the refined mesh into the cloud.
 void refine_file(const After& after, pipeline::io::Cloud& cloud, FileMesh& file,
                  const std::vector<double>& rows, const Job& job, const Context& context, Console& console) {
-  const auto sharp =
-      after.sharp_angle ? sharp_edges(file.mesh, *after.sharp_angle, context) : std::vector<Edge>{};
+  const auto sharp = after.sharp_angle ? sharp_edges(file.mesh, *after.sharp_angle) : std::vector<Edge>{};
   Mesh fine = value_or_fail(smoothing::refine(file.mesh, after.refine, context, sharp), job.input);
   const bool more = cloud.points().fields.size() > 3;
   put_refined(cloud, file, rows, fine);
