@@ -285,6 +285,18 @@ def chart_of_fairing():
 
 
 @check
+def folds():
+    """charts fold at spikes: volume that a little fairing leaves of a star (x before; above 0.5)"""
+    x, faces = meshes.sphere(0)
+    tips = np.array([1.5 * flows.unit(x[f].mean(0)) * np.linalg.norm(x[f], axis=1).mean() for f in faces])
+    star = np.r_[x, tips]
+    faces = np.array([(a, b, len(x) + k) for k, f in enumerate(faces) for a, b in zip(f, np.roll(f, -1))])
+    volume = lambda p: np.einsum("ij,ij->", p[faces[:, 0]], np.cross(p[faces[:, 1]], p[faces[:, 2]]))
+    value = volume(smooth((star, faces), "--flow", "discrete-fairing", "--dt", 0.1)) / volume(star)
+    return value, value > 0.5
+
+
+@check
 def words_of_the_directional_flows():
     """flows that leave 98 % on clouds do not say so (flows that do; 2)"""
     lines = run("flows", "--markdown")[1].split("\n")
