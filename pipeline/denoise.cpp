@@ -201,8 +201,8 @@ rfs_mesh::WorkingCloud prepare(const double* xyz, std::size_t n, const DenoiseOp
 }
 
 /// The rough mesh of the points, less those that are outliers and set aside.
-Connection connected(rfs_mesh::WorkingCloud& cloud, const DenoiseOptions& options,
-                               const Context& context, DenoiseReport& report) {
+Connection connected(rfs_mesh::WorkingCloud& cloud, const DenoiseOptions& options, const Context& context,
+                     DenoiseReport& report) {
   ConnectOptions connect = options.connect;
   connect.tree_of_points = false;
   // Points that no face reaches have no surface to be smoothed onto: as in the paper their edges go, and

@@ -6,6 +6,7 @@
 
 namespace rfsmooth::smoothing {
 
+/// A flow whose steps are solves.
 class SolvedFlow : public Flow {
  public:
   int solver_iterations() const override { return iterations_; }
