@@ -1,7 +1,10 @@
 #include "pipeline/io/formats/las/las.h"
 
 #include <algorithm>
+#include <array>
+#include <cstring>
 #include <limits>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -13,6 +16,8 @@ namespace rfsmooth::pipeline::io {
 namespace las {
 namespace {
 
+// A header counts points in all and by return: in 32 bits for five returns; LAS 1.4 in 64 bits for fifteen,
+// and may leave the old words empty.
 constexpr std::size_t kLegacyReturns = 5, kReturns = 15;
 constexpr std::uint64_t kMostLegacy = std::numeric_limits<std::uint32_t>::max();
 
@@ -24,6 +29,7 @@ struct Facts {
   std::array<std::uint64_t, kReturns> by_return{};
 };
 
+// Of raw coordinates, in the steps of the scale.
 struct Range {
   std::array<std::int32_t, 3> low, high;
   std::array<std::uint64_t, kReturns> by_return{};
@@ -42,8 +48,8 @@ Range joined(const Range& a, const Range& b) {
 Facts facts_of(const Table& points, int point_format, const Context& context) {
   constexpr std::int32_t kLeast = std::numeric_limits<std::int32_t>::min(),
                          kMost = std::numeric_limits<std::int32_t>::max();
-  constexpr std::size_t kBitFieldsAt = 14;
-  const int mask = is_extended(point_format) ? 15 : 7;
+  constexpr std::size_t kReturnAt = 14;                         // of a point: which return it is, ...
+  const int mask = is_extended(point_format) ? 0b1111 : 0b111;  // ... in its lowest bits
   const Range none{{kMost, kMost, kMost}, {kLeast, kLeast, kLeast}};
   const auto block = [&](std::size_t begin, std::size_t end) {
     Range r = none;
@@ -54,7 +60,7 @@ Facts facts_of(const Table& points, int point_format, const Context& context) {
         r.low[k] = std::min(r.low[k], value);
         r.high[k] = std::max(r.high[k], value);
       }
-      const int nth = number<std::uint8_t>(row, kBitFieldsAt) & mask;
+      const int nth = number<std::uint8_t>(row, kReturnAt) & mask;
       if (nth > 0) ++r.by_return[std::size_t(nth - 1)];
     }
     return r;
@@ -87,7 +93,7 @@ bool same_bytes(const std::array<T, n>& a, const std::array<T, n>& b) {
 }
 
 void put_counts(std::string& head, const Header& h, const Facts& now) {
-  const bool legacy = h.minor < 4 || h.legacy_count != 0;  // 1.4 may leave the old words empty
+  const bool legacy = h.minor < 4 || h.legacy_count != 0;
   if (h.minor < 4 && now.count > kMostLegacy)
     throw Failure({ErrorCode::usage, fmt::format("LAS 1.{} holds at most {} points", h.minor, kMostLegacy)});
   const bool fits = now.count <= kMostLegacy;
