@@ -134,13 +134,11 @@ std::vector<char> interior_vertices(const Mesh& mesh, const Adjacency& vertex_fa
 }
 
 double angle_deficit(const Mesh& mesh, const Adjacency& vertex_faces, Index i) {
-  constexpr double kTwoPi = 6.283185307179586;
-  double deficit = kTwoPi;
+  double deficit = 2 * M_PI;
   for (const Index f : vertex_faces[i]) {
-    const Face& face = mesh.faces[f];
-    const int k = face[0] == i ? 0 : face[1] == i ? 1 : 2;
-    const Vector3d u = mesh.positions[face[(k + 1) % 3]] - mesh.positions[i];
-    const Vector3d v = mesh.positions[face[(k + 2) % 3]] - mesh.positions[i];
+    const Corner corner = corner_at(mesh.faces[f], i);
+    const Vector3d u = mesh.positions[corner.next] - mesh.positions[i];
+    const Vector3d v = mesh.positions[corner.last] - mesh.positions[i];
     deficit -= std::atan2(u.cross(v).norm(), u.dot(v));
   }
   return deficit;
