@@ -317,10 +317,11 @@ struct MedianDirectionOptions {
 
 /// Directional diffusion (flow_directional.cpp).
 struct DirectionalOptions {
-  static constexpr FlowInfo kInfo{"directional",
-                                  "curvature flow along one direction, for closed meshes, whose volume it "
-                                  "keeps; takes little noise from clouds",
-                                  "Zhao-Xu (3), (33)"};
+  static constexpr FlowInfo kInfo{
+      "directional",
+      "curvature flow along one direction, for closed meshes: smooths the side that faces it, roughens the "
+      "other, keeps the volume; takes little noise from clouds",
+      "Zhao-Xu (3), (33)"};
   int iterations = 4;
   double lambda = 0.05;  ///< in units of the squared mean edge length
   int power = 0;         ///< m of the energy, the integral of H^(2m), that falls; only without a direction
