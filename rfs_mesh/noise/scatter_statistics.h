@@ -9,7 +9,7 @@
 
 #include <rfsmooth/context.h>
 
-#include "rfs_mesh/noise/scatter.h"
+#include "rfs_mesh/fit/scatter.h"
 
 namespace rfsmooth::rfs_mesh {
 

@@ -33,7 +33,7 @@ constexpr double kWidest = 1600;          // the widest patches, and
 constexpr double kWidestShare = 4;        // at least this many times m_0
 constexpr double kStrayFrom = 5;          // sigma
 constexpr double kCalm = 0.1;             // of the figure: so much calmer places have no part in the tails
-constexpr double kSteps = 3.46;           // sigma, sqrt(12): from there on steps explain all of it
+constexpr double kOnlySteps = 3.46;       // sigma, sqrt(12): from there on steps explain all of it
 constexpr std::size_t kSeeing = 2;        // the scale that looks for walls, of 9 sigma: from 0
 
 constexpr std::size_t kTooFew = 32;   // points
@@ -330,7 +330,7 @@ void land_hovering(const HeightField& field, const Pass& pass, const Mesh& mesh,
 /// the others. Returns the tails.
 Tails tame(const HeightField& field, const Pass& pass, const Mesh& mesh, Positions& data,
            rfs_mesh::NoiseField& noise, const Context& context) {
-  if (noise.step > kSteps * noise.sigma) return {};  // they stand out as if they were tails
+  if (noise.step > kOnlySteps * noise.sigma) return {};  // they stand out as if they were tails
   constexpr float kMostItsOwn = 0.8F;
   const std::vector<float> off = off_neighbours(field, pass, noise, context);
   constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();

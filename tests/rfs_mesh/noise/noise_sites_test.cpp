@@ -31,7 +31,7 @@ Positions rough_square(Sigma&& sigma, double step = 0) {
 NoiseSites sites_of(const Positions& points) {
   const SpatialIndex index(points, {});
   const NoiseStart start = search_noise(index, search_places(points), {});
-  return listen(index, listening_places(points, start.m), start, {});
+  return listen(index, listening_places(points, start.m), start, nullptr, {});
 }
 
 double median_where(const NoiseSites& sites, double from, double to) {

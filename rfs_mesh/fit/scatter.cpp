@@ -1,4 +1,4 @@
-#include "rfs_mesh/noise/scatter.h"
+#include "rfs_mesh/fit/scatter.h"
 
 #include <algorithm>
 #include <cmath>
