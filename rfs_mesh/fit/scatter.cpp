@@ -43,6 +43,23 @@ double variance_inside(double c) {
   return 1 - 2 * c * std::exp(-c * c / 2) / std::sqrt(2 * M_PI) / std::erf(c / std::sqrt(2));
 }
 
+double ScatterFit::err_together(const Eigen::Matrix<double, 6, 1>& c) {
+  // Along the patch, not in space: beside a point far above the others its nearest are above, too.
+  nearest_ = local_;
+  std::nth_element(nearest_.begin(), nearest_.begin() + kNearestTogether, nearest_.end(),
+                   [](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+                     return a.head<2>().squaredNorm() < b.head<2>().squaredNorm();
+                   });
+  int sum = 0;
+  for (std::size_t i = 0; i < kNearestTogether; ++i) {
+    const double u = nearest_[i].x(), v = nearest_[i].y();
+    const Eigen::Matrix<double, 6, 1> f =
+        (Eigen::Matrix<double, 6, 1>() << 1, u, v, u * u, u * v, v * v).finished();
+    sum += nearest_[i].z() > f.dot(c) ? 1 : -1;
+  }
+  return double(sum * sum) / double(kNearestTogether);
+}
+
 Scatter ScatterFit::operator()(const SpatialIndex& index, const Eigen::Vector3d& place, std::size_t m,
                                double sigma) {
   using Vector6 = Eigen::Matrix<double, 6, 1>;
@@ -104,14 +121,7 @@ Scatter ScatterFit::operator()(const SpatialIndex& index, const Eigen::Vector3d&
     const double left = kept - solver.solve(full).trace();
     const double residual = heights - right.dot(c);
     if (!(left > 0.02 * kept) || !std::isfinite(residual)) return s;
-    if (local_.size() >= kNearestTogether) {
-      double sum = 0;  // the neighbours come in ascending distance
-      for (std::size_t i = 0; i < kNearestTogether; ++i) {
-        const double u = local_[i].x(), v = local_[i].y();
-        sum += local_[i].z() - (Vector6() << 1, u, v, u * u, u * v, v * v).finished().dot(c);
-      }
-      s.together = residual > 0 ? sum * sum / double(kNearestTogether) * left / residual : 1;
-    }
+    if (round == 0 && local_.size() > kNearestTogether) s.together = err_together(c);
     s.variance = r * r * std::max(0.0, residual) / left / (round > 0 ? kInside : 1);
     s.freedom = left * left / squares;
     s.foot = place + r * c[0] * axes.col(0);

@@ -35,9 +35,9 @@ struct Scatter {
   double variance = 0;  ///< s^2, world units squared
   double freedom = 0;   ///< its degrees of freedom; 0: nothing can be said here
   double radius = 0;    ///< of the ball of neighbours, world units
-  double together =
-      1;  ///< variance of the mean residual of the kNearestTogether nearest over that of as many alone
-  double breadth = 0;  ///< variance of the neighbours across their longest axis over that along it, 0 to 1
+  double together = 1;  ///< kNearestTogether nearest are above (1) or below (-1): their sum squared, over as
+                        ///< many; in the mean 1 of points on their own, whatever their noise. Without window
+  double breadth = 0;   ///< variance of the neighbours across their longest axis over that along it, 0 to 1
   Eigen::Vector3d foot = Eigen::Vector3d::Zero();    ///< the surface at the place
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< there; zero if the points coincide
 };
@@ -50,8 +50,11 @@ class ScatterFit {
   Scatter operator()(const SpatialIndex& index, const Eigen::Vector3d& place, std::size_t m, double sigma);
 
  private:
+  double err_together(const Eigen::Matrix<double, 6, 1>& c);  ///< Scatter::together of a quadric
+
   std::vector<Neighbor> near_;
   std::vector<Eigen::Vector3d> local_;  ///< u, v, z; u and v over the patch's radius, z over the ball's
+  std::vector<Eigen::Vector3d> nearest_;
   std::vector<double> weight_;
 };
 

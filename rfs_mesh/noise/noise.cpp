@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <optional>
 #include <utility>
 
@@ -240,11 +239,6 @@ NoiseField measure_noise(const SpatialIndex& index, const Context& context) {
     Part next = measure_loud(index, part, steps, context);
     if (!(next.sigma > 0)) break;
     part = std::move(next);
-  }
-  if (const char* e = getenv("RFS_SHARED")) noise.shared = atof(e);
-  if (const char* e = getenv("RFS_SIG")) {
-    noise.sigma *= atof(e);
-    for (double& v : local) v *= atof(e);
   }
   if (!(noise.sigma > 0)) return noise;
   for (double& v : local) v = std::max(v, kNothing * noise.sigma);

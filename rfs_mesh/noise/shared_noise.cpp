@@ -20,8 +20,9 @@ constexpr double kCalmWithin = 1.3;  // of the calm variance
 constexpr double kTwoSheets = 4;     // of the variance
 // Of the variance, from m to 2 m: second sheets and detail grow faster than noise, shape at least so.
 constexpr double kMostGrowthOfNoise = 1.8, kLeastGrowthOfShape = 2.83;
-constexpr double kTogether = 1;           // with shape as on the development shapes; alone 0.4 to 0.8
-constexpr double kSurelyShared = 1.25;    // sigma over that of the start
+constexpr double kTogether = 1.4;  // times that of points on their own; they scatter by a fifth
+constexpr double kFollows = 3;     // patches follow noise of their own by kNearestTogether kFollows / m of it
+constexpr double kSurelyShared = 1.1;     // sigma over that of the start
 constexpr std::size_t kDiskPoints = 300;  // of the disk on which g is computed
 
 /// Share of the area that two disks of radius r have in common at a distance d.
@@ -108,8 +109,8 @@ struct Calm {
   double steps = 0;              ///< variance that depths in steps make sure of
 };
 
-/// The mean of Scatter::together of the fits of at most this variance: 1 and less of noise that points have
-/// of their own (the fit follows it a little), kNearestTogether of a surface that a quadric does not follow.
+/// The mean of Scatter::together of the fits of at most this variance: 1, less what patches follow of it, of
+/// noise that points have of their own, up to kNearestTogether where they share it.
 double together(const std::vector<Scatter>& all, double variance) {
   double sum = 0, count = 0;
   for (const Scatter& s : all) {
@@ -145,6 +146,12 @@ Calm look(const SpatialIndex& index, const Positions& places, const NoiseStart& 
   return calm;
 }
 
+/// Whether nearest points lie off patches of the i-th m the same way.
+bool err_together(const Calm& calm, std::size_t i) {
+  const double alone = 1 - kNearestTogether * kFollows / calm.m[i];
+  return alone > 0.5 && calm.together[i] > kTogether * alone;
+}
+
 /// What is left of the i-th variance without the part that grows with m as shape does.
 double without_shape(const Calm& calm, std::size_t i, double growth) {
   return (growth * calm.seen[i] - calm.seen[i + 1]) / (growth - 1);
@@ -170,7 +177,7 @@ SharedNoise find_shared_noise(const SpatialIndex& index, const Positions& places
     make_sure(i, std::min(calm.steps, calm.seen[i]));
     if (calm.m[i + 1] != 2 * calm.m[i] || calm.m[i] < 2 * double(start.m)) continue;
     if (steps == nullptr && calm.seen[i + 1] > kMostGrowthOfNoise * calm.seen[i]) break;
-    if (steps == nullptr && calm.together[i + 1] < kTogether) continue;
+    if (steps == nullptr && !err_together(calm, i + 1)) continue;
     surely = std::max(surely, without_shape(calm, i, kLeastGrowthOfShape));
     make_sure(i, without_shape(calm, i, kGrowthOfSmoothShape));
   }
