@@ -32,7 +32,7 @@ Eigen::Matrix3d axes_of(const Positions& points, const std::vector<Neighbor>& ne
   }
   spread -= sum * sum.transpose() / weights;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(spread);
-  const Eigen::Vector3d variances = solver.eigenvalues();
+  const Eigen::Vector3d& variances = solver.eigenvalues();
   breadth = variances[2] > 0 ? std::max(0.0, variances[1]) / variances[2] : 0;
   return solver.eigenvectors();
 }
