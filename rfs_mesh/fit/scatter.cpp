@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kLeastKept = 0.75;  // of the weight; 3 sigma of half the true sigma keep 0.87
 constexpr double kLeastFlat = 0.5;   // the patch's radius over the ball's, where the window is high
-constexpr double kLine = 0.1;        // breadth: narrower neighbourhoods are lines
+constexpr double kLine = 0.1;        // breadth: rings have 0.004 to 0.04, surfaces 0.2 and more
 constexpr int kScatterRounds = 3;    // the first without a window
 
 /// Axes of least to most spread of the points about `place`, nearer ones weighing more. `breadth`: as in
@@ -121,7 +121,7 @@ Scatter ScatterFit::operator()(const SpatialIndex& index, const Eigen::Vector3d&
     const double left = kept - solver.solve(full).trace();
     const double residual = heights - right.dot(c);
     if (!(left > 0.02 * kept) || !std::isfinite(residual)) return s;
-    if (round == 0 && local_.size() > kNearestTogether) s.together = err_together(c);
+    if (!(sigma > 0) && local_.size() > kNearestTogether) s.together = err_together(c);
     s.variance = r * r * std::max(0.0, residual) / left / (round > 0 ? kInside : 1);
     s.freedom = left * left / squares;
     s.foot = place + r * c[0] * axes.col(0);

@@ -9,9 +9,15 @@ namespace rfsmooth::rfs_mesh {
 
 namespace {
 
-constexpr std::size_t kLookedAt = 20000, kPointsOfStep = 10, kFewestSteps = 4;
+constexpr std::size_t kLookedAt = 20000;
+constexpr std::size_t kPointsOfStep = 10;  // in the mean: free coordinates hardly ever meet
+constexpr std::size_t kFewestSteps = 4;    // fewer are the sides of a box
 
 }  // namespace
+
+double rounding_noise(double step) {
+  return step / std::sqrt(12.0);
+}
 
 double DepthSteps::gap(double depth) const {
   const auto above = std::lower_bound(depths.begin(), depths.end(), depth);
@@ -22,7 +28,7 @@ double DepthSteps::gap(double depth) const {
 }
 
 double DepthSteps::sigma(const Eigen::Vector3d& at, const Eigen::Vector3d& normal) const {
-  return std::abs(normal[axis]) * gap(at[axis]) / std::sqrt(12.0);
+  return rounding_noise(std::abs(normal[axis]) * gap(at[axis]));
 }
 
 std::optional<DepthSteps> find_depth_steps(const Positions& points) {

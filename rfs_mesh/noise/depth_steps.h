@@ -13,6 +13,9 @@
 
 namespace rfsmooth::rfs_mesh {
 
+/// Standard deviation of what rounding to steps of one size adds.
+double rounding_noise(double step);
+
 /// The steps of one coordinate.
 struct DepthSteps {
   Eigen::Index axis = 2;

@@ -80,15 +80,20 @@ double lowest(const SpatialIndex& index, const Positions& places, std::size_t m,
 
 /// The least m of which the neighbourhoods are pieces of a surface. The rings of a spinning laser and the
 /// terraces of depths in steps are lines while m is small, and a quadric follows a line wherever it goes.
-std::size_t narrowest_surface(const SpatialIndex& index, const Positions& places, std::size_t widest,
-                              const Context& context) {
-  constexpr double kSurface = 0.4;  // of the breadth: 1 in a disk, a quarter in a strip twice as long as wide
-  std::size_t m = kNarrowestScatter;
-  for (; 2 * m <= widest; m *= 2) {
+/// `all`: the fits at the narrowest m, without windows.
+std::size_t narrowest_surface(const SpatialIndex& index, const Positions& places, std::vector<Scatter> all,
+                              std::size_t widest, const Context& context) {
+  // Of the breadth: 1 in a disk, a quarter in a strip twice as long as wide. Scans have 0.56 and more.
+  constexpr double kSurface = 0.4;
+  const auto is_surface = [&] {
     std::vector<double> breadths;
-    for (const Scatter& s : fits(index, places, m, std::vector<double>(places.size(), 0), context))
-      breadths.push_back(s.breadth);
-    if (quantile(breadths, 0.5) >= kSurface) break;
+    for (const Scatter& s : all) breadths.push_back(s.breadth);
+    return quantile(breadths, 0.5) >= kSurface;
+  };
+  std::size_t m = kNarrowestScatter;
+  while (2 * m <= widest && !is_surface()) {
+    m *= 2;
+    if (2 * m <= widest) all = fits(index, places, m, std::vector<double>(places.size(), 0), context);
   }
   return m;
 }
@@ -107,8 +112,8 @@ NoiseStart search_noise(const SpatialIndex& index, Positions places, const Conte
   const std::size_t n = index.points().size();
   const std::size_t widest = std::clamp(n / kShareOfCloud, kNarrowestScatter, kWidest);
   NoiseStart start;
-  start.narrowest = narrowest_surface(index, places, widest, context);
   std::vector<Scatter> all = fits(index, places, start.m, std::vector<double>(places.size(), 0), context);
+  start.narrowest = narrowest_surface(index, places, all, widest, context);
   const double narrow = median_radius(index, places, start.m);
   start.least = 1e-9 * narrow;
   start.sigma = std::sqrt(mean_variance(all, kCalm, kCalmDeviate));

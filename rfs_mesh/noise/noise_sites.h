@@ -5,11 +5,13 @@
 /// grow with the number of neighbours m:
 ///
 /// - Shape that a quadric does not follow grows without an end: s^2(m) = sigma^2 + b m to first order, so
-///   sigma^2 = 2 s^2(m) - s^2(2 m), at most 0.6 of s^2(m) taken off.
+///   sigma^2 = 2 s^2(m) - s^2(2 m), at most 0.6 of s^2(m) taken off. Where noise is shared and m wide, only
+///   smooth shape is left at calm places, and that grows by NoiseStart::shape_grows.
 /// - Depths in steps (time of flight, stereo, structured light) and noise that neighbours share grow, too,
 ///   but stop where the neighbourhood is wider than a step. Where s(192) < 1.6 s(24), no windows, the scatter
 ///   is noise: at least s(24) and 0.65 s(192). Up to 1.9 this fades out. Equal scatter needs no such floor:
-///   it is plain noise, or two sheets.
+///   it is plain noise, or two sheets. Counted steps (depth_steps.h) make sure of their rounding, as far as
+///   s(192) shows it.
 #pragma once
 
 #include "rfs_mesh/noise/depth_steps.h"

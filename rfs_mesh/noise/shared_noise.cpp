@@ -16,7 +16,7 @@ constexpr std::size_t kMostOfCloud = 24;       // m is at most so small a part: 
 constexpr std::size_t kMostPoints = 4096;      // m: the blotches of depth cameras are that large
 constexpr std::size_t kPointsLooked = 500000;  // at each m: of wide places fewer say as much
 constexpr double kCalmPlaces = 0.25, kCalmDeviation = -0.674;
-constexpr double kCalmWithin = 1.3;  // of the calm variance
+constexpr double kCalmWithin = 1.3;  // of the calm variance: as far as chance takes fits of a hundred points
 constexpr double kTwoSheets = 4;     // of the variance
 // Of the variance, from m to 2 m: second sheets and detail grow faster than noise, shape at least so.
 constexpr double kMostGrowthOfNoise = 1.8, kLeastGrowthOfShape = 2.83;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "rfs_mesh/noise/depth_steps.h"
 #include "smoothing/automatic/hidden_sheets.h"
 #include "smoothing/automatic/learned/last_step.h"
 #include "smoothing/automatic/mixture.h"
@@ -33,7 +34,6 @@ constexpr double kWidest = 1600;          // the widest patches, and
 constexpr double kWidestShare = 4;        // at least this many times m_0
 constexpr double kStrayFrom = 5;          // sigma
 constexpr double kCalm = 0.1;             // of the figure: so much calmer places have no part in the tails
-constexpr double kOnlySteps = 3.46;       // sigma, sqrt(12): from there on steps explain all of it
 constexpr std::size_t kSeeing = 2;        // the scale that looks for walls, of 9 sigma: from 0
 
 constexpr std::size_t kTooFew = 32;   // points
@@ -128,12 +128,12 @@ std::vector<ScalesSay> tell(const std::vector<Scale>& scales, std::size_t n, con
   return told;
 }
 
-/// The mixture of the data and all scales, by their evidence. `told`: for the learned step; null: not taken.
+/// The mixture of all scales by their evidence, and of `first`, the data or what stands for them. `told`: for
+/// the learned step; null: not taken.
 void mix(const HeightField& field, std::vector<float> first, std::vector<Scale> scales, double shared,
          std::vector<float>& height, std::vector<float>& own, std::vector<ScalesSay>* told,
          const Context& context) {
   const auto alone = float(1 / shared);
-  // The data themselves are the first candidate: no error against themselves, all their own.
   Mixture mixture(std::move(first));
   average_near(field, scales, context);
   if (told != nullptr) *told = tell(scales, field.size(), context);
@@ -224,30 +224,34 @@ class Ladder {
   }
 
   void add(double m, const Context& context) {
-    const std::size_t n = field_.size(), members = std::min(std::size_t(m), n / 2);
-    if (seeds_.empty()) seeds_ = thin_all(field_.index(), field_.neighbors(), context);
-    while (seeds_.size() * members > kMostOverlap * n)
-      seeds_ = seeds_.size() > n / kDense ? thin_dense(field_.index(), field_.neighbors(), seeds_, context)
-                                          : thin(field_.guide(), seeds_, context);
+    const std::size_t members = thin_to(m, context);
     scales.push_back(try_scale(field_, members, seeds_, noise_, risk_, memory_, context));
   }
 
-  /// The heights as the narrowest patches see them; the data where there are none.
+  /// The heights as the narrowest patches see them; the data where there are none. Before any scale.
   std::vector<float> narrow(const Context& context) {
     std::vector<float> smooth = heights(field_, context);
-    add(kFewest, context);
-    const Prediction& said = scales.front().prediction;
+    const std::size_t members = thin_to(kFewest, context);
+    const Prediction said = Patches(field_, members, seeds_, noise_.local, memory_, context).predict(context);
     for_each_index(context, smooth.size(), [&](std::size_t i) {
       if (said.covered[i] != 0) smooth[i] = said.height[i];
     });
-    scales.clear();
-    risk_.assign(risk_.size(), 1);
     return smooth;
   }
 
   std::vector<Scale> scales;
 
  private:
+  /// Thins the seeds as far as patches of about m points allow; returns their number of points.
+  std::size_t thin_to(double m, const Context& context) {
+    const std::size_t n = field_.size(), members = std::min(std::size_t(m), n / 2);
+    if (seeds_.empty()) seeds_ = thin_all(field_.index(), field_.neighbors(), context);
+    while (seeds_.size() * members > kMostOverlap * n)
+      seeds_ = seeds_.size() > n / kDense ? thin_dense(field_.index(), field_.neighbors(), seeds_, context)
+                                          : thin(field_.guide(), seeds_, context);
+    return members;
+  }
+
   const HeightField& field_;
   const rfs_mesh::NoiseField& noise_;
   std::vector<float> risk_;
@@ -330,7 +334,7 @@ void land_hovering(const HeightField& field, const Pass& pass, const Mesh& mesh,
 /// the others. Returns the tails.
 Tails tame(const HeightField& field, const Pass& pass, const Mesh& mesh, Positions& data,
            rfs_mesh::NoiseField& noise, const Context& context) {
-  if (noise.step > kOnlySteps * noise.sigma) return {};  // they stand out as if they were tails
+  if (rfs_mesh::rounding_noise(noise.step) > noise.sigma) return {};  // terraces stand out as tails do
   constexpr float kMostItsOwn = 0.8F;
   const std::vector<float> off = off_neighbours(field, pass, noise, context);
   constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();

@@ -22,9 +22,9 @@ using CandidateWeights = Eigen::Array<double, Eigen::Dynamic, 1, Eigen::ColMajor
 
 }  // namespace
 
-Mixture::Mixture(std::vector<float> data) : evidence_(data.size(), 0) {
-  std::vector<float> own(data.size(), 1);
-  candidates_.push_back({std::move(data), std::move(own), evidence_});
+Mixture::Mixture(std::vector<float> first) : evidence_(first.size(), 0) {
+  std::vector<float> own(first.size(), 1);
+  candidates_.push_back({std::move(first), std::move(own), evidence_});
 }
 
 void Mixture::add(std::vector<float> height, std::vector<float> own, std::vector<float> gain,

@@ -20,8 +20,8 @@ namespace rfsmooth::smoothing {
 /// Candidate heights, mixed by their evidence.
 class Mixture {
  public:
-  /// \param data n: the heights themselves are the first candidate, all their own, with evidence 0.
-  explicit Mixture(std::vector<float> data);
+  /// \param first n: the first candidate, the data or what stands for them: all its own, with evidence 0.
+  explicit Mixture(std::vector<float> first);
 
   /// A further candidate, of at most 15. \param height, own n: as in Prediction. \param gain n: its evidence
   /// over the candidate before it, nats; NaN: no prediction here (the evidence stays for the next). \throw
