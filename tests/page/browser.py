@@ -93,11 +93,14 @@ class Browser:
             actions.append({"type": "pointer", "id": f"{kind}{k}", "parameters": {"pointerType": kind}, "actions": steps})
         self.ask("POST", "/actions", {"actions": actions})
 
-    def picture(self, selector):
-        """What the screen shows there: rows of (r, g, b)."""
-        # Twice a frame: what was asked for is then on the screen.
+    def next_frame(self):
+        """Returns when what was asked for is on the screen: twice a frame."""
         self.ask("POST", "/execute/async", {
             "script": "const done = arguments[0]; requestAnimationFrame(() => requestAnimationFrame(() => done()));", "args": []})
+
+    def picture(self, selector):
+        """What the screen shows there: rows of (r, g, b)."""
+        self.next_frame()
         return decoded_png(b64decode(self.ask("GET", f"/element/{self.element(selector)[ELEMENT]}/screenshot")))
 
     def log(self, kind):

@@ -68,12 +68,18 @@ class Page(unittest.TestCase):
     def set(self, browser, **state):
         browser.run("Object.assign(window.rfsmooth.state, arguments[0]); window.rfsmooth.paint();", state)
 
+    def picture(self, browser):
+        """The view once it rests: while something moves it is drawn of fewer points where drawing takes long."""
+        browser.next_frame()
+        browser.wait_for("rfsmooth.state.every === 1")
+        return browser.picture("#view")
+
     def sides(self, browser):
         """The picture with all of it before, and all of it after."""
         pictures = []
         for slider in (1, 0):
             self.set(browser, slider=slider)
-            pictures.append(browser.picture("#view"))
+            pictures.append(self.picture(browser))
         return pictures
 
     def free(self, picture, border):
@@ -110,7 +116,7 @@ class Page(unittest.TestCase):
         differ = 0
         for share in (0.5, 0.3):
             self.set(browser, slider=share)
-            both, border = browser.picture("#view"), share * width
+            both, border = self.picture(browser), share * width
             for x, y in self.free(both, border):
                 alone = before if x < border else after
                 self.assertEqual(both[y][x], alone[y][x], f"at {x}, {y} with the border at {border}")
@@ -125,7 +131,7 @@ class Page(unittest.TestCase):
         browser.pointer("mouse", ("#slider", [(0, 40), (-50, 40), (-120, 40)]))
         border = width / 2 - 120
         self.assertAlmostEqual(browser.run("return rfsmooth.state.slider"), border / width, delta=2 / width)
-        picture = browser.picture("#view")
+        picture = self.picture(browser)
         for x, y in self.free(picture, border):
             self.assertEqual(picture[y][x], (before if x < border else after)[y][x])
         for _ in range(3):
@@ -143,7 +149,7 @@ class Page(unittest.TestCase):
         pictures = []
         for mode in ("shaded", "colors", "moves", "outliers"):
             browser.click(f"input[value={mode}]")
-            pictures.append(browser.picture("#view"))
+            pictures.append(self.picture(browser))
             for earlier in pictures[:-1]:
                 self.assertNotEqual(earlier, pictures[-1], mode)
 
@@ -151,12 +157,12 @@ class Page(unittest.TestCase):
             return sum(r > 150 and g < 60 and b < 60 for row in picture for r, g, b in row)
         with_strays = red(pictures[-1])
         browser.click("#strays")
-        self.assertLess(red(browser.picture("#view")), with_strays - 50, "strays can be left out")
+        self.assertLess(red(self.picture(browser)), with_strays - 50, "strays can be left out")
 
     def WhereNoPointIsThePageIsWhite(self):
         browser = self.browse(self.make(*waves(3000, 0.1)))
         self.set(browser, mode="outliers", slider=1)  # all points are of one grey, darkened where others stand out
-        picture = browser.picture("#view")
+        picture = self.picture(browser)
         shades = {picture[y][x] for x, y in self.free(picture, -100)}
         self.assertIn((255, 255, 255), shades)
         self.assertGreater(len(shades), 20)
@@ -164,7 +170,7 @@ class Page(unittest.TestCase):
 
     def WhatMovesIsDrawnOfFewerPointsAndAllOfThemWhenItRests(self):
         browser = self.browse(self.make(*waves(20000, 0.1)))
-        whole = browser.picture("#view")
+        whole = self.picture(browser)
         self.set(browser, frame=1e-3)  # no time at all
         browser.ask("POST", "/execute/async", {"args": [], "script": """
             const [done] = arguments, view = document.getElementById('view');
@@ -172,13 +178,13 @@ class Page(unittest.TestCase):
             requestAnimationFrame(() => requestAnimationFrame(() => { window.moving = rfsmooth.state.every; done(); }));"""})
         self.assertEqual(browser.run("return moving"), 16)
         browser.wait_for("rfsmooth.state.every === 1")
-        self.assertEqual(browser.picture("#view"), whole)
+        self.assertEqual(self.picture(browser), whole)
 
     def ACrossSectionShowsASlab(self):
         browser = self.browse(self.make(*waves(20000, 0.1)))
-        whole = browser.picture("#view")
+        whole = self.picture(browser)
         browser.run("const s = document.getElementById('section'); s.value = 'x'; s.dispatchEvent(new Event('change'));")
-        slab = browser.picture("#view")
+        slab = self.picture(browser)
 
         def drawn(picture):
             return sum(pixel != (255, 255, 255) for row in picture for pixel in row)
