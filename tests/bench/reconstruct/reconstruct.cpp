@@ -10,6 +10,7 @@
 #include <rfsmooth/open3d/surface.h>
 #include <rfsmooth/reconstruct.h>
 
+#include "pipeline/surface/topology.h"
 #include "tests/bench/quality/ours.h"
 #include "tests/bench/quality/runs.h"
 #include "tests/bench/reconstruct/surface_error.h"

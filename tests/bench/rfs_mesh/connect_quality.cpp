@@ -11,6 +11,7 @@
 #include <rfsmooth/connect.h>
 
 #include "rfs_mesh/measure.h"
+#include "rfs_mesh/search/neighbors.h"
 #include "tests/bench/quality/data/closest.h"
 #include "tests/bench/quality/data/dataset.h"
 #include "tests/support/shapes.h"
