@@ -41,6 +41,7 @@ void enter(const AutomaticReport& found, DenoiseReport& report) {
 /// Smooths the mesh, alternating steps and swaps. What is left of it are its positions.
 void alternate(Mesh& mesh, const Constraints& constraints, const DenoiseOptions& options,
                DenoiseReport& report, const Context& context) {
+  Statistics& whole = report.statistics;
   const int steps = iterations(options.flow.flow);
   const bool swap = options.swap && steps > 1;
   const auto* automatic = std::get_if<AutomaticOptions>(&options.flow.flow);
@@ -49,8 +50,9 @@ void alternate(Mesh& mesh, const Constraints& constraints, const DenoiseOptions&
   if (automatic == nullptr)
     flow = value_or_throw(make_flow(mesh, options.flow, context, constraints));
   else if (options.flow.modifiers.any() || !constraints.strength.empty())
-    flow = value_or_throw(make_flow([&](auto&&...) { return smoothing::make_automatic(*automatic, found); },
-                                    mesh, options.flow, context, constraints));
+    flow = value_or_throw(
+        make_flow([&](auto&&...) { return smoothing::make_automatic(*automatic, found, &whole); }, mesh,
+                  options.flow, context, constraints));
   smoothing::Tracer tracer(options.flow.trace ? &report.trace : nullptr, mesh, context);
   for (int step = 0; step < steps; ++step) {
     const bool last = step + 1 == steps;
@@ -62,7 +64,8 @@ void alternate(Mesh& mesh, const Constraints& constraints, const DenoiseOptions&
       else
         found = smooth_automatically(
             mesh, *automatic, context,
-            last && !options.flow.trace ? smoothing::Connectivity::used_up : smoothing::Connectivity::kept);
+            last && !options.flow.trace ? smoothing::Connectivity::used_up : smoothing::Connectivity::kept,
+            nullptr, step == 0 ? &whole : nullptr);
     }
     tracer.add(mesh, context);
     if (!swap || last) continue;
@@ -189,7 +192,10 @@ rfs_mesh::WorkingCloud prepare(const double* xyz, std::size_t n, const DenoiseOp
                                const Context& context, DenoiseReport& report) {
   const Stopwatch watch(report.seconds, "prepare");
   context.report("prepare", 0);
-  auto cloud = value_or_throw(rfs_mesh::make_working_cloud(xyz, n, context));
+  Statistics& whole = report.statistics;
+  auto cloud =
+      value_or_throw(rfs_mesh::make_working_cloud(xyz, n, context, whole.box ? &*whole.box : nullptr));
+  whole.box = cloud.box;
   report.finite = cloud.finite();
   report.distinct = cloud.points.size();
   if (options.flow.modifiers.preserve == Preserve::height_field) {  // measured from the caller's own z = 0
@@ -203,6 +209,7 @@ rfs_mesh::WorkingCloud prepare(const double* xyz, std::size_t n, const DenoiseOp
 /// The rough mesh of the points, less those that are outliers and set aside.
 Connection connected(rfs_mesh::WorkingCloud& cloud, const DenoiseOptions& options, const Context& context,
                      DenoiseReport& report) {
+  Statistics& whole = report.statistics;
   ConnectOptions connect = options.connect;
   connect.tree_of_points = false;
   // Points that no face reaches have no surface to be smoothed onto: as in the paper their edges go, and
@@ -223,14 +230,15 @@ Connection connected(rfs_mesh::WorkingCloud& cloud, const DenoiseOptions& option
   }
   if (options.outliers != Outliers::smooth) {
     const Stopwatch watch(report.seconds, "outliers");
-    const std::vector<char> outlier = find_outliers(*index, near, context);
+    const std::vector<char> outlier = find_outliers(*index, near, context, &whole.outlying);
     if (std::find(outlier.begin(), outlier.end(), 1) != outlier.end()) {
       set_aside(outlier, cloud, report);
       index.emplace(cloud.points, context);
       near = rfs_mesh::nearest_left(near, outlier, *index, context);
     }
   }
-  return value_or_throw(rfs_mesh::connect(std::move(*index), std::move(near), connect, context));
+  if (!whole.points) whole.points = index->points().size();
+  return value_or_throw(rfs_mesh::connect(std::move(*index), std::move(near), connect, context, &whole));
 }
 
 /// What the connection says of the cloud. Of the rest only the mesh is needed while smoothing.
@@ -251,6 +259,7 @@ DenoiseReport run(double* xyz, std::size_t n, const DenoiseOptions& options, con
   DenoiseReport report;
   report.points = n;
   report.effective = options;
+  if (options.statistics) report.statistics = *options.statistics;
   rfs_mesh::WorkingCloud cloud = prepare(xyz, n, options, context, report);
   Mesh mesh = told_of(connected(cloud, options, context, report), report);
   Positions().swap(cloud.points);  // the mesh has them, and the caller

@@ -61,7 +61,8 @@ Plane fit_plane(const Positions& points, const std::vector<Neighbor>& near) {
 class Search {
  public:
   /// \param near rows of kNear
-  Search(const rfs_mesh::SpatialIndex& index, rfs_mesh::NeighborTable near, const Context& context)
+  Search(const rfs_mesh::SpatialIndex& index, rfs_mesh::NeighborTable near,
+         std::optional<Statistics::Outlying>& usual, const Context& context)
       : index_(index),
         points_(index.points()),
         context_(context),
@@ -70,11 +71,14 @@ class Search {
         reach_(points_.size()),
         usual_(points_.size()),
         isolated_(points_.size()),
-        near_(std::move(near)),
-        noise_(rfs_mesh::noise_scale(index_, context)) {
+        near_(std::move(near)) {
     for_each_index(context, points_.size(), [&](std::size_t i) { measure_reach(i); });
-    std::vector<double> all = reach_;
-    median_reach_ = rfsmooth::median(all);
+    if (!usual) {
+      std::vector<double> all = reach_;
+      usual = {rfs_mesh::noise_scale(index_, context), rfsmooth::median(all)};
+    }
+    noise_ = usual->scale;
+    median_reach_ = usual->reach;
   }
 
   std::vector<char> run() {
@@ -225,7 +229,7 @@ class Search {
   std::vector<double> usual_;  ///< the lower quartile of the neighbours' reaches
   std::vector<char> isolated_;
   rfs_mesh::NeighborTable near_;
-  rfs_mesh::NoiseScale noise_;
+  NoiseScale noise_;
   double median_reach_ = 0;
 };
 
@@ -243,10 +247,11 @@ rfs_mesh::NeighborTable nearest_few(const rfs_mesh::NeighborTable& near, const C
 }  // namespace
 
 std::vector<char> find_outliers(const rfs_mesh::SpatialIndex& index, const rfs_mesh::NeighborTable& near,
-                                const Context& context) {
+                                const Context& context, std::optional<Statistics::Outlying>* usual) {
+  std::optional<Statistics::Outlying> measured;
   if (index.points().size() < kTooFew) return std::vector<char>(index.points().size(), 0);
   return Search(index, near.k < int(kNear) ? index.nearest(int(kNear), context) : nearest_few(near, context),
-                context)
+                usual != nullptr ? *usual : measured, context)
       .run();
 }
 

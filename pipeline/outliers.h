@@ -24,9 +24,11 @@
 /// variation: Pauly et al. 2002; their conjunction is ours.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include <rfsmooth/context.h>
+#include <rfsmooth/statistics.h>
 
 #include "rfs_mesh/search/neighbors.h"
 
@@ -36,9 +38,10 @@ namespace rfsmooth::pipeline {
 /// along a Morton curve. O(n log n), about 120 bytes a point; parallel, the same for any number of threads.
 std::vector<char> find_outliers(const Positions& points, const Context& context);
 
-/// The same with an index over the points and rows of nearest neighbours (of any width).
+/// The same with an index over the points and rows of nearest neighbours (of any width). `usual`: taken if it
+/// is there, else entered.
 std::vector<char> find_outliers(const rfs_mesh::SpatialIndex& index, const rfs_mesh::NeighborTable& near,
-                                const Context& context);
+                                const Context& context, std::optional<Statistics::Outlying>* usual = nullptr);
 
 /// Moves a point onto the surface that the indexed points lie on, smooth ones: onto the plane through 16 of
 /// them around the one nearest to it. False, and the point stays, if it is farther off than `most` (world

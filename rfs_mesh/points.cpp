@@ -94,17 +94,25 @@ std::vector<Index> in_morton_order(const Input& input, const Vector3d& low, doub
   return rows;
 }
 
-WorkingCloud make(const Input& input, const Context& context) {
+WorkingCloud make(const Input& input, const Statistics::Box* box, const Context& context) {
   const std::size_t n = input.n;
   if (n >= kNone)
     throw Failure({ErrorCode::usage, fmt::format("{} points; at most {} are supported", n, kNone - 1)});
-  const Extent extent = extent_of(input, context);
+  Extent extent = extent_of(input, context);
   if (extent.finite == 0)
     throw Failure({ErrorCode::no_usable_points,
                    n == 0 ? "the cloud has no points" : fmt::format("none of the {} points is finite", n)});
+  if (box != nullptr) {
+    const Eigen::AlignedBox3d whole(box->low, box->high);
+    if (!whole.contains(extent.box))
+      throw Failure(
+          {ErrorCode::usage, "a point is outside the box of the statistics: they are of another cloud"});
+    extent.box = whole;
+  }
   const std::vector<Index> rows = in_morton_order(input, extent.box.min(), largest_side(extent.box), context);
 
   WorkingCloud cloud;
+  cloud.box = {extent.box.min(), extent.box.max()};
   cloud.origin = 0.5 * extent.box.min() + 0.5 * extent.box.max();
   cloud.of_input.assign(n, kNone);
   cloud.points.reserve(extent.finite);
@@ -123,8 +131,9 @@ WorkingCloud make(const Input& input, const Context& context) {
 
 }  // namespace
 
-Result<WorkingCloud> make_working_cloud(const double* xyz, std::size_t n, const Context& context) {
-  return guarded([&] { return make({xyz, n}, context); });
+Result<WorkingCloud> make_working_cloud(const double* xyz, std::size_t n, const Context& context,
+                                        const Statistics::Box* box) {
+  return guarded([&] { return make({xyz, n}, box, context); });
 }
 
 }  // namespace rfsmooth::rfs_mesh

@@ -14,6 +14,7 @@
 
 #include <rfsmooth/mesh.h>
 #include <rfsmooth/result.h>
+#include <rfsmooth/statistics.h>
 
 namespace rfsmooth::rfs_mesh {
 
@@ -21,6 +22,7 @@ namespace rfsmooth::rfs_mesh {
 struct WorkingCloud {
   Eigen::Vector3d origin =
       Eigen::Vector3d::Zero();      ///< centre of the finite points' bounding box; world = origin + point
+  Statistics::Box box;              ///< of the finite points, or the larger one that was given
   Positions points;                 ///< m x 3, finite, pairwise distinct, in Morton order
   std::vector<Index> of_input;      ///< n: the working point of each input row, kNone if not finite
   std::vector<Index> multiplicity;  ///< m: how many input rows share the point (>= 1)
@@ -32,7 +34,9 @@ struct WorkingCloud {
 /// coordinate are left out. Subtracting the origin loses no precision that matters: only differences of
 /// points are used, and results return as displacements of the caller's own coordinates. Errors:
 /// no_usable_points if no row is finite, or if squares of lengths leave the range of doubles (extent above
-/// 1e100 or below 1e-100). O(n log n), parallel, deterministic.
-Result<WorkingCloud> make_working_cloud(const double* xyz, std::size_t n, const Context& context);
+/// 1e100 or below 1e-100). \param box of a larger cloud that these points are of: its origin and order are
+/// taken; usage if a point is outside. O(n log n), parallel, deterministic.
+Result<WorkingCloud> make_working_cloud(const double* xyz, std::size_t n, const Context& context,
+                                        const Statistics::Box* box = nullptr);
 
 }  // namespace rfsmooth::rfs_mesh

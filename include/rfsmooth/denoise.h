@@ -15,12 +15,14 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include <rfsmooth/connect.h>
 #include <rfsmooth/context.h>
 #include <rfsmooth/flow.h>
 #include <rfsmooth/options.h>
+#include <rfsmooth/statistics.h>
 
 namespace rfsmooth {
 
@@ -36,6 +38,9 @@ struct DenoiseOptions {
   bool swap = true;  ///< alternate each step with a pass of dihedral edge swaps (Vollmer 7)
   ConnectOptions connect;
   SwapOptions swaps;
+  /// Of the cloud that these points are a part of, from DenoiseReport: what is there is not measured. With
+  /// all that a run filled in, the same points come out with the same bytes.
+  std::optional<Statistics> statistics;
 
   template <class Self, class Visit>
   static void describe(Self& self, Visit&& visit) {
@@ -74,6 +79,7 @@ struct DenoiseReport {
   std::size_t stranded = 0;     ///< points that its fairing had left beside the surface
   double largest_move = 0;      ///< world units
   double rms_move = 0;          ///< over the finite rows, world units
+  Statistics statistics;        ///< measured, or taken from the options
   std::vector<TraceRow> trace;  ///< of the rough mesh, if asked for (FlowOptions::trace); steps + 1 rows
   std::size_t faces = 0, edges = 0, sdg_edges = 0, bridges = 0, faceless = 0, swaps = 0;
   std::vector<StageTime> seconds;  ///< in the order first done

@@ -13,4 +13,5 @@
 #include <rfsmooth/options.h>
 #include <rfsmooth/reconstruct.h>
 #include <rfsmooth/result.h>
+#include <rfsmooth/statistics.h>
 #include <rfsmooth/version.h>

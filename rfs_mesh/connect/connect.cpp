@@ -73,7 +73,7 @@ constexpr double kNoiseLeft = 1.0 / 3;
 /// The ground at the shadows of the points. Quadrics no wider than the neighbourhoods looked at are fitted a
 /// second time, on the shadows; wider ones have the better normals already.
 Ground shadow_ground(const Positions& points, std::vector<LocalSurface> surfaces, const NoiseScale& scale,
-                     const ConnectOptions& options, const Context& context) {
+                     const Eigen::Vector3d* corner, const ConnectOptions& options, const Context& context) {
   const int k = options.neighbours;
   Ground ground;
   ground.surfaces = std::move(surfaces);
@@ -82,8 +82,8 @@ Ground shadow_ground(const Positions& points, std::vector<LocalSurface> surfaces
   ground.near = index.nearest(k, context);
   ground.tree = boruvka(index, ground.near, context);
   if (scale.neighbours <= std::size_t(k)) {
-    const NoiseScale left = {kNoiseLeft * scale.sigma, scale.neighbours};
-    ground.surfaces = shared_local_surfaces(index, ground.near, left, scale.neighbours, context);
+    const NoiseScale left = {kNoiseLeft * scale.sigma, scale.neighbours, scale.radius};
+    ground.surfaces = shared_local_surfaces(index, ground.near, left, scale.neighbours, context, corner);
   }
   ground.between =
       part_sheets(points, index, ground.near, scale.sigma, options.sheets, ground.surfaces, context);
@@ -114,13 +114,16 @@ Cloud search(const Positions& points, const ConnectOptions& options, const Conte
 /// The first stages, up to the surfaces: what is measured on the points themselves. Fills emst, noise and
 /// on_shadow of `c`; returns what the tests are made on.
 Ground survey(Cloud cloud, const ConnectOptions& options, const Context& context, const Positions* guide,
-              Connection& c, Stages& stages) {
+              Statistics& whole, Connection& c, Stages& stages) {
   const SpatialIndex& index = cloud.index;
   const NeighborTable& near = cloud.near;
   const Positions& points = index.points();
   const std::size_t n = points.size();
-  const NoiseScale scale = stages.run("noise", 0.15, [&] { return noise_scale(index, context); });
-  c.noise.spacing = mean_spacing(points, near, context);
+  if (!whole.scale) whole.scale = stages.run("noise", 0.15, [&] { return noise_scale(index, context); });
+  if (!whole.spacing) whole.spacing = mean_spacing(points, near, context);
+  const NoiseScale scale = *whole.scale;
+  const Eigen::Vector3d* const corner = whole.corner ? &*whole.corner : nullptr;
+  c.noise.spacing = *whole.spacing;
   c.noise.sigma = scale.sigma;
   c.on_shadow = guide == nullptr && n > 0 && scale.sigma > options.shadow_from * c.noise.spacing;
   c.emst = stages.run("emst", 0.2, [&] {
@@ -128,7 +131,7 @@ Ground survey(Cloud cloud, const ConnectOptions& options, const Context& context
   });
   auto surfaces = stages.run("local surfaces", 0.4, [&] {
     const auto least = std::min(std::size_t(options.neighbours), scale.neighbours);
-    return c.on_shadow ? shared_local_surfaces(index, near, scale, least, context)
+    return c.on_shadow ? shared_local_surfaces(index, near, scale, least, context, corner)
                        : local_surfaces(points, near, context);
   });
   c.noise.field.resize(n);
@@ -138,7 +141,7 @@ Ground survey(Cloud cloud, const ConnectOptions& options, const Context& context
   cloud.near = NeighborTable();  // neighbours among the noisy points: not needed any more
   return stages.run(guide != nullptr ? "guide" : "shadow", 0.5, [&] {
     return guide != nullptr ? ground_at(*guide, options.neighbours, context)
-                            : shadow_ground(points, std::move(surfaces), scale, options, context);
+                            : shadow_ground(points, std::move(surfaces), scale, corner, options, context);
   });
 }
 
@@ -159,16 +162,16 @@ Connection connect_tree(const Positions& points, std::optional<Cloud> known, con
   return c;
 }
 
-/// `known`: the caller's search, or none.
+/// `known`: the caller's search, or none. `whole`: what is there is taken, the rest entered.
 Connection connect_all(const Positions& points, std::optional<Cloud> known, const ConnectOptions& options,
-                       const Context& context, const Positions* guide) {
+                       const Context& context, const Positions* guide, Statistics& whole) {
   if (options.up_to == ConnectUpTo::emst)
     return connect_tree(points, std::move(known), options, context, guide);
   Connection c;
   Stages stages(c.seconds, context);
   const std::size_t n = points.size();
   if (!known) known.emplace(search(points, options, context, stages));
-  Ground ground = survey(std::move(*known), options, context, guide, c, stages);
+  Ground ground = survey(std::move(*known), options, context, guide, whole, c, stages);
   known.reset();
   const double noise = guide != nullptr ? 0 : c.on_shadow ? kNoiseLeft * c.noise.sigma : c.noise.sigma;
   if (options.up_to == ConnectUpTo::tree) {
@@ -212,7 +215,7 @@ Connection connect_all(const Positions& points, std::optional<Cloud> known, cons
 }  // namespace
 
 Result<Connection> connect(SpatialIndex index, NeighborTable near, const ConnectOptions& options,
-                           const Context& context) {
+                           const Context& context, Statistics* statistics) {
   const Positions& points = index.points();
   const std::size_t width =
       std::min(std::size_t(options.neighbours), std::max<std::size_t>(points.size(), 1) - 1);
@@ -221,8 +224,10 @@ Result<Connection> connect(SpatialIndex index, NeighborTable near, const Connect
   return guarded([&] {
     value_or_throw(validate(options));
     Connection connection;
+    Statistics own;
     in_arena(context, [&] {
-      connection = connect_all(points, Cloud{std::move(index), std::move(near)}, options, context, nullptr);
+      connection = connect_all(points, Cloud{std::move(index), std::move(near)}, options, context, nullptr,
+                               statistics != nullptr ? *statistics : own);
     });
     return connection;
   });
@@ -239,7 +244,8 @@ Result<Connection> connect(const Positions& points, const ConnectOptions& option
   return guarded([&] {
     value_or_throw(validate(options));
     Connection connection;
-    in_arena(context, [&] { connection = rfs_mesh::connect_all(points, {}, options, context, guide); });
+    Statistics own;
+    in_arena(context, [&] { connection = rfs_mesh::connect_all(points, {}, options, context, guide, own); });
     return connection;
   });
 }

@@ -2,14 +2,16 @@
 #pragma once
 
 #include <rfsmooth/connect.h>
+#include <rfsmooth/statistics.h>
 
 #include "rfs_mesh/search/neighbors.h"
 
 namespace rfsmooth::rfs_mesh {
 
 /// Connects the points of `index`. `near`: their nearest `options.neighbours`. \throw std::invalid_argument
-/// if `near` is of another width or size.
+/// if `near` is of another width or size. \param statistics `scale` and `spacing` are taken if they are
+/// there, else entered; `corner` is taken.
 Result<Connection> connect(SpatialIndex index, NeighborTable near, const ConnectOptions& options,
-                           const Context& context);
+                           const Context& context, Statistics* statistics = nullptr);
 
 }  // namespace rfsmooth::rfs_mesh

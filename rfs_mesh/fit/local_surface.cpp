@@ -134,7 +134,7 @@ NoiseScale noise_scale(const SpatialIndex& index, const Context& context) {
     const double share = d.radius > 0 ? d.sigma / d.radius : 0;
     if (share < least) {
       least = share;
-      best = {d.sigma, m};
+      best = {d.sigma, m, d.radius};
     }
     if (share <= kShareOfRadius) break;
   }

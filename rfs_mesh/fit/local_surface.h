@@ -17,17 +17,12 @@
 #include <Eigen/Core>
 
 #include <rfsmooth/connect.h>
+#include <rfsmooth/statistics.h>
 
 #include "rfs_mesh/points.h"
 #include "rfs_mesh/search/neighbors.h"
 
 namespace rfsmooth::rfs_mesh {
-
-/// How large the noise of a cloud is, and how many neighbours show it.
-struct NoiseScale {
-  double sigma = 0;            ///< of the whole cloud, along the normal, world units
-  std::size_t neighbours = 0;  ///< m: what a quadric needs
-};
 
 /// n local surfaces, each fitted to a point and its row of `near`. With fewer than 8 neighbours a plane is
 /// fitted. With fewer than 3, or collinear ones, the normal is some unit vector perpendicular to them and the
@@ -49,9 +44,13 @@ std::vector<LocalSurface> local_surfaces(const Positions& points, const Neighbor
 /// so that it follows the sheet nearest to it; for normals the first factor is not cubed. A point that no
 /// quadric explains gets one of its own. `near` has k >= 1 unless n < 2. O(n m / 6 + n k), parallel,
 /// deterministic.
+/// \param corner null: groups are subtrees of the index, of which every point of the cloud has a say. Else of
+/// a cube of three times `scale.radius` that groups end at (cells.h): a part of a cloud then has the groups
+/// of the whole.
 std::vector<LocalSurface> shared_local_surfaces(const SpatialIndex& index, const NeighborTable& near,
                                                 const NoiseScale& scale, std::size_t least,
-                                                const Context& context);
+                                                const Context& context,
+                                                const Eigen::Vector3d* corner = nullptr);
 
 /// Mean distance to the nearest neighbour, world units; 0 for fewer than two points.
 double mean_spacing(const Positions& points, const NeighborTable& near, const Context& context);

@@ -7,6 +7,7 @@
 #include "base/parallel.h"
 #include "rfs_mesh/fit/local_surface.h"
 #include "rfs_mesh/fit/quadric.h"
+#include "rfs_mesh/search/cells.h"
 #include "rfs_mesh/search/wide_neighbors.h"
 
 namespace rfsmooth::rfs_mesh {
@@ -14,11 +15,16 @@ namespace rfsmooth::rfs_mesh {
 namespace {
 
 using Eigen::Vector3d;
-using Cursor = KdTree::Cursor;
 
 /// A quadric per this share of its points: every point then lies in about five of them. Twice as many found
 /// nothing better on the development shapes.
 constexpr double kPointsPerSeed = 1.0 / 6;
+/// The same in cubes, at whose sides groups are smaller.
+constexpr double kPointsPerSeedInCubes = 1.0 / 8;
+constexpr std::size_t kFewestInGroup = 8;
+/// Edge of a cube over the radius of a neighbourhood: some twenty groups on the surface in it, so that few
+/// lie at its sides.
+constexpr double kCellEdge = 3;
 constexpr double kMisfit = 1.4;  ///< residual over noise: well above what that of pure noise scatters
 /// A quadric has nothing to say about points farther off it than this many residuals: another sheet.
 constexpr double kFarthestOff = 3;
@@ -71,20 +77,40 @@ class Fitter {
   std::vector<Index> row_;
 };
 
+/// Compact groups of neighbouring points; see shared_local_surfaces.
+Groups groups_of(const SpatialIndex& index, const NoiseScale& scale, const Vector3d* corner,
+                 const Context& context) {
+  const auto m = double(scale.neighbours);
+  if (corner != nullptr)
+    return group_in_cells(index.points(), *corner, kCellEdge * scale.radius,
+                          std::max(kFewestInGroup, std::size_t(m * kPointsPerSeedInCubes)), context);
+  const KdTree& tree = index.tree();
+  Groups groups;
+  groups.member.reserve(index.points().size());
+  groups.start.push_back(0);
+  for (const KdTree::Cursor& group :
+       tree.subtrees(std::uint32_t(std::max(1.0, m * kPointsPerSeed / KdTree::kLeaf)))) {
+    for (std::uint32_t leaf = group.first; leaf < group.last; ++leaf)
+      for (const Index i : tree.leaf(leaf).id)
+        if (i != kNone) groups.member.push_back(i);
+    groups.start.push_back(Index(groups.member.size()));
+  }
+  return groups;
+}
+
 /// The cloud in compact groups of neighbouring points, a quadric around the point in the middle of each.
 class SharedQuadrics {
  public:
   SharedQuadrics(const SpatialIndex& index, const NoiseScale& scale, std::size_t least,
-                 const Context& context)
+                 const Vector3d* corner, const Context& context)
       : index_(index), sigma_(scale.sigma), group_(index.points().size()) {
-    const double leaves = double(scale.neighbours) * kPointsPerSeed / KdTree::kLeaf;
-    const std::vector<Cursor> groups = index.tree().subtrees(std::uint32_t(std::max(1.0, leaves)));
+    const Groups groups = groups_of(index, scale, corner, context);
     quadrics_.resize(groups.size());
     curvature_.resize(groups.size());
     for_blocks(context, groups.size(), 16, [&](std::size_t begin, std::size_t end) {
       Fitter fitter(index, scale, least);
       for (std::size_t g = begin; g < end; ++g) {
-        for_members(groups[g], [&](Index i) { group_[i] = Index(g); });
+        for (const Index i : groups[g]) group_[i] = Index(g);
         quadrics_[g] = fitter.fit(middle(groups[g]));
         curvature_[g] = quadrics_[g].radius > 0 ? quadrics_[g].curvature() : 0;
       }
@@ -132,27 +158,14 @@ class SharedQuadrics {
   }
 
  private:
-  template <class Visit>
-  void for_members(const Cursor& group, Visit&& visit) const {
-    for (std::uint32_t leaf = group.first; leaf < group.last; ++leaf)
-      for (const Index i : index_.tree().leaf(leaf).id)
-        if (i != kNone) visit(i);
-  }
-
   /// The point nearest to the mean.
-  Index middle(const Cursor& group) const {
+  Index middle(Adjacency::Row group) const {
     const Positions& points = index_.points();
     Vector3d sum = Vector3d::Zero();
-    double count = 0;
-    for_members(group, [&](Index i) {
-      sum += points[i];
-      ++count;
-    });
-    const Vector3d mean = sum / count;
+    for (const Index i : group) sum += points[i];
+    const Vector3d mean = sum / double(group.size());
     Neighbor nearest = {kNone, std::numeric_limits<double>::infinity()};
-    for_members(group, [&](Index i) {
-      if (const Neighbor here = {i, squared_distance(points[i], mean)}; here < nearest) nearest = here;
-    });
+    for (const Index i : group) nearest = std::min(nearest, {i, squared_distance(points[i], mean)});
     return nearest.index;
   }
 
@@ -167,8 +180,8 @@ class SharedQuadrics {
 
 std::vector<LocalSurface> shared_local_surfaces(const SpatialIndex& index, const NeighborTable& near,
                                                 const NoiseScale& scale, std::size_t least,
-                                                const Context& context) {
-  const SharedQuadrics quadrics(index, scale, least, context);
+                                                const Context& context, const Vector3d* corner) {
+  const SharedQuadrics quadrics(index, scale, least, corner, context);
   std::vector<LocalSurface> surfaces(index.points().size());
   for_blocks(context, surfaces.size(), 1024, [&](std::size_t begin, std::size_t end) {
     Fitter fitter(index, scale, least);

@@ -173,7 +173,7 @@ bool is_noise(const SpatialIndex& index, const Positions& places, double sigma, 
 
 /// The part of the cloud that scatters so much more than what was measured that its places said nothing
 /// (beyond the window) or something else. Its sigma is zero if there is none.
-Part measure_loud(const SpatialIndex& index, const Part& calm, const DepthSteps* steps,
+Part measure_loud(const SpatialIndex& index, const Part& calm, const DepthSteps* steps, double spacing,
                   const Context& context) {
   constexpr double kLeastPart = 0.1, kMuch = 3, kLouder = 2;  // of the area; times the noise of the rest
   constexpr double kMostlyNoise = 0.3;                        // most of s^2 that may be shape
@@ -182,7 +182,7 @@ Part measure_loud(const SpatialIndex& index, const Part& calm, const DepthSteps*
   if (at.empty()) return {};
   const std::vector<Scatter> all = fits(index, at, kAround, std::vector<double>(at.size(), 0), context);
   const std::vector<double> areas_of = areas(all);
-  const double least = std::max(kMuch * calm.sigma, kNoNoise * mean_spacing(index, context));
+  const double least = std::max(kMuch * calm.sigma, kNoNoise * spacing);
   Positions where;
   double area = 0, whole = 0;
   for (std::size_t s = 0; s < at.size(); ++s) {
@@ -220,9 +220,9 @@ void take_over(const Part& loud, Positions& at, std::vector<double>& local) {
 
 NoiseField measure_noise(const SpatialIndex& index, const Context& context) {
   const std::size_t n = index.points().size();
-  NoiseField noise;
-  noise.local.assign(n, 0);
-  if (n < kFewestPoints) return noise;
+  NoiseModel noise;
+  noise.spacing = mean_spacing(index, context);
+  if (n < kFewestPoints) return spread_noise(noise, index.points(), context);
   Positions at;
   std::vector<double> local;
   const std::optional<DepthSteps> in_steps = find_depth_steps(index.points());
@@ -236,13 +236,28 @@ NoiseField measure_noise(const SpatialIndex& index, const Context& context) {
     noise.shape = part.shape;
     take_over(part, at, local);
     if (louder == kMostLouder) break;
-    Part next = measure_loud(index, part, steps, context);
+    Part next = measure_loud(index, part, steps, noise.spacing, context);
     if (!(next.sigma > 0)) break;
     part = std::move(next);
   }
-  if (!(noise.sigma > 0)) return noise;
-  for (double& v : local) v = std::max(v, kNothing * noise.sigma);
-  noise.local = blend(SpatialIndex(at, context), local, index.points(), context);
+  if (noise.sigma > 0) {
+    for (double& v : local) v = std::max(v, kNothing * noise.sigma);
+    if (std::all_of(local.begin(), local.end(), [&](double v) { return v == local.front(); })) {
+      at.resize(1);
+      local.resize(1);
+    }
+    noise.sites = std::move(at);
+    noise.at_sites = std::move(local);
+  }
+  return spread_noise(std::move(noise), index.points(), context);
+}
+
+NoiseField spread_noise(NoiseModel model, const Positions& points, const Context& context) {
+  NoiseField noise{std::move(model), {}};
+  if (noise.sites.empty())
+    noise.local.assign(points.size(), 0);
+  else
+    noise.local = blend(SpatialIndex(noise.sites, context), noise.at_sites, points, context);
   return noise;
 }
 

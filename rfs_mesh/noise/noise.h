@@ -21,6 +21,8 @@
 
 #include <vector>
 
+#include <rfsmooth/statistics.h>
+
 #include "rfs_mesh/search/neighbors.h"
 
 namespace rfsmooth::rfs_mesh {
@@ -28,19 +30,17 @@ namespace rfsmooth::rfs_mesh {
 /// Spacings: noise below this cannot be told from detail.
 inline constexpr double kNoNoise = 0.05;
 
-/// The noise of a cloud.
-struct NoiseField {
-  double sigma = 0;            ///< standard deviation along the normal, world units: typical of the cloud
-  double shape = 0;            ///< part of s^2(m) taken off as shape, 0 to 0.6; above half little is sure
-  std::size_t neighbours = 0;  ///< m
-  double shared = 1;  ///< points that say as much as one: they share the noise (shared_noise.h) or lie on one
-                      ///< line with nothing beside it; 1: each says its own
-  double step = 0;    ///< typical distance between depths that come in steps, world units; 0: none
+/// The noise of a cloud, at every point.
+struct NoiseField : NoiseModel {
   std::vector<double> local;  ///< n: sigma near each point, world units
 };
 
 /// O(n log n) for the field, O(log n) for the figure. Parallel, deterministic. Zero for fewer than 25 points.
 NoiseField measure_noise(const SpatialIndex& index, const Context& context);
+
+/// The field of a noise that was measured already, on these points or on a cloud that they are of: at every
+/// point the mean of the sites nearest to it. O(n log n), parallel, deterministic.
+NoiseField spread_noise(NoiseModel model, const Positions& points, const Context& context);
 
 /// n: the mean distance from a point to its nearest other one around each point, world units. Zero for fewer
 /// than two points. O(n log n), parallel, deterministic.

@@ -43,13 +43,15 @@ constexpr float kNearEvidence = 10;   // nats per sigma^2 of a near mean
 constexpr float kPatchEvidence = 0.25F;  // the same of a patch mean, per member (Leung and Barron's 1/4)
 constexpr float kTolerated = 0.15F;      // sigma^2: what a near mean scatters by without meaning anything
 
-Positions fair(const Mesh& mesh, double strength, const Context& context) {
+Positions fair(const Mesh& mesh, double strength, std::vector<double>& reductions, const Context& context) {
   const Operator op = umbrella(mesh, context);
   SolverOptions options;
   options.tolerance = 1e-4;
+  options.reductions = reductions;
   Positions x;
-  solve({mesh.one_ring, op, {0, strength, 0, 0}, {}, {}}, mesh.positions, x, AllowedMoves(), options,
-        context);
+  reductions = solve({mesh.one_ring, op, {0, strength, 0, 0}, {}, {}}, mesh.positions, x, AllowedMoves(),
+                     options, context)
+                   .reductions;
   return x;
 }
 
@@ -132,7 +134,7 @@ std::vector<ScalesSay> tell(const std::vector<Scale>& scales, std::size_t n, con
 /// the learned step; null: not taken.
 void mix(const HeightField& field, std::vector<float> first, std::vector<Scale> scales, double shared,
          std::vector<float>& height, std::vector<float>& own, std::vector<ScalesSay>* told,
-         const Context& context) {
+         std::vector<double>& shares, const Context& context) {
   const auto alone = float(1 / shared);
   Mixture mixture(std::move(first));
   average_near(field, scales, context);
@@ -152,7 +154,7 @@ void mix(const HeightField& field, std::vector<float> first, std::vector<Scale> 
                 context);
     scale = {};
   }
-  mixture.average(height, own, context);
+  mixture.average(height, own, shares, context);
 }
 
 /// The variance that the residuals tell, over that which was measured: the median over places of
@@ -208,8 +210,8 @@ double noise_left(const HeightField& field, const std::vector<float>& height, co
 
 /// The guide of mesh.positions and the heights over it.
 std::unique_ptr<HeightField> raise_field(const Mesh& mesh, double sigma, AutomaticReport& report,
-                                         const Context& context) {
-  Positions guide = fair(mesh, report.guide_strength, context);
+                                         Statistics::Pass& whole, const Context& context) {
+  Positions guide = fair(mesh, report.guide_strength, whole.reductions, context);
   Landed landed = land_stranded(mesh, kStrayFrom * sigma, guide, context);
   report.stranded = landed.stranded;
   return std::make_unique<HeightField>(std::move(guide), std::move(landed.tree), std::move(landed.near),
@@ -223,15 +225,23 @@ class Ladder {
     risk_.assign(field.size(), 1);  // of the data themselves: no error, all their own
   }
 
-  void add(double m, const Context& context) {
-    const std::size_t members = thin_to(m, context);
+  /// How patches of about m points are made here: with seeds thinned as far as these allow.
+  Statistics::Scale scale_of(double m, const Context& context) {
+    const std::size_t n = field_.size(), members = std::min(std::size_t(m), n / 2);
+    thin_to(1, context);
+    while (seeds_.size() * members > kMostOverlap * n) thin_to(thinnings_ + 1, context);
+    return {members, thinnings_};
+  }
+
+  void add(const Statistics::Scale& how, const Context& context) {
+    const std::size_t members = make_way(how, context);
     scales.push_back(try_scale(field_, members, seeds_, noise_, risk_, memory_, context));
   }
 
   /// The heights as the narrowest patches see them; the data where there are none. Before any scale.
-  std::vector<float> narrow(const Context& context) {
+  std::vector<float> narrow(const Statistics::Scale& how, const Context& context) {
     std::vector<float> smooth = heights(field_, context);
-    const std::size_t members = thin_to(kFewest, context);
+    const std::size_t members = make_way(how, context);
     const Prediction said = Patches(field_, members, seeds_, noise_.local, memory_, context).predict(context);
     for_each_index(context, smooth.size(), [&](std::size_t i) {
       if (said.covered[i] != 0) smooth[i] = said.height[i];
@@ -242,21 +252,28 @@ class Ladder {
   std::vector<Scale> scales;
 
  private:
-  /// Thins the seeds as far as patches of about m points allow; returns their number of points.
-  std::size_t thin_to(double m, const Context& context) {
-    const std::size_t n = field_.size(), members = std::min(std::size_t(m), n / 2);
-    if (seeds_.empty()) seeds_ = thin_all(field_.index(), field_.neighbors(), context);
-    while (seeds_.size() * members > kMostOverlap * n)
-      seeds_ = seeds_.size() > n / kDense ? thin_dense(field_.index(), field_.neighbors(), seeds_, context)
-                                          : thin(field_.guide(), seeds_, context);
-    return members;
+  /// Thins the seeds for a scale; returns its number of points.
+  std::size_t make_way(const Statistics::Scale& how, const Context& context) {
+    thin_to(how.thinnings, context);
+    return std::min(how.members, field_.size());
+  }
+
+  void thin_to(std::size_t thinnings, const Context& context) {
+    for (; thinnings_ < thinnings; ++thinnings_)
+      if (thinnings_ == 0)
+        seeds_ = thin_all(field_.index(), field_.neighbors(), context);
+      else if (seeds_.size() > field_.size() / kDense)
+        seeds_ = thin_dense(field_.index(), field_.neighbors(), seeds_, context);
+      else
+        seeds_ = thin(field_.guide(), seeds_, context);
   }
 
   const HeightField& field_;
   const rfs_mesh::NoiseField& noise_;
   std::vector<float> risk_;
   Patches::Memory memory_;
-  std::vector<Index> seeds_;  ///< empty: all
+  std::vector<Index> seeds_;
+  std::size_t thinnings_ = 0;  ///< 0: the seeds are all points
 };
 
 /// What a pass over the scales gives.
@@ -268,22 +285,32 @@ struct Pass {
   std::size_t members_seeing = 0;  ///< of that scale
 };
 
-Pass smooth_heights(const HeightField& field, const rfs_mesh::NoiseField& noise, double spacing, bool learned,
-                    const Context& context) {
-  constexpr std::size_t kTailMembers = 64;
+/// All scales of a field, and in `first` the heights that stand for the data. `whole`: how those of the whole
+/// cloud are made; what is not there is entered.
+std::vector<Scale> try_scales(const HeightField& field, const rfs_mesh::NoiseField& noise, double spacing,
+                              Statistics::Pass& whole, std::vector<float>& first, const Context& context) {
+  Ladder ladder(field, noise);
   const double share = noise.sigma / spacing;
-  const std::size_t n = field.size();
-  std::optional<Ladder> ladder(std::in_place, field, noise);
   const double narrowest = std::max(kFewest * noise.shared, kNarrowest * share * share);
   const double widest = std::max(kWidest, kWidestShare * narrowest);
-  std::vector<float> first = noise.shared > 1 ? ladder->narrow(context) : heights(field, context);
-  for (double m = narrowest; m <= widest; m *= 2) {
+  if (noise.shared > 1 && !whole.narrow) whole.narrow = ladder.scale_of(kFewest, context);
+  first = whole.narrow ? ladder.narrow(*whole.narrow, context) : heights(field, context);
+  const bool known = !whole.scales.empty();
+  double m = narrowest;
+  for (std::size_t s = 0; known ? s < whole.scales.size() : m <= widest; ++s, m *= 2) {
     context.report("smooth", 0.1 + 0.9 * std::log(m / narrowest) / std::log(2 * widest / narrowest));
-    ladder->add(m, context);
-    if (m >= double(n) / 2) break;
+    if (!known) whole.scales.push_back(ladder.scale_of(m, context));
+    ladder.add(whole.scales[s], context);
+    if (!known && m >= double(field.size()) / 2) break;
   }
-  std::vector<Scale> scales = std::move(ladder->scales);
-  ladder.reset();
+  return std::move(ladder.scales);
+}
+
+Pass smooth_heights(const HeightField& field, const rfs_mesh::NoiseField& noise, double spacing, bool learned,
+                    Statistics::Pass& whole, const Context& context) {
+  constexpr std::size_t kTailMembers = 64;
+  std::vector<float> first;
+  std::vector<Scale> scales = try_scales(field, noise, spacing, whole, first, context);
   Pass pass;
   const Scale& seeing = scales[std::min(kSeeing, scales.size() - 1)];
   pass.members_seeing = seeing.members;
@@ -293,7 +320,7 @@ Pass smooth_heights(const HeightField& field, const rfs_mesh::NoiseField& noise,
     if (scale.members >= kTailMembers && &scale != &scales.front()) break;
   }
   mix(field, std::move(first), std::move(scales), noise.shared, pass.height, pass.own,
-      learned ? &pass.told : nullptr, context);
+      learned ? &pass.told : nullptr, whole.shares, context);
   return pass;
 }
 
@@ -333,7 +360,7 @@ void land_hovering(const HeightField& field, const Pass& pass, const Mesh& mesh,
 /// Points of the tails go towards the surface that the others show (tails.h), and the noise down to that of
 /// the others. Returns the tails.
 Tails tame(const HeightField& field, const Pass& pass, const Mesh& mesh, Positions& data,
-           rfs_mesh::NoiseField& noise, const Context& context) {
+           rfs_mesh::NoiseField& noise, std::optional<Statistics::Tails>& whole, const Context& context) {
   if (rfs_mesh::rounding_noise(noise.step) > noise.sigma) return {};  // terraces stand out as tails do
   constexpr float kMostItsOwn = 0.8F;
   const std::vector<float> off = off_neighbours(field, pass, noise, context);
@@ -348,7 +375,11 @@ Tails tame(const HeightField& field, const Pass& pass, const Mesh& mesh, Positio
     // Where the mixture had to be narrow, a wide patch says little.
     least[i] = std::min(std::abs(relative[i]), std::abs(without) / sigma);
   });
-  const Tails tails = find_tails(relative, least);
+  if (!whole) {
+    const Tails found = find_tails(relative, least);
+    whole = {found.share, found.times, found.narrow};
+  }
+  const Tails tails{whole->share, whole->times, whole->narrow};
   if (!(tails.share > 0)) return tails;
   for_each_index(context, off.size(), [&](std::size_t i) {
     if (!std::isnan(relative[i]))
@@ -365,7 +396,7 @@ Tails tame(const HeightField& field, const Pass& pass, const Mesh& mesh, Positio
 
 Positions automatic_smoothing(Mesh& mesh, bool keep_rings, rfs_mesh::NoiseField noise, double spacing,
                               bool learned, AutomaticReport& report, rfs_mesh::NeighborTable& near,
-                              const Context& context, LearnedSites* sites) {
+                              const Context& context, Statistics& whole, LearnedSites* sites) {
   near = {};
   const std::size_t n = mesh.positions.size();
   report = {};
@@ -378,21 +409,25 @@ Positions automatic_smoothing(Mesh& mesh, bool keep_rings, rfs_mesh::NoiseField 
   report.guide_strength = guide_strength();
   std::vector<double> most = noise.local;
   for (double& limit : most) limit = kStrayFrom * std::max(limit, noise.sigma);
-  auto field = raise_field(mesh, noise.sigma, report, context);
+  whole.passes.resize(std::max<std::size_t>(1, whole.passes.size()));
+  auto field = raise_field(mesh, noise.sigma, report, whole.passes[0], context);
   context.report("smooth", 0.1);
-  Pass pass = smooth_heights(*field, noise, spacing, learned, context);
+  Pass pass = smooth_heights(*field, noise, spacing, learned, whole.passes[0], context);
   Positions data = mesh.positions;  // as tamed
-  if (const Tails tails = tame(*field, pass, mesh, data, noise, context); tails.share > 0) {
+  if (const Tails tails = tame(*field, pass, mesh, data, noise, whole.tails, context); tails.share > 0) {
     report.tail_times = tails.times;
     for (double& limit : most) limit *= tails.times;
     report.guide_strength = guide_strength();
     mesh.positions.swap(data);
-    field = raise_field(mesh, noise.sigma, report, context);
-    pass = smooth_heights(*field, noise, spacing, learned, context);
+    whole.passes.resize(2);
+    field = raise_field(mesh, noise.sigma, report, whole.passes[1], context);
+    pass = smooth_heights(*field, noise, spacing, learned, whole.passes[1], context);
     mesh.positions.swap(data);
   }
   if (!keep_rings) mesh.one_ring = {};
-  const HiddenSheets hidden = split_hidden_sheets(*field, noise.sigma, pass.height, pass.own, context);
+  const double of_whole = whole.points ? double(*whole.points) / double(n) : 1;
+  const HiddenSheets hidden =
+      split_hidden_sheets(*field, noise.sigma, pass.height, pass.own, of_whole, whole.sheets, context);
   const auto smooth_at = [&](std::size_t i, float height) -> Eigen::Vector3d {
     const Eigen::Vector3d &from = mesh.positions[i],
                           move = field->guide()[i] + double(height) * field->normal(i) - from;
@@ -401,7 +436,7 @@ Positions automatic_smoothing(Mesh& mesh, bool keep_rings, rfs_mesh::NoiseField 
   Positions smooth(n);
   for_each_index(context, n, [&](std::size_t i) { smooth[i] = smooth_at(i, pass.height[i]); });
   const Positions one_sheet = learned ? smooth : Positions();
-  part_thin_walls(*field, data, pass.several, pass.members_seeing, noise, smooth, context);
+  part_thin_walls(*field, data, pass.several, pass.members_seeing, noise, smooth, whole.thin_walls, context);
   // Models of two sheets that a whole cloud or a whole patch speaks for know more than the network sees from
   // a point.
   if (learned && hidden.split == 0) {

@@ -40,6 +40,7 @@
 #pragma once
 
 #include <rfsmooth/flow.h>
+#include <rfsmooth/statistics.h>
 
 #include "rfs_mesh/noise/noise.h"
 #include "rfs_mesh/search/neighbors.h"
@@ -53,9 +54,10 @@ namespace rfsmooth::smoothing {
 /// \param near out: the nearest of every point on the guide (height_field.h); empty if nothing moved.
 /// O(n log n); about 500 bytes a point beside the mesh. Parallel, the same bits for any number of
 /// threads. Of the report, `noise` and what was equalized are the flow's to enter (flow_auto.cpp).
-/// \param learned whether the learned step is taken. \param sites what it would be given, instead of it.
+/// \param whole what is there is taken, the rest entered. \param learned whether the learned step is taken.
+/// \param sites what it would be given, instead of it.
 Positions automatic_smoothing(Mesh& mesh, bool keep_rings, rfs_mesh::NoiseField noise, double spacing,
                               bool learned, AutomaticReport& report, rfs_mesh::NeighborTable& near,
-                              const Context& context, LearnedSites* sites = nullptr);
+                              const Context& context, Statistics& whole, LearnedSites* sites = nullptr);
 
 }  // namespace rfsmooth::smoothing

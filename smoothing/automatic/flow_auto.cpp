@@ -49,17 +49,21 @@ void limit(const Positions& before, const std::vector<double>& local, double str
 
 class AutomaticFlow : public Flow {
  public:
-  AutomaticFlow(const AutomaticOptions& options, std::optional<AutomaticReport>* report)
-      : options_(options), report_(report) {}
+  AutomaticFlow(const AutomaticOptions& options, std::optional<AutomaticReport>* report,
+                Statistics* statistics)
+      : options_(options), report_(report), statistics_(statistics) {}
 
   void step(Mesh& mesh, const Context& context) override {
-    const auto report = smooth_automatically(mesh, options_, context);
+    const auto report =
+        smooth_automatically(mesh, options_, context, Connectivity::kept, nullptr, statistics_);
+    statistics_ = nullptr;  // what a step leaves is another cloud
     if (report_ != nullptr) *report_ = report;
   }
 
  private:
   AutomaticOptions options_;
   std::optional<AutomaticReport>* report_;
+  Statistics* statistics_;
 };
 
 }  // namespace
@@ -76,23 +80,25 @@ NoiseSummary summary_of(const rfs_mesh::NoiseField& noise) {
 
 std::optional<AutomaticReport> smooth_automatically(Mesh& mesh, const AutomaticOptions& options,
                                                     const Context& context, Connectivity connectivity,
-                                                    LearnedSites* sites) {
+                                                    LearnedSites* sites, Statistics* statistics) {
   if (connectivity == Connectivity::used_up) std::vector<Face>().swap(mesh.faces);
   if (mesh.positions.size() < 2) return {};
-  double spacing = 0;
+  Statistics own, &whole = statistics != nullptr ? *statistics : own;
   rfs_mesh::NoiseField noise;
-  {
-    const rfs_mesh::SpatialIndex index(mesh.positions, context);
-    spacing = rfs_mesh::mean_spacing(index, context);
-    noise = rfs_mesh::measure_noise(index, context);
+  if (whole.noise) {
+    noise = rfs_mesh::spread_noise(*whole.noise, mesh.positions, context);
+  } else {
+    noise = rfs_mesh::measure_noise(rfs_mesh::SpatialIndex(mesh.positions, context), context);
+    whole.noise = noise;
   }
+  const double spacing = noise.spacing;
   const NoiseSummary summary = summary_of(noise);
   const double sigma = options.noise ? options.noise->resolve(spacing) : measured(noise, spacing);
   noise = scaled(std::move(noise), sigma, options.strength, spacing);
   AutomaticReport report;
   rfs_mesh::NeighborTable near;
   Positions smooth = automatic_smoothing(mesh, connectivity == Connectivity::kept, noise, spacing,
-                                         options.learned, report, near, context, sites);
+                                         options.learned, report, near, context, whole, sites);
   mesh.positions.swap(smooth);
   const Positions before = std::move(smooth);
   report.noise = sigma;
@@ -112,9 +118,9 @@ std::optional<AutomaticReport> smooth_automatically(Mesh& mesh, const AutomaticO
   return report;
 }
 
-std::unique_ptr<Flow> make_automatic(const AutomaticOptions& options,
-                                     std::optional<AutomaticReport>& report) {
-  return std::make_unique<AutomaticFlow>(options, &report);
+std::unique_ptr<Flow> make_automatic(const AutomaticOptions& options, std::optional<AutomaticReport>& report,
+                                     Statistics* statistics) {
+  return std::make_unique<AutomaticFlow>(options, &report, statistics);
 }
 
 }  // namespace rfsmooth::smoothing
@@ -124,7 +130,7 @@ namespace rfsmooth {
 using namespace smoothing;
 
 std::unique_ptr<Flow> AutomaticOptions::start(const Mesh&, const Constraints&, const Context&) const {
-  return std::make_unique<AutomaticFlow>(*this, nullptr);
+  return std::make_unique<AutomaticFlow>(*this, nullptr, nullptr);
 }
 
 }  // namespace rfsmooth

@@ -27,15 +27,18 @@ NoiseSummary summary_of(const rfs_mesh::NoiseField& noise);
 enum class Connectivity { kept, used_up };
 
 /// One step: moves mesh.positions. What was measured and chosen; nothing for fewer than two points, which
-/// stay. `options.iterations` is the caller's loop. `sites`: see automatic.h. O(n log n), about 500 bytes a
+/// stay. `options.iterations` is the caller's loop. `statistics`: what is
+/// there is taken, the rest entered. `sites`: see automatic.h. O(n log n), about 500 bytes a
 /// point. Parallel, the same bits for any number of threads. Thread safe on distinct meshes.
 std::optional<AutomaticReport> smooth_automatically(Mesh& mesh, const AutomaticOptions& options,
                                                     const Context& context,
                                                     Connectivity connectivity = Connectivity::kept,
-                                                    LearnedSites* sites = nullptr);
+                                                    LearnedSites* sites = nullptr,
+                                                    Statistics* statistics = nullptr);
 
 /// The same as the steps of a flow, for modifiers and constraints to go around. Each step writes `report`,
 /// which must outlive the flow.
-std::unique_ptr<Flow> make_automatic(const AutomaticOptions& options, std::optional<AutomaticReport>& report);
+std::unique_ptr<Flow> make_automatic(const AutomaticOptions& options, std::optional<AutomaticReport>& report,
+                                     Statistics* statistics = nullptr);
 
 }  // namespace rfsmooth::smoothing

@@ -50,7 +50,7 @@ struct Sum {
 
 /// Over all c; `v` are the residuals' local means.
 HiddenSheets best_evidence(const std::vector<float>& residual, const std::vector<float>& own,
-                           const std::vector<float>& v, const Context& context) {
+                           const std::vector<float>& v, double whole, const Context& context) {
   const std::size_t n = v.size();
   HiddenSheets best;
   std::size_t points = 0;  // at the best c
@@ -77,7 +77,7 @@ HiddenSheets best_evidence(const std::vector<float>& residual, const std::vector
           return part;
         },
         [](Sum a, const Sum& b) { return a += b; });
-    const double unlikely = std::log(c) / kPrior, evidence = sum.evidence - unlikely * unlikely / 2;
+    const double unlikely = std::log(c) / kPrior, evidence = whole * sum.evidence - unlikely * unlikely / 2;
     if (double(sum.points) < kLeastSheetShare * double(n) || evidence <= best.evidence) continue;
     best.evidence = evidence;
     best.variance = c;
@@ -90,7 +90,9 @@ HiddenSheets best_evidence(const std::vector<float>& residual, const std::vector
 }  // namespace
 
 HiddenSheets split_hidden_sheets(const HeightField& field, double sigma, std::vector<float>& height,
-                                 const std::vector<float>& own, const Context& context) {
+                                 const std::vector<float>& own, double whole,
+                                 std::optional<Statistics::Sheets>& known, const Context& context) {
+  if (known && known->evidence < kEvidence) return {known->evidence, known->variance, 0};
   const std::size_t n = field.size();
   std::vector<float> residual(n), v(n);
   for_each_index(context, n, [&](std::size_t i) {
@@ -102,9 +104,13 @@ HiddenSheets split_hidden_sheets(const HeightField& field, double sigma, std::ve
   HiddenSheets found;
   for (int round = 0; round < kSheetRounds; ++round) {
     for (int again = 0; again < kAgain; ++again) v = field.local_mean(v, context);
-    found = best_evidence(residual, own, v, context);
-    if (found.evidence < kEvidence) return found;
+    if (known) continue;
+    found = best_evidence(residual, own, v, whole, context);
+    if (found.evidence < kEvidence) break;
   }
+  if (known) found = {known->evidence, known->variance, 0};
+  known = {found.evidence, found.variance};
+  if (found.evidence < kEvidence) return found;
   const double c = found.variance;
   found.split = sum_over(context, n, std::size_t(0), [&](std::size_t i) {
     const double mean = double(v[i]);

@@ -32,7 +32,10 @@
 /// everywhere, so they are not believed if they take more than three quarters of it.
 #pragma once
 
+#include <optional>
 #include <vector>
+
+#include <rfsmooth/statistics.h>
 
 #include "smoothing/automatic/patches/height_field.h"
 
@@ -49,7 +52,10 @@ struct HiddenSheets {
 /// the nearer one, or almost. `own` (n): each point's share of its own height in its smoothed height
 /// (patches.h). It is not changed here, so for the points that were moved it is too small afterwards. \param
 /// sigma the noise, world units, > 0. O(n); parallel, the same bits for any number of threads. Thread safe.
+/// \param whole points of the cloud that the field is of, over its own: so many times its evidence counts.
+/// \param known evidence and c, taken if they are there, else entered.
 HiddenSheets split_hidden_sheets(const HeightField& field, double sigma, std::vector<float>& height,
-                                 const std::vector<float>& own, const Context& context);
+                                 const std::vector<float>& own, double whole,
+                                 std::optional<Statistics::Sheets>& known, const Context& context);
 
 }  // namespace rfsmooth::smoothing

@@ -38,7 +38,8 @@ void Mixture::add(std::vector<float> height, std::vector<float> own, std::vector
   candidates_.push_back({std::move(height), std::move(own), std::move(gain)});
 }
 
-void Mixture::average(std::vector<float>& height, std::vector<float>& own, const Context& context) {
+void Mixture::average(std::vector<float>& height, std::vector<float>& own, std::vector<double>& found,
+                      const Context& context) {
   const std::size_t n = evidence_.size(), count = candidates_.size();
   const auto rows = Eigen::Index(count);
   // From here on e^(evidence - the largest): the exponential is the dear part.
@@ -54,11 +55,14 @@ void Mixture::average(std::vector<float>& height, std::vector<float>& own, const
     return CandidateWeights(w * (1 / w.sum()));
   };
   CandidateWeights shares = CandidateWeights::Constant(rows, 1 / double(count));
-  for (int round = 0; round < kMixtureRounds; ++round) {
+  const bool known = found.size() == count;
+  if (known) shares = Eigen::Map<const Eigen::ArrayXd>(found.data(), rows);
+  for (int round = 0; !known && round < kMixtureRounds; ++round) {
     const CandidateWeights sum = sum_over(context, n, CandidateWeights(CandidateWeights::Zero(rows)),
                                           [&](std::size_t i) { return weights(i, shares); });
     shares = (sum / double(n)).max(kLeastOfScale);
   }
+  found.assign(shares.data(), shares.data() + rows);
   height.resize(n);
   own.resize(n);
   for_each_index(context, n, [&](std::size_t i) {

@@ -30,8 +30,10 @@ class Mixture {
            const Context& context);
 
   /// Replaces `height` and `own` (n) by the averages; the mixture is used up. O(n) times the number of
-  /// candidates; parallel, the same bits for any number of threads.
-  void average(std::vector<float>& height, std::vector<float>& own, const Context& context);
+  /// candidates; parallel, the same bits for any number of threads. \param shares pi_s, taken if there is one
+  /// for each candidate, else found and entered.
+  void average(std::vector<float>& height, std::vector<float>& own, std::vector<double>& shares,
+               const Context& context);
 
  private:
   struct Candidate {

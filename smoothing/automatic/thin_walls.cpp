@@ -122,13 +122,15 @@ class Walls {
 
 ThinWalls part_thin_walls(const HeightField& field, const Positions& data, const std::vector<Index>& seeds,
                           std::size_t members, const rfs_mesh::NoiseField& noise, Positions& smooth,
-                          const Context& context) {
+                          std::optional<bool>& parted, const Context& context) {
   if (data.size() != field.size() || smooth.size() != field.size() || noise.local.size() != field.size())
     throw std::invalid_argument("part_thin_walls: the field and what belongs to its points differ in number");
   ThinWalls done;
-  if (seeds.empty()) return done;
   const double most = double(seeds.size()) * double(kWider.back() * members);  // points they can reach
-  if (most < kLeastShare * double(field.size())) return done;
+  const bool enough = parted ? *parted : most >= kLeastShare * double(field.size());
+  if (!parted) parted = false;
+  if (seeds.empty() || !enough) return done;
+  const bool known = *parted;
   std::vector<Mean> means(field.size());
   for (const std::size_t wider : kWider) {
     std::vector<Index> sparse = seeds;
@@ -140,7 +142,8 @@ ThinWalls part_thin_walls(const HeightField& field, const Positions& data, const
   }
   const auto covered = [](const Mean& mean) { return mean.weight >= kLeastCovered; };
   const auto points = std::size_t(std::count_if(means.begin(), means.end(), covered));
-  if (double(points) < kLeastShare * double(means.size())) return done;
+  if (!known && double(points) < kLeastShare * double(means.size())) return done;
+  parted = true;
   done.points = points;
   for_each_index(context, means.size(), [&](std::size_t i) {
     if (covered(means[i])) smooth[i] += means[i].move / means[i].weight;

@@ -10,6 +10,7 @@
 /// from 0.30 to 0.16 of sigma^2. Thread safe: no state is kept.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "rfs_mesh/noise/noise.h"
@@ -27,9 +28,10 @@ struct ThinWalls {
 /// \param data n x 3, as measured. \param seeds ascending: places where patches of `members` points see more
 /// than one sheet (patches.h). \param noise where its field is above its figure, the figure is taken: walls
 /// make the field too high. O(s m) for s seeds of m members, 20 bytes each. Parallel, the same bits for any
-/// number of threads.
+/// number of threads. \param parted whether there are such walls: taken if it is there, else found and
+/// entered.
 ThinWalls part_thin_walls(const HeightField& field, const Positions& data, const std::vector<Index>& seeds,
                           std::size_t members, const rfs_mesh::NoiseField& noise, Positions& smooth,
-                          const Context& context);
+                          std::optional<bool>& parted, const Context& context);
 
 }  // namespace rfsmooth::smoothing

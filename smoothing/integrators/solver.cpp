@@ -97,16 +97,26 @@ class FairingSolve {
       r[i] = Vector4f(float(scaled[0]), float(scaled[1]), float(scaled[2]), 0);
     };
     double norm = residual(as_float);
-    while (norm > goal_ && std::isfinite(norm) && report.iterations < options_.max_iterations) {
+    const auto wanted = [&] {
+      return options_.reductions.empty() ? norm > goal_
+                                         : report.reductions.size() < options_.reductions.size();
+    };
+    bool polynomials_alone = true;
+    while (wanted() && std::isfinite(norm) && report.iterations < options_.max_iterations) {
       const double before = norm;
-      correct(r, norm, report.iterations);
+      if (!correct_by_polynomial(r, norm, report)) {
+        polynomials_alone = false;
+        correct_by_iteration(r, norm, report.iterations);
+      }
       norm = residual(as_float);
-      if (!(norm > goal_)) break;
+      if (!wanted()) break;
       if (norm > kWorthwhile * before) {
+        polynomials_alone = false;
         norm = finish_in_double(report.iterations);
         break;
       }
     }
+    if (!polynomials_alone) report.reductions.clear();
     report.residual = relative(norm, goal_, options_.tolerance);
     report.converged = norm <= goal_;
     return report;
@@ -197,22 +207,21 @@ class FairingSolve {
     });
   }
 
-  /// Adds a solution of A d = r in single precision to x; r is overwritten.
-  void correct(Vectors<Vector4f>& r, double norm, int& iterations) {
-    if (!correct_by_polynomial(r, norm, iterations)) correct_by_iteration(r, norm, iterations);
-  }
-
-  /// For the umbrella with the data's own mass, second order: the degree that it takes is known beforehand.
-  bool correct_by_polynomial(Vectors<Vector4f>& r, double norm, int& iterations) {
+  /// Adds a solution of A d = r in single precision to x; r is overwritten. For the umbrella with the data's
+  /// own mass, second order: the degree that it takes is known beforehand. False for all else.
+  bool correct_by_polynomial(Vectors<Vector4f>& r, double norm, SolverReport& report) {
     const bool plain = umbrella_ && s_.data.empty() && s_.strength.empty() && allowed_.all_free();
     if (!plain || options_.linf || !(s_.a[1] > 0 && s_.a[0] >= 0) || s_.a[2] != 0 || s_.a[3] != 0)
       return false;
-    const double reduction = std::max(kSlack * goal_ / norm, kCorrection);
+    const std::size_t done = report.reductions.size();
+    const double reduction = done < options_.reductions.size() ? options_.reductions[done]
+                                                               : std::max(kSlack * goal_ / norm, kCorrection);
     constexpr int kMost = 2000;
-    const auto polynomial = inverse_polynomial(s_.a[0], s_.a[1], reduction,
-                                               std::min(kMost, 2 * (options_.max_iterations - iterations)));
+    const auto polynomial = inverse_polynomial(
+        s_.a[0], s_.a[1], reduction, std::min(kMost, 2 * (options_.max_iterations - report.iterations)));
     if (!polynomial) return false;
-    iterations += int(polynomial->size() + 1) / 2;
+    report.iterations += int(polynomial->size() + 1) / 2;
+    report.reductions.push_back(reduction);
     Vectors<Vector4f> d(n_);
     for_each_index(context_, n_, [&](std::size_t i) { r[i] *= float(mean_mass_ / s_.op.mass[i]); });
     apply_polynomial(*polynomial, s_.rows, r, d, context_);
@@ -220,6 +229,7 @@ class FairingSolve {
     return true;
   }
 
+  /// The same for every system.
   void correct_by_iteration(Vectors<Vector4f>& r, double norm, int& iterations) {
     if (!matrix_) {
       matrix_.emplace(s_, mean_mass_, context_);

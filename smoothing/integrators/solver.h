@@ -35,7 +35,9 @@ namespace rfsmooth::smoothing {
 struct SolverOptions {
   double tolerance = 1e-5;    ///< of the residual, relative to the centred right side
   int max_iterations = 5000;  ///< then the last iterate is returned with converged = false
-  bool linf = false;          ///< stop on the largest instead of the root mean square residual
+  /// Not empty: what each polynomial reduces the residual to, instead of the tolerance.
+  std::vector<double> reductions = {};
+  bool linf = false;  ///< stop on the largest instead of the root mean square residual
 };
 
 /// How it ended.
@@ -43,6 +45,7 @@ struct SolverReport {
   int iterations = 0;   ///< products with A in the iteration
   double residual = 0;  ///< at the end; relative, in the norm of the options
   bool converged = false;
+  std::vector<double> reductions = {};  ///< of each polynomial; empty if anything else was needed
 };
 
 /// y = A x for a symmetric positive definite A; x and y are distinct, n rows. Returns x . y, summed in fixed

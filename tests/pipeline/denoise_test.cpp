@@ -321,5 +321,24 @@ TEST(Denoise, NoPointLeavesItsRing) {
   EXPECT_LE(largest_difference(xyz, before), 4);
 }
 
+TEST(Denoise, StatisticsOfARunGiveItsBytesAgainAndThoseOfAnotherCloudOthers) {
+  const Flat before = sphere();
+  Flat first = before, again = before, other = before;
+  const DenoiseReport report = run(first, {});
+  DenoiseOptions same;
+  same.statistics = report.statistics;
+  run(again, same);
+  EXPECT_TRUE(same_bits(first, again));
+  DenoiseOptions louder = same;
+  louder.statistics->noise->sigma *= 2;
+  run(other, louder);
+  EXPECT_FALSE(same_bits(first, other)) << "they are used";
+  Flat outside = before;
+  outside[0] += 10;
+  const auto refused = denoise(outside.data(), outside.size() / 3, same, {});
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().code, ErrorCode::usage);
+}
+
 }  // namespace
 }  // namespace rfsmooth::pipeline

@@ -41,7 +41,8 @@ rfs_mesh::NoiseField even(double sigma, std::size_t n) {
 
 Positions smoothed(Mesh mesh, const rfs_mesh::NoiseField& noise, AutomaticReport& report) {
   rfs_mesh::NeighborTable near;
-  return automatic_smoothing(mesh, true, noise, spacing(mesh.positions), true, report, near, {});
+  Statistics whole;
+  return automatic_smoothing(mesh, true, noise, spacing(mesh.positions), true, report, near, {}, whole);
 }
 
 Positions smoothed(const Mesh& mesh, double sigma, AutomaticReport& report) {

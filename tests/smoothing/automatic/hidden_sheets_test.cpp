@@ -59,7 +59,9 @@ TEST(HiddenSheets, PointsOfAWallThinnerThanTheNoiseGoToItsTwoSheets) {
   for (const double measured : {1.0, 1.1}) {  // walls raise the measured noise
     Sheet sheet(1, 1);
     const double film = sheet.error();
-    const HiddenSheets found = split_hidden_sheets(*sheet.field, measured, sheet.height, sheet.own, {});
+    std::optional<Statistics::Sheets> known;
+    const HiddenSheets found =
+        split_hidden_sheets(*sheet.field, measured, sheet.height, sheet.own, 1, known, {});
     EXPECT_GT(found.evidence, 7);
     EXPECT_NEAR(found.variance * measured * measured, 1, 0.15);
     EXPECT_NEAR(double(found.split), kSide * kSide / 3.0, kSide * kSide / 20.0);
@@ -71,7 +73,8 @@ TEST(HiddenSheets, LouderNoiseIsNotTakenForThem) {
   for (const double louder : {1.2, 1.4, 1.8}) {
     Sheet sheet(0, louder);
     const std::vector<float> before = sheet.height;
-    const HiddenSheets found = split_hidden_sheets(*sheet.field, 1, sheet.height, sheet.own, {});
+    std::optional<Statistics::Sheets> known;
+    const HiddenSheets found = split_hidden_sheets(*sheet.field, 1, sheet.height, sheet.own, 1, known, {});
     EXPECT_LT(found.evidence, 7) << louder;
     EXPECT_EQ(found.split, 0u);
     EXPECT_EQ(sheet.height, before);
@@ -82,7 +85,8 @@ TEST(HiddenSheets, LouderNoiseIsNotTakenForThem) {
 TEST(HiddenSheets, UniformNoiseIsNotTakenForThem) {
   Sheet sheet(0, 1, Noise::uniform);
   const std::vector<float> before = sheet.height;
-  EXPECT_EQ(split_hidden_sheets(*sheet.field, 1, sheet.height, sheet.own, {}).split, 0u);
+  std::optional<Statistics::Sheets> known;
+  EXPECT_EQ(split_hidden_sheets(*sheet.field, 1, sheet.height, sheet.own, 1, known, {}).split, 0u);
   EXPECT_EQ(sheet.height, before);
 }
 

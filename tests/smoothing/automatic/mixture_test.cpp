@@ -14,7 +14,8 @@ using Values = std::vector<float>;
 TEST(Mixture, AloneTheDataAreTheirOwnMixture) {
   const Values data{1, -2, 3};
   Values height, own;
-  Mixture(data).average(height, own, {});
+  std::vector<double> shares;
+  Mixture(data).average(height, own, shares, {});
   EXPECT_EQ(height, data);
   EXPECT_EQ(own, Values(3, 1));
 }
@@ -24,7 +25,8 @@ TEST(Mixture, LargeEvidenceDecidesAndEvidenceAddsUpAlongTheChain) {
   mixture.add({1, 1, 1}, {0.5F, 0.5F, 0.5F}, {60, -60, 60}, {});
   mixture.add({2, 2, 2}, {0.1F, 0.1F, 0.1F}, {60, 60, -60}, {});  // in all: 120, 0, 0
   Values height, own;
-  mixture.average(height, own, {});
+  std::vector<double> shares;
+  mixture.average(height, own, shares, {});
   EXPECT_NEAR(height[0], 2, 1e-9);
   EXPECT_NEAR(own[0], 0.1, 1e-6);
   EXPECT_GT(height[1], 0);  // the data and the second candidate, by their shares in the cloud
@@ -37,7 +39,8 @@ TEST(Mixture, WhereThereIsNoPredictionTheOthersServe) {
   mixture.add({1, 7}, {0.5F, 0.5F}, {60, std::nanf("")}, {});
   mixture.add({2, 2}, {0.1F, 0.1F}, {-120, 60}, {});
   Values height, own;
-  mixture.average(height, own, {});
+  std::vector<double> shares;
+  mixture.average(height, own, shares, {});
   EXPECT_NEAR(height[0], 1, 1e-9);
   EXPECT_NEAR(height[1], 2, 1e-9);
 }
@@ -49,12 +52,14 @@ TEST(Mixture, TheRestOfTheCloudOutvotesFaintEvidence) {
   Mixture mixture(zero);
   mixture.add(one, zero, gain, {});
   Values height, own;
-  mixture.average(height, own, {});
+  std::vector<double> shares;
+  mixture.average(height, own, shares, {});
   EXPECT_GT(height[7], 0.9);
   gain[7] = -30;  // but certainty counts
   Mixture certain(zero);
   certain.add(one, zero, gain, {});
-  certain.average(height, own, {});
+  shares.clear();
+  certain.average(height, own, shares, {});
   EXPECT_LT(height[7], 0.01);
 }
 

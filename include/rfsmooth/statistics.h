@@ -1,0 +1,82 @@
+/// What `denoise` measures on a cloud as a whole, as a value. Each part that is there is used; each that is
+/// not is measured and entered. So the statistics that a run fills in give the same bytes when used again,
+/// and parts of a cloud that are smoothed one by one with the statistics of the whole fit together.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace rfsmooth {
+
+/// How large the noise of a cloud is, and how many neighbours show it.
+struct NoiseScale {
+  double sigma = 0;            ///< of the whole cloud, along the normal, world units
+  std::size_t neighbours = 0;  ///< m: what a quadric needs
+  double radius = 0;           ///< median distance to the m-th neighbour, world units
+};
+
+/// The noise of a cloud: one figure, and what differs from it from place to place.
+struct NoiseModel {
+  double sigma = 0;    ///< standard deviation along the normal, world units: typical of the cloud
+  double shape = 0;    ///< part of the scatter taken off as shape, 0 to 0.6; above half little is sure
+  double spacing = 0;  ///< mean distance to the nearest neighbour, of up to 50,000 points
+  std::size_t neighbours = 0;  ///< of the fits that it was measured by
+  double shared = 1;  ///< points that say as much as one, since they share the noise; 1: each its own
+  double step = 0;    ///< typical distance between depths that come in steps, world units; 0: none
+  std::vector<Eigen::Vector3d> sites;  ///< places, around the middle of the box; one where noise is even
+  std::vector<double> at_sites;        ///< sigma there, world units
+};
+
+/// What `denoise` measures on a cloud as a whole. Lengths are in world units.
+struct Statistics {
+  /// The box of the finite points. Its middle is the origin of all that is computed.
+  struct Box {
+    Eigen::Vector3d low = Eigen::Vector3d::Zero(), high = Eigen::Vector3d::Zero();
+  };
+  /// What tells outliers from others.
+  struct Outlying {
+    NoiseScale scale;
+    double reach = 0;  ///< median distance to the eighth neighbour
+  };
+  /// Points several times noisier than their neighbours.
+  struct Tails {
+    double share = 0;   ///< of the points; 0: none
+    double times = 1;   ///< their standard deviation over that of the others
+    double narrow = 1;  ///< standard deviation of the others over what was measured for all
+  };
+  /// A scale of smoothing: patches of so many points, around seeds that are left of so many thinnings.
+  struct Scale {
+    std::size_t members = 0, thinnings = 0;
+  };
+  /// A pass over all scales; clouds with tails take two.
+  struct Pass {
+    std::vector<double> reductions;  ///< of the residual, by each polynomial of the guide's fairing
+    std::optional<Scale> narrow;     ///< stands for the data where points share their noise
+    std::vector<Scale> scales;       ///< ascending
+    std::vector<double> shares;      ///< of the cloud that the data and each scale serve best
+  };
+  /// Walls thinner than the noise.
+  struct Sheets {
+    double evidence = 0;  ///< nats for two sheets
+    double variance = 1;  ///< of the noise that leaves, over what was measured
+  };
+
+  std::optional<Box> box;
+  std::optional<std::size_t> points;  ///< of the whole cloud: finite, distinct, without outliers
+  std::optional<Outlying> outlying;
+  /// For a cloud that is smoothed in parts: a corner of the cubes that points are grouped in, around the
+  /// middle of the box. It is not entered; without it groups are of the whole cloud.
+  std::optional<Eigen::Vector3d> corner;
+  std::optional<NoiseScale> scale;
+  std::optional<double> spacing;  ///< mean distance to the nearest neighbour, of all points
+  std::optional<NoiseModel> noise;
+  std::optional<Tails> tails;
+  std::vector<Pass> passes;
+  std::optional<Sheets> sheets;
+  std::optional<bool> thin_walls;  ///< whether walls of a few sigma are parted
+};
+
+}  // namespace rfsmooth
