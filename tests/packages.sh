@@ -1,6 +1,6 @@
 # Sourced by tests/run.sh and clouds/demo.sh: what is needed from Debian's packages, and how to get what is missing.
 core_packages="g++ cmake ninja-build ccache libeigen3-dev libtbb-dev libfmt-dev nlohmann-json3-dev libcli11-dev zlib1g-dev libpng-dev"
-test_packages="libgtest-dev libgmock-dev libbenchmark-dev clang-14 clang-format-14 clang-tidy-14 libclang-rt-14-dev libpcl-dev libcgal-dev libopen3d-dev libcgal-demo pkg-config doxygen libflann-dev liblz4-dev libnanoflann-dev zsh groff-base python3 python3-dev python3-venv python3-numpy python3-open3d python3-pytest chromium chromium-driver"
+test_packages="libgtest-dev libgmock-dev libbenchmark-dev clang-14 clang-format-14 clang-tidy-14 libclang-rt-14-dev libpcl-dev libcgal-dev libopen3d-dev libcgal-demo pkg-config doxygen libflann-dev liblz4-dev libnanoflann-dev zsh groff-base python3 python3-dev python3-venv python3-numpy python3-open3d python3-pytest chromium chromium-driver python3-distributed slurm-wlm munge"
 
 # install_missing PACKAGE...: installs those that are not there; says so and fails where that is not allowed.
 install_missing() {

@@ -68,6 +68,7 @@ Command info_command();
 Command compare_command();
 Command report_command();
 Command flows_command();
+Command tiles_command();
 Command man_command();
 Command completion_command();
 

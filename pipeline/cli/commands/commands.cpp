@@ -12,9 +12,9 @@ void polish(Command& command) {
 }
 
 std::vector<Command> all_commands() {
-  return {denoise_command(), mesh_command(),    smooth_mesh_command(), reconstruct_command(),
-          info_command(),    compare_command(), render_command(),      report_command(),
-          flows_command(),   man_command(),     completion_command()};
+  return {denoise_command(),     tiles_command(), mesh_command(),    smooth_mesh_command(),
+          reconstruct_command(), info_command(),  compare_command(), render_command(),
+          report_command(),      flows_command(), man_command(),     completion_command()};
 }
 
 }  // namespace rfsmooth::cli

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <limits>
 #include <memory>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -21,6 +22,7 @@
 #include "pipeline/cli/own_files.h"
 #include "pipeline/io/formats/las/las_scale.h"
 #include "pipeline/page/page.h"
+#include "pipeline/tiles/in_one_process.h"
 
 namespace rfsmooth::cli {
 
@@ -37,6 +39,7 @@ struct DenoiseCommandOptions {
   bool mark_outliers = false;
   bool keep_scale = false;
   std::optional<std::string> html;
+  std::optional<std::string> memory;
   NormalsFields normals;
   TraceFile trace;
   JobOptions job;
@@ -59,6 +62,11 @@ struct DenoiseCommandOptions {
     visit(OptionInfo{"html", "a page to look at what was done, for browsers (see report); of one input",
                      "file"},
           self.html);
+    visit(OptionInfo{"memory",
+                     "take no more than that (8G, 500M): larger clouds are smoothed in tiles, on the disk of "
+                     "the output; auto: what the machine has",
+                     ""},
+          self.memory);
     NormalsFields::describe(self.normals, visit);
     TraceFile::describe(self.trace, visit);
   }
@@ -70,7 +78,8 @@ struct DenoiseCommandOptions {
 void enter(const DenoiseReport& done, const DenoiseCommandOptions& options, ordered_json& entry) {
   DenoiseCommandOptions used = options;
   used.denoise = done.effective;
-  used.html.reset();  // what is written beside the cloud is not how it was made
+  used.memory.reset();  // as is the memory it was made in
+  used.html.reset();    // what is written beside the cloud is not how it was made
   entry["options"] = effective_options(used, options.job.files);
   entry["counts"] = {{"points", done.points},       {"finite", done.finite},    {"distinct", done.distinct},
                      {"moved", done.moved},         {"faces", done.faces},      {"edges", done.edges},
@@ -285,6 +294,80 @@ void check_denoise(const DenoiseCommandOptions& options, const Invocation& typed
   check_no_cloud_target(*options.html, options.job.files.force, "page");
 }
 
+/// Bytes: a number and K, M, G or T. \throw Failure (usage).
+std::uint64_t bytes_of(const std::string& text) {
+  constexpr std::string_view kUnits = "KMGT";
+  char* end = nullptr;
+  double value = std::strtod(text.c_str(), &end);
+  if (const auto unit = kUnits.find(*end); *end != '\0' && unit != std::string_view::npos) {
+    value *= std::pow(1e3, double(unit + 1));
+    ++end;
+  }
+  if (end == text.c_str() || *end != '\0' || !(value >= 1e6) || !(value < 1e18))
+    throw Failure({ErrorCode::usage, fmt::format("--memory takes bytes, 8G or 500M say, not '{}'", text)});
+  return std::uint64_t(value);
+}
+
+/// What the options ask for that is made of the whole cloud at once; empty: nothing.
+std::string needs_whole_cloud(const DenoiseCommandOptions& options) {
+  const FileOptions& files = options.job.files;
+  const std::pair<bool, const char*> needs[] = {{options.normals.normals, "--normals"},
+                                                {options.html.has_value(), "--html"},
+                                                {options.strength_field.has_value(), "--strength-field"},
+                                                {options.write_displacement, "--write-displacement"},
+                                                {options.marks(), "marked outliers"},
+                                                {options.removes(), "--outliers remove"},
+                                                {options.trace.trace.has_value(), "--trace"},
+                                                {options.job.run.report.has_value(), "--report"},
+                                                {files.format || files.encoding, "another format"}};
+  for (const auto& [asked, name] : needs)
+    if (asked) return name;
+  return "";
+}
+
+/// The memory to stay in, if the cloud is smoothed in tiles: where one file needs more. None: as a whole.
+std::optional<std::uint64_t> memory_of_tiles(const DenoiseCommandOptions& options, const Job& job,
+                                             const Context& context) {
+  const std::optional<std::uint64_t> asked =
+      options.memory ? std::optional(bytes_of(*options.memory)) : std::nullopt;
+  if (job.input == "-" || job.output == "-") return std::nullopt;
+  const auto rows = pipeline::tiles::rows_in_pieces(job.input, context);
+  if (!rows) return std::nullopt;
+  const std::optional<std::size_t> there = available_memory();
+  if (!asked && !there) return std::nullopt;
+  const std::uint64_t most = asked ? *asked : std::uint64_t(*there);
+  std::error_code error;
+  const std::uint64_t file = std::filesystem::file_size(job.input, error);
+  if (rfsmooth::denoise_memory(std::size_t(*rows)) + file <= most) return std::nullopt;
+  if (const std::string what = needs_whole_cloud(options); !what.empty()) {
+    if (!asked) return std::nullopt;  // refused where the whole cloud is, with both figures
+    throw Failure({ErrorCode::usage,
+                   fmt::format("{}: larger than --memory, and {} needs the whole cloud", job.input, what)});
+  }
+  return most;
+}
+
+/// One cloud in tiles. \return the exit code, or none if it is to be smoothed as a whole.
+std::optional<int> denoise_in_tiles(const DenoiseCommandOptions& options, const Invocation& typed) {
+  const std::vector<Job> jobs = plan_jobs(typed.arguments, options.job.files.output);
+  if (jobs.size() != 1) return std::nullopt;
+  const Job& job = jobs.front();
+  Console console(options.job.talk);
+  console.progress().plan({{"tiles", 1}});
+  const Context context = console.context(options.job.run.threads.value_or(0));
+  const auto memory = memory_of_tiles(options, job, context);
+  if (!memory) return std::nullopt;
+  need_own_target(job, options.job.files.output);
+  const pipeline::tiles::PlanOptions how = pipeline::tiles::plan_within(*memory);
+  console.say(fmt::format("{}: too large for {:.3g} GB: smoothed in tiles of {} points", job.input,
+                          double(*memory) / 1e9, how.tile_points));
+  pipeline::tiles::smooth_in_tiles(job.input, job.output, options.job.files.force, how, options.denoise,
+                                   context);
+  mark_as_own(job.output);
+  console.say(fmt::format("{} -> {}", job.input, job.output));
+  return 0;
+}
+
 }  // namespace
 
 Command denoise_command() {
@@ -316,6 +399,7 @@ Command denoise_command() {
                       }};
   command.run = [options, page, on_cloud = command.on_cloud,
                  known = command.options](const Invocation& typed) {
+    if (const auto tiled = denoise_in_tiles(*options, typed)) return *tiled;
     const int code = run_cloud_jobs("denoise", options->job, typed, on_cloud);
     if (code == 0 && options->html)
       write_page(*options, std::move(*page), command_line("denoise", typed, known));

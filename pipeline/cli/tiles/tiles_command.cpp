@@ -1,0 +1,204 @@
+/// rfsmooth tiles: a cloud larger than memory, or than a machine, step by step in a folder.
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <map>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "pipeline/cli/commands/command.h"
+#include "pipeline/cli/console/console.h"
+#include "pipeline/cli/files/file_options.h"
+#include "pipeline/cli/options/json_values.h"
+#include "pipeline/cli/own_files.h"
+#include "pipeline/tiles/job.h"
+
+namespace rfsmooth::cli {
+
+namespace {
+
+using nlohmann::ordered_json;
+using pipeline::tiles::Job;
+
+struct TilesOptions {
+  DenoiseOptions denoise;
+  int tile_points = 5'000'000, sample_points = 1'000'000;
+  bool json = false, force = false;
+  std::optional<int> threads;
+  TalkOptions talk;
+
+  template <class Self, class Visit>
+  static void describe(Self& self, Visit&& visit) {
+    visit(OptionInfo{"tile-points", "plan: most points of a tile, without what lies around it", "points", 1,
+                     1e9},
+          self.tile_points);
+    visit(OptionInfo{"sample-points", "plan: points that tell what the whole cloud is like", "points", 1000,
+                     1e9},
+          self.sample_points);
+    visit(OptionInfo{"json", "status: print JSON", ""}, self.json);
+    visit(OptionInfo{"force", "join: replace existing files", ""}, self.force);
+    visit(OptionInfo{"threads", "threads to use; auto: all cores; the result is the same", "", 1, 1024},
+          self.threads);
+    TalkOptions::describe(self.talk, visit);
+    DenoiseOptions::describe(self.denoise, visit);
+  }
+};
+
+[[noreturn]] void misused(const std::string& message) {
+  throw Failure({ErrorCode::usage, message});
+}
+
+/// The options that the plan was made with.
+DenoiseOptions planned_options(const Job& job) {
+  DenoiseOptions denoise;
+  std::vector<CommandOption> bound;
+  collect(denoise, bound);
+  for (const CommandOption& option : bound) {
+    const auto value = job.options.find(option.name);
+    if (value == job.options.end()) continue;
+    if (value->is_null() && !option.optional) continue;
+    assign(option, value->is_null()     ? "auto"
+                   : value->is_string() ? value->get<std::string>()
+                                        : value->dump());
+  }
+  for (const CommandOption& option : bound)
+    if (option.finish) option.finish();
+  return denoise;
+}
+
+std::size_t tile_number(const std::string& text) {
+  std::size_t tile = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), tile);
+  if (error != std::errc() || end != text.data() + text.size())
+    misused(fmt::format("'{}' is no number of a tile", text));
+  return tile;
+}
+
+void plan_tiles(TilesOptions& options, const std::vector<std::string>& arguments, const Context& context,
+                Console& console) {
+  if (arguments.size() < 2) misused("rfsmooth tiles plan takes IN... JOB");
+  if (options.denoise.outliers == Outliers::mark || options.denoise.outliers == Outliers::remove)
+    misused("in tiles outliers are kept or smoothed: every row stays, and no field is added");
+  std::vector<CommandOption> bound;
+  collect(options.denoise, bound);
+  const Job job =
+      pipeline::tiles::plan_job({arguments.begin(), arguments.end() - 1}, arguments.back(),
+                                {std::uint64_t(options.tile_points), std::uint64_t(options.sample_points)},
+                                json_object(bound), context);
+  console.say(fmt::format("{}: {} points in {} tiles", arguments.back(), job.points, job.tiles.size()));
+}
+
+void join_tiles(const TilesOptions& options, const std::vector<std::string>& arguments,
+                const Context& context, Console& console) {
+  if (arguments.size() != 2) misused("rfsmooth tiles join takes JOB OUT");
+  const Job job = pipeline::tiles::open_job(arguments[0]);
+  std::vector<std::string> outputs = {arguments[1]};
+  if (job.inputs.size() > 1 || std::filesystem::is_directory(arguments[1])) {
+    outputs.clear();
+    std::filesystem::create_directories(arguments[1]);
+    std::map<std::string, int> names;
+    for (const auto& input : job.inputs) {
+      const auto name = std::filesystem::path(input.path).filename();
+      if (++names[name.string()] > 1) misused(fmt::format("two inputs are called '{}'", name.string()));
+      outputs.push_back((std::filesystem::path(arguments[1]) / name).string());
+    }
+  }
+  pipeline::tiles::join_job(job, outputs, options.force, context);
+  for (const std::string& output : outputs) mark_as_own(output);
+  console.say(fmt::format("{}: {} points, {} file{}", arguments[1], job.points, outputs.size(),
+                          outputs.size() == 1 ? "" : "s"));
+}
+
+void tell_status(const TilesOptions& options, const std::vector<std::string>& arguments,
+                 const Context& context) {
+  if (arguments.size() != 1) misused("rfsmooth tiles status takes JOB");
+  const auto s = pipeline::tiles::job_status(pipeline::tiles::open_job(arguments[0]), context);
+  if (options.json)
+    fmt::print("{}\n", ordered_json({{"points", s.points},
+                                     {"tiles", s.tiles},
+                                     {"measured", s.measured},
+                                     {"settled", s.settled},
+                                     {"halo", s.halo},
+                                     {"run", s.run},
+                                     {"missing", s.missing}})
+                           .dump(2));
+  else
+    fmt::print("{} points in {} tiles: {} measured, {}settled, {} run\n", s.points, s.tiles, s.measured,
+               s.settled ? "" : "not ", s.run);
+}
+
+/// `measure`, `settle` and `run`.
+void work_on_tiles(const std::string& step, const std::vector<std::string>& arguments,
+                   const Context& context) {
+  if (arguments.empty() || (step == "settle") != (arguments.size() == 1))
+    misused(fmt::format("rfsmooth tiles {} takes JOB{}", step, step == "settle" ? "" : " TILE..."));
+  const Job job = pipeline::tiles::open_job(arguments[0]);
+  const DenoiseOptions denoise = planned_options(job);
+  if (step == "settle") return pipeline::tiles::settle_job(job, denoise, context);
+  for (std::size_t i = 1; i < arguments.size(); ++i) {
+    const std::size_t tile = tile_number(arguments[i]);
+    if (step == "measure")
+      pipeline::tiles::measure_tile(job, tile, context);
+    else
+      pipeline::tiles::run_tile(job, tile, denoise, context);
+  }
+}
+
+int run_tiles(TilesOptions& options, const Invocation& typed) {
+  static const std::vector<std::string> kSteps = {"plan", "measure", "settle", "run", "join", "status"};
+  const std::string step = typed.arguments.empty() ? "" : typed.arguments.front();
+  if (std::find(kSteps.begin(), kSteps.end(), step) == kSteps.end())
+    misused(fmt::format("rfsmooth tiles takes one of {}", fmt::join(kSteps, ", ")));
+  if (step != "plan") {
+    std::vector<CommandOption> planned;
+    DenoiseOptions unused;
+    collect(unused, planned);
+    for (const auto& [name, text] : typed.options)
+      if (std::any_of(planned.begin(), planned.end(), [&n = name](const auto& o) { return o.name == n; }))
+        misused(fmt::format("--{} is for rfsmooth tiles plan; the other steps take it from there", name));
+  }
+  const std::vector<std::string> arguments(typed.arguments.begin() + 1, typed.arguments.end());
+  Console console(options.talk);
+  std::vector<StageShare> stages = denoising_stages(false);
+  if (step == "plan") stages = {{"plan", 1}};
+  if (step == "join") stages = {{"join", 1}};
+  console.progress().plan(stages);
+  const Context context = console.context(options.threads.value_or(0));
+  if (step == "plan")
+    plan_tiles(options, arguments, context, console);
+  else if (step == "join")
+    join_tiles(options, arguments, context, console);
+  else if (step == "status")
+    tell_status(options, arguments, context);
+  else
+    work_on_tiles(step, arguments, context);
+  return 0;
+}
+
+}  // namespace
+
+Command tiles_command() {
+  auto options = std::make_shared<TilesOptions>();
+  Command command;
+  command.name = "tiles";
+  command.summary = "take the noise out of clouds larger than memory, tile by tile";
+  command.usage = {"plan [options] IN... JOB", "measure JOB TILE...", "settle JOB",
+                   "run JOB TILE...",          "join JOB OUT",        "status JOB [--json]"};
+  command.description =
+      "Smooths a cloud (binary PLY, binary PCD or LAS, one file or many that are one cloud) in tiles, in a "
+      "folder JOB. plan cuts it; measure, for every tile, takes a sample; settle finds from it what the "
+      "cloud "
+      "as a whole is like; run, for every tile, smooths it; join writes the files with x, y, z replaced. "
+      "Tiles are numbered from 0; measure and run may go on in any order, in any number of processes, and "
+      "again: what is there complete is not made again. The same inputs give the same bytes. On one machine "
+      "'rfsmooth denoise --memory 8G IN OUT' does all of it.";
+  collect(*options, command.options);
+  command.everyday = {"tile-points", "sample-points", "strength", "noise",
+                      "threads",     "json",          "force",    "quiet"};
+  polish(command);
+  command.run = [options](const Invocation& typed) { return run_tiles(*options, typed); };
+  return command;
+}
+
+}  // namespace rfsmooth::cli

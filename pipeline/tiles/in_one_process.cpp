@@ -1,0 +1,88 @@
+#include "pipeline/tiles/in_one_process.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "pipeline/io/stream/atomic_file.h"
+#include "pipeline/tiles/row_file.h"
+
+namespace rfsmooth::pipeline::tiles {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// A folder that is removed with all that is in it.
+class PassingFolder {
+ public:
+  explicit PassingFolder(fs::path path) : path_(std::move(path)) {
+    std::error_code error;
+    if (!fs::create_directory(path_, error))
+      throw Failure({ErrorCode::cannot_write, fmt::format("{}: cannot make the folder: {}", path_.string(),
+                                                          error ? error.message() : "it exists")});
+  }
+  ~PassingFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  PassingFolder(const PassingFolder&) = delete;
+  PassingFolder& operator=(const PassingFolder&) = delete;
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+/// A context that reports its stages as the part [from, to] of the stage "tiles".
+Context part_of(const Context& context, double from, double to) {
+  Context part = context;
+  part.progress = nullptr;
+  if (context.progress)
+    part.progress = [&context, from, to](std::string_view stage, double fraction) {
+      const bool whole = stage == "plan" || stage == "join";  // others are many stages of one step
+      return context.progress("tiles", whole ? from + (to - from) * fraction : from);
+    };
+  return part;
+}
+
+}  // namespace
+
+PlanOptions plan_within(std::uint64_t memory) {
+  // At its peak a step takes some 700 bytes a point, records and all (denoise_memory); a third is left for
+  // the halo of a tile and for tiles that are not of even size.
+  constexpr std::uint64_t kBytesPerPoint = 1050, kFixed = std::uint64_t{256} << 20, kFewest = 20000;
+  PlanOptions how;
+  how.tile_points = std::max(kFewest, (std::max(memory, kFixed) - kFixed) / kBytesPerPoint);
+  how.sample_points = std::min(how.sample_points, how.tile_points);
+  return how;
+}
+
+std::optional<std::uint64_t> rows_in_pieces(const std::string& path, const Context& context) {
+  std::error_code error;
+  if (!fs::is_regular_file(path, error)) return std::nullopt;
+  const auto rows = guarded([&] { return RowFile(path, context).rows(); });
+  return rows.ok() ? std::optional(rows.value()) : std::nullopt;
+}
+
+void smooth_in_tiles(const std::string& input, const std::string& output, bool force, const PlanOptions& how,
+                     const DenoiseOptions& options, const Context& context) {
+  constexpr double kPlan = 0.03, kSettled = 0.1, kJoin = 0.98;  // shares of the time, for the bar
+  io::check_target(output, force);
+  const fs::path target(output);
+  const PassingFolder folder(target.parent_path() / fmt::format(".{}.tiles-{}",
+                                                                target.filename().string().substr(0, 200),
+                                                                ::getpid()));
+  const Job job = plan_job({input}, folder.path(), how, nullptr, part_of(context, 0, kPlan));
+  for (std::size_t t = 0; t < job.tiles.size(); ++t) measure_tile(job, t, part_of(context, kPlan, kPlan));
+  settle_job(job, options, part_of(context, kPlan, kSettled));
+  for (std::size_t t = 0; t < job.tiles.size(); ++t) {
+    const double each = (kJoin - kSettled) / double(job.tiles.size());
+    run_tile(job, t, options, part_of(context, kSettled + each * double(t), kSettled + each * double(t + 1)));
+    context.report("tiles", kSettled + each * double(t + 1));
+  }
+  join_job(job, {output}, force, part_of(context, kJoin, 1));
+}
+
+}  // namespace rfsmooth::pipeline::tiles

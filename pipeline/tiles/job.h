@@ -1,0 +1,94 @@
+/// A cloud larger than memory, smoothed in tiles: a folder that holds all there is to know, and steps that
+/// each do their part of the work in it.
+///
+///     plan     cuts the cloud into tiles of about as many points, each row in one of them
+///     measure  takes a tile's part of the sample
+///     settle   smooths the sample, which says what the cloud as a whole is like (rfsmooth/statistics.h)
+///     run      smooths a tile with what lies around it, and keeps what is its own
+///     join     copies the inputs with the new coordinates in them
+///
+/// Tiles may be measured and run in any order, by any number of processes, on any machines that see the
+/// folder, and again: whatever is there complete is not made again, and a file is there complete or not at
+/// all. The same inputs give the same bytes. Memory: plan and join a few MB and 128 KB a tile, the others
+/// what `denoise` takes for the points of a tile and its surroundings, or of the sample.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include <rfsmooth/denoise.h>
+
+namespace rfsmooth::pipeline::tiles {
+
+/// An input and its part of the rows.
+struct JobInput {
+  std::string path;
+  std::uint64_t rows = 0;
+  std::uint64_t bytes = 0;
+  std::int64_t changed = 0;  ///< when it was last, as the file system says it
+};
+
+/// A tile: the box of its points, and how many there are.
+struct Tile {
+  Statistics::Box box;
+  std::uint64_t points = 0;
+};
+
+/// What the plan says.
+struct Job {
+  std::filesystem::path folder;
+  std::vector<JobInput> inputs;
+  Statistics::Box box;       ///< of the finite points
+  std::uint64_t points = 0;  ///< finite rows
+  std::uint64_t sample = 0;  ///< points that the statistics are of
+  std::vector<Tile> tiles;
+  nlohmann::ordered_json options;  ///< of denoise, as the command keeps them
+
+  std::filesystem::path cut(std::size_t tile) const;      ///< its points
+  std::filesystem::path sampled(std::size_t tile) const;  ///< its part of the sample
+  std::filesystem::path done(std::size_t tile) const;     ///< its points, smoothed
+  std::filesystem::path settled() const;                  ///< the statistics and the halo, JSON
+};
+
+/// How to plan.
+struct PlanOptions {
+  std::uint64_t tile_points = 5'000'000;    ///< most points of a tile, without what lies around it
+  std::uint64_t sample_points = 1'000'000;  ///< of all tiles together
+};
+
+/// Plans a job, unless the folder holds one of the same inputs and options. \throw Failure.
+Job plan_job(const std::vector<std::string>& inputs, const std::filesystem::path& folder,
+             const PlanOptions& how, const nlohmann::ordered_json& options, const Context& context);
+
+/// Reads the plan. \throw Failure (input_unreadable, or usage if an input changed since).
+Job open_job(const std::filesystem::path& folder);
+
+/// \throw Failure.
+void measure_tile(const Job& job, std::size_t tile, const Context& context);
+
+/// Needs every tile measured. \throw Failure (usage) naming the first that is not.
+void settle_job(const Job& job, const DenoiseOptions& options, const Context& context);
+
+/// Needs the job settled. \throw Failure.
+void run_tile(const Job& job, std::size_t tile, const DenoiseOptions& options, const Context& context);
+
+/// Needs every tile run. `outputs`: one for each input. Files in their place are replaced if `force`.
+/// \throw Failure (usage) naming the first tile that is not.
+void join_job(const Job& job, const std::vector<std::string>& outputs, bool force, const Context& context);
+
+/// How far a job is.
+struct JobStatus {
+  std::size_t tiles = 0, measured = 0, run = 0;
+  bool settled = false;
+  double halo = 0;  ///< width of the surroundings, world units; 0 until settled
+  std::uint64_t points = 0;
+  std::vector<std::size_t> missing;  ///< tiles not run
+};
+/// Reads every result in full: one that is not as it was written counts as missing.
+JobStatus job_status(const Job& job, const Context& context);
+
+}  // namespace rfsmooth::pipeline::tiles

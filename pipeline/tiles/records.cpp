@@ -1,0 +1,100 @@
+#include "pipeline/tiles/records.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace rfsmooth::pipeline::tiles {
+
+namespace {
+
+constexpr std::uint64_t kMark = 0x31656c6974736672;  // "rfstile1"
+constexpr std::size_t kHeld = 4096;                  // records, 128 KB
+constexpr std::uint64_t kHashStart = 0xcbf29ce484222325;
+
+/// Fowler, Noll and Vo's hash 1a, by words of eight bytes.
+std::uint64_t hashed(std::uint64_t hash, const Record* records, std::size_t count) {
+  std::array<std::uint64_t, 4> words{};
+  for (std::size_t i = 0; i < count; ++i) {
+    std::memcpy(words.data(), records + i, sizeof words);
+    for (const std::uint64_t word : words) hash = ((hash ^ word) * 0x100000001b3) ^ (hash >> 47);
+  }
+  return hash;
+}
+
+using Trailer = std::array<std::uint64_t, 3>;
+
+}  // namespace
+
+RecordWriter::RecordWriter(const std::filesystem::path& path, const Context& context)
+    : file_(path, true, context), hash_(kHashStart) {}
+
+void RecordWriter::add(const Record& record) {
+  held_.push_back(record);
+  if (held_.size() == kHeld) flush();
+}
+
+void RecordWriter::flush() {
+  hash_ = hashed(hash_, held_.data(), held_.size());
+  count_ += held_.size();
+  file_.write({reinterpret_cast<const char*>(held_.data()), held_.size() * sizeof(Record)});
+  held_.clear();
+}
+
+void RecordWriter::commit() {
+  flush();
+  const Trailer trailer = {kMark, count_, hash_};
+  file_.write({reinterpret_cast<const char*>(trailer.data()), sizeof trailer});
+  file_.commit(true);
+}
+
+RecordReader::RecordReader(std::filesystem::path path, const Context& context)
+    : path_(std::move(path)), context_(context) {
+  const io::Source source(path_, context_);
+  Trailer trailer{};
+  if (source.size() >= sizeof trailer)
+    source.read(source.size() - sizeof trailer, reinterpret_cast<char*>(trailer.data()), sizeof trailer,
+                context_);
+  if (trailer[0] != kMark || source.size() != trailer[1] * sizeof(Record) + sizeof trailer)
+    source.fail("is not complete; the step that makes it makes it again");
+  count_ = trailer[1];
+}
+
+const Record* RecordReader::peek() {
+  if (at_ == count_) return nullptr;
+  if (at_ == from_ + held_.size()) {
+    // Opened for every buffer: there may be more tiles than a process may have files open.
+    from_ = at_;
+    held_.resize(std::size_t(std::min<std::uint64_t>(kHeld, count_ - at_)));
+    io::Source(path_, context_)
+        .read(from_ * sizeof(Record), reinterpret_cast<char*>(held_.data()), held_.size() * sizeof(Record),
+              context_);
+  }
+  return &held_[std::size_t(at_ - from_)];
+}
+
+std::optional<std::uint64_t> complete_records(const std::filesystem::path& path, const Context& context) {
+  if (!std::filesystem::exists(path)) return std::nullopt;
+  const io::Source source(path, context);
+  Trailer trailer{};
+  if (source.size() < sizeof trailer || (source.size() - sizeof trailer) % sizeof(Record) != 0)
+    return std::nullopt;
+  source.read(source.size() - sizeof trailer, reinterpret_cast<char*>(trailer.data()), sizeof trailer,
+              context);
+  const std::uint64_t count = (source.size() - sizeof trailer) / sizeof(Record);
+  if (trailer[0] != kMark || trailer[1] != count) return std::nullopt;
+  std::uint64_t hash = kHashStart;
+  std::vector<Record> part;
+  for (std::uint64_t at = 0; at < count; at += part.size()) {
+    part.resize(std::size_t(std::min<std::uint64_t>(kHeld, count - at)));
+    source.read(at * sizeof(Record), reinterpret_cast<char*>(part.data()), part.size() * sizeof(Record),
+                context);
+    hash = hashed(hash, part.data(), part.size());
+  }
+  return hash == trailer[2] ? std::optional(count) : std::nullopt;
+}
+
+}  // namespace rfsmooth::pipeline::tiles

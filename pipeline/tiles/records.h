@@ -1,0 +1,62 @@
+/// Files of records (a row of the cloud and its coordinates) that tell whether they are complete.
+///
+/// The records, each 32 bytes, then 24 bytes: a mark, their number, and a hash of all their bytes. Numbers
+/// are little-endian, as the machines that this runs on.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <rfsmooth/context.h>
+
+#include "pipeline/io/stream/atomic_file.h"
+#include "pipeline/io/stream/source.h"
+
+namespace rfsmooth::pipeline::tiles {
+
+/// A row of the cloud, over all its files, and where its point is, world units.
+struct Record {
+  std::uint64_t row = 0;
+  double x = 0, y = 0, z = 0;
+};
+static_assert(sizeof(Record) == 32);
+
+/// Writes records; the file is there, complete, after commit().
+class RecordWriter {
+ public:
+  /// \throw Failure (cannot_write).
+  RecordWriter(const std::filesystem::path& path, const Context& context);
+  void add(const Record& record);
+  void commit();
+
+ private:
+  void flush();
+  io::AtomicFile file_;
+  std::vector<Record> held_;
+  std::uint64_t count_ = 0, hash_;
+};
+
+/// Reads records in order, a buffer at a time.
+class RecordReader {
+ public:
+  /// \throw Failure (input_unreadable) if the file is missing or of a size that it cannot have.
+  explicit RecordReader(std::filesystem::path path, const Context& context);
+  std::uint64_t size() const { return count_; }
+  /// The next record, or null behind the last.
+  const Record* peek();
+  void next() { ++at_; }
+
+ private:
+  std::filesystem::path path_;
+  const Context& context_;
+  std::vector<Record> held_;
+  std::uint64_t count_ = 0, from_ = 0, at_ = 0;
+};
+
+/// The number of records, if the file is there and every byte of it as it was written.
+std::optional<std::uint64_t> complete_records(const std::filesystem::path& path, const Context& context);
+
+}  // namespace rfsmooth::pipeline::tiles

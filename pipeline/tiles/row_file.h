@@ -1,0 +1,66 @@
+/// A cloud file as rows of bytes that are read and copied piece by piece, whatever its size.
+///
+/// Binary PLY (little-endian, points without lists), binary PCD, LAS. Text and compressed files have no row
+/// whose place could be known; they are refused with what to do. Any number of threads may read.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "pipeline/io/stream/sink.h"
+#include "pipeline/io/stream/source.h"
+#include "pipeline/io/table/cloud.h"
+
+namespace rfsmooth::pipeline::tiles {
+
+/// An open file.
+class RowFile {
+ public:
+  /// \throw Failure: input_unreadable, or usage for a file that cannot be read in pieces.
+  RowFile(const std::filesystem::path& path, const Context& context);
+
+  std::uint64_t rows() const { return rows_; }
+  /// The coarsest step that the coordinates are rounded to; 0 for floats.
+  double step() const;
+
+  /// Bytes of rows [first, first + count).
+  io::Bytes read(std::uint64_t first, std::size_t count, const Context& context) const;
+  /// The coordinates of row i of such bytes.
+  std::array<double, 3> get(const io::Bytes& rows, std::size_t i) const;
+  /// Sets them; a coordinate equal to the present one keeps its bytes.
+  void put(io::Bytes& rows, std::size_t i, const std::array<double, 3>& xyz) const;
+
+  /// Copies the file, each piece of rows as `change(first, rows)` leaves it. What a header says of the box
+  /// follows. Memory: one piece.
+  template <class Change>
+  void copy(io::Sink& to, Change&& change, const Context& context) const {
+    copy_ends(to, true, context);
+    for (std::uint64_t first = 0; first < rows_; first += kPiece) {
+      io::Bytes piece = read(first, std::size_t(std::min<std::uint64_t>(kPiece, rows_ - first)), context);
+      change(first, piece);
+      to.write({piece.data(), piece.size()});
+    }
+    copy_ends(to, false, context);
+  }
+  static constexpr std::uint64_t kPiece = 1 << 18;  ///< rows read at once
+
+  /// The bytes before the rows with the box [low, high] in them (LAS), for `copy`.
+  void set_box(const std::array<double, 3>& low, const std::array<double, 3>& high);
+  bool has_box() const { return las_; }
+
+ private:
+  void copy_ends(io::Sink& to, bool head, const Context& context) const;
+  void open_table(io::Cloud cloud, std::uint64_t at, const Context& context);
+
+  io::Source source_;
+  std::array<io::Field, 3> field_;
+  std::array<std::size_t, 3> offset_{};
+  std::uint64_t at_ = 0, rows_ = 0;
+  std::size_t row_ = 0;
+  bool las_ = false;
+  std::string head_;
+};
+
+}  // namespace rfsmooth::pipeline::tiles

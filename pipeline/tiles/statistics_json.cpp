@@ -1,0 +1,120 @@
+#include "pipeline/tiles/statistics_json.h"
+
+#include <cmath>
+
+namespace rfsmooth::pipeline::tiles {
+
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json json_of_place(const Eigen::Vector3d& p) {
+  return {p[0], p[1], p[2]};
+}
+
+Eigen::Vector3d place_of(const ordered_json& json) {
+  return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()};
+}
+
+ordered_json json_of_scale(const NoiseScale& scale) {
+  return {{"sigma", scale.sigma}, {"neighbours", scale.neighbours}, {"radius", scale.radius}};
+}
+
+NoiseScale scale_of(const ordered_json& json) {
+  return {json.at("sigma"), json.at("neighbours"), json.at("radius")};
+}
+
+ordered_json json_of_noise(const NoiseModel& noise) {
+  ordered_json json = {{"sigma", noise.sigma},      {"shape", noise.shape},
+                       {"spacing", noise.spacing},  {"neighbours", noise.neighbours},
+                       {"shared_by", noise.shared}, {"depth_step", noise.step},
+                       {"at_sites", noise.at_sites}};
+  json["sites"] = ordered_json::array();
+  for (const auto& p : noise.sites) json["sites"].push_back(json_of_place(p));
+  return json;
+}
+
+NoiseModel noise_of(const ordered_json& json) {
+  NoiseModel noise;
+  noise.sigma = json.at("sigma");
+  noise.shape = json.at("shape");
+  noise.spacing = json.at("spacing");
+  noise.neighbours = json.at("neighbours");
+  noise.shared = json.at("shared_by");
+  noise.step = json.at("depth_step");
+  noise.at_sites = json.at("at_sites").get<std::vector<double>>();
+  for (const auto& p : json.at("sites")) noise.sites.push_back(place_of(p));
+  return noise;
+}
+
+ordered_json json_of_patches(const Statistics::Scale& scale) {
+  return {{"members", scale.members}, {"thinnings", scale.thinnings}};
+}
+
+Statistics::Scale patches_of(const ordered_json& json) {
+  return {json.at("members"), json.at("thinnings")};
+}
+
+ordered_json json_of_pass(const Statistics::Pass& pass) {
+  ordered_json json = {{"reductions", pass.reductions}, {"shares", pass.shares}};
+  json["scales"] = ordered_json::array();
+  for (const auto& s : pass.scales) json["scales"].push_back(json_of_patches(s));
+  if (pass.narrow) json["narrow"] = json_of_patches(*pass.narrow);
+  return json;
+}
+
+Statistics::Pass pass_of(const ordered_json& json) {
+  Statistics::Pass pass;
+  pass.reductions = json.at("reductions").get<std::vector<double>>();
+  pass.shares = json.at("shares").get<std::vector<double>>();
+  for (const auto& s : json.at("scales")) pass.scales.push_back(patches_of(s));
+  if (json.contains("narrow")) pass.narrow = patches_of(json.at("narrow"));
+  return pass;
+}
+
+}  // namespace
+
+ordered_json json_of(const Statistics& all) {
+  ordered_json json = ordered_json::object();
+  if (all.box) json["box"] = {{"low", json_of_place(all.box->low)}, {"high", json_of_place(all.box->high)}};
+  if (all.points) json["points"] = *all.points;
+  if (all.outlying)
+    json["outlying"] = {{"scale", json_of_scale(all.outlying->scale)}, {"reach", all.outlying->reach}};
+  if (all.corner) json["corner"] = json_of_place(*all.corner);
+  if (all.scale) json["scale"] = json_of_scale(*all.scale);
+  if (all.spacing) json["spacing"] = *all.spacing;
+  if (all.noise) json["noise"] = json_of_noise(*all.noise);
+  if (all.tails)
+    json["tails"] = {{"share", all.tails->share}, {"times", all.tails->times}, {"narrow", all.tails->narrow}};
+  json["passes"] = ordered_json::array();
+  for (const auto& pass : all.passes) json["passes"].push_back(json_of_pass(pass));
+  if (all.sheets) json["sheets"] = {{"evidence", all.sheets->evidence}, {"variance", all.sheets->variance}};
+  if (all.thin_walls) json["thin_walls"] = *all.thin_walls;
+  return json;
+}
+
+Statistics statistics_of(const ordered_json& json) {
+  Statistics all;
+  if (json.contains("box"))
+    all.box = {place_of(json.at("box").at("low")), place_of(json.at("box").at("high"))};
+  if (json.contains("points")) all.points = json.at("points").get<std::size_t>();
+  if (json.contains("outlying"))
+    all.outlying = {scale_of(json.at("outlying").at("scale")), json.at("outlying").at("reach").get<double>()};
+  if (json.contains("corner")) all.corner = place_of(json.at("corner"));
+  if (json.contains("scale")) all.scale = scale_of(json.at("scale"));
+  if (json.contains("spacing")) all.spacing = json.at("spacing").get<double>();
+  if (json.contains("noise")) all.noise = noise_of(json.at("noise"));
+  if (json.contains("tails")) {
+    const auto& tails = json.at("tails");
+    all.tails = {tails.at("share").get<double>(), tails.at("times").get<double>(),
+                 tails.at("narrow").get<double>()};
+  }
+  for (const auto& pass : json.at("passes")) all.passes.push_back(pass_of(pass));
+  if (json.contains("sheets"))
+    all.sheets = {json.at("sheets").at("evidence").get<double>(),
+                  json.at("sheets").at("variance").get<double>()};
+  if (json.contains("thin_walls")) all.thin_walls = json.at("thin_walls").get<bool>();
+  return all;
+}
+
+}  // namespace rfsmooth::pipeline::tiles

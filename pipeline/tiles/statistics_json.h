@@ -1,0 +1,16 @@
+/// Statistics as JSON: numbers with all their digits, so that what comes back is the same.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include <rfsmooth/statistics.h>
+
+namespace rfsmooth::pipeline::tiles {
+
+/// What is there; the rest is left out.
+nlohmann::ordered_json json_of(const Statistics& statistics);
+
+/// \throw nlohmann::json::exception where something is missing or of another kind.
+Statistics statistics_of(const nlohmann::ordered_json& json);
+
+}  // namespace rfsmooth::pipeline::tiles

@@ -1,0 +1,286 @@
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <utility>
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+
+#include "base/median.h"
+#include "base/parallel.h"
+#include "pipeline/io/io.h"
+#include "pipeline/tiles/job.h"
+#include "pipeline/tiles/records.h"
+#include "pipeline/tiles/row_file.h"
+#include "pipeline/tiles/statistics_json.h"
+#include "rfs_mesh/search/neighbors.h"
+
+namespace rfsmooth::pipeline::tiles {
+
+namespace {
+
+using Eigen::AlignedBox3d;
+using Eigen::Vector3d;
+using nlohmann::ordered_json;
+
+/// The halo is this many radii of the widest patch: a patch reaches a point from one radius, and what it is
+/// made of from another.
+constexpr double kRadii = 2;
+constexpr std::size_t kPlacesOfRadius = 500;
+
+[[noreturn]] void refuse_step(const Job& job, const std::string& message) {
+  throw Failure({ErrorCode::usage, fmt::format("{}: {}", job.folder.string(), message)});
+}
+
+void check_tile(const Job& job, std::size_t tile) {
+  if (tile >= job.tiles.size())
+    refuse_step(job, fmt::format("there is no tile {}; they are 0 to {}", tile, job.tiles.size() - 1));
+}
+
+/// Refuses what another part of the cloud could have a say in from any distance.
+void refuse_for_tiles(const DenoiseOptions& options) {
+  const auto* automatic = std::get_if<AutomaticOptions>(&options.flow.flow);
+  if (automatic == nullptr)
+    throw Failure({ErrorCode::usage,
+                   fmt::format("the flow '{}' does not say how far a point has a say, so a cloud cannot be "
+                               "smoothed by it in tiles; 'auto' can",
+                               name_of(options.flow.flow))});
+  if (automatic->iterations != 1)
+    throw Failure({ErrorCode::usage, "in tiles the automatic flow takes one iteration"});
+  if (options.flow.modifiers.any())
+    throw Failure({ErrorCode::usage, "in tiles the automatic flow goes without modifiers"});
+}
+
+std::vector<Record> read_records(const std::filesystem::path& path, const Context& context) {
+  RecordReader reader(path, context);
+  std::vector<Record> all;
+  all.reserve(std::size_t(reader.size()));
+  for (; const Record* record = reader.peek(); reader.next()) all.push_back(*record);
+  return all;
+}
+
+Vector3d place(const Record& r) {
+  return {r.x, r.y, r.z};
+}
+
+struct Settled {
+  Statistics statistics;
+  double halo = 0;
+};
+
+Settled read_settled(const Job& job) {
+  std::ifstream file(job.settled());
+  if (!file) refuse_step(job, "is not settled yet");
+  try {
+    const ordered_json json = ordered_json::parse(file);
+    return {statistics_of(json.at("statistics")), json.at("halo")};
+  } catch (const nlohmann::json::exception& error) {
+    throw Failure({ErrorCode::input_unreadable, fmt::format("{}: {}", job.settled().string(), error.what())});
+  }
+}
+
+/// The median distance to the m-th neighbour.
+double typical_radius(const std::vector<double>& xyz, std::size_t m, const Context& context) {
+  Positions points(xyz.size() / 3);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    points[i] = Vector3d(xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]);
+  const rfs_mesh::SpatialIndex index(points, context);
+  const std::size_t places = std::min(points.size(), kPlacesOfRadius);
+  std::vector<double> radii(places);
+  for_each_index(
+      context, places,
+      [&](std::size_t k) {
+        std::vector<rfs_mesh::Neighbor> near;
+        index.nearest(points[k * points.size() / places], int(std::min(m, points.size())), near);
+        radii[k] = std::sqrt(near.back().squared_distance);
+      },
+      16);
+  return rfsmooth::median(radii);
+}
+
+/// Patches the rows of one input with the results of all tiles.
+class Patcher {
+ public:
+  Patcher(const Job& job, const Context& context) : context_(context) {
+    for (std::size_t t = 0; t < job.tiles.size(); ++t) readers_.emplace_back(job.done(t), context_);
+  }
+  /// `first`: the row of the cloud that `rows` begins with.
+  void patch(const RowFile& file, std::uint64_t first, std::uint64_t count, io::Bytes& rows) {
+    context_.check_stop();
+    for (RecordReader& reader : readers_)
+      for (const Record* r = reader.peek(); r != nullptr && r->row < first + count; r = reader.peek()) {
+        reader.next();
+        if (r->row < first) continue;  // of an input before this one
+        file.put(rows, std::size_t(r->row - first), {r->x, r->y, r->z});
+        ++patched_;
+      }
+  }
+  std::uint64_t patched() const { return patched_; }
+
+ private:
+  const Context& context_;
+  std::vector<RecordReader> readers_;
+  std::uint64_t patched_ = 0;
+};
+
+/// The box of the coordinates as they will be written, for the header of a LAS file.
+void find_box(const Job& job, RowFile& file, std::uint64_t before, const Context& context) {
+  Patcher patcher(job, context);
+  std::array<double, 3> low, high;
+  low.fill(std::numeric_limits<double>::infinity());
+  high.fill(-std::numeric_limits<double>::infinity());
+  for (std::uint64_t first = 0; first < file.rows(); first += RowFile::kPiece) {
+    const auto count = std::size_t(std::min(RowFile::kPiece, file.rows() - first));
+    io::Bytes piece = file.read(first, count, context);
+    patcher.patch(file, before + first, count, piece);
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::array<double, 3> xyz = file.get(piece, i);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        low[axis] = std::min(low[axis], xyz[axis]);
+        high[axis] = std::max(high[axis], xyz[axis]);
+      }
+    }
+  }
+  if (file.rows() > 0) file.set_box(low, high);
+}
+
+void check_inputs(const Job& job) {
+  for (const JobInput& input : job.inputs) {
+    std::error_code error;
+    if (std::filesystem::file_size(input.path, error) != input.bytes || error ||
+        std::filesystem::last_write_time(input.path, error).time_since_epoch().count() != input.changed)
+      refuse_step(job, fmt::format("{} changed since it was planned; plan again", input.path));
+  }
+}
+
+}  // namespace
+
+void measure_tile(const Job& job, std::size_t tile, const Context& context) {
+  check_tile(job, tile);
+  if (complete_records(job.sampled(tile), context)) return;
+  std::vector<Record> points = read_records(job.cut(tile), context);
+  const double share = double(job.sample) / double(job.points);
+  const auto wanted = std::min(points.size(), std::size_t(std::ceil(share * double(points.size()))));
+  if (wanted < points.size() && wanted > 0) {
+    // Those nearest to the median of the tile's points: a piece of the surface that is as whole as it can be.
+    const Vector3d middle = 0.5 * (job.tiles[tile].box.low + job.tiles[tile].box.high);
+    const auto nearer = [](const Vector3d& to) {
+      return [to](const Record& a, const Record& b) {
+        const double x = (place(a) - to).squaredNorm(), y = (place(b) - to).squaredNorm();
+        return x != y ? x < y : a.row < b.row;
+      };
+    };
+    const Vector3d centre = place(*std::min_element(points.begin(), points.end(), nearer(middle)));
+    std::nth_element(points.begin(), points.begin() + std::ptrdiff_t(wanted), points.end(), nearer(centre));
+    points.resize(wanted);
+    std::sort(points.begin(), points.end(), [](const Record& a, const Record& b) { return a.row < b.row; });
+  }
+  RecordWriter writer(job.sampled(tile), context);
+  for (const Record& r : points) writer.add(r);
+  writer.commit();
+}
+
+void settle_job(const Job& job, const DenoiseOptions& options, const Context& context) {
+  if (std::filesystem::exists(job.settled())) return;
+  refuse_for_tiles(options);
+  std::vector<double> xyz;
+  for (std::size_t t = 0; t < job.tiles.size(); ++t) {
+    if (!complete_records(job.sampled(t), context))
+      refuse_step(job, fmt::format("tile {} is not measured yet", t));
+    for (const Record& r : read_records(job.sampled(t), context)) xyz.insert(xyz.end(), {r.x, r.y, r.z});
+  }
+  const std::size_t n = xyz.size() / 3;
+  DenoiseOptions how = options;
+  how.statistics.emplace();
+  how.statistics->box = job.box;
+  if (n < job.points) how.statistics->points = std::size_t(job.points);
+  if (job.tiles.size() > 1) how.statistics->corner = 0.5 * (job.box.low - job.box.high);
+  std::vector<double> smooth = xyz;
+  const DenoiseReport report = value_or_throw(denoise(smooth.data(), n, how, context));
+  const Statistics& all = report.statistics;
+  std::size_t widest = all.scale ? all.scale->neighbours : 1;
+  for (const auto& pass : all.passes)
+    for (const auto& scale : pass.scales) widest = std::max(widest, scale.members);
+  double halo = 0;
+  in_arena(context, [&] { halo = kRadii * typical_radius(xyz, widest, context); });
+  const ordered_json json = {{"halo", halo},
+                             {"noise", report.noise},
+                             {"noise_left", report.noise_left},
+                             {"statistics", json_of(all)}};
+  value_or_throw(io::write_bytes(json.dump(1) + '\n', job.settled(), true, context));
+}
+
+void run_tile(const Job& job, std::size_t tile, const DenoiseOptions& options, const Context& context) {
+  check_tile(job, tile);
+  refuse_for_tiles(options);
+  const Settled settled = read_settled(job);
+  const auto there = complete_records(job.done(tile), context);
+  if (there && *there == job.tiles[tile].points) return;
+  std::vector<Record> own = read_records(job.cut(tile), context);
+  const AlignedBox3d box(job.tiles[tile].box.low, job.tiles[tile].box.high);
+  const double reach = settled.halo * settled.halo;
+  std::vector<double> xyz;
+  for (const Record& r : own) xyz.insert(xyz.end(), {r.x, r.y, r.z});
+  for (std::size_t t = 0; t < job.tiles.size(); ++t) {
+    const AlignedBox3d other(job.tiles[t].box.low, job.tiles[t].box.high);
+    if (t == tile || job.tiles[t].points == 0 || box.squaredExteriorDistance(other) > reach) continue;
+    RecordReader reader(job.cut(t), context);
+    for (; const Record* r = reader.peek(); reader.next())
+      if (box.squaredExteriorDistance(place(*r)) <= reach) xyz.insert(xyz.end(), {r->x, r->y, r->z});
+  }
+  if (!own.empty()) {
+    DenoiseOptions how = options;
+    how.statistics = settled.statistics;
+    value_or_throw(denoise(xyz.data(), xyz.size() / 3, how, context));
+  }
+  RecordWriter writer(job.done(tile), context);
+  for (std::size_t i = 0; i < own.size(); ++i)
+    writer.add({own[i].row, xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]});
+  writer.commit();
+}
+
+void join_job(const Job& job, const std::vector<std::string>& outputs, bool force, const Context& context) {
+  check_inputs(job);
+  for (std::size_t t = 0; t < job.tiles.size(); ++t)
+    if (const auto there = complete_records(job.done(t), context); !there || *there != job.tiles[t].points)
+      refuse_step(job, fmt::format("tile {} is not smoothed yet", t));
+  Patcher patcher(job, context);
+  std::uint64_t before = 0;
+  for (std::size_t i = 0; i < job.inputs.size(); ++i) {
+    RowFile file(job.inputs[i].path, context);
+    if (file.has_box()) find_box(job, file, before, context);
+    io::AtomicFile to(outputs[i], force, context);
+    file.copy(
+        to,
+        [&](std::uint64_t first, io::Bytes& rows) {
+          const std::uint64_t count = std::min(RowFile::kPiece, file.rows() - first);
+          context.report("join", double(before + first) / double(job.points + 1));
+          patcher.patch(file, before + first, count, rows);
+        },
+        context);
+    to.commit(true);
+    before += file.rows();
+  }
+  if (patcher.patched() != job.points)
+    throw Failure(
+        {ErrorCode::internal, fmt::format("{} of {} points were written", patcher.patched(), job.points)});
+}
+
+JobStatus job_status(const Job& job, const Context& context) {
+  JobStatus status;
+  status.tiles = job.tiles.size();
+  status.points = job.points;
+  status.settled = std::filesystem::exists(job.settled());
+  if (status.settled) status.halo = read_settled(job).halo;
+  for (std::size_t t = 0; t < job.tiles.size(); ++t) {
+    status.measured += std::size_t(complete_records(job.sampled(t), context).has_value());
+    if (const auto there = complete_records(job.done(t), context); there && *there == job.tiles[t].points)
+      ++status.run;
+    else
+      status.missing.push_back(t);
+  }
+  return status;
+}
+
+}  // namespace rfsmooth::pipeline::tiles

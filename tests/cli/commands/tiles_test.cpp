@@ -1,0 +1,295 @@
+/// rfsmooth tiles: the same bytes however the work was done, and the whole cloud's result but for seams.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <future>
+#include <numeric>
+#include <random>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <rfsmooth/denoise.h>
+
+#include "pipeline/tiles/statistics_json.h"
+#include "tests/cli/support/folder.h"
+#include "tests/cli/support/rich_cloud.h"
+#include "tests/cli/support/small_clouds.h"
+
+using ::testing::HasSubstr;
+
+namespace rfsmooth::test {
+namespace {
+
+constexpr int kLong = 900, kWide = 24;
+
+enum class Kind { own, with_tails, shared, in_steps };
+
+/// A long strip of a gently bent surface, points `noise` spacings off it; every thousandth is NaN. Noise is
+/// of each point, of each with a tenth six times as loud, of each square of four by four, or rounding
+/// besides.
+RichCloud strip(double noise, bool pcd = false, Kind kind = Kind::own) {
+  constexpr int kTogether = 4;
+  std::mt19937_64 engine(5);
+  std::normal_distribution<double> normal(0, 1);
+  std::array<double, kWide / kTogether> of_square{};
+  RichCloud cloud;
+  cloud.pcd = pcd;
+  cloud.doubles = true;
+  for (int i = 0; i < kLong; ++i)
+    for (int j = 0; j < kWide; ++j) {
+      const double x = i + 0.2 * normal(engine), y = j + 0.2 * normal(engine);
+      double off = normal(engine);
+      if (kind == Kind::with_tails && cloud.size() % 10 == 3) off *= 6;
+      if (kind == Kind::shared) {
+        double& here = of_square[std::size_t(j / kTogether)];
+        if (i % kTogether == 0 && j % kTogether == 0) here = off;
+        off = here + 0.1 * off;
+      }
+      double z = 6 * std::sin(x / 40) + noise * off;
+      if (kind == Kind::in_steps) z = std::round(z);
+      const double bad = cloud.size() % 1000 == 7 ? std::nan("") : 0;
+      cloud.xyz.insert(cloud.xyz.end(), {x, y, z + bad});
+    }
+  return cloud;
+}
+
+class Tiles : public InFolder {
+ protected:
+  std::vector<std::string> tiles_of(const std::string& job) {
+    const Ran ran = run({"tiles", "status", job, "--json"});
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    std::vector<std::string> tiles(nlohmann::json::parse(ran.out)["tiles"].get<std::size_t>());
+    for (std::size_t t = 0; t < tiles.size(); ++t) tiles[t] = std::to_string(t);
+    return tiles;
+  }
+  void step(const std::vector<std::string>& arguments) {
+    std::vector<std::string> all = {"tiles"};
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    const Ran ran = run(all);
+    EXPECT_EQ(ran.code, 0) << ran.err;
+  }
+  /// Plans, measures and settles a job of the inputs; its tiles.
+  std::vector<std::string> settled(const std::vector<std::string>& inputs, const std::string& job,
+                                   const std::string& points = "3000",
+                                   const std::string& sample = "1000000") {
+    std::vector<std::string> plan = {"plan", "--tile-points", points, "--sample-points", sample};
+    plan.insert(plan.end(), inputs.begin(), inputs.end());
+    plan.push_back(job);
+    step(plan);
+    const std::vector<std::string> tiles = tiles_of(job);
+    for (const std::string& tile : tiles) step({"measure", job, tile});
+    step({"settle", job});
+    return tiles;
+  }
+  /// What was settled.
+  Statistics statistics(const std::string& job) {
+    return pipeline::tiles::statistics_of(
+        nlohmann::ordered_json::parse(take(job + "/statistics.json")).at("statistics"));
+  }
+  /// The whole of it.
+  std::string joined(const std::vector<std::string>& inputs, const std::string& job,
+                     const std::string& output, const std::string& points = "3000",
+                     const std::string& sample = "1000000") {
+    for (const std::string& tile : settled(inputs, job, points, sample)) step({"run", job, tile});
+    step({"join", job, output});
+    return std::filesystem::is_directory(at(output)) ? "" : take(output);
+  }
+};
+
+TEST_F(Tiles, SameBytesForWorkersInAnyOrderAgainAndAfterKillsAndDamage) {
+  put("in.ply", strip(0.4).bytes());
+  const std::string expected = joined({"in.ply"}, "one", "one.ply");
+  std::vector<std::string> tiles = settled({"in.ply"}, "many");
+  ASSERT_GE(tiles.size(), 8u);
+  std::vector<std::string> twice = tiles;
+  twice.insert(twice.end(), tiles.begin(), tiles.end());
+  std::shuffle(twice.begin(), twice.end(), std::mt19937(3));
+  const auto work = [&](std::size_t worker, int milliseconds) {
+    for (std::size_t k = worker; k < twice.size(); k += 4) {
+      const std::string kill = std::to_string(double(milliseconds * int(1 + k % 5)) / 1000);
+      std::vector<std::string> run = {RFSMOOTH_COMMAND, "tiles",     "run", at("many"),
+                                      twice[k],         "--threads", "1"};
+      if (milliseconds > 0) run.insert(run.begin(), {"-s", "KILL", kill});
+      const std::string program = milliseconds > 0 ? "timeout" : run.front();
+      if (milliseconds == 0) run.erase(run.begin());
+      run_program(program, run);
+    }
+  };
+  for (const int milliseconds : {40, 0}) {  // first most are killed on the way, then all come to their end
+    std::vector<std::future<void>> workers;
+    for (std::size_t w = 0; w < 4; ++w)
+      workers.push_back(std::async(std::launch::async, work, w, milliseconds));
+    for (auto& worker : workers) worker.get();
+  }
+  step({"join", "many", "many.ply"});
+  EXPECT_TRUE(take("many.ply") == expected);
+
+  // Half a result, and one with a byte of another: both are found, made again, and nothing else is.
+  std::filesystem::resize_file(at("many/done/2"), std::filesystem::file_size(at("many/done/2")) / 2);
+  std::string damaged = take("many/done/5");
+  damaged[damaged.size() / 2] = char(damaged[damaged.size() / 2] ^ 1);
+  put("many/done/5", damaged);
+  const auto status = nlohmann::json::parse(run({"tiles", "status", "many", "--json"}).out);
+  EXPECT_EQ(status["missing"], nlohmann::json::array({2, 5}));
+  const Ran early = run({"tiles", "join", "many", "early.ply"});
+  EXPECT_EQ(early.code, 2);
+  EXPECT_THAT(early.err, HasSubstr("tile 2"));
+  EXPECT_FALSE(there("early.ply"));
+  for (const std::string& tile : tiles) step({"run", "many", tile});
+  step({"join", "many", "again.ply"});
+  EXPECT_TRUE(take("again.ply") == expected);
+}
+
+TEST_F(Tiles, EveryRowOnceAndEveryOtherByteStays) {
+  for (const bool pcd : {false, true}) {
+    const RichCloud cloud = strip(0.4, pcd);
+    const std::string input = cloud.bytes();
+    put(cloud.name(), input);
+    const std::string output = joined({cloud.name()}, pcd ? "pcd" : "ply", cloud.output());
+    ASSERT_EQ(output.size(), input.size());
+    EXPECT_EQ(output.substr(0, cloud.header().size()), cloud.header());
+    std::size_t moved = 0, finite = 0;
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      ASSERT_EQ(cloud.extras(output, i), cloud.extras(input, i));
+      if (!std::isfinite(cloud.xyz[3 * i + 2])) {
+        ASSERT_EQ(cloud.row(output, i), cloud.row(input, i));
+        continue;
+      }
+      ++finite;
+      moved += std::size_t(cloud.row(output, i) != cloud.row(input, i));
+    }
+    EXPECT_GT(double(moved), 0.999 * double(finite));
+  }
+}
+
+TEST_F(Tiles, OneTileIsTheWholeCloudToTheByte) {
+  int job = 0;
+  const auto same = [&](double noise, Kind kind) {
+    put("in.ply", strip(noise, false, kind).bytes());
+    const std::string name = "job" + std::to_string(++job);
+    const std::string tiled = joined({"in.ply"}, name, name + ".ply", "1000000");
+    EXPECT_EQ(run({"denoise", "--force", "in.ply", "whole.ply"}).code, 0);
+    EXPECT_TRUE(take("whole.ply") == tiled) << noise;
+    return statistics(name);
+  };
+  for (const double noise : {0.0, 0.4, 1.3}) same(noise, Kind::own);
+  EXPECT_GT(same(0.3, Kind::with_tails).tails->share, 0);
+  EXPECT_GT(same(0.4, Kind::shared).noise->shared, 1);
+  EXPECT_GT(same(0.2, Kind::in_steps).noise->step, 0);
+}
+
+TEST_F(Tiles, ManyTilesAreTheWholeCloudButForRounding) {
+  for (const double noise : {0.1, 0.4}) {
+    const RichCloud cloud = strip(noise);
+    put("in.ply", cloud.bytes());
+    const std::string name = "job" + std::to_string(noise);
+    const std::string tiled = joined({"in.ply"}, name, name + ".ply");
+    DenoiseOptions options;
+    options.statistics = statistics(name);
+    std::vector<double> whole = cloud.xyz;
+    ASSERT_TRUE(denoise(whole.data(), cloud.size(), options, {}).ok());
+    double squares = 0, within = 0, count = 0;
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      if (!std::isfinite(cloud.xyz[3 * i + 2])) continue;
+      double square = 0;
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        square += std::pow(cloud.coordinate(tiled, i, axis) - whole[3 * i + axis], 2);
+      squares += square;
+      within += square < 0.01 ? 1 : 0;  // a tenth of the spacing, which is about one
+      ++count;
+    }
+    EXPECT_LT(std::sqrt(squares / count), 0.02) << noise;
+    EXPECT_GT(within / count, 0.99) << noise;
+  }
+}
+
+TEST_F(Tiles, AFolderOfFilesIsOneCloud) {
+  const RichCloud all = strip(0.4);
+  RichCloud first = all, second = all;
+  const std::size_t cut = 3 * (all.size() / 3);
+  first.xyz.resize(cut);
+  second.xyz.erase(second.xyz.begin(), second.xyz.begin() + std::ptrdiff_t(cut));
+  put("all.ply", all.bytes());
+  put("a.ply", first.bytes());
+  put("b.ply", second.bytes());
+  const std::string one = joined({"all.ply"}, "one", "one.ply");
+  joined({"a.ply", "b.ply"}, "two", "out");
+  const std::string a = take("out/a.ply"), b = take("out/b.ply");
+  for (std::size_t i = 0; i < all.size(); ++i)
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double x = all.coordinate(one, i, axis);
+      const double y =
+          i < first.size() ? first.coordinate(a, i, axis) : second.coordinate(b, i - first.size(), axis);
+      ASSERT_TRUE(x == y || (std::isnan(x) && std::isnan(y))) << i;
+    }
+}
+
+TEST_F(Tiles, DenoiseTakesTilesWhereTheMemoryIsLess) {
+  put("in.ply", strip(0.4).bytes());
+  const Ran ran = run({"denoise", "--memory", "10M", "in.ply", "out.ply"});
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  EXPECT_THAT(ran.err, HasSubstr("in tiles"));
+  EXPECT_EQ(names(), (std::vector<std::string>{"in.ply", "out.ply"})) << "nothing is left";
+  EXPECT_TRUE(take("out.ply") == joined({"in.ply"}, "job", "steps.ply", "20000", "20000"));
+  EXPECT_EQ(run({"denoise", "--memory", "1T", "in.ply", "whole.ply"}).code, 0);
+  EXPECT_EQ(run({"denoise", "in.ply", "plain.ply"}).code, 0);
+  EXPECT_TRUE(take("whole.ply") == take("plain.ply"));
+  const Ran wrong = run({"denoise", "--memory", "much", "in.ply", "x.ply"});
+  EXPECT_EQ(wrong.code, 2);
+  EXPECT_THAT(wrong.err, HasSubstr("'much'"));
+  const Ran whole = run({"denoise", "--memory", "10M", "--normals", "in.ply", "x.ply"});
+  EXPECT_EQ(whole.code, 2);
+  EXPECT_THAT(whole.err, HasSubstr("--normals needs the whole cloud"));
+}
+
+TEST_F(Tiles, WhatCannotBeDoneIsRefusedWithWhatToDo) {
+  put("in.xyz", "1 2 3\n4 5 6\n");
+  const Ran text = run({"tiles", "plan", "in.xyz", "job"});
+  EXPECT_EQ(text.code, 2);
+  EXPECT_THAT(text.err, HasSubstr("binary PLY"));
+  put("in.ply", strip(0.4).bytes());
+  EXPECT_EQ(run({"tiles", "run", "nothing", "0"}).code, 3);
+  EXPECT_EQ(run({"tiles", "plan", "in.ply", "job", "--tile-points", "3000"}).code, 0);
+  const Ran other = run({"tiles", "plan", "in.ply", "job", "--tile-points", "3000", "--strength", "0.5"});
+  EXPECT_EQ(other.code, 5);
+  EXPECT_THAT(other.err, HasSubstr("other inputs or options"));
+  EXPECT_EQ(run({"tiles", "plan", "in.ply", "job", "--tile-points", "3000"}).code, 0) << "the same again";
+  const Ran early = run({"tiles", "settle", "job"});
+  EXPECT_EQ(early.code, 2);
+  EXPECT_THAT(early.err, HasSubstr("tile 0 is not measured"));
+  EXPECT_EQ(run({"tiles", "measure", "job", "1000"}).code, 2);
+  const Ran later = run({"tiles", "settle", "job", "--strength", "2"});
+  EXPECT_EQ(later.code, 2);
+  EXPECT_THAT(later.err, HasSubstr("tiles plan"));
+}
+
+TEST_F(Tiles, AFullDiskIsAnErrorAndTheWorkGoesOnWhenThereIsRoom) {
+  put("in.ply", noisy_plane(150).bytes());
+  std::filesystem::create_directory(at("disk"));
+  RunSetup setup;
+  setup.folder = at("");
+  const std::string script =
+      "mount -t tmpfs -o size=900k tmpfs disk || exit 99\n"
+      "R='" RFSMOOTH_COMMAND
+      "'\n"
+      "$R tiles plan --tile-points 3000 in.ply disk/job -q || exit 98\n"
+      "n=$($R tiles status disk/job --json | sed -n 's/.*\"tiles\": \\([0-9]*\\).*/\\1/p')\n"
+      "$R tiles measure disk/job $(seq 0 $((n - 1))) -q; echo first $?\n"
+      "mount -o remount,size=64m disk\n"
+      "$R tiles measure disk/job $(seq 0 $((n - 1))) -q; echo then $?\n"
+      "$R tiles settle disk/job -q && $R tiles run disk/job $(seq 0 $((n - 1))) -q &&\n"
+      "$R tiles join disk/job full.ply -q; echo last $?\n";
+  std::vector<std::string> arguments = {"--mount", "sh", "-c", script};
+  if (geteuid() != 0) arguments.insert(arguments.begin(), {"--user", "--map-root-user"});
+  const Ran ran = run_program("unshare", arguments, setup);
+  if (ran.code == 99 || ran.code == 1) GTEST_SKIP() << "mounting is not allowed here";
+  EXPECT_EQ(ran.out, "first 5\nthen 0\nlast 0\n") << ran.err;
+  EXPECT_THAT(ran.err, HasSubstr("No space left"));
+  EXPECT_TRUE(take("full.ply") == joined({"in.ply"}, "job", "plenty.ply"));
+}
+
+}  // namespace
+}  // namespace rfsmooth::test
