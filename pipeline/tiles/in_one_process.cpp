@@ -35,6 +35,17 @@ class PassingFolder {
   fs::path path_;
 };
 
+/// Points at one place cannot be cut, and more of them than memory holds cannot be smoothed.
+void check_sizes(const Job& job, const PlanOptions& how) {
+  std::uint64_t most = 0;
+  for (const Tile& tile : job.tiles) most = std::max(most, tile.points);
+  constexpr std::uint64_t kUneven = 2;
+  if (most > kUneven * how.tile_points)
+    throw Failure({ErrorCode::out_of_memory,
+                   fmt::format("not enough memory: {} points are at one place, and tiles may have {}", most,
+                               how.tile_points)});
+}
+
 /// A context that reports its stages as the part [from, to] of the stage "tiles".
 Context part_of(const Context& context, double from, double to) {
   Context part = context;
@@ -75,6 +86,7 @@ void smooth_in_tiles(const std::string& input, const std::string& output, bool f
                                                                 target.filename().string().substr(0, 200),
                                                                 ::getpid()));
   const Job job = plan_job({input}, folder.path(), how, nullptr, part_of(context, 0, kPlan));
+  check_sizes(job, how);
   for (std::size_t t = 0; t < job.tiles.size(); ++t) measure_tile(job, t, part_of(context, kPlan, kPlan));
   settle_job(job, options, part_of(context, kPlan, kSettled));
   for (std::size_t t = 0; t < job.tiles.size(); ++t) {

@@ -199,7 +199,8 @@ void settle_job(const Job& job, const DenoiseOptions& options, const Context& co
   std::vector<double> smooth = xyz;
   const DenoiseReport report = value_or_throw(denoise(smooth.data(), n, how, context));
   const Statistics& all = report.statistics;
-  std::size_t widest = all.scale ? all.scale->neighbours : 1;
+  std::size_t widest = 1;
+  if (all.scale) widest = std::max(widest, all.scale->neighbours);
   for (const auto& pass : all.passes)
     for (const auto& scale : pass.scales) widest = std::max(widest, scale.members);
   double halo = 0;
