@@ -203,7 +203,7 @@ Job plan_job(const std::vector<std::string>& inputs, const fs::path& folder, con
   job.options = options;
   for (const std::string& path : inputs) job.inputs.push_back(describe_input(path, context));
   if (fs::exists(plan_file(folder))) {
-    const Job there = open_job(folder);
+    Job there = open_job(folder);
     Job same = there;
     same.inputs = job.inputs;
     same.options = options;
