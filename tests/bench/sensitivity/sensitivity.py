@@ -3,11 +3,9 @@
 
     python3 tests/bench/sensitivity/sensitivity.py [--only REGEX] [--jobs N] [-- OPTIONS OF THE PROGRAM]
 
-A constant is a line `constexpr TYPE kName = NUMBER;` of base, rfs_mesh, smoothing or pipeline. In a copy of the sources under
-build/sensitivity each reads its factor from the environment; those that the compiler needs as constants (sizes of arrays) are
-structure, not tuning, and are listed apart. Then the development clouds are denoised with one constant after the other halved
-and doubled. Effects are the change of the mean over all clouds, in per cent; the last column is the largest share that one
-shape has in the change of the Chamfer distance: what rests on one shape has 100.
+In a copy of the sources under build/sensitivity each constant reads its factor from the environment. Then development
+clouds are denoised with one constant after the other halved and doubled. With --only, the rows of the other constants
+stay as the file has them. --list measures nothing: it counts the constants, and says which rows are missing or stale.
 """
 import argparse
 import concurrent.futures
@@ -18,105 +16,78 @@ import shutil
 import subprocess
 import sys
 
-ROOT = pathlib.Path(__file__).resolve().parents[3]
-ROOMS = ("base", "rfs_mesh", "smoothing", "pipeline")
-LINE = re.compile(
-    r"^(?P<indent> *)(?P<inline>inline )?constexpr (?P<type>double|float|int|std::size_t|Index) (?P<name>k[A-Z]\w*) = "
-    r"(?P<value>[-+*/() .0-9eEFf]+);(?P<rest>.*)$")
+from constants import LITERAL, ROOT, classified, constants_in, sources
+
+OUT = ROOT / "docs/CONSTANTS.md"
 HOOK = '''#pragma once
 #include <cstdlib>
 #include <cstring>
 namespace rfsmooth {
-/// `value`, times the factor that RFSMOOTH_TUNED="key=factor" has for this key.
-inline double tuned(const char* key, double value) {
-  const char* const asked = std::getenv("RFSMOOTH_TUNED");
-  const std::size_t length = std::strlen(key);
-  if (asked == nullptr || std::strncmp(asked, key, length) != 0 || asked[length] != '=') return value;
-  return value * std::atof(asked + length + 1);
-}
+/// A number, times the factor that RFSMOOTH_TUNED="key=factor" has for this key; whatever type is asked for.
+struct Tuned {
+  Tuned(const char* key, double is) : value(is) {
+    const char* const asked = std::getenv("RFSMOOTH_TUNED");
+    const std::size_t length = std::strlen(key);
+    if (asked != nullptr && std::strncmp(asked, key, length) == 0 && asked[length] == '=') value *= std::atof(asked + length + 1);
+  }
+  template <class Number>
+  operator Number() const { return Number(value); }
+  double value;
+};
 }  // namespace rfsmooth
 '''
+RULE = """A constant is a number with a name (`constexpr ... kName = 2.5;`) in `base`, `rfs_mesh`, `smoothing`, `pipeline` or
+`include`; of an array, each number is one. It is **tuned** if another value would make other results that nobody could call
+wrong: thresholds, weights, numbers of neighbours, samples and rounds, whether chosen on clouds, taken from a paper or set
+with reason. All others are listed, with the reason, at the end; what is not listed there
+(`tests/bench/sensitivity/not_tuned.txt`) counts as tuned. Options of the command and of the library are not constants: users
+set them, `--help` names them."""
+COLUMNS = """| constant | value | file | origin | CD | p2s | normals | strays | time | one shape |
+|---|---|---|---|---|---|---|---|---|---|
+"""
+MEANING = """Each cell is the change when the constant is halved / doubled. CD, p2s: Chamfer distance and distance to the true surface
+(mean squares), mean over the clouds, in per cent. Normals: their mean angle to the true ones, a wrong side included, in per
+cent. Strays: points judged wrongly, in per cent of those planted. Time: processor time of all, in per cent, on a machine
+that did other work, too: 5 are chance. One shape: the largest share that one shape has in the change of CD, in per cent; what
+rests on one shape has 100. A row stays until its constant is measured again (`--only`)."""
 
 
-class Constant:
-    def __init__(self, path, number, match, origin):
-        self.path, self.number, self.match, self.origin = path, number, match, origin
-        self.name, self.value, self.key = match["name"], match["value"], f"{path}:{match['name']}"
-
-    def line(self):
-        m = self.match
-        storage = "inline const" if m["inline"] else "static const"
-        return (f'{m["indent"]}{storage} {m["type"]} {m["name"]} = {m["type"]}(::rfsmooth::tuned("{self.key}", '
-                f'double({m["value"]})));{m["rest"]}')
+def tuned_line(constant):
+    def hook(number):
+        return f'::rfsmooth::Tuned("{constant.key}", {number})'
+    value = constant.value
+    return LITERAL.sub(lambda m: hook(m.group()), value) if "{" in value else hook(f"double({value})")
 
 
-def constants():
-    """All of the tree, in order of files and lines. The origin is the comment behind or above a constant."""
-    found = []
-    for room in ROOMS:
-        for path in sorted((ROOT / room).rglob("*")):
-            if path.suffix not in (".h", ".cpp"):
-                continue
-            lines = path.read_text().split("\n")
-            for number, line in enumerate(lines):
-                match = LINE.match(line)
-                if not match:
-                    continue
-                origin = match["rest"].strip().lstrip("/<").strip()
-                above = number - 1
-                while not origin and above >= 0 and LINE.match(lines[above]):
-                    above -= 1
-                if not origin and above >= 0 and lines[above].strip().startswith("//"):
-                    origin = lines[above].strip().lstrip("/").strip()
-                found.append(Constant(str(path.relative_to(ROOT)), number, match, origin))
-    return found
-
-
-def compiles(tree, path, chosen):
-    """A source, or a header and every source that names a constant of it."""
-    sources = [path]
-    if path.endswith(".h"):
-        names = re.compile(r"\b(" + "|".join(c.name for c in chosen) + r")\b")
-        sources += [str(p.relative_to(tree)) for room in ROOMS for p in sorted((tree / room).rglob("*.cpp"))
-                    if names.search(p.read_text())]
-    command = ["g++", "-std=c++17", "-fsyntax-only", "-I.", "-Iinclude", "-isystem", "/usr/include/eigen3", "-include",
-               "base/tuned.h", "-x", "c++"]
-    return all(subprocess.run(command + [source], cwd=tree, capture_output=True).returncode == 0 for source in sources)
-
-
-def patch(tree, path, chosen):
-    lines = (ROOT / path).read_text().split("\n")
-    for constant in chosen:
-        lines[constant.number] = constant.line()
-    text = "\n".join(lines)
-    if path.endswith(".h"):
+def patched(path, chosen):
+    """The source with its tuned constants read from outside."""
+    text = re.sub(r"static_assert\([^;]*\);", "", path.read_text())
+    found = constants_in(path, text)
+    names = [c.name for _, of_it in found for c in of_it if c.key in chosen]
+    for match, of_it in reversed(found):
+        if not re.search(r"\b(" + "|".join(names) + r")\b", match["names"]):
+            continue
+        declared = ", ".join(f"{c.name} = {tuned_line(c) if c.key in chosen else c.value}" for c in of_it)
+        in_function = text[:match.start()].endswith(" ") and "static" not in match["storage"]
+        of_class = "static" in match["storage"]
+        storage = "static" if in_function else "inline static" if of_class else "inline" if path.suffix != ".cpp" else ""
+        text = f"{text[:match.start()]}{storage} const {match['type']} {declared};{match['rest']}{text[match.end():]}"
+    if path.suffix != ".cpp":
         text = text.replace("#pragma once\n", '#pragma once\n#include "base/tuned.h"\n', 1)
-    (tree / path).write_text(text)
+    return text
 
 
-def tunable(tree, path, all_of_file):
-    """Those of a file that need not be known to the compiler; the copy is left with just these."""
-    patch(tree, path, all_of_file)
-    if compiles(tree, path, all_of_file):
-        return all_of_file
-    kept = []
-    for constant in all_of_file:
-        patch(tree, path, kept + [constant])
-        if compiles(tree, path, kept + [constant]):
-            kept.append(constant)
-    patch(tree, path, kept)
-    return kept
-
-
-def copy_sources(tree):
+def copy_sources(tree, chosen):
     if tree.exists():
         shutil.rmtree(tree)
     tree.mkdir(parents=True)
-    names = subprocess.check_output(["git", "ls-files"], cwd=ROOT, text=True).split("\n")
-    for name in filter(None, names):
+    for name in subprocess.check_output(["git", "ls-files"], cwd=ROOT, text=True).split():
         if (ROOT / name).is_file() and not name.startswith(("clouds/pictures", "tests/fuzz/corpus")):
             (tree / name).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy(ROOT / name, tree / name)
+    for path in sources():
+        if any(c.key in chosen for _, of_it in constants_in(path) for c in of_it):
+            (tree / path.relative_to(ROOT)).write_text(patched(path, chosen))
     (tree / "base/tuned.h").write_text(HOOK)
 
 
@@ -124,64 +95,119 @@ def build(tree):
     subprocess.run(["cmake", "--preset", "bench", "-DRFSMOOTH_WITH_PCL=OFF", "-DRFSMOOTH_WITH_OPEN3D=OFF",
                     "-DCMAKE_CXX_FLAGS=-include base/tuned.h -I" + str(tree)],
                    cwd=tree, check=True, stdout=subprocess.DEVNULL)
-    subprocess.run(["cmake", "--build", "--preset", "bench", "--target", "rfsmooth_bench_sensitivity"], cwd=tree,
-                   check=True, stdout=subprocess.DEVNULL)
+    subprocess.run(["cmake", "--build", "--preset", "bench", "--target", "rfsmooth_bench_sensitivity"], cwd=tree, check=True)
+
+
+class Run:
+    """What the program printed: {(shape, cloud): (seconds, figures)}."""
+
+    def __init__(self, text):
+        rows = [line.split() for line in text.splitlines()]
+        self.rows = {(r[0], r[1]): tuple(map(float, r[2:])) for r in rows}
+
+    def of(self, *kinds):
+        return {key: row for key, row in self.rows.items() if (key[1] if key[1] in ("normals", "strays") else "laws") in kinds}
 
 
 def measure(program, options, tuning=None):
-    """{(shape, noise): (Chamfer, p2s, seconds)}, or None if the run fails."""
+    """A Run, or None if it fails."""
     environment = dict(os.environ, **({"RFSMOOTH_TUNED": tuning} if tuning else {}))
     try:
-        done = subprocess.run([program, *options], env=environment, capture_output=True, text=True, timeout=600)
+        done = subprocess.run([program, *options], env=environment, capture_output=True, text=True, timeout=1200)
     except subprocess.TimeoutExpired:
         return None
-    if done.returncode != 0:
-        return None
-    rows = [line.split() for line in done.stdout.splitlines()]
-    return {(r[0], r[1]): tuple(map(float, r[2:])) for r in rows}
+    return Run(done.stdout) if done.returncode == 0 else None
 
 
-def change(before, after, column):
-    """The mean over the clouds, each against itself, in per cent."""
-    return 100 * sum(after[key][column] / row[column] - 1 for key, row in before.items()) / len(before)
+def changes(before, after):
+    """Of CD, p2s, normals, strays, time (see MEANING)."""
+    laws = before.of("laws")
+    ratio = [100 * sum(after.rows[key][column] / row[column] - 1 for key, row in laws.items()) / len(laws) for column in (1, 2)]
+
+    def total(run, column, *kinds):
+        return sum(row[column] for row in run.of(*kinds).values())
+    normals = 100 * (total(after, 1, "normals") / total(before, 1, "normals") - 1)
+    strays = 100 * (total(after, 1, "strays") - total(before, 1, "strays")) / len(before.of("strays"))
+    every = ("laws", "normals", "strays")
+    return ratio + [normals, strays, 100 * (total(after, 0, *every) / total(before, 0, *every) - 1)]
 
 
 def share_of_one_shape(before, after):
-    """The largest share that one shape has in the change of the Chamfer distance, in per cent."""
     by_shape = {}
-    for (shape, noise), row in before.items():
-        by_shape[shape] = by_shape.get(shape, 0) + after[shape, noise][0] / row[0] - 1
+    for (shape, cloud), row in before.of("laws").items():
+        by_shape[shape] = by_shape.get(shape, 0) + after.rows[shape, cloud][1] / row[1] - 1
     total = sum(abs(c) for c in by_shape.values())
     return 100 * max(abs(c) for c in by_shape.values()) / total if total > 0 else 0
 
 
 def row_of(constant, before, halved, doubled):
-    cells = [f"`{constant.name}`", constant.value.strip(), f"`{constant.path}`", constant.origin.replace("|", "/")]
-    for after in (halved, doubled):
-        cells += ["fails"] * 3 if after is None else [f"{change(before, after, c):+.2f}" for c in range(3)]
-    shares = [share_of_one_shape(before, after) for after in (halved, doubled) if after]
-    cells.append(f"{max(shares):.0f}" if shares else "")
+    cells = [f"`{constant.name}`", constant.value, f"`{constant.path}`", constant.origin.replace("|", "/")]
+    both = [None if after is None else changes(before, after) for after in (halved, doubled)]
+    for column in range(5):
+        cells.append(" / ".join("fails" if c is None else "0" if c[column] == 0 else f"{c[column]:+.2f}" for c in both))
+    cells.append(f"{max((share_of_one_shape(before, a) for a in (halved, doubled) if a), default=0):.0f}")
     return "| " + " | ".join(cells) + " |"
 
 
-def is_idle(before, afters):
-    return all(after is not None and abs(change(before, after, 0)) < 0.5 and abs(change(before, after, 1)) < 0.5
-               for after in afters)
+def row_of_sized(constant):
+    return f"| `{constant.name}` | {constant.value} | `{constant.path}` | {constant.origin} | sizes an array |  |  |  |  |  |"
+
+
+def rows_of_file():
+    """{(name, value, file): row} of docs/CONSTANTS.md."""
+    found = {}
+    for line in OUT.read_text().split("\n"):
+        cells = [cell.strip(" `") for cell in line.strip("|").split(" | ")]
+        if line.startswith("| `") and len(cells) == 10:
+            found[cells[0], cells[1], cells[2]] = line
+    return found
+
+
+def is_idle(row):
+    """Whether no figure of the row but time changes by half a per cent."""
+    cells = row.strip("| ").split(" | ")[4:8]
+    return "array" not in cells[0] and all(c != "fails" and abs(float(c)) < 0.5 for cell in cells for c in cell.split(" / "))
+
+
+def write(tuned, others, rows, clouds):
+    rows.update({(c.name, c.value, c.path): row_of_sized(c) for c in tuned if c.sized})
+    rows = [rows[c.name, c.value, c.path] for c in tuned if (c.name, c.value, c.path) in rows]
+    idle = sum(map(is_idle, rows))
+    count = sum(c.numbers() for c in tuned)
+    text = (f"# Constants\n\n{count} tuned constants. Printed by `tests/bench/sensitivity/sensitivity.py`.\n\n{RULE}\n\n"
+            f"## Tuned\n\nMeasured on {clouds}. {MEANING}\n\n{idle} change no figure but time by half a per cent here; some of "
+            f"them act only on clouds or\nin commands that these do not stand for.\n\n{COLUMNS}" + "\n".join(rows) +
+            "\n\n## Not tuned\n\n| number | why | which |\n|---|---|---|\n")
+    for name, (reason, of_class) in others.items():
+        by_path = {}
+        for c in of_class:
+            by_path.setdefault(c.path, []).append(f"`{c.name}`")
+        which = "; ".join(f"{path}: {', '.join(names)}" for path, names in by_path.items())
+        text += f"| {sum(c.numbers() for c in of_class)} | {name}: {reason} | {which} |\n"
+    OUT.write_text(text)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--only", default="", help="regular expression on FILE:NAME")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
+    parser.add_argument("--list", action="store_true", help="measure nothing")
     parser.add_argument("words", nargs="*", help="options of the program: --shapes, --laws, --times, --points, --cache")
-    parser.add_argument("--out", default=str(ROOT / "docs/CONSTANTS.md"))
     options = parser.parse_args()
+    tuned, others = classified()
+    rows = rows_of_file()
+    if options.list:
+        print(f"{sum(c.numbers() for c in tuned)} tuned")
+        for name, (_, of_class) in others.items():
+            print(f"{sum(c.numbers() for c in of_class)} {name}")
+        now = {(c.name, c.value, c.path) for c in tuned}
+        for what, keys in (("not measured", now - rows.keys()), ("gone", rows.keys() - now)):
+            for name, value, path in sorted(keys):
+                print(f"{what}: {path}: {name} = {value}")
+        return
+    chosen = [c for c in tuned if re.search(options.only, c.key) and not c.sized]
     tree = ROOT / "build/sensitivity"
-    copy_sources(tree)
-    everything = [c for c in constants() if re.search(options.only, c.key)]
-    chosen = []
-    for path in dict.fromkeys(c.path for c in everything):
-        chosen += tunable(tree, path, [c for c in everything if c.path == path])
+    copy_sources(tree, {c.key for c in chosen})
     build(tree)
     program = str(tree / "build/bench/bin/sensitivity")
     before = measure(program, options.words)
@@ -189,21 +215,12 @@ def main():
         sys.exit("the program fails as it is")
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         runs = {(c.key, f): pool.submit(measure, program, options.words, f"{c.key}={f}") for c in chosen for f in (0.5, 2)}
-        results = {key: run.result() for key, run in runs.items()}
-    with open(options.out, "w") as out:
-        cells = [", ".join(sorted({key[i] for key in before})) for i in (0, 1)]
-        idle = sum(is_idle(before, [results[c.key, f] for f in (0.5, 2)]) for c in chosen)
-        out.write("# Tuned constants\n\nMade by `tests/bench/sensitivity/sensitivity.py`: each constant halved and doubled, the "
-                  f"change in per cent of the mean\nover {len(before)} clouds ({cells[0]}; {cells[1]}).\n\n{len(chosen)} constants; {idle} change neither "
-                  "the Chamfer distance (CD) nor the distance to the surface (p2s) by half a per cent here.\n\n"
-                  "| constant | value | file | origin | CD / 2 | p2s / 2 | time / 2 | CD x 2 | p2s x 2 | time x 2 | "
-                  "one shape's share |\n|---|---|---|---|---|---|---|---|---|---|---|\n")
         for c in chosen:
-            out.write(row_of(c, before, results[c.key, 0.5], results[c.key, 2]) + "\n")
-        structure = [c for c in everything if c not in chosen]
-        if structure:
-            out.write("\nNeeded by the compiler (sizes of arrays and the like), not tuned: "
-                      + ", ".join(f"`{c.name}`" for c in structure) + ".\n")
+            row = row_of(c, before, *(runs[c.key, f].result() for f in (0.5, 2)))
+            print(row, flush=True)
+            rows[c.name, c.value, c.path] = row
+    shapes, clouds = (list(dict.fromkeys(key[i] for key in before.rows)) for i in (0, 1))
+    write(tuned, others, rows, f"{', '.join(shapes)}, each as {', '.join(clouds)}")
 
 
 if __name__ == "__main__":
