@@ -43,7 +43,7 @@ double variance_inside(double c) {
   return 1 - 2 * c * std::exp(-c * c / 2) / std::sqrt(2 * M_PI) / std::erf(c / std::sqrt(2));
 }
 
-double ScatterFit::err_together(const Eigen::Matrix<double, 6, 1>& c) {
+double ScatterFit::err_together(const Vector6& c) {
   // Along the patch, not in space: beside a point far above the others its nearest are above, too.
   nearest_ = local_;
   std::nth_element(nearest_.begin(), nearest_.begin() + kNearestTogether, nearest_.end(),
@@ -53,30 +53,14 @@ double ScatterFit::err_together(const Eigen::Matrix<double, 6, 1>& c) {
   int sum = 0;
   for (std::size_t i = 0; i < kNearestTogether; ++i) {
     const double u = nearest_[i].x(), v = nearest_[i].y();
-    const Eigen::Matrix<double, 6, 1> f =
-        (Eigen::Matrix<double, 6, 1>() << 1, u, v, u * u, u * v, v * v).finished();
+    const Vector6 f = (Vector6() << 1, u, v, u * u, u * v, v * v).finished();
     sum += nearest_[i].z() > f.dot(c) ? 1 : -1;
   }
   return double(sum * sum) / double(kNearestTogether);
 }
 
-Scatter ScatterFit::operator()(const SpatialIndex& index, const Eigen::Vector3d& place, std::size_t m,
-                               double sigma) {
-  using Vector6 = Eigen::Matrix<double, 6, 1>;
-  using Matrix6 = Eigen::Matrix<double, 6, 6>;
-  static const double kInside = variance_inside(kScatterWindow);
-  const Positions& points = index.points();
-  index.nearest(place, int(m), near_);
-  Scatter s;
-  s.foot = place;
-  s.radius = std::sqrt(near_.back().squared_distance);
-  if (!(s.radius > 0)) return s;
-  const double r = 1.1 * s.radius;  // the farthest neighbour keeps a little weight
-  Eigen::Matrix3d axes = axes_of(points, near_, place, r, s.breadth);
-  const bool line = s.breadth < kLine;
-  if (line) axes.col(0).swap(axes.col(1));
-  const double high = kScatterWindow * sigma / r;
-  const double flat = std::sqrt(std::max(kLeastFlat * kLeastFlat, 1 - high * high));
+double ScatterFit::gather(const Positions& points, const Eigen::Vector3d& place, const Eigen::Matrix3d& axes,
+                          double r, double flat, bool line) {
   local_.clear();
   weight_.clear();
   double all = 0;
@@ -90,40 +74,62 @@ Scatter ScatterFit::operator()(const SpatialIndex& index, const Eigen::Vector3d&
     weight_.push_back(inside * inside);
     all += inside * inside;
   }
+  return all;
+}
+
+ScatterFit::Sums ScatterFit::sums_within(double window, const Vector6& c, bool first, bool last) const {
+  Sums sums;
+  for (std::size_t i = 0; i < local_.size(); ++i) {
+    const double u = local_[i].x(), v = local_[i].y(), z = local_[i].z();
+    // Before there is a window, height weighs too: a second sheet at the rim of the ball must not pull.
+    const double low = 1 - z * z;
+    const double w = first ? weight_[i] * (last ? low * low : low) : weight_[i];
+    const Vector6 f = (Vector6() << 1, u, v, u * u, u * v, v * v).finished();
+    if (std::abs(z - f.dot(c)) > window) continue;
+    sums.a.selfadjointView<Eigen::Lower>().rankUpdate(f, w);
+    sums.b.selfadjointView<Eigen::Lower>().rankUpdate(f, w * w);
+    sums.right += w * z * f;
+    sums.heights += w * z * z;
+    sums.kept += w;
+    sums.squares += w * w;
+  }
+  return sums;
+}
+
+Scatter ScatterFit::operator()(const SpatialIndex& index, const Eigen::Vector3d& place, std::size_t m,
+                               double sigma) {
+  static const double kInside = variance_inside(kScatterWindow);
+  const Positions& points = index.points();
+  index.nearest(place, int(m), near_);
+  Scatter s;
+  s.foot = place;
+  s.radius = std::sqrt(near_.back().squared_distance);
+  if (!(s.radius > 0)) return s;
+  const double r = 1.1 * s.radius;  // the farthest neighbour keeps a little weight
+  Eigen::Matrix3d axes = axes_of(points, near_, place, r, s.breadth);
+  const bool line = s.breadth < kLine;
+  if (line) axes.col(0).swap(axes.col(1));
+  const double high = kScatterWindow * sigma / r;
+  const double flat = std::sqrt(std::max(kLeastFlat * kLeastFlat, 1 - high * high));
+  const double all = gather(points, place, axes, r, flat, line);
   Vector6 c = Vector6::Zero();
   double window = std::numeric_limits<double>::infinity();
   for (int round = 0; round < (sigma > 0 ? kScatterRounds : 1); ++round) {
-    Matrix6 a = Matrix6::Zero(), b = Matrix6::Zero();
-    Vector6 right = Vector6::Zero();
-    double kept = 0, squares = 0, heights = 0;
-    for (std::size_t i = 0; i < local_.size(); ++i) {
-      const double u = local_[i].x(), v = local_[i].y(), z = local_[i].z();
-      // Before there is a window, height weighs too: a second sheet at the rim of the ball must not pull.
-      const double low = 1 - z * z;
-      const double w = round > 0 ? weight_[i] : weight_[i] * (sigma > 0 ? low : low * low);
-      const Vector6 f = (Vector6() << 1, u, v, u * u, u * v, v * v).finished();
-      if (std::abs(z - f.dot(c)) > window) continue;
-      a.selfadjointView<Eigen::Lower>().rankUpdate(f, w);
-      b.selfadjointView<Eigen::Lower>().rankUpdate(f, w * w);
-      right += w * z * f;
-      heights += w * z * z;
-      kept += w;
-      squares += w * w;
-    }
+    Sums sums = sums_within(window, c, round == 0, !(sigma > 0));
     s.freedom = 0;
     s.foot = place;
     s.normal = axes.col(0);
-    if (round > 0 && kept < kLeastKept * all) return s;
-    a.diagonal().array() += 1e-9 * kept;
-    const Eigen::LLT<Matrix6> solver(a.selfadjointView<Eigen::Lower>());
-    c = solver.solve(right);
-    const Matrix6 full = b.selfadjointView<Eigen::Lower>();
-    const double left = kept - solver.solve(full).trace();
-    const double residual = heights - right.dot(c);
-    if (!(left > 0.02 * kept) || !std::isfinite(residual)) return s;
+    if (round > 0 && sums.kept < kLeastKept * all) return s;
+    sums.a.diagonal().array() += 1e-9 * sums.kept;
+    const Eigen::LLT<Matrix6> solver(sums.a.selfadjointView<Eigen::Lower>());
+    c = solver.solve(sums.right);
+    const Matrix6 full = sums.b.selfadjointView<Eigen::Lower>();
+    const double left = sums.kept - solver.solve(full).trace();
+    const double residual = sums.heights - sums.right.dot(c);
+    if (!(left > 0.02 * sums.kept) || !std::isfinite(residual)) return s;
     if (!(sigma > 0) && local_.size() > kNearestTogether) s.together = err_together(c);
     s.variance = r * r * std::max(0.0, residual) / left / (round > 0 ? kInside : 1);
-    s.freedom = left * left / squares;
+    s.freedom = left * left / sums.squares;
     s.foot = place + r * c[0] * axes.col(0);
     s.normal = (axes.col(0) - c[1] / flat * axes.col(2) - c[2] / flat * axes.col(1)).normalized();
     window = high;

@@ -50,7 +50,22 @@ class ScatterFit {
   Scatter operator()(const SpatialIndex& index, const Eigen::Vector3d& place, std::size_t m, double sigma);
 
  private:
-  double err_together(const Eigen::Matrix<double, 6, 1>& c);  ///< Scatter::together of a quadric
+  using Vector6 = Eigen::Matrix<double, 6, 1>;
+  using Matrix6 = Eigen::Matrix<double, 6, 6>;
+  /// Of the least squares: w f f^T, w^2 f f^T (lower halves), w z f, w z^2, w and w^2.
+  struct Sums {
+    Matrix6 a = Matrix6::Zero(), b = Matrix6::Zero();
+    Vector6 right = Vector6::Zero();
+    double heights = 0, kept = 0, squares = 0;
+  };
+
+  double err_together(const Vector6& c);  ///< Scatter::together of a quadric
+  /// Fills `local_` and `weight_` with the points of `near_` about the place: u and v over r flat, z over r
+  /// along the axes from most to least spread (no v on a line). Returns the sum of the weights.
+  double gather(const Positions& points, const Eigen::Vector3d& place, const Eigen::Matrix3d& axes, double r,
+                double flat, bool line);
+  /// Over the points within the window of the quadric c. \param first, last which of the rounds it is
+  Sums sums_within(double window, const Vector6& c, bool first, bool last) const;
 
   std::vector<Neighbor> near_;
   std::vector<Eigen::Vector3d> local_;  ///< u, v, z; u and v over the patch's radius, z over the ball's

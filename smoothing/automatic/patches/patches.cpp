@@ -104,37 +104,31 @@ void Patches::fit(std::size_t first, std::size_t last, const std::vector<double>
   });
 }
 
-void Patches::fit_one(std::size_t s, double sigma, Workspace& work) {
-  using Matrix6 = Eigen::Matrix<double, 6, 6>;
-  using Vector6 = Eigen::Matrix<double, 6, 1>;
-  const Index seed = seeds_[s];
-  Patch& patch = memory_.patches_[s];
-  patch.centre = field_.guide()[seed];
-  patch.weight = 0;
-  patch.several = false;
-  patch.quadric.fill(0);
-  patch.spread.fill(0);
-  patch.spread_u4 = 0;
-  rfs_mesh::WideNeighbors& near = work.near;
-  near.find(patch.centre);
-
+Eigen::Vector3d Patches::axis_at(Index seed) const {
   const std::vector<HeightField::Local>& local = field_.local();
   const Eigen::Vector3f own = local[seed].normal;
   Eigen::Vector3f sum_of_normals = 2 * own;
   const auto row = field_.neighbors()[seed];
   for (std::size_t k = 0; k < std::min(row.size(), kAxis - 1); ++k)
     if (const Eigen::Vector3f& n = local[row[k]].normal; same_sheet(n.dot(own)) > 0) sum_of_normals += n;
-  const Eigen::Vector3d axis = sum_of_normals.cast<double>().normalized();
+  return sum_of_normals.cast<double>().normalized();
+}
+
+Patches::Members Patches::gather(std::size_t s, Workspace& work) {
+  Patch& patch = memory_.patches_[s];
+  rfs_mesh::WideNeighbors& near = work.near;
+  near.find(patch.centre);
+  const Eigen::Vector3d axis = axis_at(seeds_[s]), across = axis.unitOrthogonal();
   // A little beyond the farthest point, so that it counts.
   const float square = std::max(1.1F * near.farthest(), std::numeric_limits<float>::min());
   const float shrink = 1 / std::sqrt(square);  // from the lengths of `near` to radii
-  const double radius = near.unit() / double(shrink);
-  const Eigen::Vector3d across = axis.unitOrthogonal();
-  patch.radius = float(radius);
+  Members all;
+  all.radius = near.unit() / double(shrink);
+  patch.radius = float(all.radius);
   const Eigen::Vector3f along = axis.cast<float>(), u = across.cast<float>() * shrink,
                         v = axis.cross(across).cast<float>() * shrink, up = along * shrink;
-  const Eigen::Vector3f u_in_radii = (across / radius).cast<float>(),
-                        v_in_radii = (axis.cross(across) / radius).cast<float>();
+  const Eigen::Vector3f u_in_radii = (across / all.radius).cast<float>(),
+                        v_in_radii = (axis.cross(across) / all.radius).cast<float>();
   for (std::size_t of = 0; of < 3; ++of) {
     const auto x = Eigen::Index(of);
     float* const parts = patch.frame.data() + 4 * of;
@@ -144,19 +138,17 @@ void Patches::fit_one(std::size_t s, double sigma, Workspace& work) {
     parts[3] = 0;
   }
 
-  const auto in_radii = float(1 / radius);
+  const auto in_radii = float(1 / all.radius);
   Weight* const weights = memory_.member_weight_.data() + s * members_;
   Index* const indices = memory_.member_.data() + s * members_;
-  double sum = 0, squares = 0;
-  float parallel = 0, opposite = 0;
   for (std::size_t k = 0; k < members_; ++k) {
     const Index i = near.index()[k];
-    const HeightField::Local& here = local[i];
+    const HeightField::Local& here = field_.local()[i];
     const float cosine = along.dot(here.normal);
     const float inside = 1 - near.squared()[k] / square;
     const float w = same_sheet(cosine) * inside * inside;
-    parallel += std::abs(cosine) > kOpposite ? inside * inside : 0;
-    opposite += cosine < -kOpposite ? inside * inside : 0;
+    all.parallel += std::abs(cosine) > kOpposite ? inside * inside : 0;
+    all.opposite += cosine < -kOpposite ? inside * inside : 0;
     const Eigen::Vector3f r(near.x()[k], near.y()[k], near.z()[k]);
     work.u[k] = u.dot(r);
     work.v[k] = v.dot(r);
@@ -165,10 +157,24 @@ void Patches::fit_one(std::size_t s, double sigma, Workspace& work) {
     work.cosine[k] = cosine;
     indices[k] = i;
     weights[k] = Weight(w * kWeightUnit + kRounded);
-    sum += double(w);
-    squares += double(w) * double(w);
+    all.sum += double(w);
+    all.squares += double(w) * double(w);
   }
-  if (!(sum > 0)) return;
+  return all;
+}
+
+void Patches::fit_one(std::size_t s, double sigma, Workspace& work) {
+  using Matrix6 = Eigen::Matrix<double, 6, 6>;
+  using Vector6 = Eigen::Matrix<double, 6, 1>;
+  Patch& patch = memory_.patches_[s];
+  patch.centre = field_.guide()[seeds_[s]];
+  patch.weight = 0;
+  patch.several = false;
+  patch.quadric.fill(0);
+  patch.spread.fill(0);
+  patch.spread_u4 = 0;
+  const Members all = gather(s, work);
+  if (!(all.sum > 0)) return;
   const std::size_t size = padded(members_);
   QuadricSums sums;
   sum_quadric(size, work.u.data(), work.v.data(), work.height.data(), work.weight.data(), sums);
@@ -185,16 +191,16 @@ void Patches::fit_one(std::size_t s, double sigma, Workspace& work) {
     }
   }
 
-  const double in_sigma = radius / sigma;
+  const double in_sigma = all.radius / sigma;
   const double residuals = in_sigma * in_sigma *
                            sum_residuals(size, work.u.data(), work.v.data(), work.height.data(),
                                          work.weight.data(), work.cosine.data(), quadric);
   Matrix6 squared;
   sum_squared_weights(size, work.u.data(), work.v.data(), work.weight.data(), squared);
   const double leverage = inverse.cwiseProduct(squared).sum();
-  const double points = sum * sum / squares, variance = 6 / points;
-  const double excess = (residuals - (sum - leverage)) / sum - std::sqrt(2 / points);
-  patch.several = opposite > kFacing * parallel || excess > kRough;
+  const double points = all.sum * all.sum / all.squares, variance = 6 / points;
+  const double excess = (residuals - (all.sum - leverage)) / all.sum - std::sqrt(2 / points);
+  patch.several = all.opposite > kFacing * all.parallel || excess > kRough;
   patch.weight = float(variance / (variance + std::max(0.0, excess)));
 }
 

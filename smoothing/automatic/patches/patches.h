@@ -84,7 +84,15 @@ class Patches {
   struct Covering;
 
   void fit(std::size_t first, std::size_t last, const std::vector<double>& sigma, const Context& context);
+  /// Of the members of a patch: its radius and sums of their weights.
+  struct Members {
+    double radius = 0;                 ///< world units
+    double sum = 0, squares = 0;       ///< of the weights
+    float parallel = 0, opposite = 0;  ///< of those whose normals are parallel, and opposite, to the axis
+  };
   void fit_one(std::size_t s, double sigma, Workspace& work);
+  Eigen::Vector3d axis_at(Index seed) const;       ///< the mean normal about it, unit
+  Members gather(std::size_t s, Workspace& work);  ///< the members of patch s, and its frame
   void count(std::size_t first, std::size_t last, Covering& covering, const Context& context);
   void transpose(const Covering& covering, const Context& context);
 
