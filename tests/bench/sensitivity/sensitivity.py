@@ -5,7 +5,8 @@
 
 In a copy of the sources under build/sensitivity each constant reads its factor from the environment. Then development
 clouds are denoised with one constant after the other halved and doubled. With --only, the rows of the other constants
-stay as the file has them. --list measures nothing: it counts the constants, and says which rows are missing or stale.
+stay as the file has them. --print measures nothing: it counts the constants of the sources and writes the file anew, without
+the rows of those that are gone or have another value.
 """
 import argparse
 import concurrent.futures
@@ -41,7 +42,7 @@ RULE = """A constant is a number with a name (`constexpr ... kName = 2.5;`) in `
 wrong: thresholds, weights, numbers of neighbours, samples and rounds, whether chosen on clouds, taken from a paper or set
 with reason. All others are listed, with the reason, at the end; what is not listed there
 (`tests/bench/sensitivity/not_tuned.txt`) counts as tuned. Options of the command and of the library are not constants: users
-set them, `--help` names them."""
+set them, `--help` names them. Numbers without a name, as the exponents of a formula, are not counted."""
 COLUMNS = """| constant | value | file | origin | CD | p2s | normals | strays | time | one shape |
 |---|---|---|---|---|---|---|---|---|---|
 """
@@ -149,8 +150,9 @@ def row_of(constant, before, halved, doubled):
     return "| " + " | ".join(cells) + " |"
 
 
-def row_of_sized(constant):
-    return f"| `{constant.name}` | {constant.value} | `{constant.path}` | {constant.origin} | sizes an array |  |  |  |  |  |"
+def row_without(constant):
+    why = "sizes an array" if constant.sized else "not measured"
+    return f"| `{constant.name}` | {constant.value} | `{constant.path}` | {constant.origin.replace('|', '/')} | {why} |  |  |  |  |  |"
 
 
 def rows_of_file():
@@ -158,7 +160,7 @@ def rows_of_file():
     found = {}
     for line in OUT.read_text().split("\n"):
         cells = [cell.strip(" `") for cell in line.strip("|").split(" | ")]
-        if line.startswith("| `") and len(cells) == 10:
+        if line.startswith("| `") and len(cells) == 10 and cells[4][-1:].isdigit():
             found[cells[0], cells[1], cells[2]] = line
     return found
 
@@ -166,17 +168,16 @@ def rows_of_file():
 def is_idle(row):
     """Whether no figure of the row but time changes by half a per cent."""
     cells = row.strip("| ").split(" | ")[4:8]
-    return "array" not in cells[0] and all(c != "fails" and abs(float(c)) < 0.5 for cell in cells for c in cell.split(" / "))
+    return cells[0][-1].isdigit() and all(c != "fails" and abs(float(c)) < 0.5 for cell in cells for c in cell.split(" / "))
 
 
 def write(tuned, others, rows, clouds):
-    rows.update({(c.name, c.value, c.path): row_of_sized(c) for c in tuned if c.sized})
-    rows = [rows[c.name, c.value, c.path] for c in tuned if (c.name, c.value, c.path) in rows]
+    rows = [rows.get((c.name, c.value, c.path), row_without(c)) for c in tuned]
     idle = sum(map(is_idle, rows))
     count = sum(c.numbers() for c in tuned)
     text = (f"# Constants\n\n{count} tuned constants. Printed by `tests/bench/sensitivity/sensitivity.py`.\n\n{RULE}\n\n"
-            f"## Tuned\n\nMeasured on {clouds}. {MEANING}\n\n{idle} change no figure but time by half a per cent here; some of "
-            f"them act only on clouds or\nin commands that these do not stand for.\n\n{COLUMNS}" + "\n".join(rows) +
+            f"## Tuned\n\nMeasured on {clouds}.\n{MEANING}\n\n{idle} change no figure but time by half a per cent here; some of "
+            f"them act only on clouds or\nin commands that these do not stand for (UTM, rings, steps of depth, `reconstruct`).\n\n{COLUMNS}" + "\n".join(rows) +
             "\n\n## Not tuned\n\n| number | why | which |\n|---|---|---|\n")
     for name, (reason, of_class) in others.items():
         by_path = {}
@@ -191,19 +192,16 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--only", default="", help="regular expression on FILE:NAME")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
-    parser.add_argument("--list", action="store_true", help="measure nothing")
+    parser.add_argument("--print", action="store_true", help="measure nothing")
     parser.add_argument("words", nargs="*", help="options of the program: --shapes, --laws, --times, --points, --cache")
     options = parser.parse_args()
     tuned, others = classified()
     rows = rows_of_file()
-    if options.list:
+    if options.print:
         print(f"{sum(c.numbers() for c in tuned)} tuned")
         for name, (_, of_class) in others.items():
             print(f"{sum(c.numbers() for c in of_class)} {name}")
-        now = {(c.name, c.value, c.path) for c in tuned}
-        for what, keys in (("not measured", now - rows.keys()), ("gone", rows.keys() - now)):
-            for name, value, path in sorted(keys):
-                print(f"{what}: {path}: {name} = {value}")
+        write(tuned, others, rows, re.search(r"Measured on ([^.]*)\.", OUT.read_text())[1])
         return
     chosen = [c for c in tuned if re.search(options.only, c.key) and not c.sized]
     tree = ROOT / "build/sensitivity"
