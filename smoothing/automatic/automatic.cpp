@@ -439,7 +439,7 @@ Positions automatic_smoothing(Mesh& mesh, bool keep_rings, rfs_mesh::NoiseField 
   part_thin_walls(*field, data, pass.several, pass.members_seeing, noise, smooth, whole.thin_walls, context);
   // Models of two sheets that a whole cloud or a whole patch speaks for know more than the network sees from
   // a point.
-  if (learned && hidden.split == 0) {
+  if (learned && !hidden.there()) {
     std::vector<float> height = pass.height;
     report.learned = take_learned_step(*field, data, {pass.told, pass.own, pass.height}, noise, spacing,
                                        height, sites, context);

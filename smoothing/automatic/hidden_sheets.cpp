@@ -89,10 +89,16 @@ HiddenSheets best_evidence(const std::vector<float>& residual, const std::vector
 
 }  // namespace
 
+bool HiddenSheets::there() const {
+  return evidence >= kEvidence;
+}
+
 HiddenSheets split_hidden_sheets(const HeightField& field, double sigma, std::vector<float>& height,
                                  const std::vector<float>& own, double whole,
                                  std::optional<Statistics::Sheets>& known, const Context& context) {
-  if (known && known->evidence < kEvidence) return {known->evidence, known->variance, 0};
+  HiddenSheets found;
+  if (known) found = {known->evidence, known->variance, 0};
+  if (known && !found.there()) return found;
   const std::size_t n = field.size();
   std::vector<float> residual(n), v(n);
   for_each_index(context, n, [&](std::size_t i) {
@@ -101,16 +107,14 @@ HiddenSheets split_hidden_sheets(const HeightField& field, double sigma, std::ve
   });
   // A mean over few points follows its own points and makes any noise look like two sheets: where it does not
   // even then, one over more would not either.
-  HiddenSheets found;
   for (int round = 0; round < kSheetRounds; ++round) {
     for (int again = 0; again < kAgain; ++again) v = field.local_mean(v, context);
     if (known) continue;
     found = best_evidence(residual, own, v, whole, context);
-    if (found.evidence < kEvidence) break;
+    if (!found.there()) break;
   }
-  if (known) found = {known->evidence, known->variance, 0};
   known = {found.evidence, found.variance};
-  if (found.evidence < kEvidence) return found;
+  if (!found.there()) return found;
   const double c = found.variance;
   found.split = sum_over(context, n, std::size_t(0), [&](std::size_t i) {
     const double mean = double(v[i]);

@@ -46,6 +46,9 @@ struct HiddenSheets {
   double evidence = 0;    ///< nats for two sheets against louder noise, at the best c
   double variance = 1;    ///< c, units of sigma^2
   std::size_t split = 0;  ///< points put onto one of two sheets
+
+  /// Whether the cloud has such walls. A part of it may have none of their points.
+  bool there() const;
 };
 
 /// Moves `height` (n: the smoothed heights over the field, world units) of points on hidden double sheets to
