@@ -70,15 +70,18 @@ PlanOptions plan_within(std::uint64_t memory) {
   return how;
 }
 
-std::optional<std::uint64_t> rows_in_pieces(const std::string& path, const Context& context) {
+std::optional<InPieces> in_pieces(const std::string& path, const Context& context) {
   std::error_code error;
   if (!fs::is_regular_file(path, error)) return std::nullopt;
-  const auto rows = guarded([&] { return RowFile(path, context).rows(); });
-  return rows.ok() ? std::optional(rows.value()) : std::nullopt;
+  const auto file = guarded([&] {
+    const RowFile rows(path, context);
+    return InPieces{rows.rows(), rows.format()};
+  });
+  return file.ok() ? std::optional(file.value()) : std::nullopt;
 }
 
-void smooth_in_tiles(const std::string& input, const std::string& output, bool force, const PlanOptions& how,
-                     const DenoiseOptions& options, const Context& context) {
+Joined smooth_in_tiles(const std::string& input, const std::string& output, bool force, bool keep_scale,
+                       const PlanOptions& how, const DenoiseOptions& options, const Context& context) {
   constexpr double kPlan = 0.03, kSettled = 0.1, kJoin = 0.98;  // shares of the time, for the bar
   io::check_target(output, force);
   const fs::path target(output);
@@ -94,7 +97,7 @@ void smooth_in_tiles(const std::string& input, const std::string& output, bool f
     run_tile(job, t, options, part_of(context, kSettled + each * double(t), kSettled + each * double(t + 1)));
     context.report("tiles", kSettled + each * double(t + 1));
   }
-  join_job(job, {output}, force, part_of(context, kJoin, 1));
+  return join_job(job, {output}, force, keep_scale, part_of(context, kJoin, 1)).front();
 }
 
 }  // namespace rfsmooth::pipeline::tiles

@@ -192,6 +192,9 @@ fs::path Job::sampled(std::size_t tile) const {
 fs::path Job::done(std::size_t tile) const {
   return folder / "done" / std::to_string(tile);
 }
+fs::path Job::cost(std::size_t tile) const {
+  return folder / "done" / (std::to_string(tile) + ".json");
+}
 fs::path Job::settled() const {
   return folder / "statistics.json";
 }

@@ -22,6 +22,8 @@
 
 #include <rfsmooth/denoise.h>
 
+#include "pipeline/io/formats/las/las_scale.h"
+
 namespace rfsmooth::pipeline::tiles {
 
 /// An input and its part of the rows.
@@ -51,6 +53,7 @@ struct Job {
   std::filesystem::path cut(std::size_t tile) const;      ///< its points
   std::filesystem::path sampled(std::size_t tile) const;  ///< its part of the sample
   std::filesystem::path done(std::size_t tile) const;     ///< its points, smoothed
+  std::filesystem::path cost(std::size_t tile) const;     ///< what that took, JSON
   std::filesystem::path settled() const;                  ///< the statistics and the halo, JSON
 };
 
@@ -76,15 +79,39 @@ void settle_job(const Job& job, const DenoiseOptions& options, const Context& co
 /// Needs the job settled. \throw Failure.
 void run_tile(const Job& job, std::size_t tile, const DenoiseOptions& options, const Context& context);
 
-/// Needs every tile run. `outputs`: one for each input. Files in their place are replaced if `force`.
-/// \throw Failure (usage) naming the first tile that is not.
-void join_job(const Job& job, const std::vector<std::string>& outputs, bool force, const Context& context);
+/// \throw Failure (usage) if the output's extension is of another format.
+void check_format(io::Format input, const std::string& output);
+
+/// What there is to say of an output.
+struct Joined {
+  bool las = false;
+  io::RefinedScale scale;            ///< of LAS; all zeros where it was not looked at
+  double noise = 0, noise_left = 0;  ///< for which it was
+};
+
+/// Needs every tile run. `outputs`: one for each input, of its format. Files in their place are replaced if
+/// `force`. LAS: scales that are coarse for what is left of the noise are refined, unless `keep_scale` or
+/// nothing moved. Returns one for each input. \throw Failure (usage) naming the first tile that is not.
+std::vector<Joined> join_job(const Job& job, const std::vector<std::string>& outputs, bool force,
+                             bool keep_scale, const Context& context);
+
+/// What settle found.
+struct Settled {
+  Statistics statistics;
+  double halo = 0;                   ///< width of what a tile is smoothed with, world units
+  double noise = 0, noise_left = 0;  ///< as in DenoiseReport
+};
+
+/// \throw Failure (input_unreadable).
+Settled read_settled(const std::filesystem::path& path);
 
 /// How far a job is.
 struct JobStatus {
   std::size_t tiles = 0, measured = 0, run = 0;
   bool settled = false;
-  double halo = 0;  ///< width of the surroundings, world units; 0 until settled
+  double halo = 0;        ///< width of the surroundings, world units; 0 until settled
+  double halo_share = 0;  ///< points around the tiles that were run, over those in them
+  double seconds = 0;     ///< of processor time that these took
   std::uint64_t points = 0;
   std::vector<std::size_t> missing;  ///< tiles not run
 };

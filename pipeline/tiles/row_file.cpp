@@ -26,7 +26,8 @@ namespace {
 }  // namespace
 
 RowFile::RowFile(const std::filesystem::path& path, const Context& context) : source_(path, context) {
-  switch (io::detect_format(source_, context)) {
+  format_ = io::detect_format(source_, context);
+  switch (format_) {
     case io::Format::ply: {
       io::HeaderLines lines(source_, context);
       io::Cloud cloud = io::read_ply_header(lines);
@@ -51,7 +52,6 @@ RowFile::RowFile(const std::filesystem::path& path, const Context& context) : so
       at_ = header.points;
       rows_ = header.count;
       row_ = header.row_size;
-      las_ = true;
       break;
     }
     default:
@@ -88,15 +88,31 @@ void RowFile::open_table(io::Cloud cloud, std::uint64_t at, const Context& conte
   row_ = points.row_size();
 }
 
-double RowFile::step() const {
-  double step = 0;
-  for (const io::Field& f : field_)
-    if (!io::is_float(f.type)) step = std::max(step, std::abs(f.scale));
-  return step;
+io::RefinedScale RowFile::refine_scale(double step, const std::array<double, 3>& low,
+                                       const std::array<double, 3>& high) {
+  io::RefinedScale done;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    io::Field& field = field_[axis];
+    const double a = (low[axis] - field.offset) / field.scale, b = (high[axis] - field.offset) / field.scale;
+    done.before[axis] = field.scale;
+    change_[axis] = io::finer_scale(field, step, std::min(a, b), std::max(a, b));
+    if (change_[axis].power > 0) {
+      io::change_scale(field, change_[axis]);
+      io::las::put_number(head_, io::las::kScaleAt + 8 * axis, field.scale);
+      io::las::put_number(head_, io::las::kOffsetAt + 8 * axis, field.offset);
+    }
+    done.after[axis] = field.scale;
+    done.shift[axis] = change_[axis].shift;
+  }
+  return done;
 }
 
 io::Bytes RowFile::read(std::uint64_t first, std::size_t count, const Context& context) const {
-  return source_.read(at_ + first * row_, count * row_, context);
+  io::Bytes rows = source_.read(at_ + first * row_, count * row_, context);
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (std::size_t i = 0; change_[axis].power > 0 && i < count; ++i)
+      io::change_integer(rows.data() + i * row_ + offset_[axis], change_[axis]);
+  return rows;
 }
 
 std::array<double, 3> RowFile::get(const io::Bytes& rows, std::size_t i) const {

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <string>
 
+#include "pipeline/io/formats/las/las_scale.h"
 #include "pipeline/io/stream/sink.h"
 #include "pipeline/io/stream/source.h"
 #include "pipeline/io/table/cloud.h"
@@ -22,8 +23,12 @@ class RowFile {
   RowFile(const std::filesystem::path& path, const Context& context);
 
   std::uint64_t rows() const { return rows_; }
-  /// The coarsest step that the coordinates are rounded to; 0 for floats.
-  double step() const;
+  io::Format format() const { return format_; }
+
+  /// Has LAS coordinates in steps of at most `step`, as io::refine_scale, from here on. `low`, `high`: the
+  /// ends of old and new coordinates.
+  io::RefinedScale refine_scale(double step, const std::array<double, 3>& low,
+                                const std::array<double, 3>& high);
 
   /// Bytes of rows [first, first + count).
   io::Bytes read(std::uint64_t first, std::size_t count, const Context& context) const;
@@ -48,7 +53,6 @@ class RowFile {
 
   /// The bytes before the rows with the box [low, high] in them (LAS), for `copy`.
   void set_box(const std::array<double, 3>& low, const std::array<double, 3>& high);
-  bool has_box() const { return las_; }
 
  private:
   void copy_ends(io::Sink& to, bool head, const Context& context) const;
@@ -59,7 +63,8 @@ class RowFile {
   std::array<std::size_t, 3> offset_{};
   std::uint64_t at_ = 0, rows_ = 0;
   std::size_t row_ = 0;
-  bool las_ = false;
+  io::Format format_{};
+  std::array<io::ScaleChange, 3> change_;  ///< of LAS
   std::string head_;
 };
 

@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
+#include <sys/resource.h>
 
 #include "base/median.h"
 #include "base/parallel.h"
@@ -64,20 +65,17 @@ Vector3d place(const Record& r) {
   return {r.x, r.y, r.z};
 }
 
-struct Settled {
-  Statistics statistics;
-  double halo = 0;
-};
+/// Of this process, all threads.
+double processor_seconds() {
+  rusage used{};
+  ::getrusage(RUSAGE_SELF, &used);
+  const auto seconds = [](const timeval& t) { return double(t.tv_sec) + 1e-6 * double(t.tv_usec); };
+  return seconds(used.ru_utime) + seconds(used.ru_stime);
+}
 
-Settled read_settled(const Job& job) {
-  std::ifstream file(job.settled());
-  if (!file) refuse_step(job, "is not settled yet");
-  try {
-    const ordered_json json = ordered_json::parse(file);
-    return {statistics_of(json.at("statistics")), json.at("halo")};
-  } catch (const nlohmann::json::exception& error) {
-    throw Failure({ErrorCode::input_unreadable, fmt::format("{}: {}", job.settled().string(), error.what())});
-  }
+Settled settled_of(const Job& job) {
+  if (!std::filesystem::exists(job.settled())) refuse_step(job, "is not settled yet");
+  return read_settled(job.settled());
 }
 
 /// The median distance to the m-th neighbour.
@@ -105,16 +103,22 @@ class Patcher {
   Patcher(const Job& job, const Context& context) : context_(context) {
     for (std::size_t t = 0; t < job.tiles.size(); ++t) readers_.emplace_back(job.done(t), context_);
   }
-  /// `first`: the row of the cloud that `rows` begins with.
-  void patch(const RowFile& file, std::uint64_t first, std::uint64_t count, io::Bytes& rows) {
+  /// Visits the results of rows [first, first + count), in no order. Forward only.
+  template <class Visit>
+  void visit(std::uint64_t first, std::uint64_t count, Visit&& visit) {
     context_.check_stop();
     for (RecordReader& reader : readers_)
       for (const Record* r = reader.peek(); r != nullptr && r->row < first + count; r = reader.peek()) {
         reader.next();
-        if (r->row < first) continue;  // of an input before this one
-        file.put(rows, std::size_t(r->row - first), {r->x, r->y, r->z});
-        ++patched_;
+        if (r->row >= first) visit(std::size_t(r->row - first), *r);  // else of an input before this one
       }
+  }
+  /// `first`: the row of the cloud that `rows` begins with.
+  void patch(const RowFile& file, std::uint64_t first, std::uint64_t count, io::Bytes& rows) {
+    visit(first, count, [&](std::size_t row, const Record& r) {
+      file.put(rows, row, {r.x, r.y, r.z});
+      ++patched_;
+    });
   }
   std::uint64_t patched() const { return patched_; }
 
@@ -124,25 +128,51 @@ class Patcher {
   std::uint64_t patched_ = 0;
 };
 
+/// A box of coordinates.
+struct Ends {
+  std::array<double, 3> low, high;
+  Ends() {
+    low.fill(std::numeric_limits<double>::infinity());
+    high.fill(-std::numeric_limits<double>::infinity());
+  }
+  void add(const std::array<double, 3>& xyz) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      low[axis] = std::min(low[axis], xyz[axis]);
+      high[axis] = std::max(high[axis], xyz[axis]);
+    }
+  }
+};
+
 /// The box of the coordinates as they will be written, for the header of a LAS file.
 void find_box(const Job& job, RowFile& file, std::uint64_t before, const Context& context) {
   Patcher patcher(job, context);
-  std::array<double, 3> low, high;
-  low.fill(std::numeric_limits<double>::infinity());
-  high.fill(-std::numeric_limits<double>::infinity());
+  Ends ends;
   for (std::uint64_t first = 0; first < file.rows(); first += RowFile::kPiece) {
     const auto count = std::size_t(std::min(RowFile::kPiece, file.rows() - first));
     io::Bytes piece = file.read(first, count, context);
     patcher.patch(file, before + first, count, piece);
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::array<double, 3> xyz = file.get(piece, i);
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        low[axis] = std::min(low[axis], xyz[axis]);
-        high[axis] = std::max(high[axis], xyz[axis]);
-      }
-    }
+    for (std::size_t i = 0; i < count; ++i) ends.add(file.get(piece, i));
   }
-  if (file.rows() > 0) file.set_box(low, high);
+  if (file.rows() > 0) file.set_box(ends.low, ends.high);
+}
+
+/// Refines the scale of a LAS file to `step`, unless nothing of it moved.
+io::RefinedScale refine_moved(const Job& job, RowFile& file, std::uint64_t before, double step,
+                              const Context& context) {
+  Patcher patcher(job, context);
+  Ends ends;
+  bool moved = false;
+  for (std::uint64_t first = 0; first < file.rows(); first += RowFile::kPiece) {
+    const auto count = std::size_t(std::min(RowFile::kPiece, file.rows() - first));
+    const io::Bytes piece = file.read(first, count, context);
+    for (std::size_t i = 0; i < count; ++i) ends.add(file.get(piece, i));
+    patcher.visit(before + first, count, [&](std::size_t row, const Record& r) {
+      const std::array<double, 3> now = {r.x, r.y, r.z};
+      moved = moved || now != file.get(piece, row);
+      ends.add(now);
+    });
+  }
+  return moved ? file.refine_scale(step, ends.low, ends.high) : io::RefinedScale();
 }
 
 void check_inputs(const Job& job) {
@@ -155,6 +185,23 @@ void check_inputs(const Job& job) {
 }
 
 }  // namespace
+
+void check_format(io::Format input, const std::string& output) {
+  if (const auto format = io::format_of_extension(output).value_or(input); format != input)
+    throw Failure({ErrorCode::usage,
+                   fmt::format("{}: in tiles a cloud keeps its format, {}", output, io::name_of(input))});
+}
+
+Settled read_settled(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  if (!file) throw Failure({ErrorCode::input_unreadable, fmt::format("{}: cannot be read", path.string())});
+  try {
+    const ordered_json json = ordered_json::parse(file);
+    return {statistics_of(json.at("statistics")), json.at("halo"), json.at("noise"), json.at("noise_left")};
+  } catch (const nlohmann::json::exception& error) {
+    throw Failure({ErrorCode::input_unreadable, fmt::format("{}: {}", path.string(), error.what())});
+  }
+}
 
 void measure_tile(const Job& job, std::size_t tile, const Context& context) {
   check_tile(job, tile);
@@ -215,9 +262,10 @@ void settle_job(const Job& job, const DenoiseOptions& options, const Context& co
 void run_tile(const Job& job, std::size_t tile, const DenoiseOptions& options, const Context& context) {
   check_tile(job, tile);
   refuse_for_tiles(options);
-  const Settled settled = read_settled(job);
+  const Settled settled = settled_of(job);
   const auto there = complete_records(job.done(tile), context);
   if (there && *there == job.tiles[tile].points) return;
+  const double began = processor_seconds();
   std::vector<Record> own = read_records(job.cut(tile), context);
   const AlignedBox3d box(job.tiles[tile].box.low, job.tiles[tile].box.high);
   const double reach = settled.halo * settled.halo;
@@ -238,19 +286,31 @@ void run_tile(const Job& job, std::size_t tile, const DenoiseOptions& options, c
   RecordWriter writer(job.done(tile), context);
   for (std::size_t i = 0; i < own.size(); ++i)
     writer.add({own[i].row, xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]});
+  const ordered_json cost = {{"around", xyz.size() / 3 - own.size()},
+                             {"seconds", processor_seconds() - began}};
+  value_or_throw(io::write_bytes(cost.dump() + '\n', job.cost(tile), true, context));
   writer.commit();
 }
 
-void join_job(const Job& job, const std::vector<std::string>& outputs, bool force, const Context& context) {
+std::vector<Joined> join_job(const Job& job, const std::vector<std::string>& outputs, bool force,
+                             bool keep_scale, const Context& context) {
   check_inputs(job);
   for (std::size_t t = 0; t < job.tiles.size(); ++t)
     if (const auto there = complete_records(job.done(t), context); !there || *there != job.tiles[t].points)
       refuse_step(job, fmt::format("tile {} is not smoothed yet", t));
+  const Settled settled = settled_of(job);
+  const double step = io::finest_needed(settled.noise, settled.noise_left);
+  std::vector<Joined> joined;
   Patcher patcher(job, context);
   std::uint64_t before = 0;
   for (std::size_t i = 0; i < job.inputs.size(); ++i) {
     RowFile file(job.inputs[i].path, context);
-    if (file.has_box()) find_box(job, file, before, context);
+    check_format(file.format(), outputs[i]);
+    const bool las = file.format() == io::Format::las;
+    joined.push_back({las, {}, settled.noise, settled.noise_left});
+    if (las && !keep_scale && settled.noise > 0)
+      joined.back().scale = refine_moved(job, file, before, step, context);
+    if (las) find_box(job, file, before, context);
     io::AtomicFile to(outputs[i], force, context);
     file.copy(
         to,
@@ -266,21 +326,31 @@ void join_job(const Job& job, const std::vector<std::string>& outputs, bool forc
   if (patcher.patched() != job.points)
     throw Failure(
         {ErrorCode::internal, fmt::format("{} of {} points were written", patcher.patched(), job.points)});
+  return joined;
 }
 
 JobStatus job_status(const Job& job, const Context& context) {
   JobStatus status;
   status.tiles = job.tiles.size();
   status.points = job.points;
+  double around = 0, within = 0;
   status.settled = std::filesystem::exists(job.settled());
-  if (status.settled) status.halo = read_settled(job).halo;
+  if (status.settled) status.halo = read_settled(job.settled()).halo;
   for (std::size_t t = 0; t < job.tiles.size(); ++t) {
     status.measured += std::size_t(complete_records(job.sampled(t), context).has_value());
-    if (const auto there = complete_records(job.done(t), context); there && *there == job.tiles[t].points)
-      ++status.run;
-    else
+    if (const auto there = complete_records(job.done(t), context); !there || *there != job.tiles[t].points) {
       status.missing.push_back(t);
+      continue;
+    }
+    ++status.run;
+    std::ifstream file(job.cost(t));
+    const ordered_json cost = ordered_json::parse(file, nullptr, false);
+    if (!cost.is_object()) continue;
+    around += cost.value("around", 0.0);
+    within += double(job.tiles[t].points);
+    status.seconds += cost.value("seconds", 0.0);
   }
+  if (within > 0) status.halo_share = around / within;
   return status;
 }
 

@@ -13,6 +13,7 @@
 
 #include "pipeline/cli/commands/command.h"
 #include "pipeline/cli/console/report.h"
+#include "pipeline/cli/console/scale_said.h"
 #include "pipeline/cli/console/trace_file.h"
 #include "pipeline/cli/files/cloud_jobs.h"
 #include "pipeline/cli/files/cloud_normals.h"
@@ -39,7 +40,7 @@ struct DenoiseCommandOptions {
   bool mark_outliers = false;
   bool keep_scale = false;
   std::optional<std::string> html;
-  std::optional<std::string> memory;
+  std::optional<std::string> memory, statistics;
   NormalsFields normals;
   TraceFile trace;
   JobOptions job;
@@ -67,6 +68,11 @@ struct DenoiseCommandOptions {
                      "the output; auto: what the machine has",
                      ""},
           self.memory);
+    visit(OptionInfo{"statistics",
+                     "what the cloud as a whole is like, as 'rfsmooth tiles settle' wrote it, instead of "
+                     "measuring it: the result in tiles is like that but for the seams",
+                     "file"},
+          self.statistics);
     NormalsFields::describe(self.normals, visit);
     TraceFile::describe(self.trace, visit);
   }
@@ -142,11 +148,6 @@ void remove_outliers(pipeline::io::Cloud& cloud, const std::vector<char>& outlie
   pipeline::io::select_points(cloud, rows, context);
 }
 
-std::string scale_text(const std::array<double, 3>& scale) {
-  const bool one = scale[0] == scale[1] && scale[1] == scale[2];
-  return one ? fmt::format("{:g}", scale[0]) : fmt::format("{:g}", fmt::join(scale, " "));
-}
-
 /// Refines the scale of a LAS cloud. For LAS to be written as far as it is coarse for what is left of the
 /// noise. For other formats, which have no steps, as far as 32 bits go.
 void refine_scale(const DenoiseCommandOptions& options, const DenoiseReport& done, pipeline::io::Cloud& cloud,
@@ -162,25 +163,7 @@ void refine_scale(const DenoiseCommandOptions& options, const DenoiseReport& don
   const double step = pipeline::io::finest_needed(done.noise, done.noise_left);
   const pipeline::io::RefinedScale scale = pipeline::io::refine_scale(cloud, step, xyz, context);
   entry["scale"] = {{"before", scale.before}, {"after", scale.after}};
-  if (scale.refined())
-    console.say(
-        fmt::format("{}: scale {} is coarse for noise of {:.3g}: refined to {}{} (--keep-scale keeps it)",
-                    job.input, scale_text(scale.before), done.noise, scale_text(scale.after),
-                    scale.moved_offset() ? ", offset moved" : ""));
-  if (scale.coarse(step))
-    console.warn(
-        fmt::format("{}: scale {} is coarse for noise of {:.3g}, but 32 bits hold no finer one of so large a "
-                    "cloud",
-                    job.input, scale_text(scale.after), done.noise));
-}
-
-/// An index lies beside the LAS file it is of.
-void warn_of_index(const DenoiseCommandOptions& options, const pipeline::io::Cloud& cloud, const Job& job,
-                   Console& console) {
-  if (output_format(cloud, job.output, options.job.files) != pipeline::io::Format::las) return;
-  const std::filesystem::path index = std::filesystem::path(job.output).replace_extension(".lax");
-  if (std::filesystem::exists(index))
-    console.warn(fmt::format("{}: an index of other points: make it anew", index.string()));
+  tell_scale(job.input, scale, done.noise, done.noise_left, console);
 }
 
 bool keeps_grid(const pipeline::io::Cloud& cloud) {
@@ -241,6 +224,7 @@ std::string denoise_cloud(const DenoiseCommandOptions& options, pipeline::PageCo
   if (options.html) page = pipeline::page_before(job.input, cloud, context);
   DenoiseOptions how = options.denoise;
   how.flow.trace = options.trace.trace.has_value();
+  if (options.statistics) how.statistics = pipeline::tiles::read_settled(*options.statistics).statistics;
   const DenoiseReport done =
       value_or_fail(rfsmooth::denoise(xyz.data(), n, how, context, strength), job.input);
   options.trace.write(done.trace, options.job.files);
@@ -253,7 +237,8 @@ std::string denoise_cloud(const DenoiseCommandOptions& options, pipeline::PageCo
   warn_if_coarse(cloud, pipeline::io::positions(cloud, context), done.spacing, job.input, console);
   if (as_nan) blank_outliers();
   refine_scale(options, done, cloud, xyz.data(), job, context, console, entry);
-  warn_of_index(options, cloud, job, console);
+  if (output_format(cloud, job.output, options.job.files) == pipeline::io::Format::las)
+    warn_of_index(job.output, console);
   const std::vector<double> before =
       options.write_displacement ? pipeline::io::positions(cloud, context) : std::vector<double>{};
   pipeline::io::set_positions(cloud, xyz.data(), context);
@@ -318,6 +303,7 @@ std::string needs_whole_cloud(const DenoiseCommandOptions& options) {
                                                 {options.marks(), "marked outliers"},
                                                 {options.removes(), "--outliers remove"},
                                                 {options.trace.trace.has_value(), "--trace"},
+                                                {options.statistics.has_value(), "--statistics"},
                                                 {options.job.run.report.has_value(), "--report"},
                                                 {files.format || files.encoding, "another format"}};
   for (const auto& [asked, name] : needs)
@@ -331,19 +317,22 @@ std::optional<std::uint64_t> memory_of_tiles(const DenoiseCommandOptions& option
   const std::optional<std::uint64_t> asked =
       options.memory ? std::optional(bytes_of(*options.memory)) : std::nullopt;
   if (job.input == "-" || job.output == "-") return std::nullopt;
-  const auto rows = pipeline::tiles::rows_in_pieces(job.input, context);
-  if (!rows) return std::nullopt;
+  const auto file = pipeline::tiles::in_pieces(job.input, context);
+  if (!file) return std::nullopt;
   const std::optional<std::size_t> there = available_memory();
   if (!asked && !there) return std::nullopt;
   const std::uint64_t most = asked ? *asked : std::uint64_t(*there);
   std::error_code error;
-  const std::uint64_t file = std::filesystem::file_size(job.input, error);
-  if (rfsmooth::denoise_memory(std::size_t(*rows)) + file <= most) return std::nullopt;
+  const std::uint64_t bytes = std::filesystem::file_size(job.input, error);
+  if (rfsmooth::denoise_memory(std::size_t(file->rows)) + bytes <= most) return std::nullopt;
   if (const std::string what = needs_whole_cloud(options); !what.empty()) {
     if (!asked) return std::nullopt;  // refused where the whole cloud is, with both figures
     throw Failure({ErrorCode::usage,
                    fmt::format("{}: larger than --memory, and {} needs the whole cloud", job.input, what)});
   }
+  if (asked) pipeline::tiles::check_format(file->format, job.output);
+  if (pipeline::io::format_of_extension(job.output).value_or(file->format) != file->format)
+    return std::nullopt;
   return most;
 }
 
@@ -361,8 +350,10 @@ std::optional<int> denoise_in_tiles(const DenoiseCommandOptions& options, const 
   const pipeline::tiles::PlanOptions how = pipeline::tiles::plan_within(*memory);
   console.say(fmt::format("{}: too large for {:.3g} GB: smoothed in tiles of {} points", job.input,
                           double(*memory) / 1e9, how.tile_points));
-  pipeline::tiles::smooth_in_tiles(job.input, job.output, options.job.files.force, how, options.denoise,
-                                   context);
+  const pipeline::tiles::Joined joined = pipeline::tiles::smooth_in_tiles(
+      job.input, job.output, options.job.files.force, options.keep_scale, how, options.denoise, context);
+  tell_scale(job.input, joined.scale, joined.noise, joined.noise_left, console);
+  if (joined.las) warn_of_index(job.output, console);
   mark_as_own(job.output);
   console.say(fmt::format("{} -> {}", job.input, job.output));
   return 0;

@@ -9,6 +9,7 @@
 
 #include "pipeline/cli/commands/command.h"
 #include "pipeline/cli/console/console.h"
+#include "pipeline/cli/console/scale_said.h"
 #include "pipeline/cli/files/file_options.h"
 #include "pipeline/cli/options/json_values.h"
 #include "pipeline/cli/own_files.h"
@@ -24,7 +25,7 @@ using pipeline::tiles::Job;
 struct TilesOptions {
   DenoiseOptions denoise;
   int tile_points = 5'000'000, sample_points = 1'000'000;
-  bool json = false, force = false;
+  bool json = false, force = false, keep_scale = false;
   std::optional<int> threads;
   TalkOptions talk;
 
@@ -38,6 +39,12 @@ struct TilesOptions {
           self.sample_points);
     visit(OptionInfo{"json", "status: print JSON", ""}, self.json);
     visit(OptionInfo{"force", "join: replace existing files", ""}, self.force);
+    visit(
+        OptionInfo{"keep-scale",
+                   "join: keep the scales of LAS files, also where their steps are coarser than half of the "
+                   "noise left",
+                   ""},
+        self.keep_scale);
     visit(OptionInfo{"threads", "threads to use; auto: all cores; the result is the same", "", 1, 1024},
           self.threads);
     TalkOptions::describe(self.talk, visit);
@@ -104,8 +111,12 @@ void join_tiles(const TilesOptions& options, const std::vector<std::string>& arg
       outputs.push_back((std::filesystem::path(arguments[1]) / name).string());
     }
   }
-  pipeline::tiles::join_job(job, outputs, options.force, context);
-  for (const std::string& output : outputs) mark_as_own(output);
+  const auto joined = pipeline::tiles::join_job(job, outputs, options.force, options.keep_scale, context);
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    tell_scale(job.inputs[i].path, joined[i].scale, joined[i].noise, joined[i].noise_left, console);
+    if (joined[i].las) warn_of_index(outputs[i], console);
+    mark_as_own(outputs[i]);
+  }
   console.say(fmt::format("{}: {} points, {} file{}", arguments[1], job.points, outputs.size(),
                           outputs.size() == 1 ? "" : "s"));
 }
@@ -121,11 +132,17 @@ void tell_status(const TilesOptions& options, const std::vector<std::string>& ar
                                      {"settled", s.settled},
                                      {"halo", s.halo},
                                      {"run", s.run},
+                                     {"halo_share", s.halo_share},
+                                     {"seconds", s.seconds},
                                      {"missing", s.missing}})
                            .dump(2));
   else
-    fmt::print("{} points in {} tiles: {} measured, {}settled, {} run\n", s.points, s.tiles, s.measured,
-               s.settled ? "" : "not ", s.run);
+    fmt::print("{} points in {} tiles: {} measured, {}settled, {} run{}\n", s.points, s.tiles, s.measured,
+               s.settled ? "" : "not ", s.run,
+               s.run == 0
+                   ? ""
+                   : fmt::format(" in {:.3g} s of processor time, with {:.2g} % more points around them",
+                                 s.seconds, 100 * s.halo_share));
 }
 
 /// `measure`, `settle` and `run`.

@@ -1,7 +1,9 @@
 /// rfsmooth tiles: the same bytes however the work was done, and the whole cloud's result but for seams.
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
+#include <csignal>
 #include <filesystem>
 #include <future>
 #include <numeric>
@@ -17,8 +19,10 @@
 #include "tests/cli/support/folder.h"
 #include "tests/cli/support/rich_cloud.h"
 #include "tests/cli/support/small_clouds.h"
+#include "tests/support/las_bytes.h"
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 namespace rfsmooth::test {
 namespace {
@@ -56,6 +60,34 @@ RichCloud strip(double noise, bool pcd = false, Kind kind = Kind::own) {
   return cloud;
 }
 
+constexpr int kAcross = 160;
+constexpr double kWall = 0.6, kWallNoise = 0.6;  // half of the wall's thickness, and the noise
+
+bool in_wall(int i, int j) {
+  return i < kAcross / 2 && j < kAcross / 2;
+}
+
+/// A plane with points `kWallNoise` spacings off it; those of a quarter off two, kWall on either side of it.
+RichCloud plane_with_wall() {
+  std::mt19937_64 engine(11);
+  std::normal_distribution<double> normal(0, 1);
+  RichCloud cloud;
+  cloud.doubles = true;
+  for (int i = 0; i < kAcross; ++i)
+    for (int j = 0; j < kAcross; ++j) {
+      const double half = in_wall(i, j) ? (engine() % 2 != 0 ? kWall : -kWall) : 0;
+      cloud.xyz.insert(cloud.xyz.end(), {i + 0.2 * normal(engine), j + 0.2 * normal(engine),
+                                         half + kWallNoise * normal(engine)});
+    }
+  return cloud;
+}
+
+/// A job's result beside that of the whole cloud with its statistics.
+struct Both {
+  std::string job, tiled, whole;
+  Statistics statistics;
+};
+
 class Tiles : public InFolder {
  protected:
   std::vector<std::string> tiles_of(const std::string& job) {
@@ -73,9 +105,10 @@ class Tiles : public InFolder {
   }
   /// Plans, measures and settles a job of the inputs; its tiles.
   std::vector<std::string> settled(const std::vector<std::string>& inputs, const std::string& job,
-                                   const std::string& points = "3000",
-                                   const std::string& sample = "1000000") {
+                                   const std::string& points = "3000", const std::string& sample = "1000000",
+                                   const std::string& option = "") {
     std::vector<std::string> plan = {"plan", "--tile-points", points, "--sample-points", sample};
+    if (!option.empty()) plan.push_back(option);
     plan.insert(plan.end(), inputs.begin(), inputs.end());
     plan.push_back(job);
     step(plan);
@@ -92,11 +125,41 @@ class Tiles : public InFolder {
   /// The whole of it.
   std::string joined(const std::vector<std::string>& inputs, const std::string& job,
                      const std::string& output, const std::string& points = "3000",
-                     const std::string& sample = "1000000") {
-    for (const std::string& tile : settled(inputs, job, points, sample)) step({"run", job, tile});
+                     const std::string& sample = "1000000", const std::string& option = "") {
+    for (const std::string& tile : settled(inputs, job, points, sample, option)) step({"run", job, tile});
     step({"join", job, output});
     return std::filesystem::is_directory(at(output)) ? "" : take(output);
   }
+  /// Smooths a cloud of spacings of about one in tiles and as a whole, and compares. `option`: of both.
+  Both expect_as_whole(const RichCloud& cloud, const std::string& points, const std::string& option = "") {
+    put("in.ply", cloud.bytes());
+    Both both;
+    both.job = "job" + std::to_string(++jobs_);
+    both.tiled = joined({"in.ply"}, both.job, both.job + ".ply", points, "1000000", option);
+    both.statistics = statistics(both.job);
+    std::vector<std::string> whole = {"denoise", "--force",  "--statistics", both.job + "/statistics.json",
+                                      "in.ply",  "whole.ply"};
+    if (!option.empty()) whole.push_back(option);
+    const Ran ran = run(whole);
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    both.whole = take("whole.ply");
+    double squares = 0, within = 0, count = 0;
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      if (!std::isfinite(cloud.xyz[3 * i + 2])) continue;
+      double square = 0;
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        square += std::pow(cloud.coordinate(both.tiled, i, axis) - cloud.coordinate(both.whole, i, axis), 2);
+      squares += square;
+      within += square < 0.01 ? 1 : 0;  // a tenth of the spacing
+      ++count;
+    }
+    EXPECT_LT(std::sqrt(squares / count), 0.02) << both.job;
+    EXPECT_GT(within / count, 0.99) << both.job;
+    return both;
+  }
+
+ private:
+  int jobs_ = 0;
 };
 
 TEST_F(Tiles, SameBytesForWorkersInAnyOrderAgainAndAfterKillsAndDamage) {
@@ -107,25 +170,39 @@ TEST_F(Tiles, SameBytesForWorkersInAnyOrderAgainAndAfterKillsAndDamage) {
   std::vector<std::string> twice = tiles;
   twice.insert(twice.end(), tiles.begin(), tiles.end());
   std::shuffle(twice.begin(), twice.end(), std::mt19937(3));
-  const auto work = [&](std::size_t worker, int milliseconds) {
-    for (std::size_t k = worker; k < twice.size(); k += 4) {
-      const std::string kill = std::to_string(double(milliseconds * int(1 + k % 5)) / 1000);
-      std::vector<std::string> run = {RFSMOOTH_COMMAND, "tiles",     "run", at("many"),
-                                      twice[k],         "--threads", "1"};
-      if (milliseconds > 0) run.insert(run.begin(), {"-s", "KILL", kill});
-      const std::string program = milliseconds > 0 ? "timeout" : run.front();
-      if (milliseconds == 0) run.erase(run.begin());
-      run_program(program, run);
+  // Four workers are killed at random times, 20 of them on the way, though what is there is taken away again.
+  std::atomic<int> killed = 0;
+  const auto kill = [&](std::size_t worker) {
+    std::mt19937 random(unsigned(worker) + 1);
+    for (std::size_t k = worker; killed < 20; k += 4) {
+      const std::string& tile = twice[k % twice.size()];
+      const std::string after = std::to_string(double(1 + random() % 200) / 1000);
+      std::error_code ignored;
+      std::filesystem::remove(at("many/done/" + tile), ignored);
+      killed += run_program("timeout", {"-s", "KILL", after, RFSMOOTH_COMMAND, "tiles", "run", at("many"),
+                                        tile, "--threads", "1"})
+                            .code == 128 + SIGKILL
+                    ? 1
+                    : 0;
     }
   };
-  for (const int milliseconds : {40, 0}) {  // first most are killed on the way, then all come to their end
+  const auto finish = [&](std::size_t worker) {
+    for (std::size_t k = worker; k < twice.size(); k += 4)
+      run_program(RFSMOOTH_COMMAND, {"tiles", "run", at("many"), twice[k], "--threads", "1"});
+  };
+  const auto in_four = [](const auto& work) {
     std::vector<std::future<void>> workers;
-    for (std::size_t w = 0; w < 4; ++w)
-      workers.push_back(std::async(std::launch::async, work, w, milliseconds));
+    for (std::size_t w = 0; w < 4; ++w) workers.push_back(std::async(std::launch::async, work, w));
     for (auto& worker : workers) worker.get();
-  }
+  };
+  in_four(kill);
+  in_four(finish);
   step({"join", "many", "many.ply"});
   EXPECT_TRUE(take("many.ply") == expected);
+  const auto all = nlohmann::json::parse(run({"tiles", "status", "many", "--json"}).out);
+  EXPECT_GT(all["halo_share"].get<double>(), 0.1);  // a strip is narrow, and its tiles are short
+  EXPECT_LT(all["halo_share"].get<double>(), double(tiles.size()));
+  EXPECT_GT(all["seconds"].get<double>(), 0);
 
   // Half a result, and one with a byte of another: both are found, made again, and nothing else is.
   std::filesystem::resize_file(at("many/done/2"), std::filesystem::file_size(at("many/done/2")) / 2);
@@ -173,6 +250,10 @@ TEST_F(Tiles, OneTileIsTheWholeCloudToTheByte) {
     const std::string tiled = joined({"in.ply"}, name, name + ".ply", "1000000");
     EXPECT_EQ(run({"denoise", "--force", "in.ply", "whole.ply"}).code, 0);
     EXPECT_TRUE(take("whole.ply") == tiled) << noise;
+    const Ran known =
+        run({"denoise", "--force", "--statistics", name + "/statistics.json", "in.ply", "as.ply"});
+    EXPECT_EQ(known.code, 0) << known.err;
+    EXPECT_TRUE(take("as.ply") == tiled) << noise;
     return statistics(name);
   };
   for (const double noise : {0.0, 0.4, 1.3}) same(noise, Kind::own);
@@ -182,28 +263,47 @@ TEST_F(Tiles, OneTileIsTheWholeCloudToTheByte) {
 }
 
 TEST_F(Tiles, ManyTilesAreTheWholeCloudButForRounding) {
-  for (const double noise : {0.1, 0.4}) {
-    const RichCloud cloud = strip(noise);
-    put("in.ply", cloud.bytes());
-    const std::string name = "job" + std::to_string(noise);
-    const std::string tiled = joined({"in.ply"}, name, name + ".ply");
-    DenoiseOptions options;
-    options.statistics = statistics(name);
-    std::vector<double> whole = cloud.xyz;
-    ASSERT_TRUE(denoise(whole.data(), cloud.size(), options, {}).ok());
-    double squares = 0, within = 0, count = 0;
-    for (std::size_t i = 0; i < cloud.size(); ++i) {
-      if (!std::isfinite(cloud.xyz[3 * i + 2])) continue;
-      double square = 0;
-      for (std::size_t axis = 0; axis < 3; ++axis)
-        square += std::pow(cloud.coordinate(tiled, i, axis) - whole[3 * i + axis], 2);
-      squares += square;
-      within += square < 0.01 ? 1 : 0;  // a tenth of the spacing, which is about one
-      ++count;
-    }
-    EXPECT_LT(std::sqrt(squares / count), 0.02) << noise;
-    EXPECT_GT(within / count, 0.99) << noise;
+  for (const double noise : {0.1, 0.4}) expect_as_whole(strip(noise), "3000");
+}
+
+// A wall thinner than the noise in a corner of a plane, which is a tile: what the whole cloud says of it
+// holds in all tiles, also of the learned step, which is not taken where there are such walls.
+TEST_F(Tiles, WallsHiddenInOneTileAreWhatTheyAreInTheWholeCloud) {
+  const RichCloud cloud = plane_with_wall();
+  for (const char* learned : {"", "--learned"}) {
+    const Both both = expect_as_whole(cloud, "6400", learned);
+    EXPECT_GT(both.statistics.sheets->evidence, 7);
+    const auto parted = [&](const std::string& bytes) {  // share of the wall's points
+      double beside = 0, all = 0;
+      for (std::size_t i = 0; i < cloud.size(); ++i) {
+        if (!in_wall(int(i) / kAcross, int(i) % kAcross)) continue;
+        beside += std::abs(cloud.coordinate(bytes, i, 2)) > kWall / 2 ? 1 : 0;
+        ++all;
+      }
+      return beside / all;
+    };
+    EXPECT_GT(parted(both.whole), 0.5);
+    EXPECT_NEAR(parted(both.tiled), parted(both.whole), 0.01);
   }
+}
+
+// Two sheets across x = 0, three sigma apart, with a sheet on either side: the cut is between them.
+TEST_F(Tiles, AThinPlateCutAlongItsPlaneIsAsInTheWholeCloud) {
+  constexpr int kSide = 60;
+  constexpr double kApart = 1.2, kSigma = 0.4;
+  std::mt19937_64 engine(3);
+  std::normal_distribution<double> normal(0, 1);
+  RichCloud cloud;
+  cloud.doubles = true;
+  for (const double x : {-100.0, -kApart / 2, kApart / 2, 100.0})
+    for (int i = 0; i < kSide; ++i)
+      for (int j = 0; j < kSide; ++j)
+        cloud.xyz.insert(cloud.xyz.end(),
+                         {x + kSigma * normal(engine), i + 0.2 * normal(engine), j + 0.2 * normal(engine)});
+  const Both both = expect_as_whole(cloud, "7200");
+  const nlohmann::json tiles = nlohmann::json::parse(take(both.job + "/job.json"))["tiles"];
+  ASSERT_EQ(tiles.size(), 2u);
+  EXPECT_NEAR(tiles[0]["box"][1][0].get<double>(), 0, kApart / 2) << "cut between the sheets";
 }
 
 TEST_F(Tiles, AFolderOfFilesIsOneCloud) {
@@ -243,6 +343,44 @@ TEST_F(Tiles, DenoiseTakesTilesWhereTheMemoryIsLess) {
   const Ran whole = run({"denoise", "--memory", "10M", "--normals", "in.ply", "x.ply"});
   EXPECT_EQ(whole.code, 2);
   EXPECT_THAT(whole.err, HasSubstr("--normals needs the whole cloud"));
+}
+
+// As denoise has it (las_test.cpp), the bytes too: one tile is the whole.
+TEST_F(Tiles, ACoarseScaleOfALasFileIsRefinedAsForTheWholeCloud) {
+  constexpr double kScale = 0.2;
+  std::mt19937_64 engine(9);
+  std::normal_distribution<double> noise(0, 0.2);
+  LasBytes las;
+  las.scale = {kScale, kScale, kScale};
+  for (int i = 0; i < 60; ++i)
+    for (int j = 0; j < 60; ++j) {
+      las.xyz.push_back({});
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double at = k == 0 ? i : k == 1 ? j : 0;
+        las.xyz.back()[k] = std::int32_t(std::lround((at + noise(engine)) / kScale));
+      }
+    }
+  put("in.las", las.bytes());
+  for (const bool keep : {false, true}) {
+    const std::vector<std::string> option(keep ? 1 : 0, "--keep-scale");
+    std::vector<std::string> whole = {"denoise", "--force", "in.las", "whole.las"},
+                             join = {"tiles", "join", "--force", "job", "tiled.las"};
+    whole.insert(whole.end(), option.begin(), option.end());
+    join.insert(join.end(), option.begin(), option.end());
+    EXPECT_EQ(run(whole).code, 0);
+    for (const std::string& tile : settled({"in.las"}, "job", "1000000")) step({"run", "job", tile});
+    const Ran ran = run(join);
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    EXPECT_TRUE(take("tiled.las") == take("whole.las"));
+    if (keep)
+      EXPECT_THAT(ran.err, Not(HasSubstr("scale")));
+    else
+      EXPECT_THAT(ran.err, HasSubstr("is coarse for noise of"));
+    EXPECT_EQ(LasBytes::get<double>(take("tiled.las"), 131) < kScale, !keep);
+  }
+  const Ran other = run({"tiles", "join", "job", "out.ply"});
+  EXPECT_EQ(other.code, 2);
+  EXPECT_THAT(other.err, HasSubstr("keeps its format"));
 }
 
 TEST_F(Tiles, WhatCannotBeDoneIsRefusedWithWhatToDo) {

@@ -42,15 +42,9 @@ Span span_in_steps(const Table& points, std::size_t axis, const double* xyz, con
       });
 }
 
-// A change of an axis: integers become (old - shift) * 10^power.
-struct Change {
-  int power = 0;
-  double shift = 0;
-};
-
 // The finest change of at most `power` whose integers fit. An offset that must move does so by a round number
 // of steps.
-Change finest(const Span& span, int power) {
+ScaleChange finest(const Span& span, int power) {
   const auto fits = [&](double shift, double factor) {
     return (span.high - shift) * factor < kMostSteps && (span.low - shift) * factor > -kMostSteps;
   };
@@ -63,22 +57,14 @@ Change finest(const Span& span, int power) {
   return {};
 }
 
-void apply(Table& points, std::size_t axis, const Change& change, const Context& context) {
-  const auto factor = std::int64_t(std::pow(10.0, change.power)), shift = std::int64_t(change.shift);
+void apply(Table& points, std::size_t axis, const ScaleChange& change, const Context& context) {
   context.check_stop();
   Context to_the_end = context;  // in place: all rows or none
   to_the_end.stop = nullptr;
   const std::size_t size = points.row_size();
-  for_each_index(to_the_end, points.count, [&](std::size_t i) {
-    char* p = points.data.data() + i * size + 4 * axis;
-    std::int32_t value;
-    std::memcpy(&value, p, sizeof value);
-    value = std::int32_t((value - shift) * factor);
-    std::memcpy(p, &value, sizeof value);
-  });
-  Field& field = points.fields[axis];
-  field.offset += change.shift * field.scale;
-  field.scale = times_power_of_ten(field.scale, -change.power);
+  for_each_index(to_the_end, points.count,
+                 [&](std::size_t i) { change_integer(points.data.data() + i * size + 4 * axis, change); });
+  change_scale(points.fields[axis], change);
 }
 
 }  // namespace
@@ -113,6 +99,27 @@ double finest_needed(double noise, double left) {
   return (left < noise ? left : noise / 10) / 2;
 }
 
+ScaleChange finer_scale(const Field& field, double step, double low, double high) {
+  if (!(step > 0) || std::abs(field.scale) <= step) return {};
+  // Rounded up, but for what division adds to a power of ten.
+  const int power = int(std::ceil(std::log10(std::abs(field.scale) / step) - 1e-9));
+  return las::finest({low, high}, std::clamp(power, 0, las::kMostPowers));
+}
+
+void change_scale(Field& field, const ScaleChange& change) {
+  field.offset += change.shift * field.scale;
+  field.scale = times_power_of_ten(field.scale, -change.power);
+}
+
+void change_integer(char* at, const ScaleChange& change) {
+  constexpr std::array<std::int64_t, las::kMostPowers + 1> kFactor = {
+      1, 10, 100, 1'000, 10'000, 100'000, 1'000'000, 10'000'000, 100'000'000, 1'000'000'000};
+  std::int32_t value;
+  std::memcpy(&value, at, sizeof value);
+  value = std::int32_t((value - std::int64_t(change.shift)) * kFactor[std::size_t(change.power)]);
+  std::memcpy(at, &value, sizeof value);
+}
+
 RefinedScale refine_scale(Cloud& las, double step, const double* xyz, const Context& context) {
   using namespace las;  // NOLINT(google-build-using-namespace)
   RefinedScale done;
@@ -121,10 +128,8 @@ RefinedScale refine_scale(Cloud& las, double step, const double* xyz, const Cont
     const double scale = points.fields[axis].scale;
     done.before[axis] = done.after[axis] = scale;
     if (!(step > 0) || std::abs(scale) <= step || points.count == 0) continue;
-    // Rounded up, but for what division adds to a power of ten.
-    const int power = int(std::ceil(std::log10(std::abs(scale) / step) - 1e-9));
-    const Change change =
-        finest(span_in_steps(points, axis, xyz, context), std::clamp(power, 0, kMostPowers));
+    const Span span = span_in_steps(points, axis, xyz, context);
+    const ScaleChange change = finer_scale(points.fields[axis], step, span.low, span.high);
     if (change.power == 0) continue;
     apply(points, axis, change, context);
     done.after[axis] = points.fields[axis].scale;

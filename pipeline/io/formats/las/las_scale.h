@@ -24,6 +24,22 @@ struct RefinedScale {
 /// of white noise on smooth shapes. World units; 0 without noise.
 double finest_needed(double noise, double left);
 
+/// A change of an axis: integers become (old - shift) * 10^power.
+struct ScaleChange {
+  int power = 0;
+  double shift = 0;
+};
+
+/// The change of an axis to steps of at most `step`, as far as its integers fit into 32 bits. `low`, `high`:
+/// the ends of its old and new coordinates, in old steps.
+ScaleChange finer_scale(const Field& field, double step, double low, double high);
+
+/// Changes the field, but no integers.
+void change_scale(Field& field, const ScaleChange& change);
+
+/// Changes an integer, in place: 4 bytes.
+void change_integer(char* at, const ScaleChange& change);
+
 /// Gives each axis of a LAS cloud a scale of at most `step`, the old one over a power of ten, before
 /// coordinates `xyz` (n x 3) are set: integers become 10^k times what they were, so that points stay where
 /// they are to the last digit. As far as both old and new coordinates fit into 32 bits; the offset stays if
