@@ -7,7 +7,7 @@ import sys
 import tempfile
 import time
 
-from engines import TILE_POINTS, alone, hash_of, running_tile
+from engines import TILE_POINTS, alone, hash_of, held_tile, holding
 
 COMMAND, SCRIPT = sys.argv[1:3]
 
@@ -15,12 +15,13 @@ with tempfile.TemporaryDirectory() as name:
     folder = pathlib.Path(name)
     expected = alone(COMMAND, folder)
     job = folder / "job"
+    script = holding(COMMAND, folder)
     dask = subprocess.Popen([sys.executable, SCRIPT, folder / "in.ply", job, folder / "dask.ply",
-                             "--tile-points", str(TILE_POINTS)], env={**os.environ, "RFSMOOTH": COMMAND})
+                             "--tile-points", str(TILE_POINTS)], env={**os.environ, "RFSMOOTH": str(script)})
     found = None
     while found is None and dask.poll() is None:
-        found = running_tile(job)
-        time.sleep(0.002)
+        found = held_tile(script)
+        time.sleep(0.01)
     assert found is not None, "no tile was seen running"
     tile, worker = found
     assert worker != dask.pid, "a tile runs in a worker"

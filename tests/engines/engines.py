@@ -29,8 +29,21 @@ def parent_of(process):
     return int(pathlib.Path(f"/proc/{process}/stat").read_text().rsplit(")", 1)[1].split()[1])
 
 
-def running_tile(folder):
-    """The process of a tile of the job in `folder` and its parent, once there is one."""
+def holding(command, folder):
+    """A command like it, of which the first tile waits to be killed: it is seen however fast the others are."""
+    script = folder / "rfsmooth"
+    script.write_text(f"""#!/bin/sh
+if [ "$2" = run ] && mkdir '{folder}/held' 2> /dev/null; then sleep 60 < /dev/null > /dev/null 2>&1; fi
+exec '{command}' "$@"
+""")
+    script.chmod(0o755)
+    return script
+
+
+def held_tile(script):
+    """The process of the tile that waits and its parent, once there is one."""
+    if not (script.parent / "held").exists():
+        return None
     for process in pathlib.Path("/proc").iterdir():
         if not process.name.isdigit():
             continue
@@ -39,7 +52,7 @@ def running_tile(folder):
             parent = parent_of(process.name)
         except (OSError, IndexError):
             continue  # it has ended
-        if b"run" in words and os.fsencode(folder) in words:
+        if b"run" in words and os.fsencode(script) in words:
             return int(process.name), parent
     return None
 

@@ -9,7 +9,7 @@ import sys
 import tempfile
 import time
 
-from engines import TILE_POINTS, alone, hash_of, parent_of, running_tile
+from engines import TILE_POINTS, alone, hash_of, held_tile, holding, parent_of
 
 COMMAND, SCRIPT = sys.argv[1:3]
 SKIPPED = 77
@@ -116,12 +116,13 @@ with tempfile.TemporaryDirectory() as name:
     job = folder / "job"
     try:
         start(folder)
-        os.environ.update(RFSMOOTH=COMMAND, TILE_POINTS=str(TILE_POINTS))
+        script = holding(COMMAND, folder)
+        os.environ.update(RFSMOOTH=str(script), TILE_POINTS=str(TILE_POINTS))
         say("sh", SCRIPT, job, folder / "slurm.ply", folder / "in.ply")
         end, lost = time.time() + 60 * MINUTES, None
         while not (folder / "slurm.ply").exists():
             assert time.time() < end, say("squeue") + say("sinfo")
-            found = running_tile(job) if lost is None else None
+            found = held_tile(script) if lost is None else None
             if found is not None:
                 try:
                     lost = lose_node(found[0])

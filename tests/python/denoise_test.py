@@ -159,7 +159,7 @@ def test_signature_and_help_name_every_option_of_the_command(command):
     first = {"noise": None, "strength": 1.0, "flow": "auto", "outliers": "keep", "normals": False, "threads": 0}
     assert {name: parameters[name].default for name in first} == first
     names_there = {line.split()[0].rstrip(",") for line in shown.splitlines() if line.strip().startswith("--")}
-    of_files = {"output", "format", "encoding", "force", "drop-unsupported", "report", "html", "trace", "quiet", "verbose", "help", "help-all"}
+    of_files = {"output", "format", "encoding", "force", "drop-unsupported", "report", "html", "trace", "quiet", "verbose", "help", "help-all", "statistics"}
     for name in names_there:
         plain = name[2:].removeprefix("no-").split("=")[0].split("[")[0]
         if plain not in of_files:
