@@ -266,8 +266,9 @@ TEST_F(Tiles, ManyTilesAreTheWholeCloudButForRounding) {
   for (const double noise : {0.1, 0.4}) expect_as_whole(strip(noise), "3000");
 }
 
-// A wall thinner than the noise in a corner of a plane, which is a tile: what the whole cloud says of it
-// holds in all tiles, also of the learned step, which is not taken where there are such walls.
+// A wall thinner than the noise in a corner of a plane, which is a tile. The halos of the others reach into
+// it: that a tile without any such points leaves out the learned step as the whole cloud does is not shown
+// here.
 TEST_F(Tiles, WallsHiddenInOneTileAreWhatTheyAreInTheWholeCloud) {
   const RichCloud cloud = plane_with_wall();
   for (const char* learned : {"", "--learned"}) {
