@@ -60,7 +60,7 @@ struct Statistics {
   };
   /// Walls thinner than the noise.
   struct Sheets {
-    double evidence = 0;  ///< nats for two sheets
+    double evidence = 0;  ///< nats for two sheets against louder noise, at the best variance
     double variance = 1;  ///< of the noise that leaves, over what was measured
   };
 

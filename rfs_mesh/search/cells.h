@@ -1,9 +1,8 @@
 /// Compact groups of neighbouring points, of nearly the same size, that know nothing of points far away.
 ///
-/// Space is divided into cubes, and the points of a cube are
-/// halved at the median of their widest axis until the groups are small. So points beyond a cube have no say
-/// in its groups: a part of a cloud has the groups of the whole where its cubes are complete. Thread safe: no
-/// state is kept.
+/// Space is divided into cubes, and the points of a cube are halved at the median of their widest axis until
+/// the groups are small. So points beyond a cube have no say in its groups: a part of a cloud has the groups
+/// of the whole where its cubes are complete. Thread safe: no state is kept.
 #pragma once
 
 #include <vector>

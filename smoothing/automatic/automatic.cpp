@@ -375,11 +375,8 @@ Tails tame(const HeightField& field, const Pass& pass, const Mesh& mesh, Positio
     // Where the mixture had to be narrow, a wide patch says little.
     least[i] = std::min(std::abs(relative[i]), std::abs(without) / sigma);
   });
-  if (!whole) {
-    const Tails found = find_tails(relative, least);
-    whole = {found.share, found.times, found.narrow};
-  }
-  const Tails tails{whole->share, whole->times, whole->narrow};
+  if (!whole) whole = find_tails(relative, least);
+  const Tails tails{*whole};
   if (!(tails.share > 0)) return tails;
   for_each_index(context, off.size(), [&](std::size_t i) {
     if (!std::isnan(relative[i]))

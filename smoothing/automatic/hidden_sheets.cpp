@@ -97,7 +97,7 @@ HiddenSheets split_hidden_sheets(const HeightField& field, double sigma, std::ve
                                  const std::vector<float>& own, double whole,
                                  std::optional<Statistics::Sheets>& known, const Context& context) {
   HiddenSheets found;
-  if (known) found = {known->evidence, known->variance, 0};
+  if (known) found = {*known, 0};
   if (known && !found.there()) return found;
   const std::size_t n = field.size();
   std::vector<float> residual(n), v(n);
@@ -113,7 +113,7 @@ HiddenSheets split_hidden_sheets(const HeightField& field, double sigma, std::ve
     found = best_evidence(residual, own, v, whole, context);
     if (!found.there()) break;
   }
-  known = {found.evidence, found.variance};
+  known = found;
   if (!found.there()) return found;
   const double c = found.variance;
   found.split = sum_over(context, n, std::size_t(0), [&](std::size_t i) {

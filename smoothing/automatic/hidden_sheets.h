@@ -42,9 +42,7 @@
 namespace rfsmooth::smoothing {
 
 /// What was found.
-struct HiddenSheets {
-  double evidence = 0;    ///< nats for two sheets against louder noise, at the best c
-  double variance = 1;    ///< c, units of sigma^2
+struct HiddenSheets : Statistics::Sheets {
   std::size_t split = 0;  ///< points put onto one of two sheets
 
   /// Whether the cloud has such walls. A part of it may have none of their points.

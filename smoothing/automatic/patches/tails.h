@@ -17,14 +17,12 @@
 
 #include <vector>
 
+#include <rfsmooth/statistics.h>
+
 namespace rfsmooth::smoothing {
 
 /// The law of a cloud's tails.
-struct Tails {
-  double share = 0;   ///< p; 0: none found
-  double times = 1;   ///< standard deviation of those points over that of the others
-  double narrow = 1;  ///< s: standard deviation of the others over what was measured for all
-
+struct Tails : Statistics::Tails {
   /// What a residual of r (in units of the measured noise) is to be multiplied by.
   double weight(double r) const;
 };
