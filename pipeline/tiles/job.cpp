@@ -14,6 +14,7 @@
 #include "pipeline/io/io.h"
 #include "pipeline/tiles/records.h"
 #include "pipeline/tiles/row_file.h"
+#include "pipeline/tiles/statistics_json.h"
 
 namespace rfsmooth::pipeline::tiles {
 
@@ -49,15 +50,13 @@ void for_each_point(const std::vector<JobInput>& inputs, const char* stage, doub
   for (const JobInput& input : inputs) all += input.rows;
   for (const JobInput& input : inputs) {
     const RowFile file(input.path, context);
-    for (std::uint64_t first = 0; first < input.rows; first += RowFile::kPiece) {
-      context.report(stage, from + (to - from) * double(row) / double(std::max<std::uint64_t>(1, all)));
-      const auto count = std::size_t(std::min(RowFile::kPiece, input.rows - first));
-      const io::Bytes piece = file.read(first, count, context);
+    file.for_each_piece(context, [&](std::uint64_t, std::size_t count, const io::Bytes& rows) {
+      context.report(stage, from + (to - from) * double(row) / double(all));
       for (std::size_t i = 0; i < count; ++i, ++row) {
-        const std::array<double, 3> xyz = file.get(piece, i);
+        const std::array<double, 3> xyz = file.get(rows, i);
         if (const Vector3d p(xyz[0], xyz[1], xyz[2]); p.allFinite()) visit(row, p);
       }
-    }
+    });
   }
 }
 
@@ -114,19 +113,6 @@ class Cuts {
   std::vector<Node> nodes_;
 };
 
-ordered_json json_of_box(const Statistics::Box& box) {
-  return {{box.low[0], box.low[1], box.low[2]}, {box.high[0], box.high[1], box.high[2]}};
-}
-
-Statistics::Box box_of(const ordered_json& json) {
-  Statistics::Box box;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    box.low[Eigen::Index(axis)] = json.at(0).at(axis);
-    box.high[Eigen::Index(axis)] = json.at(1).at(axis);
-  }
-  return box;
-}
-
 JobInput describe_input(const std::string& path, const Context& context) {
   const RowFile file(path, context);
   return {fs::absolute(path).lexically_normal().string(), file.rows(), fs::file_size(path),
@@ -135,16 +121,16 @@ JobInput describe_input(const std::string& path, const Context& context) {
 
 ordered_json json_of_job(const Job& job, const PlanOptions& how) {
   ordered_json json = {
-      {"rfsmooth_tiles", 1},        {"tile_points", how.tile_points}, {"sample_points", how.sample_points},
-      {"options", job.options},     {"points", job.points},           {"sample", job.sample},
-      {"box", json_of_box(job.box)}};
+      {"rfsmooth_tiles", 1},    {"tile_points", how.tile_points}, {"sample_points", how.sample_points},
+      {"options", job.options}, {"points", job.points},           {"sample", job.sample},
+      {"box", json_of(job.box)}};
   json["inputs"] = ordered_json::array();
   for (const JobInput& input : job.inputs)
     json["inputs"].push_back(
         {{"path", input.path}, {"rows", input.rows}, {"bytes", input.bytes}, {"changed", input.changed}});
   json["tiles"] = ordered_json::array();
   for (const Tile& tile : job.tiles)
-    json["tiles"].push_back({{"points", tile.points}, {"box", json_of_box(tile.box)}});
+    json["tiles"].push_back({{"points", tile.points}, {"box", json_of(tile.box)}});
   return json;
 }
 

@@ -67,7 +67,7 @@ struct PlanOptions {
 Job plan_job(const std::vector<std::string>& inputs, const std::filesystem::path& folder,
              const PlanOptions& how, const nlohmann::ordered_json& options, const Context& context);
 
-/// Reads the plan. \throw Failure (input_unreadable, or usage if an input changed since).
+/// Reads the plan. \throw Failure (input_unreadable).
 Job open_job(const std::filesystem::path& folder);
 
 /// \throw Failure.

@@ -25,7 +25,21 @@ std::uint64_t hashed(std::uint64_t hash, const Record* records, std::size_t coun
   return hash;
 }
 
-using Trailer = std::array<std::uint64_t, 3>;
+struct Trailer {
+  std::uint64_t mark = 0, count = 0, hash = 0;
+};
+static_assert(sizeof(Trailer) == 24);
+
+/// If it is one, and the file has the size that it tells.
+std::optional<Trailer> trailer_of(const io::Source& source, const Context& context) {
+  Trailer trailer{};
+  if (source.size() < sizeof trailer) return std::nullopt;
+  const std::uint64_t records = source.size() - sizeof trailer;
+  source.read(records, reinterpret_cast<char*>(&trailer), sizeof trailer, context);
+  if (trailer.mark != kMark || records % sizeof(Record) != 0 || trailer.count != records / sizeof(Record))
+    return std::nullopt;
+  return trailer;
+}
 
 }  // namespace
 
@@ -47,20 +61,16 @@ void RecordWriter::flush() {
 void RecordWriter::commit() {
   flush();
   const Trailer trailer = {kMark, count_, hash_};
-  file_.write({reinterpret_cast<const char*>(trailer.data()), sizeof trailer});
+  file_.write({reinterpret_cast<const char*>(&trailer), sizeof trailer});
   file_.commit(true);
 }
 
 RecordReader::RecordReader(std::filesystem::path path, const Context& context)
     : path_(std::move(path)), context_(context) {
   const io::Source source(path_, context_);
-  Trailer trailer{};
-  if (source.size() >= sizeof trailer)
-    source.read(source.size() - sizeof trailer, reinterpret_cast<char*>(trailer.data()), sizeof trailer,
-                context_);
-  if (trailer[0] != kMark || source.size() != trailer[1] * sizeof(Record) + sizeof trailer)
-    source.fail("is not complete; the step that makes it makes it again");
-  count_ = trailer[1];
+  const auto trailer = trailer_of(source, context_);
+  if (!trailer) source.fail("is not complete; the step that makes it makes it again");
+  count_ = trailer->count;
 }
 
 const Record* RecordReader::peek() {
@@ -79,22 +89,17 @@ const Record* RecordReader::peek() {
 std::optional<std::uint64_t> complete_records(const std::filesystem::path& path, const Context& context) {
   if (!std::filesystem::exists(path)) return std::nullopt;
   const io::Source source(path, context);
-  Trailer trailer{};
-  if (source.size() < sizeof trailer || (source.size() - sizeof trailer) % sizeof(Record) != 0)
-    return std::nullopt;
-  source.read(source.size() - sizeof trailer, reinterpret_cast<char*>(trailer.data()), sizeof trailer,
-              context);
-  const std::uint64_t count = (source.size() - sizeof trailer) / sizeof(Record);
-  if (trailer[0] != kMark || trailer[1] != count) return std::nullopt;
+  const auto trailer = trailer_of(source, context);
+  if (!trailer) return std::nullopt;
   std::uint64_t hash = kHashStart;
   std::vector<Record> part;
-  for (std::uint64_t at = 0; at < count; at += part.size()) {
-    part.resize(std::size_t(std::min<std::uint64_t>(kHeld, count - at)));
+  for (std::uint64_t at = 0; at < trailer->count; at += part.size()) {
+    part.resize(std::size_t(std::min<std::uint64_t>(kHeld, trailer->count - at)));
     source.read(at * sizeof(Record), reinterpret_cast<char*>(part.data()), part.size() * sizeof(Record),
                 context);
     hash = hashed(hash, part.data(), part.size());
   }
-  return hash == trailer[2] ? std::optional(count) : std::nullopt;
+  return hash == trailer->hash ? std::optional(trailer->count) : std::nullopt;
 }
 
 }  // namespace rfsmooth::pipeline::tiles

@@ -136,8 +136,7 @@ void RowFile::set_box(const std::array<double, 3>& low, const std::array<double,
   }
 }
 
-void RowFile::copy_ends(io::Sink& to, bool head, const Context& context) const {
-  if (head) return to.write(head_);
+void RowFile::copy_tail(io::Sink& to, const Context& context) const {
   constexpr std::uint64_t kBytes = std::uint64_t{4} << 20;
   for (std::uint64_t at = at_ + rows_ * row_; at < source_.size(); at += kBytes) {
     const io::Bytes part = source_.read(at, std::size_t(std::min(kBytes, source_.size() - at)), context);

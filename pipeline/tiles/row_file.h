@@ -4,6 +4,7 @@
 /// whose place could be known; they are refused with what to do. Any number of threads may read.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <filesystem>
@@ -30,32 +31,41 @@ class RowFile {
   io::RefinedScale refine_scale(double step, const std::array<double, 3>& low,
                                 const std::array<double, 3>& high);
 
-  /// Bytes of rows [first, first + count).
-  io::Bytes read(std::uint64_t first, std::size_t count, const Context& context) const;
-  /// The coordinates of row i of such bytes.
+  /// The coordinates of row i of the bytes of some.
   std::array<double, 3> get(const io::Bytes& rows, std::size_t i) const;
   /// Sets them; a coordinate equal to the present one keeps its bytes.
   void put(io::Bytes& rows, std::size_t i, const std::array<double, 3>& xyz) const;
 
-  /// Copies the file, each piece of rows as `change(first, rows)` leaves it. What a header says of the box
-  /// follows. Memory: one piece.
+  /// Calls `visit(first, count, rows)` for all rows in order, with the bytes of some at once.
+  template <class Visit>
+  void for_each_piece(const Context& context, Visit&& visit) const {
+    constexpr std::uint64_t kPiece = 1 << 18;  // rows
+    for (std::uint64_t first = 0; first < rows_; first += kPiece) {
+      const auto count = std::size_t(std::min<std::uint64_t>(kPiece, rows_ - first));
+      io::Bytes rows = read(first, count, context);
+      visit(first, count, rows);
+    }
+  }
+
+  /// Copies the file, each piece of rows as `change(first, count, rows)` leaves it. What a header says of the
+  /// box follows. Memory: one piece.
   template <class Change>
   void copy(io::Sink& to, Change&& change, const Context& context) const {
-    copy_ends(to, true, context);
-    for (std::uint64_t first = 0; first < rows_; first += kPiece) {
-      io::Bytes piece = read(first, std::size_t(std::min<std::uint64_t>(kPiece, rows_ - first)), context);
-      change(first, piece);
-      to.write({piece.data(), piece.size()});
-    }
-    copy_ends(to, false, context);
+    to.write(head_);
+    for_each_piece(context, [&](std::uint64_t first, std::size_t count, io::Bytes& rows) {
+      change(first, count, rows);
+      to.write({rows.data(), rows.size()});
+    });
+    copy_tail(to, context);
   }
-  static constexpr std::uint64_t kPiece = 1 << 18;  ///< rows read at once
 
   /// The bytes before the rows with the box [low, high] in them (LAS), for `copy`.
   void set_box(const std::array<double, 3>& low, const std::array<double, 3>& high);
 
  private:
-  void copy_ends(io::Sink& to, bool head, const Context& context) const;
+  /// Bytes of rows [first, first + count).
+  io::Bytes read(std::uint64_t first, std::size_t count, const Context& context) const;
+  void copy_tail(io::Sink& to, const Context& context) const;
   void open_table(io::Cloud cloud, std::uint64_t at, const Context& context);
 
   io::Source source_;

@@ -74,9 +74,17 @@ Statistics::Pass pass_of(const ordered_json& json) {
 
 }  // namespace
 
+ordered_json json_of(const Statistics::Box& box) {
+  return {json_of_place(box.low), json_of_place(box.high)};
+}
+
+Statistics::Box box_of(const ordered_json& json) {
+  return {place_of(json.at(0)), place_of(json.at(1))};
+}
+
 ordered_json json_of(const Statistics& all) {
   ordered_json json = ordered_json::object();
-  if (all.box) json["box"] = {{"low", json_of_place(all.box->low)}, {"high", json_of_place(all.box->high)}};
+  if (all.box) json["box"] = json_of(*all.box);
   if (all.points) json["points"] = *all.points;
   if (all.outlying)
     json["outlying"] = {{"scale", json_of_scale(all.outlying->scale)}, {"reach", all.outlying->reach}};
@@ -95,8 +103,7 @@ ordered_json json_of(const Statistics& all) {
 
 Statistics statistics_of(const ordered_json& json) {
   Statistics all;
-  if (json.contains("box"))
-    all.box = {place_of(json.at("box").at("low")), place_of(json.at("box").at("high"))};
+  if (json.contains("box")) all.box = box_of(json.at("box"));
   if (json.contains("points")) all.points = json.at("points").get<std::size_t>();
   if (json.contains("outlying"))
     all.outlying = {scale_of(json.at("outlying").at("scale")), json.at("outlying").at("reach").get<double>()};

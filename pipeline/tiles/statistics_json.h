@@ -7,6 +7,12 @@
 
 namespace rfsmooth::pipeline::tiles {
 
+/// Its two corners.
+nlohmann::ordered_json json_of(const Statistics::Box& box);
+
+/// \throw nlohmann::json::exception where something is missing or of another kind.
+Statistics::Box box_of(const nlohmann::ordered_json& json);
+
 /// What is there; the rest is left out.
 nlohmann::ordered_json json_of(const Statistics& statistics);
 

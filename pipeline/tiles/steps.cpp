@@ -147,12 +147,10 @@ struct Ends {
 void find_box(const Job& job, RowFile& file, std::uint64_t before, const Context& context) {
   Patcher patcher(job, context);
   Ends ends;
-  for (std::uint64_t first = 0; first < file.rows(); first += RowFile::kPiece) {
-    const auto count = std::size_t(std::min(RowFile::kPiece, file.rows() - first));
-    io::Bytes piece = file.read(first, count, context);
-    patcher.patch(file, before + first, count, piece);
-    for (std::size_t i = 0; i < count; ++i) ends.add(file.get(piece, i));
-  }
+  file.for_each_piece(context, [&](std::uint64_t first, std::size_t count, io::Bytes& rows) {
+    patcher.patch(file, before + first, count, rows);
+    for (std::size_t i = 0; i < count; ++i) ends.add(file.get(rows, i));
+  });
   if (file.rows() > 0) file.set_box(ends.low, ends.high);
 }
 
@@ -162,16 +160,14 @@ io::RefinedScale refine_moved(const Job& job, RowFile& file, std::uint64_t befor
   Patcher patcher(job, context);
   Ends ends;
   bool moved = false;
-  for (std::uint64_t first = 0; first < file.rows(); first += RowFile::kPiece) {
-    const auto count = std::size_t(std::min(RowFile::kPiece, file.rows() - first));
-    const io::Bytes piece = file.read(first, count, context);
-    for (std::size_t i = 0; i < count; ++i) ends.add(file.get(piece, i));
+  file.for_each_piece(context, [&](std::uint64_t first, std::size_t count, const io::Bytes& rows) {
+    for (std::size_t i = 0; i < count; ++i) ends.add(file.get(rows, i));
     patcher.visit(before + first, count, [&](std::size_t row, const Record& r) {
       const std::array<double, 3> now = {r.x, r.y, r.z};
-      moved = moved || now != file.get(piece, row);
+      moved = moved || now != file.get(rows, row);
       ends.add(now);
     });
-  }
+  });
   return moved ? file.refine_scale(step, ends.low, ends.high) : io::RefinedScale();
 }
 
@@ -314,8 +310,7 @@ std::vector<Joined> join_job(const Job& job, const std::vector<std::string>& out
     io::AtomicFile to(outputs[i], force, context);
     file.copy(
         to,
-        [&](std::uint64_t first, io::Bytes& rows) {
-          const std::uint64_t count = std::min(RowFile::kPiece, file.rows() - first);
+        [&](std::uint64_t first, std::size_t count, io::Bytes& rows) {
           context.report("join", double(before + first) / double(job.points + 1));
           patcher.patch(file, before + first, count, rows);
         },
