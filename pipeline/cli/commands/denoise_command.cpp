@@ -19,6 +19,7 @@
 #include "pipeline/cli/files/cloud_normals.h"
 #include "pipeline/cli/files/constraint_fields.h"
 #include "pipeline/cli/files/memory.h"
+#include "pipeline/cli/options/text_values.h"
 #include "pipeline/cli/other_program.h"
 #include "pipeline/cli/own_files.h"
 #include "pipeline/io/formats/las/las_scale.h"
@@ -84,8 +85,8 @@ struct DenoiseCommandOptions {
 void enter(const DenoiseReport& done, const DenoiseCommandOptions& options, ordered_json& entry) {
   DenoiseCommandOptions used = options;
   used.denoise = done.effective;
-  used.memory.reset();  // as is the memory it was made in
   used.html.reset();    // what is written beside the cloud is not how it was made
+  used.memory.reset();  // nor is the memory it was made in
   entry["options"] = effective_options(used, options.job.files);
   entry["counts"] = {{"points", done.points},       {"finite", done.finite},    {"distinct", done.distinct},
                      {"moved", done.moved},         {"faces", done.faces},      {"edges", done.edges},
@@ -282,15 +283,13 @@ void check_denoise(const DenoiseCommandOptions& options, const Invocation& typed
 /// Bytes: a number and K, M, G or T. \throw Failure (usage).
 std::uint64_t bytes_of(const std::string& text) {
   constexpr std::string_view kUnits = "KMGT";
-  char* end = nullptr;
-  double value = std::strtod(text.c_str(), &end);
-  if (const auto unit = kUnits.find(*end); *end != '\0' && unit != std::string_view::npos) {
-    value *= std::pow(1e3, double(unit + 1));
-    ++end;
-  }
-  if (end == text.c_str() || *end != '\0' || !(value >= 1e6) || !(value < 1e18))
+  const auto unit = text.empty() ? kUnits.npos : kUnits.find(text.back());
+  const bool in_units = unit != kUnits.npos;
+  const auto number = read_number(in_units ? text.substr(0, text.size() - 1) : text);
+  const double bytes = number.value_or(0) * (in_units ? std::pow(1e3, double(unit + 1)) : 1);
+  if (!(bytes >= 1e6) || !(bytes < 1e18))
     throw Failure({ErrorCode::usage, fmt::format("--memory takes bytes, 8G or 500M say, not '{}'", text)});
-  return std::uint64_t(value);
+  return std::uint64_t(bytes);
 }
 
 /// What the options ask for that is made of the whole cloud at once; empty: nothing.

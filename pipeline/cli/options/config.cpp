@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "pipeline/cli/options/json_values.h"
 #include "pipeline/cli/options/suggest.h"
 
 namespace rfsmooth::cli {
@@ -35,9 +36,7 @@ json parse_file(const std::string& path) {
 
 /// The value as it would be typed after the option.
 std::string as_typed(const std::string& path, const std::string& name, const json& value) {
-  if (value.is_null()) return "auto";
-  if (value.is_string()) return value.get<std::string>();
-  if (value.is_number() || value.is_boolean()) return value.dump();
+  if (const auto text = typed_text(value)) return *text;
   fail_config(ErrorCode::usage,
               fmt::format("{}: option '{}' must be a number, a word, true, false or null", path, name));
 }

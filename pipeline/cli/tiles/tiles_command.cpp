@@ -1,8 +1,5 @@
 /// rfsmooth tiles: a cloud larger than memory, or than a machine, step by step in a folder.
 #include <algorithm>
-#include <charconv>
-#include <filesystem>
-#include <map>
 #include <memory>
 
 #include <fmt/format.h>
@@ -11,7 +8,9 @@
 #include "pipeline/cli/console/console.h"
 #include "pipeline/cli/console/scale_said.h"
 #include "pipeline/cli/files/file_options.h"
+#include "pipeline/cli/jobs.h"
 #include "pipeline/cli/options/json_values.h"
+#include "pipeline/cli/options/text_values.h"
 #include "pipeline/cli/own_files.h"
 #include "pipeline/tiles/job.h"
 
@@ -65,9 +64,7 @@ DenoiseOptions planned_options(const Job& job) {
     const auto value = job.options.find(option.name);
     if (value == job.options.end()) continue;
     if (value->is_null() && !option.optional) continue;
-    assign(option, value->is_null()     ? "auto"
-                   : value->is_string() ? value->get<std::string>()
-                                        : value->dump());
+    if (const auto text = typed_text(*value)) assign(option, *text);
   }
   for (const CommandOption& option : bound)
     if (option.finish) option.finish();
@@ -75,11 +72,9 @@ DenoiseOptions planned_options(const Job& job) {
 }
 
 std::size_t tile_number(const std::string& text) {
-  std::size_t tile = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), tile);
-  if (error != std::errc() || end != text.data() + text.size())
-    misused(fmt::format("'{}' is no number of a tile", text));
-  return tile;
+  const auto tile = read_integer(text);
+  if (!tile || *tile < 0) misused(fmt::format("'{}' is no number of a tile", text));
+  return std::size_t(*tile);
 }
 
 void plan_tiles(TilesOptions& options, const std::vector<std::string>& arguments, const Context& context,
@@ -100,17 +95,9 @@ void join_tiles(const TilesOptions& options, const std::vector<std::string>& arg
                 const Context& context, Console& console) {
   if (arguments.size() != 2) misused("rfsmooth tiles join takes JOB OUT");
   const Job job = pipeline::tiles::open_job(arguments[0]);
-  std::vector<std::string> outputs = {arguments[1]};
-  if (job.inputs.size() > 1 || std::filesystem::is_directory(arguments[1])) {
-    outputs.clear();
-    std::filesystem::create_directories(arguments[1]);
-    std::map<std::string, int> names;
-    for (const auto& input : job.inputs) {
-      const auto name = std::filesystem::path(input.path).filename();
-      if (++names[name.string()] > 1) misused(fmt::format("two inputs are called '{}'", name.string()));
-      outputs.push_back((std::filesystem::path(arguments[1]) / name).string());
-    }
-  }
+  std::vector<std::string> inputs, outputs;
+  for (const auto& input : job.inputs) inputs.push_back(input.path);
+  for (const cli::Job& file : plan_jobs(inputs, arguments[1])) outputs.push_back(file.output);
   const auto joined = pipeline::tiles::join_job(job, outputs, options.force, options.keep_scale, context);
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     tell_scale(job.inputs[i].path, joined[i].scale, joined[i].noise, joined[i].noise_left, console);
