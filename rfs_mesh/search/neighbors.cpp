@@ -102,32 +102,40 @@ void squared_distances(const KdTree::Leaf& leaf, const Vector3d& q, double* d2) 
   }
 }
 
-/// Offers the points near q, except the point `self`, to `best`.
-template <class Best>
-void gather_nearest(const KdTree& tree, const Vector3d& q, Index self, Best& best) {
+/// Offers the points near q, except those that `skip`, to `best`.
+template <class Skip, class Best>
+void gather_nearest(const KdTree& tree, const Vector3d& q, Skip&& skip, Best& best) {
   search(
       tree, q, [&]() -> const Neighbor& { return best.worst(); },
       [&](const KdTree::Leaf& leaf) {
         double d2[KdTree::kLeaf];
         squared_distances(leaf, q, d2);
         for (std::uint32_t i = 0; i < KdTree::kLeaf; ++i)
-          if (const Neighbor candidate = {leaf.id[i], d2[i]}; candidate < best.worst() && leaf.id[i] != self)
+          if (const Neighbor candidate = {leaf.id[i], d2[i]}; candidate < best.worst() && !skip(leaf.id[i]))
             best.offer(candidate);
       });
+}
+
+/// The k nearest of q except those that `skip`; rows of up to 64 end in kNone where there are fewer.
+template <class Skip>
+void find_nearest_but(const KdTree& tree, const Vector3d& q, Skip&& skip, std::size_t k,
+                      std::vector<Neighbor>& out) {
+  constexpr std::size_t kMany = 64;
+  if (k <= kMany) {
+    Nearest best(k, out);
+    gather_nearest(tree, q, skip, best);
+  } else {
+    NearestMany best(k, out);
+    gather_nearest(tree, q, skip, best);
+    best.finish();
+  }
 }
 
 /// The k nearest of q except the point `self`.
 void find_nearest(const KdTree& tree, const Vector3d& q, Index self, std::size_t k,
                   std::vector<Neighbor>& out) {
-  constexpr std::size_t kMany = 64;
-  if (k <= kMany) {
-    Nearest best(k, out);
-    gather_nearest(tree, q, self, best);
-  } else {
-    NearestMany best(k, out);
-    gather_nearest(tree, q, self, best);
-    best.finish();
-  }
+  find_nearest_but(
+      tree, q, [self](Index i) { return i == self; }, k, out);
 }
 
 }  // namespace
@@ -207,6 +215,15 @@ void SpatialIndex::nearest(const Vector3d& query, int k, std::vector<Neighbor>& 
   out.clear();
   if (k < 1 || points_.empty()) return;
   find_nearest(tree_, query, kNone, std::min(std::size_t(k), points_.size()), out);
+}
+
+void SpatialIndex::nearest_staying(const Vector3d& query, int k, const std::vector<char>& gone,
+                                   std::vector<Neighbor>& out) const {
+  out.clear();
+  if (k < 1 || points_.empty()) return;
+  find_nearest_but(
+      tree_, query, [&](Index i) { return gone[i] != 0; }, std::min(std::size_t(k), points_.size()), out);
+  while (!out.empty() && out.back().index == kNone) out.pop_back();  // fewer stay
 }
 
 namespace {

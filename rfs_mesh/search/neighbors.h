@@ -74,6 +74,10 @@ class SpatialIndex {
   /// the cloud at the query is included. Replaces `out`.
   void nearest(const Eigen::Vector3d& query, int k, std::vector<Neighbor>& out) const;
 
+  /// The same of the points not flagged in `gone` (n); all if fewer are left.
+  void nearest_staying(const Eigen::Vector3d& query, int k, const std::vector<char>& gone,
+                       std::vector<Neighbor>& out) const;
+
   /// All points with |point - query| <= radius, ascending by (distance, index). Replaces `out`.
   void within(const Eigen::Vector3d& query, double radius, std::vector<Neighbor>& out) const;
 

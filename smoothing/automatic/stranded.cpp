@@ -57,14 +57,7 @@ class MovingGuide {
   /// The k nearest of `at`, ascending.
   const std::vector<Neighbor>& nearest(const Eigen::Vector3d& at, std::size_t k, Search& search) const {
     std::vector<Neighbor>& found = search.found;
-    for (std::size_t asked = k + k / 4;; asked *= 2) {
-      index_.nearest(at, int(asked), found);
-      const bool all = found.size() < asked;
-      found.erase(
-          std::remove_if(found.begin(), found.end(), [&](const Neighbor& q) { return gone_[q.index] != 0; }),
-          found.end());
-      if (all || found.size() >= k) break;
-    }
+    index_.nearest_staying(at, int(k), gone_, found);
     if (moved_index_) {
       moved_index_->nearest(at, int(k), search.moved);
       for (const Neighbor& q : search.moved) found.push_back({moved_[q.index], q.squared_distance});

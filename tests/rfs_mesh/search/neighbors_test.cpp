@@ -85,6 +85,27 @@ TEST_P(Neighbors, QueriesAnywhereMatchBruteForce) {
   }
 }
 
+TEST_P(Neighbors, ThoseThatStayMatchBruteForce) {
+  const Positions points = GetParam().points;
+  const SpatialIndex index(points, {});
+  std::vector<Neighbor> found;
+  for (const std::size_t gone_but : {1, 4, 1000}) {  // one in so many stays
+    std::vector<char> gone(points.size(), 1);
+    for (std::size_t i = 0; i < gone.size(); i += gone_but) gone[i] = 0;
+    for (std::size_t at = 0; at < points.size(); at += 50) {
+      std::vector<Neighbor> expected = all_sorted(points, points[at], kNone);
+      expected.erase(std::remove_if(expected.begin(), expected.end(),
+                                    [&](const Neighbor& e) { return gone[e.index] != 0; }),
+                     expected.end());
+      for (const std::size_t k : {200, 12}) {
+        index.nearest_staying(points[at], int(k), gone, found);
+        expected.resize(std::min(expected.size(), k));
+        EXPECT_EQ(found, expected);
+      }
+    }
+  }
+}
+
 TEST(Neighbors, OfATreeThatFollowsItsPointsAreThoseOfANewOne) {
   std::mt19937_64 engine(9);
   std::normal_distribution<double> normal;
