@@ -33,6 +33,8 @@ constexpr double kFarApart = 2.1;     // one point in 56 crosses the middle: pat
 constexpr int kCells = 5;             // a side of the grid
 constexpr double kMostMisfit = 1.5;   // mean square of a cell's mean, beside what noise makes
 constexpr double kLeastInCell = 0.3;  // sum of squared weights
+// By so much all points may be below what some of them show: four deviations of the variance of a hundred.
+constexpr double kByChance = 1.6;
 
 Vector6 quadric(const SheetPoint& p) {
   Vector6 f;
@@ -55,6 +57,7 @@ SheetPair::SheetPair(std::vector<SheetPoint>& points) {
   for (const SheetPoint& p : points) weights_ += p.weight;
   if (weights_ < kLeastWeights) return;
   fit_one(points);
+  possible_ = kByChance * single_ > kLeastSingle;
   if (!(single_ > kLeastSingle)) return;
   fit_two(points);
   if (middle_.allFinite() && apart_.allFinite()) judge(points);
@@ -150,6 +153,7 @@ void SheetPair::judge(const std::vector<SheetPoint>& points) {
       misfit += (cell.middle * cell.middle + cell.apart * cell.apart) / (cell.squares * variance_);
       counted += 2;
     }
+  possible_ = left_ < kByChance * kMostLeftByPair && misfit < kByChance * kMostMisfit * counted;
   convincing_ = two - one > kNats && left_ < kMostLeftByPair && misfit < kMostMisfit * counted &&
                 of_place < kMostOfPlace * (squares - mean) && apart_[0] < kFarApart && known > kKnown * all;
 }

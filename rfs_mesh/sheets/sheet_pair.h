@@ -48,6 +48,10 @@ class SheetPair {
   /// - the sheets are more than 2.1 from the middle.
   bool convincing() const { return convincing_; }
 
+  /// For a fit to some of the points of a place: whether one to all of them may still be convincing. False if
+  /// these suffice to say that there is one sheet, or a shape that is not two sheets.
+  bool possible() const { return possible_; }
+
  private:
   using Vector6 = Eigen::Matrix<double, 6, 1>;
 
@@ -62,7 +66,7 @@ class SheetPair {
   double single_ = 0;    ///< variance about one quadric
   double variance_ = 1;  ///< s^2
   double left_ = 0;      ///< variance about the sheets, unbounded
-  bool convincing_ = false;
+  bool convincing_ = false, possible_ = true;
 };
 
 }  // namespace rfsmooth::rfs_mesh

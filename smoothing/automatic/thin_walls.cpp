@@ -20,17 +20,18 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::array<std::size_t, 3> kWider = {1, 2, 4};  // times the members of the patches that saw it
-constexpr double kFlat = 0.7;         // cosine from which a normal counts for the patch's axis
-constexpr double kPlaced = 0.3;       // and from which a point is put onto a sheet: no points of rims
-constexpr double kStray = 4;          // sigma
-constexpr double kLeastShare = 0.05;  // of the cloud: less says nothing, as for hidden_sheets.h
-constexpr double kLeastCovered = 10;  // sum of weights, in points
+constexpr double kFlat = 0.7;            // cosine from which a normal counts for the patch's axis
+constexpr double kPlaced = 0.3;          // and from which a point is put onto a sheet: no points of rims
+constexpr double kStray = 4;             // sigma
+constexpr double kLeastShare = 0.05;     // of the cloud: less says nothing, as for hidden_sheets.h
+constexpr double kLeastCovered = 10;     // sum of weights, in points
+constexpr std::size_t kFirstLook = 512;  // members that nine unknowns are well known from
 
 /// What a patch says of a member.
 struct Move {
-  Index point = kNone;
-  float weight = 0;
-  Eigen::Vector3f by = Eigen::Vector3f::Zero();
+  Index point;
+  float weight;
+  Eigen::Vector3f by;
 };
 
 /// What all patches say of a point.
@@ -46,27 +47,27 @@ class Walls {
         const rfs_mesh::NoiseField& noise, std::size_t members)
       : field_(field), data_(data), smooth_(smooth), noise_(noise), members_(members) {}
 
-  void look(const std::vector<Index>& seeds, std::vector<Mean>& means, const Context& context) {
-    moves_.assign(seeds.size() * members_, Move());
+  void look(const std::vector<Index>& seeds, std::vector<Mean>& means, const Context& context) const {
+    std::vector<std::vector<Move>> moves(seeds.size());
     for_blocks(context, seeds.size(), 16, [&](std::size_t begin, std::size_t end) {
       rfs_mesh::WideNeighbors near(field_.index(), members_);
-      std::vector<rfs_mesh::SheetPoint> points(members_);
-      for (std::size_t s = begin; s < end; ++s) fit(seeds[s], near, points, moves_.data() + s * members_);
+      std::vector<rfs_mesh::SheetPoint> points;
+      for (std::size_t s = begin; s < end; ++s) fit(seeds[s], near, points, moves[s]);
     });
-    for (const Move& move : moves_) {
-      if (move.weight == 0) continue;
-      means[move.point].move += double(move.weight) * move.by.cast<double>();
-      means[move.point].weight += double(move.weight);
-    }
+    for (const std::vector<Move>& patch : moves)
+      for (const Move& move : patch) {
+        means[move.point].move += double(move.weight) * move.by.cast<double>();
+        means[move.point].weight += double(move.weight);
+      }
   }
 
  private:
-  /// What the normals of the members have in common, whatever their side.
-  Vector3d axis(const rfs_mesh::WideNeighbors& near, double square) const {
+  /// What the normals of every `stride`-th member have in common, whatever their side.
+  Vector3d axis(const rfs_mesh::WideNeighbors& near, double square, std::size_t stride) const {
     Vector3d axis = Vector3d::Zero();
     for (int again = 0; again < 3; ++again) {
       Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
-      for (std::size_t k = 0; k < members_; ++k) {
+      for (std::size_t k = 0; k < members_; k += stride) {
         const Vector3d normal = field_.normal(near.index()[k]);
         if (again > 0 && std::abs(normal.dot(axis)) < kFlat) continue;
         sum += std::pow(1 - double(near.squared()[k]) / square, 2) * normal * normal.transpose();
@@ -76,28 +77,44 @@ class Walls {
     return axis;
   }
 
-  void fit(Index seed, rfs_mesh::WideNeighbors& near, std::vector<rfs_mesh::SheetPoint>& points,
-           Move* moves) const {
+  /// A patch as the fit sees it.
+  struct Seen {
+    Vector3d normal;
+    double sigma, weights = 0;
+  };
+
+  /// Enters every `stride`-th member in `points`. \param square of the patch's radius
+  Seen see(Index seed, const rfs_mesh::WideNeighbors& near, double square, std::size_t stride,
+           std::vector<rfs_mesh::SheetPoint>& points) const {
     const Vector3d& centre = field_.guide()[seed];
-    near.find(centre);
-    const double square = 1.1 * double(near.farthest());  // a little beyond the farthest
-    if (!(square > 0)) return;
-    const Vector3d normal = axis(near, square), u = normal.unitOrthogonal(), v = normal.cross(u);
-    const double in_radii = 1 / std::sqrt(square), sigma = std::min(noise_.sigma, noise_.local[seed]);
-    double weights = 0;
-    for (std::size_t k = 0; k < members_; ++k) {
+    Seen seen = {axis(near, square, stride), std::min(noise_.sigma, noise_.local[seed])};
+    const Vector3d &normal = seen.normal, u = normal.unitOrthogonal(), v = normal.cross(u);
+    const double in_radii = 1 / std::sqrt(square);
+    points.clear();
+    for (std::size_t k = 0; k < members_; k += stride) {
       const Index i = near.index()[k];
       const Vector3d r(near.x()[k], near.y()[k], near.z()[k]);
       const double inside = 1 - double(near.squared()[k]) / square;
       const float cosine = std::abs(float(normal.dot(field_.normal(i))));
-      rfs_mesh::SheetPoint& p = points[k];
-      p.u = u.dot(r) * in_radii;
-      p.v = v.dot(r) * in_radii;
-      p.height = normal.dot(data_[i] - centre) / sigma;
-      p.estimate = normal.dot(smooth_[i] - centre) / sigma;
-      p.weight = inside * inside * double(same_sheet(cosine));
-      weights += p.weight;
+      points.push_back({u.dot(r) * in_radii, v.dot(r) * in_radii, normal.dot(data_[i] - centre) / seen.sigma,
+                        normal.dot(smooth_[i] - centre) / seen.sigma,
+                        inside * inside * double(same_sheet(cosine))});
+      seen.weights += points.back().weight;
     }
+    return seen;
+  }
+
+  void fit(Index seed, rfs_mesh::WideNeighbors& near, std::vector<rfs_mesh::SheetPoint>& points,
+           std::vector<Move>& moves) const {
+    near.find(field_.guide()[seed]);
+    const double square = 1.1 * double(near.farthest());  // a little beyond the farthest
+    if (!(square > 0)) return;
+    // A patch of thousands that is no wall shows it to a few hundred of its members, spread evenly.
+    if (const std::size_t stride = members_ / kFirstLook; stride > 1) {
+      see(seed, near, square, stride, points);
+      if (!rfs_mesh::SheetPair(points).possible()) return;
+    }
+    const auto [normal, sigma, weights] = see(seed, near, square, 1, points);
     const rfs_mesh::SheetPair sheets(points);
     if (!sheets.convincing()) return;
     for (std::size_t k = 0; k < members_; ++k) {
@@ -106,8 +123,8 @@ class Walls {
       const double height = sheets.nearer(p), inside = 1 - double(near.squared()[k]) / square;
       if (std::abs(p.height - height) > kStray || std::abs(normal.dot(field_.normal(i))) < kPlaced) continue;
       // The more points, the better is what they say.
-      moves[k] = {i, float(inside * inside * weights),
-                  (sigma * (height - p.estimate) * normal).cast<float>()};
+      moves.push_back(
+          {i, float(inside * inside * weights), (sigma * (height - p.estimate) * normal).cast<float>()});
     }
   }
 
@@ -115,7 +132,6 @@ class Walls {
   const Positions &data_, &smooth_;
   const rfs_mesh::NoiseField& noise_;
   std::size_t members_;
-  std::vector<Move> moves_;  ///< patches x members
 };
 
 }  // namespace
@@ -136,7 +152,7 @@ ThinWalls part_thin_walls(const HeightField& field, const Positions& data, const
     std::vector<Index> sparse = seeds;
     while (sparse.size() > 1 && sparse.size() * wider >= seeds.size())
       sparse = thin(field.guide(), sparse, context);
-    Walls walls(field, data, smooth, noise, std::min(wider * members, field.size()));
+    const Walls walls(field, data, smooth, noise, std::min(wider * members, field.size()));
     walls.look(sparse, means, context);
     done.patches += sparse.size();
   }

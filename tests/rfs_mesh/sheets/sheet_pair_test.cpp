@@ -108,9 +108,25 @@ TEST(SheetPair, SheetsOfAnotherShapeAreNotTakenForThese) {
   EXPECT_FALSE(SheetPair(points).convincing());
 }
 
+TEST(SheetPair, WhatSomeOfThePointsRuleOutAllOfThemDoNotShow) {
+  for (const double wave : {0.0, 4.0})
+    for (const unsigned seed : {1U, 2U, 3U, 4U, 5U}) {
+      auto all = sheets(1200, 1.9, 1, Before::half_way, seed);
+      std::vector<SheetPoint> some;
+      for (std::size_t i = 0; i < all.size(); ++i) {
+        all[i].height += wave * std::sin(6 * all[i].u);
+        if (i % 2 == 0) some.push_back(all[i]);
+      }
+      EXPECT_EQ(SheetPair(some).possible(), wave == 0);
+      EXPECT_LE(SheetPair(all).convincing(), SheetPair(some).possible());
+    }
+}
+
 TEST(SheetPair, FewPointsSayNothing) {
   auto points = sheets(40, 1.9, 1, Before::half_way);
   EXPECT_FALSE(SheetPair(points).convincing());
+  points.resize(20);
+  EXPECT_TRUE(SheetPair(points).possible());
   std::vector<SheetPoint> none;
   EXPECT_FALSE(SheetPair(none).convincing());
 }
