@@ -86,8 +86,13 @@ ScatterFit::Sums ScatterFit::sums_within(double window, const Vector6& c, bool f
     const double w = first ? weight_[i] * (last ? low * low : low) : weight_[i];
     const Vector6 f = (Vector6() << 1, u, v, u * u, u * v, v * v).finished();
     if (std::abs(z - f.dot(c)) > window) continue;
-    sums.a.selfadjointView<Eigen::Lower>().rankUpdate(f, w);
-    sums.b.selfadjointView<Eigen::Lower>().rankUpdate(f, w * w);
+    for (int column = 0; column < 6; ++column) {
+      const double once = w * f[column], twice = w * w * f[column];
+      for (int row = column; row < 6; ++row) {
+        sums.a(row, column) += once * f[row];
+        sums.b(row, column) += twice * f[row];
+      }
+    }
     sums.right += w * z * f;
     sums.heights += w * z * z;
     sums.kept += w;
