@@ -46,10 +46,38 @@ double side(const SheetPoint& p) {
   return 2 * p.upper - 1;
 }
 
-double probability(double above, double apart, double variance) {
-  constexpr double kMost = 50;
-  return 1 / (1 + std::exp(std::clamp(-2 * above * apart / variance, -kMost, kMost)));
+constexpr double kMostCertain = 50;  // logarithm of the odds of a side
+
+double probability(double above, double apart) {
+  return 1 / (1 + std::exp(std::clamp(-2 * above * apart, -kMostCertain, kMostCertain)));
 }
+
+/// The points by column, as the rounds of a fit read them.
+struct PairColumns {
+  Eigen::ArrayXd u, v, height, weight, sides;
+  Eigen::Matrix<double, Eigen::Dynamic, 10>
+      moments;                                       ///< weight times 1, u, v, u^2, u v, v^2, u^3, u^2 v, ...
+  Eigen::Matrix<double, Eigen::Dynamic, 3> heights;  ///< weight times height times 1, u, v
+
+  explicit PairColumns(const std::vector<SheetPoint>& points) {
+    const auto n = Eigen::Index(points.size());
+    for (Eigen::ArrayXd* column : {&u, &v, &height, &weight, &sides}) column->resize(n);
+    moments.resize(n, 10);
+    heights.resize(n, 3);
+    for (Eigen::Index k = 0; k < n; ++k) {
+      const SheetPoint& p = points[std::size_t(k)];
+      u[k] = p.u;
+      v[k] = p.v;
+      height[k] = p.height;
+      weight[k] = p.weight;
+      sides[k] = side(p);
+      const double uu = p.u * p.u, vv = p.v * p.v;
+      const double of[10] = {1, p.u, p.v, uu, p.u * p.v, vv, uu * p.u, uu * p.v, p.u * vv, p.v * vv};
+      for (int m = 0; m < 10; ++m) moments(k, m) = p.weight * of[m];
+      for (int m = 0; m < 3; ++m) heights(k, m) = p.weight * p.height * of[m];
+    }
+  }
+};
 
 }  // namespace
 
@@ -80,40 +108,49 @@ void SheetPair::fit_one(std::vector<SheetPoint>& points) {
     right += p.weight * p.height * f;
   }
   a.diagonal().array() += kRidgeOfPair * weights_;
+  moments_ = a;
+  heights_ = right;
   const SmallCholesky<6> factors(a);
   normal_ = factors.inverse();
   middle_ = factors.solve(right);
   for (const SheetPoint& p : points) single_ += p.weight * std::pow(p.height - middle(p), 2);
   single_ /= weights_;
   const double apart = std::sqrt(std::max(0.0, single_ - 1));
-  for (SheetPoint& p : points) p.upper = probability(p.height - middle(p), apart, 1);
+  for (SheetPoint& p : points) p.upper = probability(p.height - middle(p), apart);
 }
 
 void SheetPair::fit_two(std::vector<SheetPoint>& points) {
+  // The normal equations of f, side (1, u, v) hold products of the sides with moments of degree 3 and less.
+  constexpr std::array<std::array<int, 3>, 6> kProduct = {
+      {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}, {3, 6, 7}, {4, 7, 8}, {5, 8, 9}}};
+  const PairColumns of(points);
+  Eigen::ArrayXd sides = of.sides;
   for (int round = 0; round < kPairRounds; ++round) {
-    Matrix9 a = Matrix9::Zero();
-    Vector9 right = Vector9::Zero();
-    for (const SheetPoint& p : points) {
-      if (p.weight == 0) continue;
-      Vector9 f;
-      f << quadric(p), side(p), side(p) * p.u, side(p) * p.v;
-      a.noalias() += p.weight * f * f.transpose();
-      right += p.weight * p.height * f;
-    }
-    a.diagonal().array() += kRidgeOfPair * weights_;
+    const Eigen::Matrix<double, 10, 1> once = of.moments.transpose() * sides.matrix();
+    const Vector6 twice = of.moments.leftCols<6>().transpose() * sides.square().matrix();
+    Matrix9 a = Matrix9::Zero();  // its lower half
+    Vector9 right;
+    right << heights_, of.heights.transpose() * sides.matrix();
+    a.topLeftCorner<6, 6>() = moments_;
+    for (int i = 0; i < 6; ++i)
+      for (int j = 0; j < 3; ++j) a(6 + j, i) = once[kProduct[i][j]];
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j <= i; ++j) a(6 + i, 6 + j) = twice[kProduct[i][j]];
+    a.bottomRightCorner<3, 3>().diagonal().array() += kRidgeOfPair * weights_;
     const Vector9 x = SmallCholesky<9>(a).solve(right);
     const double up = x[6] < 0 ? -1 : 1;  // the upper one is the one above
     middle_ = x.head<6>();
     apart_ = up * x.tail<3>();
-    double squares = 0;
-    for (SheetPoint& p : points) {
-      const double above = p.height - middle(p), d = apart(p);
-      p.upper = probability(above, d, variance_);
-      squares += p.weight * (p.upper * std::pow(above - d, 2) + (1 - p.upper) * std::pow(above + d, 2));
-    }
+    const Eigen::ArrayXd above = of.height - middle_[0] - of.u * (middle_[1] + middle_[3] * of.u) -
+                                 of.v * (middle_[2] + middle_[4] * of.u + middle_[5] * of.v),
+                         d = apart_[0] + apart_[1] * of.u + apart_[2] * of.v;
+    sides = 2 / (1 + (-2 / variance_ * above * d).max(-kMostCertain).min(kMostCertain).exp()) - 1;
+    // P (above - d)^2 + (1 - P) (above + d)^2
+    const double squares = (of.weight * (above.square() + d.square() - 2 * sides * above * d)).sum();
     left_ = squares / (weights_ - kUnknowns);
     variance_ = std::clamp(left_, kLeastVariance, 1.0);
   }
+  for (std::size_t k = 0; k < points.size(); ++k) points[k].upper = (1 + sides[Eigen::Index(k)]) / 2;
 }
 
 void SheetPair::judge(const std::vector<SheetPoint>& points) {

@@ -55,13 +55,17 @@ class SheetPair {
  private:
   using Vector6 = Eigen::Matrix<double, 6, 1>;
 
+  using Matrix6 = Eigen::Matrix<double, 6, 6>;
+
   void fit_one(std::vector<SheetPoint>& points);
   void fit_two(std::vector<SheetPoint>& points);
   void judge(const std::vector<SheetPoint>& points);
 
   Vector6 middle_ = Vector6::Zero();
   Eigen::Vector3d apart_ = Eigen::Vector3d::Zero();
-  Eigen::Matrix<double, 6, 6> normal_;  ///< inverse of one quadric's normal equations
+  Matrix6 moments_;  ///< one quadric's normal equations,
+  Vector6 heights_;  ///< their right-hand side,
+  Matrix6 normal_;   ///< and the inverse
   double weights_ = 0;
   double single_ = 0;    ///< variance about one quadric
   double variance_ = 1;  ///< s^2
