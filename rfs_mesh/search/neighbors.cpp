@@ -23,8 +23,8 @@ constexpr std::size_t kMaxDepth = 64;  // 2^32 points make 29 levels, one pendin
 /// The k best candidates so far, sorted.
 class Nearest {
  public:
-  Nearest(std::size_t k, std::vector<Neighbor>& storage) : list_(storage) {
-    list_.assign(k, Neighbor{kNone, std::numeric_limits<double>::infinity()});
+  Nearest(std::size_t k, double bound, std::vector<Neighbor>& storage) : list_(storage) {
+    list_.assign(k, Neighbor{kNone, bound});
   }
   const Neighbor& worst() const { return list_.back(); }
   void offer(const Neighbor& candidate) {
@@ -41,7 +41,8 @@ class Nearest {
 /// twice the number and the farther half goes.
 class NearestMany {
  public:
-  NearestMany(std::size_t k, std::vector<Neighbor>& storage) : list_(storage), k_(k) {
+  NearestMany(std::size_t k, double bound, std::vector<Neighbor>& storage)
+      : list_(storage), k_(k), worst_{kNone, bound} {
     list_.clear();
     list_.reserve(2 * k);
   }
@@ -65,7 +66,7 @@ class NearestMany {
 
   std::vector<Neighbor>& list_;
   std::size_t k_;
-  Neighbor worst_ = {kNone, std::numeric_limits<double>::infinity()};
+  Neighbor worst_;
 };
 
 /// Visits the leaves that may hold something better than `worst()`, nearer ones first; `scan(leaf)`.
@@ -116,26 +117,29 @@ void gather_nearest(const KdTree& tree, const Vector3d& q, Skip&& skip, Best& be
       });
 }
 
-/// The k nearest of q except those that `skip`; rows of up to 64 end in kNone where there are fewer.
+/// The k nearest of q within sqrt(bound) except those that `skip`; rows of up to 64 end in kNone where there
+/// are fewer.
 template <class Skip>
-void find_nearest_but(const KdTree& tree, const Vector3d& q, Skip&& skip, std::size_t k,
+void find_nearest_but(const KdTree& tree, const Vector3d& q, Skip&& skip, double bound, std::size_t k,
                       std::vector<Neighbor>& out) {
   constexpr std::size_t kMany = 64;
   if (k <= kMany) {
-    Nearest best(k, out);
+    Nearest best(k, bound, out);
     gather_nearest(tree, q, skip, best);
   } else {
-    NearestMany best(k, out);
+    NearestMany best(k, bound, out);
     gather_nearest(tree, q, skip, best);
     best.finish();
   }
 }
 
+constexpr double kNoBound = std::numeric_limits<double>::infinity();
+
 /// The k nearest of q except the point `self`.
 void find_nearest(const KdTree& tree, const Vector3d& q, Index self, std::size_t k,
                   std::vector<Neighbor>& out) {
   find_nearest_but(
-      tree, q, [self](Index i) { return i == self; }, k, out);
+      tree, q, [self](Index i) { return i == self; }, kNoBound, k, out);
 }
 
 }  // namespace
@@ -222,8 +226,18 @@ void SpatialIndex::nearest_staying(const Vector3d& query, int k, const std::vect
   out.clear();
   if (k < 1 || points_.empty()) return;
   find_nearest_but(
-      tree_, query, [&](Index i) { return gone[i] != 0; }, std::min(std::size_t(k), points_.size()), out);
+      tree_, query, [&](Index i) { return gone[i] != 0; }, kNoBound, std::min(std::size_t(k), points_.size()),
+      out);
   while (!out.empty() && out.back().index == kNone) out.pop_back();  // fewer stay
+}
+
+void SpatialIndex::nearest_within(const Vector3d& query, int k, double bound,
+                                  std::vector<Neighbor>& out) const {
+  out.clear();
+  if (k < 1 || points_.empty()) return;
+  find_nearest_but(
+      tree_, query, [](Index) { return false; }, bound, std::min(std::size_t(k), points_.size()), out);
+  while (!out.empty() && out.back().index == kNone) out.pop_back();  // fewer are so near
 }
 
 namespace {

@@ -78,6 +78,9 @@ class SpatialIndex {
   void nearest_staying(const Eigen::Vector3d& query, int k, const std::vector<char>& gone,
                        std::vector<Neighbor>& out) const;
 
+  /// The same of the points with |point - query|^2 <= bound; all if there are fewer.
+  void nearest_within(const Eigen::Vector3d& query, int k, double bound, std::vector<Neighbor>& out) const;
+
   /// All points with |point - query| <= radius, ascending by (distance, index). Replaces `out`.
   void within(const Eigen::Vector3d& query, double radius, std::vector<Neighbor>& out) const;
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <iterator>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -59,7 +60,9 @@ class MovingGuide {
     std::vector<Neighbor>& found = search.found;
     index_.nearest_staying(at, int(k), gone_, found);
     if (moved_index_) {
-      moved_index_->nearest(at, int(k), search.moved);
+      const double farthest =
+          found.size() < k ? std::numeric_limits<double>::infinity() : found.back().squared_distance;
+      moved_index_->nearest_within(at, int(k), farthest, search.moved);
       for (const Neighbor& q : search.moved) found.push_back({moved_[q.index], q.squared_distance});
       std::sort(found.begin(), found.end());
     }

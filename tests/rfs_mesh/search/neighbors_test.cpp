@@ -106,6 +106,23 @@ TEST_P(Neighbors, ThoseThatStayMatchBruteForce) {
   }
 }
 
+TEST_P(Neighbors, TheNearestWithinABoundAreThoseOfAllThatAreSoNear) {
+  const Positions points = GetParam().points;
+  const SpatialIndex index(points, {});
+  std::vector<Neighbor> found, expected;
+  for (std::size_t at = 0; at < points.size(); at += 50)
+    for (const std::size_t k : {200, 12})
+      for (const std::size_t farthest : {0, 5, 50}) {
+        expected = all_sorted(points, points[at], kNone);
+        const double bound = expected[std::min(farthest, expected.size() - 1)].squared_distance;
+        index.nearest_within(points[at], int(k), bound, found);
+        const auto outside = [&](const Neighbor& e) { return e.squared_distance > bound; };
+        expected.erase(std::find_if(expected.begin(), expected.end(), outside), expected.end());
+        expected.resize(std::min(expected.size(), k));
+        EXPECT_EQ(found, expected);
+      }
+}
+
 TEST(Neighbors, OfATreeThatFollowsItsPointsAreThoseOfANewOne) {
   std::mt19937_64 engine(9);
   std::normal_distribution<double> normal;
