@@ -6,6 +6,7 @@
 #include <rfsmooth/normals.h>
 
 #include "base/parallel.h"
+#include "pipeline/normals_by_part.h"
 #include "rfs_mesh/normals/bilateral_normals.h"
 #include "rfs_mesh/normals/orient.h"
 #include "rfs_mesh/search/neighbors.h"
@@ -51,8 +52,9 @@ void settle(const Positions& points, const rfs_mesh::SpatialIndex& index, const 
   normals.swap(settled);
 }
 
+/// `part`: as in normals_by_part, or null.
 NormalsReport run(const double* xyz, std::size_t n, const NormalsOptions& options, const Context& context,
-                  double* normals) {
+                  double* normals, std::vector<Index>* part) {
   NormalsReport report;
   report.points = n;
   const rfs_mesh::WorkingCloud cloud = value_or_throw(rfs_mesh::make_working_cloud(xyz, n, context));
@@ -72,11 +74,17 @@ NormalsReport run(const double* xyz, std::size_t n, const NormalsOptions& option
   std::optional<Eigen::Vector3d> viewpoint = options.viewpoint;
   if (viewpoint) *viewpoint -= cloud.origin;
   report.parts =
-      orient(connection.mesh, connection.emst, connection.bridges, viewpoint, side, context, &calm);
+      orient(connection.mesh, connection.emst, connection.bridges, viewpoint, side, context, &calm, part);
   settle(calm, index, connection.mesh, side, context);
   if (!viewpoint) rfs_mesh::turn_out_of_thin_parts(index, side, context);
   rfs_mesh::turn_to_own_sheet(cloud.points, near, side, context);
   context.check_stop();
+  if (part != nullptr) {
+    std::vector<Index> of_row(n, kNone);
+    for (std::size_t i = 0; i < n; ++i)
+      if (const Index p = cloud.of_input[i]; p != kNone) of_row[i] = (*part)[p];
+    part->swap(of_row);
+  }
   for (std::size_t i = 0; i < n; ++i) {
     const Index p = cloud.of_input[i];
     for (int axis = 0; axis < 3; ++axis)
@@ -93,9 +101,16 @@ Result<NormalsReport> estimate_normals(const double* xyz, std::size_t n, const N
                                        const Context& context, double* normals) {
   return guarded([&] {
     NormalsReport report;
-    in_arena(context, [&] { report = run(xyz, n, options, context, normals); });
+    in_arena(context, [&] { report = run(xyz, n, options, context, normals, nullptr); });
     return report;
   });
+}
+
+NormalsReport pipeline::normals_by_part(const double* xyz, std::size_t n, const NormalsOptions& options,
+                                        const Context& context, double* normals, std::vector<Index>& part) {
+  NormalsReport report;
+  in_arena(context, [&] { report = run(xyz, n, options, context, normals, &part); });
+  return report;
 }
 
 }  // namespace rfsmooth

@@ -59,7 +59,7 @@ std::vector<Rgb> colors_of(const Cloud& cloud, const Context& context) {
 }
 
 std::vector<double> normals_of(const Cloud& cloud, const Context& context) {
-  for (const auto& names : {std::array{"nx", "ny", "nz"}, std::array{"normal_x", "normal_y", "normal_z"}}) {
+  for (const NormalNames& names : {kPlyNormal, kPcdNormal}) {
     std::vector<double> normals(3 * cloud.size());
     bool all = true;
     for (std::size_t axis = 0; axis < 3 && all; ++axis) {

@@ -10,6 +10,11 @@
 
 namespace rfsmooth::pipeline::io {
 
+/// The fields of a normal.
+using NormalNames = std::array<const char*, 3>;
+inline constexpr NormalNames kPlyNormal = {"nx", "ny", "nz"};                    ///< as PLY calls them
+inline constexpr NormalNames kPcdNormal = {"normal_x", "normal_y", "normal_z"};  ///< as PCL does
+
 /// Red, green, blue.
 using Rgb = std::array<std::uint8_t, 3>;
 

@@ -1,6 +1,7 @@
 #include "pipeline/tiles/in_one_process.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -60,12 +61,18 @@ Context part_of(const Context& context, double from, double to) {
 
 }  // namespace
 
-PlanOptions plan_within(std::uint64_t memory) {
-  // At its peak a step takes some 700 bytes a point, records and all (denoise_memory); a third is left for
-  // the halo of a tile and for tiles that are not of even size.
-  constexpr std::uint64_t kBytesPerPoint = 1050, kFixed = std::uint64_t{256} << 20, kFewest = 20000;
+PlanOptions plan_within(std::uint64_t memory, bool normals) {
+  // At its peak a step takes some 700 bytes a point, records and all (denoise_memory), with normals 1000;
+  // more where tiles are not square or not of even size. A square of n points has its halo on both sides; the
+  // widest patches have 1600 points and a radius of sqrt(1600 / pi) where noise is below 2.7 spacings
+  // (automatic.cpp).
+  constexpr double kBytesPerPoint = 800, kBytesWithNormals = 1150, kHalos = 2 * kHaloRadii * 22.6,
+                   kFewest = 20000;
+  constexpr std::uint64_t kFixed = std::uint64_t{256} << 20;
+  const double bytes = normals ? kBytesWithNormals : kBytesPerPoint;
+  const double across = std::sqrt(double(std::max(memory, kFixed) - kFixed) / bytes) - kHalos;
   PlanOptions how;
-  how.tile_points = std::max(kFewest, (std::max(memory, kFixed) - kFixed) / kBytesPerPoint);
+  how.tile_points = std::uint64_t(std::max(kFewest, across * std::max(across, 0.0)));
   how.sample_points = std::min(how.sample_points, how.tile_points);
   return how;
 }
@@ -81,9 +88,11 @@ std::optional<InPieces> in_pieces(const std::string& path, const Context& contex
 }
 
 Joined smooth_in_tiles(const std::string& input, const std::string& output, bool force, bool keep_scale,
-                       const PlanOptions& how, const DenoiseOptions& options, const Context& context) {
+                       const PlanOptions& how, const DenoiseOptions& options,
+                       const std::optional<NormalsOptions>& normals, const Context& context) {
   constexpr double kPlan = 0.03, kSettled = 0.1, kJoin = 0.98;  // shares of the time, for the bar
   io::check_target(output, force);
+  if (normals) RowFile(input, context).need_normals();  // refused before the work
   const fs::path target(output);
   const PassingFolder folder(target.parent_path() / fmt::format(".{}.tiles-{}",
                                                                 target.filename().string().substr(0, 200),
@@ -94,10 +103,11 @@ Joined smooth_in_tiles(const std::string& input, const std::string& output, bool
   settle_job(job, options, part_of(context, kPlan, kSettled));
   for (std::size_t t = 0; t < job.tiles.size(); ++t) {
     const double each = (kJoin - kSettled) / double(job.tiles.size());
-    run_tile(job, t, options, part_of(context, kSettled + each * double(t), kSettled + each * double(t + 1)));
+    run_tile(job, t, options, normals,
+             part_of(context, kSettled + each * double(t), kSettled + each * double(t + 1)));
     context.report("tiles", kSettled + each * double(t + 1));
   }
-  return join_job(job, {output}, force, keep_scale, part_of(context, kJoin, 1)).front();
+  return join_job(job, {output}, force, keep_scale, normals.has_value(), part_of(context, kJoin, 1)).front();
 }
 
 }  // namespace rfsmooth::pipeline::tiles

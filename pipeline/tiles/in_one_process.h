@@ -9,8 +9,9 @@
 
 namespace rfsmooth::pipeline::tiles {
 
-/// How many points a tile and the sample may have so that the work takes at most `memory` bytes.
-PlanOptions plan_within(std::uint64_t memory);
+/// How many points a tile and the sample may have so that the work, with normals or without, takes at
+/// most `memory` bytes.
+PlanOptions plan_within(std::uint64_t memory, bool normals);
 
 /// A file that can be read in pieces.
 struct InPieces {
@@ -24,6 +25,7 @@ std::optional<InPieces> in_pieces(const std::string& path, const Context& contex
 /// Smooths `input` to `output` in tiles, in a folder beside the output. Reports one stage, "tiles". The
 /// folder stays after an error or a cancel of the caller's only if it cannot be removed. \throw Failure.
 Joined smooth_in_tiles(const std::string& input, const std::string& output, bool force, bool keep_scale,
-                       const PlanOptions& how, const DenoiseOptions& options, const Context& context);
+                       const PlanOptions& how, const DenoiseOptions& options,
+                       const std::optional<NormalsOptions>& normals, const Context& context);
 
 }  // namespace rfsmooth::pipeline::tiles

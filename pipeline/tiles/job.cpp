@@ -138,6 +138,41 @@ fs::path plan_file(const fs::path& folder) {
   return folder / "job.json";
 }
 
+[[noreturn]] void refuse_plan(const fs::path& folder, const nlohmann::json::exception& error) {
+  throw Failure({ErrorCode::input_unreadable,
+                 fmt::format("{}: is no plan: {}", plan_file(folder).string(), error.what())});
+}
+
+ordered_json read_plan(const fs::path& folder) {
+  std::ifstream file(plan_file(folder));
+  if (!file)
+    throw Failure({ErrorCode::input_unreadable,
+                   fmt::format("{}: holds no job (rfsmooth tiles plan makes one)", folder.string())});
+  try {
+    return ordered_json::parse(file);
+  } catch (const nlohmann::json::exception& error) {
+    refuse_plan(folder, error);
+  }
+}
+
+Job job_of(const ordered_json& json, const fs::path& folder) {
+  Job job;
+  job.folder = folder;
+  try {
+    job.options = json.at("options");
+    job.points = json.at("points");
+    job.sample = json.at("sample");
+    job.box = box_of(json.at("box"));
+    for (const auto& input : json.at("inputs"))
+      job.inputs.push_back({input.at("path"), input.at("rows"), input.at("bytes"), input.at("changed")});
+    for (const auto& tile : json.at("tiles"))
+      job.tiles.push_back({box_of(tile.at("box")), tile.at("points")});
+  } catch (const nlohmann::json::exception& error) {
+    refuse_plan(folder, error);
+  }
+  return job;
+}
+
 void make_folders(const Job& job) {
   std::error_code error;
   for (const char* name : {"cut", "sample", "done"}) {
@@ -178,11 +213,27 @@ fs::path Job::sampled(std::size_t tile) const {
 fs::path Job::done(std::size_t tile) const {
   return folder / "done" / std::to_string(tile);
 }
+fs::path Job::normals(std::size_t tile) const {
+  return folder / "done" / (std::to_string(tile) + ".normals");
+}
+fs::path Job::around(std::size_t tile) const {
+  return folder / "done" / (std::to_string(tile) + ".around");
+}
 fs::path Job::cost(std::size_t tile) const {
   return folder / "done" / (std::to_string(tile) + ".json");
 }
 fs::path Job::settled() const {
   return folder / "statistics.json";
+}
+
+std::optional<Vector3d> common_viewpoint(const std::vector<std::string>& inputs, const Context& context) {
+  std::optional<Vector3d> common;
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    const auto of_file = RowFile(inputs[i], context).viewpoint(context);
+    if (i > 0 && of_file != common) return std::nullopt;
+    common = of_file;
+  }
+  return common;
 }
 
 Job plan_job(const std::vector<std::string>& inputs, const fs::path& folder, const PlanOptions& how,
@@ -192,12 +243,12 @@ Job plan_job(const std::vector<std::string>& inputs, const fs::path& folder, con
   job.options = options;
   for (const std::string& path : inputs) job.inputs.push_back(describe_input(path, context));
   if (fs::exists(plan_file(folder))) {
-    Job there = open_job(folder);
+    const ordered_json plan = read_plan(folder);
+    Job there = job_of(plan, folder);
     Job same = there;
     same.inputs = job.inputs;
     same.options = options;
-    std::ifstream file(plan_file(folder));
-    if (ordered_json::parse(file) == json_of_job(same, how)) return there;
+    if (plan == json_of_job(same, how)) return there;
     throw Failure(
         {ErrorCode::cannot_write,
          fmt::format("{}: holds a job of other inputs or options; remove it, or name another folder",
@@ -225,27 +276,7 @@ Job plan_job(const std::vector<std::string>& inputs, const fs::path& folder, con
 }
 
 Job open_job(const fs::path& folder) {
-  std::ifstream file(plan_file(folder));
-  if (!file)
-    throw Failure({ErrorCode::input_unreadable,
-                   fmt::format("{}: holds no job (rfsmooth tiles plan makes one)", folder.string())});
-  Job job;
-  job.folder = folder;
-  try {
-    const ordered_json json = ordered_json::parse(file);
-    job.options = json.at("options");
-    job.points = json.at("points");
-    job.sample = json.at("sample");
-    job.box = box_of(json.at("box"));
-    for (const auto& input : json.at("inputs"))
-      job.inputs.push_back({input.at("path"), input.at("rows"), input.at("bytes"), input.at("changed")});
-    for (const auto& tile : json.at("tiles"))
-      job.tiles.push_back({box_of(tile.at("box")), tile.at("points")});
-  } catch (const nlohmann::json::exception& error) {
-    throw Failure({ErrorCode::input_unreadable,
-                   fmt::format("{}: is no plan: {}", plan_file(folder).string(), error.what())});
-  }
-  return job;
+  return job_of(read_plan(folder), folder);
 }
 
 }  // namespace rfsmooth::pipeline::tiles

@@ -15,12 +15,14 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
 #include <rfsmooth/denoise.h>
+#include <rfsmooth/normals.h>
 
 #include "pipeline/io/formats/las/las_scale.h"
 
@@ -53,9 +55,17 @@ struct Job {
   std::filesystem::path cut(std::size_t tile) const;      ///< its points
   std::filesystem::path sampled(std::size_t tile) const;  ///< its part of the sample
   std::filesystem::path done(std::size_t tile) const;     ///< its points, smoothed
-  std::filesystem::path cost(std::size_t tile) const;     ///< what that took, JSON
+  std::filesystem::path normals(std::size_t tile) const;  ///< theirs, where they were asked for
+  std::filesystem::path around(std::size_t tile) const;   ///< and those of points around the tile
+  std::filesystem::path cost(std::size_t tile) const;     ///< what that took, and of normals, JSON
   std::filesystem::path settled() const;                  ///< the statistics and the halo, JSON
 };
+
+/// The halo is this many radii of the widest patch. What a point becomes passes through such patches six
+/// times: from their members to them and from them to the point, for the heights and twice more for the means
+/// of the evidence. The weights (1 - d^2)^2 have a standard deviation of 0.35 radii, six in a row 0.87, and
+/// this is 3.5 of those.
+constexpr double kHaloRadii = 3;
 
 /// How to plan.
 struct PlanOptions {
@@ -76,8 +86,13 @@ void measure_tile(const Job& job, std::size_t tile, const Context& context);
 /// Needs every tile measured. \throw Failure (usage) naming the first that is not.
 void settle_job(const Job& job, const DenoiseOptions& options, const Context& context);
 
-/// Needs the job settled. \throw Failure.
-void run_tile(const Job& job, std::size_t tile, const DenoiseOptions& options, const Context& context);
+/// Needs the job settled. \param normals how to find them, if at all. \throw Failure.
+void run_tile(const Job& job, std::size_t tile, const DenoiseOptions& options,
+              const std::optional<NormalsOptions>& normals, const Context& context);
+
+/// Where the scanner stood, if all inputs tell the same place.
+std::optional<Eigen::Vector3d> common_viewpoint(const std::vector<std::string>& inputs,
+                                                const Context& context);
 
 /// \throw Failure (usage) if the output's extension is of another format.
 void check_format(io::Format input, const std::string& output);
@@ -91,9 +106,10 @@ struct Joined {
 
 /// Needs every tile run. `outputs`: one for each input, of its format. Files in their place are replaced if
 /// `force`. LAS: scales that are coarse for what is left of the noise are refined, unless `keep_scale` or
-/// nothing moved. Returns one for each input. \throw Failure (usage) naming the first tile that is not.
+/// nothing moved. `normals`: whether the tiles were run with them. Returns one for each input. \throw Failure
+/// (usage) naming the first tile that is not.
 std::vector<Joined> join_job(const Job& job, const std::vector<std::string>& outputs, bool force,
-                             bool keep_scale, const Context& context);
+                             bool keep_scale, bool normals, const Context& context);
 
 /// What settle found.
 struct Settled {

@@ -1,7 +1,8 @@
-/// Files of records (a row of the cloud and its coordinates) that tell whether they are complete.
+/// Files of records (a row of the cloud and its coordinates or its normal) that tell whether they are
+/// complete.
 ///
-/// The records, each 32 bytes, then 24 bytes: a mark, their number, and a hash of all their bytes. Numbers
-/// are little-endian, as the machines that this runs on.
+/// The records, 32 or 40 bytes each, then 24 bytes: a mark, their number, and a hash of all their bytes.
+/// Numbers are little-endian, as the machines that this runs on.
 #pragma once
 
 #include <cstdint>
@@ -24,39 +25,53 @@ struct Record {
 };
 static_assert(sizeof(Record) == 32);
 
+/// A row of the cloud and its normal, which is of a piece of the surface that a tile gave its side.
+struct NormalRecord {
+  std::uint64_t row = 0;
+  double x = 0, y = 0, z = 0;
+  std::uint64_t piece = 0;
+};
+static_assert(sizeof(NormalRecord) == 40);
+
 /// Writes records; the file is there, complete, after commit().
-class RecordWriter {
+template <class T>
+class WriterOf {
  public:
   /// \throw Failure (cannot_write).
-  RecordWriter(const std::filesystem::path& path, const Context& context);
-  void add(const Record& record);
+  WriterOf(const std::filesystem::path& path, const Context& context);
+  void add(const T& record);
   void commit();
 
  private:
   void flush();
   io::AtomicFile file_;
-  std::vector<Record> held_;
+  std::vector<T> held_;
   std::uint64_t count_ = 0, hash_;
 };
 
 /// Reads records in order, a buffer at a time.
-class RecordReader {
+template <class T>
+class ReaderOf {
  public:
   /// \throw Failure (input_unreadable) if the file is missing or of a size that it cannot have.
-  explicit RecordReader(std::filesystem::path path, const Context& context);
+  explicit ReaderOf(std::filesystem::path path, const Context& context);
   std::uint64_t size() const { return count_; }
   /// The next record, or null behind the last.
-  const Record* peek();
+  const T* peek();
   void next() { ++at_; }
 
  private:
   std::filesystem::path path_;
   const Context& context_;
-  std::vector<Record> held_;
+  std::vector<T> held_;
   std::uint64_t count_ = 0, from_ = 0, at_ = 0;
 };
 
+using RecordWriter = WriterOf<Record>;  ///< of coordinates
+using RecordReader = ReaderOf<Record>;  ///< of coordinates
+
 /// The number of records, if the file is there and every byte of it as it was written.
+template <class T = Record>
 std::optional<std::uint64_t> complete_records(const std::filesystem::path& path, const Context& context);
 
 }  // namespace rfsmooth::pipeline::tiles

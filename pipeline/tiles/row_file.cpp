@@ -11,6 +11,8 @@
 #include "pipeline/io/formats/las/las_header.h"
 #include "pipeline/io/formats/pcd.h"
 #include "pipeline/io/formats/ply.h"
+#include "pipeline/io/point_fields.h"
+#include "pipeline/viewpoint.h"
 
 namespace rfsmooth::pipeline::tiles {
 
@@ -67,6 +69,7 @@ RowFile::RowFile(const std::filesystem::path& path, const Context& context) : so
 void RowFile::open_table(io::Cloud cloud, std::uint64_t at, const Context& context) {
   if (cloud.encoding != io::Encoding::binary_little_endian)
     refuse_pieces(source_.name(), fmt::format("its encoding is {}", io::name_of(cloud.encoding)));
+  header_bytes_ = std::size_t(at);
   std::size_t vertex = 0;
   while (vertex < cloud.elements.size() && cloud.format == io::Format::ply &&
          cloud.elements[vertex].name != "vertex")
@@ -77,15 +80,71 @@ void RowFile::open_table(io::Cloud cloud, std::uint64_t at, const Context& conte
   for (std::size_t e = 0; e <= vertex; ++e)
     if (cloud.elements[e].has_lists()) refuse_pieces(source_.name(), "it has lists before or in its points");
   for (std::size_t e = 0; e < vertex; ++e) at += cloud.elements[e].count * cloud.elements[e].row_size();
-  const io::Table& points = cloud.points();
+  header_ = std::move(cloud);
+  const io::Table& points = header_.points();
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    field_[axis] = points.fields[cloud.xyz[axis]];
-    for (std::size_t f = 0; f < cloud.xyz[axis]; ++f)
-      offset_[axis] += points.fields[f].count * io::size_of(points.fields[f].type);
+    field_[axis] = points.fields[header_.xyz[axis]];
+    offset_[axis] = offset_of(header_.xyz[axis]);
   }
   at_ = at;
   rows_ = points.count;
   row_ = points.row_size();
+}
+
+std::size_t RowFile::offset_of(std::size_t field) const {
+  const std::vector<io::Field>& fields = header_.points().fields;
+  std::size_t offset = 0;
+  for (std::size_t f = 0; f < field; ++f) offset += fields[f].count * io::size_of(fields[f].type);
+  return offset;
+}
+
+std::optional<Eigen::Vector3d> RowFile::viewpoint(const Context& context) const {
+  if (format_ != io::Format::pcd) return std::nullopt;
+  constexpr std::size_t kLooked = 1 << 18;  // points
+  io::Cloud top = header_;
+  std::vector<double> xyz;
+  if (top.organised() && top.width > 0) {
+    top.height = std::clamp<std::size_t>(kLooked / top.width, 2, top.height);
+    const io::Bytes rows = read(0, top.width * top.height, context);
+    for (std::size_t i = 0; i < top.width * top.height; ++i)
+      for (const double x : get(rows, i)) xyz.push_back(x);
+  }
+  return recorded_viewpoint(top, xyz.data(), context);
+}
+
+void RowFile::need_normals() {
+  if (format_ == io::Format::las)
+    throw Failure({ErrorCode::usage,
+                   fmt::format("{}: LAS gets no normals in tiles; write the cloud as PLY", source_.name())});
+  io::Table& points = header_.points();
+  const auto take = [&](const io::NormalNames& names) {
+    std::vector<std::size_t> there;
+    for (const char* name : names) {
+      io::check_field(header_, name, io::Scalar::float32);
+      if (const auto field = io::find_field(header_, name)) there.push_back(*field);
+    }
+    if (there.size() < names.size()) return;
+    const auto in_row = [&](std::size_t f) { return InRow{points.fields[f], offset_of(f)}; };
+    normals_.push_back({in_row(there[0]), in_row(there[1]), in_row(there[2])});
+  };
+  for (const io::NormalNames& names : {io::kPlyNormal, io::kPcdNormal}) take(names);
+  if (!normals_.empty()) return;
+  const bool pcd = format_ == io::Format::pcd;
+  const io::NormalNames& names = pcd ? io::kPcdNormal : io::kPlyNormal;
+  for (const char* name : names)
+    if (!io::find_field(header_, name)) {
+      points.fields.push_back({name, io::Scalar::float32});
+      added_ += io::size_of(io::Scalar::float32);
+    }
+  take(names);
+  head_.replace(0, header_bytes_,
+                pcd ? io::pcd_header(header_, header_.encoding) : io::ply_header(header_, header_.encoding));
+}
+
+void RowFile::put_normal(io::Bytes& rows, std::size_t i, const std::array<double, 3>& normal) const {
+  for (const auto& fields : normals_)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      io::store(fields[axis].field, rows.data() + i * (row_ + added_) + fields[axis].offset, normal[axis]);
 }
 
 io::RefinedScale RowFile::refine_scale(double step, const std::array<double, 3>& low,
@@ -112,19 +171,27 @@ io::Bytes RowFile::read(std::uint64_t first, std::size_t count, const Context& c
   for (std::size_t axis = 0; axis < 3; ++axis)
     for (std::size_t i = 0; change_[axis].power > 0 && i < count; ++i)
       io::change_integer(rows.data() + i * row_ + offset_[axis], change_[axis]);
-  return rows;
+  if (added_ == 0) return rows;
+  io::Bytes wide(count * (row_ + added_));
+  for (std::size_t i = 0; i < count; ++i) {
+    char* const at = wide.data() + i * (row_ + added_);
+    std::copy_n(rows.data() + i * row_, row_, at);
+    for (std::size_t added = 0; added < added_; added += io::size_of(io::Scalar::float32))
+      io::store(io::Scalar::float32, at + row_ + added, std::nan(""));
+  }
+  return wide;
 }
 
 std::array<double, 3> RowFile::get(const io::Bytes& rows, std::size_t i) const {
   std::array<double, 3> xyz{};
   for (std::size_t axis = 0; axis < 3; ++axis)
-    xyz[axis] = io::load(field_[axis], rows.data() + i * row_ + offset_[axis]);
+    xyz[axis] = io::load(field_[axis], rows.data() + i * (row_ + added_) + offset_[axis]);
   return xyz;
 }
 
 void RowFile::put(io::Bytes& rows, std::size_t i, const std::array<double, 3>& xyz) const {
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    char* const at = rows.data() + i * row_ + offset_[axis];
+    char* const at = rows.data() + i * (row_ + added_) + offset_[axis];
     if (io::load(field_[axis], at) != xyz[axis]) io::store(field_[axis], at, xyz[axis]);
   }
 }

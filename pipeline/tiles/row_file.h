@@ -8,7 +8,11 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <vector>
+
+#include <Eigen/Core>
 
 #include "pipeline/io/formats/las/las_scale.h"
 #include "pipeline/io/stream/sink.h"
@@ -30,6 +34,15 @@ class RowFile {
   /// ends of old and new coordinates.
   io::RefinedScale refine_scale(double step, const std::array<double, 3>& low,
                                 const std::array<double, 3>& high);
+
+  /// The scanner's place, as far as the header and the first rows tell (pipeline/viewpoint.h).
+  std::optional<Eigen::Vector3d> viewpoint(const Context& context) const;
+
+  /// Has fields for normals: those there are, else new ones behind the others, of NaN from here on. \throw
+  /// Failure (usage) for LAS, and for fields that cannot take them.
+  void need_normals();
+  /// Sets the normal of row i of the bytes of some.
+  void put_normal(io::Bytes& rows, std::size_t i, const std::array<double, 3>& normal) const;
 
   /// The coordinates of row i of the bytes of some.
   std::array<double, 3> get(const io::Bytes& rows, std::size_t i) const;
@@ -67,12 +80,24 @@ class RowFile {
   io::Bytes read(std::uint64_t first, std::size_t count, const Context& context) const;
   void copy_tail(io::Sink& to, const Context& context) const;
   void open_table(io::Cloud cloud, std::uint64_t at, const Context& context);
+  /// Where a field of the points is in a row.
+  std::size_t offset_of(std::size_t field) const;
+
+  /// A field in a row.
+  struct InRow {
+    io::Field field;
+    std::size_t offset;
+  };
 
   io::Source source_;
+  io::Cloud header_;  ///< of PLY and PCD: no rows
   std::array<io::Field, 3> field_;
   std::array<std::size_t, 3> offset_{};
   std::uint64_t at_ = 0, rows_ = 0;
-  std::size_t row_ = 0;
+  std::size_t row_ = 0;    ///< bytes
+  std::size_t added_ = 0;  ///< bytes behind each row, of fields that the file does not have
+  std::vector<std::array<InRow, 3>> normals_;
+  std::size_t header_bytes_ = 0;
   io::Format format_{};
   std::array<io::ScaleChange, 3> change_;  ///< of LAS
   std::string head_;

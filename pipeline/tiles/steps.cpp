@@ -15,6 +15,7 @@
 #include "pipeline/tiles/records.h"
 #include "pipeline/tiles/row_file.h"
 #include "pipeline/tiles/statistics_json.h"
+#include "pipeline/tiles/tile_normals.h"
 #include "rfs_mesh/search/neighbors.h"
 
 namespace rfsmooth::pipeline::tiles {
@@ -25,9 +26,6 @@ using Eigen::AlignedBox3d;
 using Eigen::Vector3d;
 using nlohmann::ordered_json;
 
-/// The halo is this many radii of the widest patch: a patch reaches a point from one radius, and what it is
-/// made of from another.
-constexpr double kRadii = 2;
 constexpr std::size_t kPlacesOfRadius = 500;
 
 [[noreturn]] void refuse_step(const Job& job, const std::string& message) {
@@ -97,34 +95,57 @@ double typical_radius(const std::vector<double>& xyz, std::size_t m, const Conte
   return rfsmooth::median(radii);
 }
 
-/// Patches the rows of one input with the results of all tiles.
-class Patcher {
+/// The records of all tiles, by rows.
+template <class T>
+class OfAllTiles {
  public:
-  Patcher(const Job& job, const Context& context) : context_(context) {
-    for (std::size_t t = 0; t < job.tiles.size(); ++t) readers_.emplace_back(job.done(t), context_);
+  OfAllTiles(const Job& job, std::filesystem::path (Job::*of_tile)(std::size_t) const, const Context& context)
+      : context_(context) {
+    for (std::size_t t = 0; t < job.tiles.size(); ++t) readers_.emplace_back((job.*of_tile)(t), context_);
   }
-  /// Visits the results of rows [first, first + count), in no order. Forward only.
+  /// Calls `visit(row - first, record, tile)` for rows [first, first + count), in no order. Forward only.
   template <class Visit>
   void visit(std::uint64_t first, std::uint64_t count, Visit&& visit) {
     context_.check_stop();
-    for (RecordReader& reader : readers_)
-      for (const Record* r = reader.peek(); r != nullptr && r->row < first + count; r = reader.peek()) {
-        reader.next();
-        if (r->row >= first) visit(std::size_t(r->row - first), *r);  // else of an input before this one
+    for (std::size_t t = 0; t < readers_.size(); ++t)
+      for (const T* r = readers_[t].peek(); r != nullptr && r->row < first + count; r = readers_[t].peek()) {
+        readers_[t].next();
+        if (r->row >= first) visit(std::size_t(r->row - first), *r, t);  // else of an input before this one
       }
+  }
+
+ private:
+  const Context& context_;
+  std::vector<ReaderOf<T>> readers_;
+};
+
+/// Patches the rows of the inputs with the results of all tiles.
+class Patcher {
+ public:
+  Patcher(const Job& job, const Context& context) : places_(job, &Job::done, context) {}
+  /// With normals, which must be there.
+  void add_normals(const Job& job, const Context& context) {
+    reversed_ = find_sides(job, context);
+    normals_.emplace(job, &Job::normals, context);
   }
   /// `first`: the row of the cloud that `rows` begins with.
   void patch(const RowFile& file, std::uint64_t first, std::uint64_t count, io::Bytes& rows) {
-    visit(first, count, [&](std::size_t row, const Record& r) {
+    places_.visit(first, count, [&](std::size_t row, const Record& r, std::size_t) {
       file.put(rows, row, {r.x, r.y, r.z});
       ++patched_;
+    });
+    if (!normals_) return;
+    normals_->visit(first, count, [&](std::size_t row, const NormalRecord& r, std::size_t tile) {
+      const double sign = reversed_[tile][std::size_t(r.piece)] != 0 ? -1 : 1;
+      file.put_normal(rows, row, {sign * r.x, sign * r.y, sign * r.z});
     });
   }
   std::uint64_t patched() const { return patched_; }
 
  private:
-  const Context& context_;
-  std::vector<RecordReader> readers_;
+  OfAllTiles<Record> places_;
+  std::optional<OfAllTiles<NormalRecord>> normals_;
+  std::vector<std::vector<char>> reversed_;  ///< by tile and piece
   std::uint64_t patched_ = 0;
 };
 
@@ -157,12 +178,12 @@ void find_box(const Job& job, RowFile& file, std::uint64_t before, const Context
 /// Refines the scale of a LAS file to `step`, unless nothing of it moved.
 io::RefinedScale refine_moved(const Job& job, RowFile& file, std::uint64_t before, double step,
                               const Context& context) {
-  Patcher patcher(job, context);
+  OfAllTiles<Record> places(job, &Job::done, context);
   Ends ends;
   bool moved = false;
   file.for_each_piece(context, [&](std::uint64_t first, std::size_t count, const io::Bytes& rows) {
     for (std::size_t i = 0; i < count; ++i) ends.add(file.get(rows, i));
-    patcher.visit(before + first, count, [&](std::size_t row, const Record& r) {
+    places.visit(before + first, count, [&](std::size_t row, const Record& r, std::size_t) {
       const std::array<double, 3> now = {r.x, r.y, r.z};
       moved = moved || now != file.get(rows, row);
       ends.add(now);
@@ -247,7 +268,7 @@ void settle_job(const Job& job, const DenoiseOptions& options, const Context& co
   for (const auto& pass : all.passes)
     for (const auto& scale : pass.scales) widest = std::max(widest, scale.members);
   double halo = 0;
-  in_arena(context, [&] { halo = kRadii * typical_radius(xyz, widest, context); });
+  in_arena(context, [&] { halo = kHaloRadii * typical_radius(xyz, widest, context); });
   const ordered_json json = {{"halo", halo},
                              {"noise", report.noise},
                              {"noise_left", report.noise_left},
@@ -255,53 +276,63 @@ void settle_job(const Job& job, const DenoiseOptions& options, const Context& co
   value_or_throw(io::write_bytes(json.dump(1) + '\n', job.settled(), true, context));
 }
 
-void run_tile(const Job& job, std::size_t tile, const DenoiseOptions& options, const Context& context) {
+void run_tile(const Job& job, std::size_t tile, const DenoiseOptions& options,
+              const std::optional<NormalsOptions>& normals, const Context& context) {
   check_tile(job, tile);
   refuse_for_tiles(options);
   const Settled settled = settled_of(job);
   const auto there = complete_records(job.done(tile), context);
-  if (there && *there == job.tiles[tile].points) return;
+  if (there && *there == job.tiles[tile].points && (!normals || complete_normals(job, tile, context))) return;
   const double began = processor_seconds();
   std::vector<Record> own = read_records(job.cut(tile), context);
   const AlignedBox3d box(job.tiles[tile].box.low, job.tiles[tile].box.high);
   const double reach = settled.halo * settled.halo;
   std::vector<double> xyz;
+  std::vector<Around> around;
   for (const Record& r : own) xyz.insert(xyz.end(), {r.x, r.y, r.z});
   for (std::size_t t = 0; t < job.tiles.size(); ++t) {
     const AlignedBox3d other(job.tiles[t].box.low, job.tiles[t].box.high);
     if (t == tile || job.tiles[t].points == 0 || box.squaredExteriorDistance(other) > reach) continue;
     RecordReader reader(job.cut(t), context);
-    for (; const Record* r = reader.peek(); reader.next())
-      if (box.squaredExteriorDistance(place(*r)) <= reach) xyz.insert(xyz.end(), {r->x, r->y, r->z});
+    for (; const Record* r = reader.peek(); reader.next()) {
+      if (box.squaredExteriorDistance(place(*r)) > reach) continue;
+      xyz.insert(xyz.end(), {r->x, r->y, r->z});
+      if (normals) around.push_back({r->row, t});
+    }
   }
   if (!own.empty()) {
     DenoiseOptions how = options;
     how.statistics = settled.statistics;
     value_or_throw(denoise(xyz.data(), xyz.size() / 3, how, context));
   }
+  ordered_json cost = {{"around", xyz.size() / 3 - own.size()}, {"seconds", 0}};
+  if (normals)  // from within the widest patch, where those of both tiles are good
+    cost.update(write_normals(job, tile, own, around, xyz, *normals, settled.halo / kHaloRadii, context));
   RecordWriter writer(job.done(tile), context);
   for (std::size_t i = 0; i < own.size(); ++i)
     writer.add({own[i].row, xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]});
-  const ordered_json cost = {{"around", xyz.size() / 3 - own.size()},
-                             {"seconds", processor_seconds() - began}};
+  cost["seconds"] = processor_seconds() - began;
   value_or_throw(io::write_bytes(cost.dump() + '\n', job.cost(tile), true, context));
   writer.commit();
 }
 
 std::vector<Joined> join_job(const Job& job, const std::vector<std::string>& outputs, bool force,
-                             bool keep_scale, const Context& context) {
+                             bool keep_scale, bool normals, const Context& context) {
   check_inputs(job);
   for (std::size_t t = 0; t < job.tiles.size(); ++t)
-    if (const auto there = complete_records(job.done(t), context); !there || *there != job.tiles[t].points)
+    if (const auto there = complete_records(job.done(t), context);
+        !there || *there != job.tiles[t].points || (normals && !complete_normals(job, t, context)))
       refuse_step(job, fmt::format("tile {} is not smoothed yet", t));
   const Settled settled = settled_of(job);
   const double step = io::finest_needed(settled.noise, settled.noise_left);
   std::vector<Joined> joined;
   Patcher patcher(job, context);
+  if (normals) patcher.add_normals(job, context);
   std::uint64_t before = 0;
   for (std::size_t i = 0; i < job.inputs.size(); ++i) {
     RowFile file(job.inputs[i].path, context);
     check_format(file.format(), outputs[i]);
+    if (normals) file.need_normals();
     const bool las = file.format() == io::Format::las;
     joined.push_back({las, {}, settled.noise, settled.noise_left});
     if (las && !keep_scale && settled.noise > 0)

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "base/collect.h"
 #include "base/median.h"
@@ -64,14 +65,14 @@ class Orienter {
     const double spacing = mean_edge_length(mesh_, context_);
     std::vector<double> votes = seen_squarely(at_, normals_, viewpoint, spacing, context_);
     for (double& vote : votes) vote = std::clamp(2 * vote, -1.0, 1.0);
-    apply(grow_regions(at_.size(), links(calm_), votes, context_), normals_, votes);
+    part_ = apply(grow_regions(at_.size(), links(calm_), votes, context_), normals_, votes);
     return parts_;
   }
 
   std::size_t outward() {
     Positions alone = normals_;
     const Regions parts = grow_regions(at_.size(), links(calm_), {}, context_);
-    apply(parts, alone, {});
+    part_ = apply(parts, alone, {});
     const std::size_t count = parts_;
     // From here on the points themselves: calmer ones may have merged the very sheets to be told apart.
     const Samples samples(at_, areas(at_));
@@ -91,6 +92,9 @@ class Orienter {
     });
     return count;
   }
+
+  /// n: which part each point is of, by a point of it.
+  std::vector<Index>& part() { return part_; }
 
  private:
   /// Points spread evenly over the rows, each standing for several.
@@ -153,8 +157,8 @@ class Orienter {
     return areas;
   }
 
-  /// Turns `normals` by regions and gives each region its side.
-  void apply(Regions regions, Positions& normals, const std::vector<double>& votes) {
+  /// Turns `normals` by regions and gives each region its side. Returns the region of each point.
+  std::vector<Index> apply(Regions regions, Positions& normals, const std::vector<double>& votes) {
     follow_bridges(regions, votes);
     const std::size_t n = at_.size();
     for_each_index(context_, n, [&](std::size_t i) {
@@ -195,6 +199,7 @@ class Orienter {
     for_each_index(context_, n, [&](std::size_t i) {
       if (turn[regions.of_point[i]] != 0) normals[i] = -normals[i];
     });
+    return std::move(regions.of_point);
   }
 
   /// Regions too small to have a side of their own take that of what they hang on.
@@ -281,6 +286,7 @@ class Orienter {
   Positions& normals_;
   const Context& context_;
   std::vector<double> areas_;
+  std::vector<Index> part_;
   std::size_t parts_ = 0;
 };
 
@@ -288,13 +294,16 @@ class Orienter {
 
 std::size_t orient(const Mesh& mesh, const std::vector<Edge>& tree, const std::vector<Edge>& bridges,
                    const std::optional<Vector3d>& viewpoint, Positions& normals, const Context& context,
-                   const Positions* calm) {
+                   const Positions* calm, std::vector<Index>* part) {
   const std::size_t n = mesh.positions.size();
   if (normals.size() != n || (calm != nullptr && calm->size() != n))
     throw std::invalid_argument("orient: normals and calm positions must hold one vector per vertex");
+  if (part != nullptr) part->clear();
   if (n == 0) return 0;
   Orienter orienter(mesh, tree, bridges, calm != nullptr ? *calm : mesh.positions, normals, context);
-  return viewpoint ? orienter.towards(*viewpoint) : orienter.outward();
+  const std::size_t parts = viewpoint ? orienter.towards(*viewpoint) : orienter.outward();
+  if (part != nullptr) part->swap(orienter.part());
+  return parts;
 }
 
 }  // namespace rfsmooth::rfs_mesh

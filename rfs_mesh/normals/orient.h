@@ -40,9 +40,11 @@ namespace rfsmooth::rfs_mesh {
 /// together; `bridges`: those of them that are no neighbourhood (may be empty). `viewpoint`: in the frame of
 /// the positions. `calm`: the same points nearer to the surface (their shadows); rule 1 compares normals
 /// there, because with noise of a spacing the edges between the points themselves have arbitrary directions.
-/// O(E log E), mostly parallel. Thread safe.
+/// \param part out, unless null: n, which part each vertex is of, by a vertex of it. O(E log E), mostly
+/// parallel. Thread safe.
 std::size_t orient(const Mesh& mesh, const std::vector<Edge>& tree, const std::vector<Edge>& bridges,
                    const std::optional<Eigen::Vector3d>& viewpoint, Positions& normals,
-                   const Context& context, const Positions* calm = nullptr);
+                   const Context& context, const Positions* calm = nullptr,
+                   std::vector<Index>* part = nullptr);
 
 }  // namespace rfsmooth::rfs_mesh

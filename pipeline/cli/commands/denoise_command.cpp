@@ -295,8 +295,7 @@ std::uint64_t bytes_of(const std::string& text) {
 /// What the options ask for that is made of the whole cloud at once; empty: nothing.
 std::string needs_whole_cloud(const DenoiseCommandOptions& options) {
   const FileOptions& files = options.job.files;
-  const std::pair<bool, const char*> needs[] = {{options.normals.normals, "--normals"},
-                                                {options.html.has_value(), "--html"},
+  const std::pair<bool, const char*> needs[] = {{options.html.has_value(), "--html"},
                                                 {options.strength_field.has_value(), "--strength-field"},
                                                 {options.write_displacement, "--write-displacement"},
                                                 {options.marks(), "marked outliers"},
@@ -316,13 +315,15 @@ std::optional<std::uint64_t> memory_of_tiles(const DenoiseCommandOptions& option
   const std::optional<std::uint64_t> asked =
       options.memory ? std::optional(bytes_of(*options.memory)) : std::nullopt;
   if (job.input == "-" || job.output == "-") return std::nullopt;
-  const auto file = pipeline::tiles::in_pieces(job.input, context);
-  if (!file) return std::nullopt;
   const std::optional<std::size_t> there = available_memory();
   if (!asked && !there) return std::nullopt;
   const std::uint64_t most = asked ? *asked : std::uint64_t(*there);
   std::error_code error;
   const std::uint64_t bytes = std::filesystem::file_size(job.input, error);
+  constexpr std::uint64_t kLeastRow = 3;  // bytes: three coordinates
+  if (error || rfsmooth::denoise_memory(std::size_t(bytes / kLeastRow)) + bytes <= most) return std::nullopt;
+  const auto file = pipeline::tiles::in_pieces(job.input, context);
+  if (!file) return std::nullopt;
   if (rfsmooth::denoise_memory(std::size_t(file->rows)) + bytes <= most) return std::nullopt;
   if (const std::string what = needs_whole_cloud(options); !what.empty()) {
     if (!asked) return std::nullopt;  // refused where the whole cloud is, with both figures
@@ -346,11 +347,12 @@ std::optional<int> denoise_in_tiles(const DenoiseCommandOptions& options, const 
   const auto memory = memory_of_tiles(options, job, context);
   if (!memory) return std::nullopt;
   need_own_target(job, options.job.files.output);
-  const pipeline::tiles::PlanOptions how = pipeline::tiles::plan_within(*memory);
+  const pipeline::tiles::PlanOptions how = pipeline::tiles::plan_within(*memory, options.normals.normals);
   console.say(fmt::format("{}: too large for {:.3g} GB: smoothed in tiles of {} points", job.input,
                           double(*memory) / 1e9, how.tile_points));
   const pipeline::tiles::Joined joined = pipeline::tiles::smooth_in_tiles(
-      job.input, job.output, options.job.files.force, options.keep_scale, how, options.denoise, context);
+      job.input, job.output, options.job.files.force, options.keep_scale, how, options.denoise,
+      normals_in_tiles(options.normals, {job.input}, context), context);
   tell_scale(job.input, joined.scale, joined.noise, joined.noise_left, console);
   if (joined.las) warn_of_index(job.output, console);
   mark_as_own(job.output);

@@ -5,29 +5,20 @@
 
 #include <fmt/format.h>
 
-#include <rfsmooth/normals.h>
-
 #include "base/stopwatch.h"
 #include "pipeline/cli/files/cloud_files.h"
 #include "pipeline/cli/options/text_values.h"
+#include "pipeline/io/point_fields.h"
+#include "pipeline/tiles/job.h"
 #include "pipeline/viewpoint.h"
 
 namespace rfsmooth::cli {
 
 namespace io = pipeline::io;
 using Eigen::Vector3d;
-using Names = std::array<const char*, 3>;
+using Names = io::NormalNames;
 
 namespace {
-
-constexpr Names kPly = {"nx", "ny", "nz"}, kPcd = {"normal_x", "normal_y", "normal_z"};
-
-/// "x,y,z" strictly. \throw Failure (usage).
-Vector3d parse_point(const std::string& text) {
-  const auto point = read_point(text);
-  if (!point) throw Failure({ErrorCode::usage, fmt::format("--viewpoint: expected x,y,z; found '{}'", text)});
-  return *point;
-}
 
 bool complete(const io::Cloud& cloud, const Names& names) {
   for (const char* name : names)
@@ -49,16 +40,33 @@ void put(io::Cloud& cloud, const Names& names, const std::vector<double>& normal
 
 }  // namespace
 
+std::optional<Vector3d> typed_viewpoint(const NormalsFields& options) {
+  if (!options.viewpoint) return std::nullopt;
+  auto point = read_point(*options.viewpoint);
+  if (!point)
+    throw Failure(
+        {ErrorCode::usage, fmt::format("--viewpoint: expected x,y,z; found '{}'", *options.viewpoint)});
+  return point;
+}
+
 void check(const NormalsFields& options) {
-  if (!options.viewpoint) return;
-  parse_point(*options.viewpoint);
-  if (!options.normals)
+  if (typed_viewpoint(options) && !options.normals)
     throw Failure({ErrorCode::usage, "--viewpoint says where normals point; it needs --normals"});
+}
+
+std::optional<NormalsOptions> normals_in_tiles(const NormalsFields& options,
+                                               const std::vector<std::string>& inputs,
+                                               const Context& context) {
+  if (!options.normals) return std::nullopt;
+  NormalsOptions wanted;
+  wanted.viewpoint = typed_viewpoint(options);
+  if (!wanted.viewpoint) wanted.viewpoint = pipeline::tiles::common_viewpoint(inputs, context);
+  return wanted;
 }
 
 void check_normals(const NormalsFields& options, const io::Cloud& cloud) {
   if (!options.normals) return;
-  for (const Names& names : {kPly, kPcd})
+  for (const Names& names : {io::kPlyNormal, io::kPcdNormal})
     for (const char* name : names) io::check_field(cloud, name, io::Scalar::float32);
 }
 
@@ -68,18 +76,19 @@ void write_normals(const NormalsFields& options, io::Cloud& cloud, const double*
   if (!options.normals) return;
   const Stopwatch watch(stages, "normals");
   NormalsOptions wanted;
-  wanted.viewpoint =
-      options.viewpoint ? parse_point(*options.viewpoint) : pipeline::recorded_viewpoint(cloud, xyz, context);
+  wanted.viewpoint = typed_viewpoint(options);
+  if (!wanted.viewpoint) wanted.viewpoint = pipeline::recorded_viewpoint(cloud, xyz, context);
   std::vector<double> normals(3 * cloud.size());
   value_or_throw(rfsmooth::estimate_normals(xyz, cloud.size(), wanted, context, normals.data()));
   bool written = false;
-  for (const Names& names : {kPly, kPcd}) {
+  for (const Names& names : {io::kPlyNormal, io::kPcdNormal}) {
     if (!complete(cloud, names)) continue;
     put(cloud, names, normals, context);
     written = true;
   }
   if (!written)
-    put(cloud, output_format(cloud, output, files) == io::Format::pcd ? kPcd : kPly, normals, context);
+    put(cloud, output_format(cloud, output, files) == io::Format::pcd ? io::kPcdNormal : io::kPlyNormal,
+        normals, context);
   auto& viewpoint = entry["normals"]["viewpoint"];
   viewpoint = nullptr;
   if (const auto& v = wanted.viewpoint) viewpoint = {(*v)[0], (*v)[1], (*v)[2]};

@@ -5,9 +5,11 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
 #include <nlohmann/json.hpp>
 
 #include <rfsmooth/denoise.h>
+#include <rfsmooth/normals.h>
 
 #include "pipeline/cli/files/file_options.h"
 #include "pipeline/io/io.h"
@@ -28,8 +30,17 @@ struct NormalsFields {
   }
 };
 
+/// The viewpoint that was typed, if any. \throw Failure (usage).
+std::optional<Eigen::Vector3d> typed_viewpoint(const NormalsFields& options);
+
 /// Refuses contradictory options, before any file is touched. \throw Failure (usage).
 void check(const NormalsFields& options);
+
+/// How tiles of the inputs find normals, if they were asked for: with the viewpoint that was typed, else the
+/// one that all inputs tell, else none. \throw Failure.
+std::optional<NormalsOptions> normals_in_tiles(const NormalsFields& options,
+                                               const std::vector<std::string>& inputs,
+                                               const Context& context);
 
 /// Refuses fields that cannot take the normals, before the work. \throw Failure (usage).
 void check_normals(const NormalsFields& options, const pipeline::io::Cloud& cloud);

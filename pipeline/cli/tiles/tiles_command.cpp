@@ -7,6 +7,7 @@
 #include "pipeline/cli/commands/command.h"
 #include "pipeline/cli/console/console.h"
 #include "pipeline/cli/console/scale_said.h"
+#include "pipeline/cli/files/cloud_normals.h"
 #include "pipeline/cli/files/file_options.h"
 #include "pipeline/cli/jobs.h"
 #include "pipeline/cli/options/json_values.h"
@@ -21,8 +22,20 @@ namespace {
 using nlohmann::ordered_json;
 using pipeline::tiles::Job;
 
-struct TilesOptions {
+/// What the plan keeps for all steps.
+struct PlannedOptions {
   DenoiseOptions denoise;
+  NormalsFields normals;
+
+  template <class Self, class Visit>
+  static void describe(Self& self, Visit&& visit) {
+    NormalsFields::describe(self.normals, visit);
+    DenoiseOptions::describe(self.denoise, visit);
+  }
+};
+
+struct TilesOptions {
+  PlannedOptions planned;
   int tile_points = 5'000'000, sample_points = 1'000'000;
   bool json = false, force = false, keep_scale = false;
   std::optional<int> threads;
@@ -47,7 +60,7 @@ struct TilesOptions {
     visit(OptionInfo{"threads", "threads to use; auto: all cores; the result is the same", "", 1, 1024},
           self.threads);
     TalkOptions::describe(self.talk, visit);
-    DenoiseOptions::describe(self.denoise, visit);
+    PlannedOptions::describe(self.planned, visit);
   }
 };
 
@@ -56,10 +69,10 @@ struct TilesOptions {
 }
 
 /// The options that the plan was made with.
-DenoiseOptions planned_options(const Job& job) {
-  DenoiseOptions denoise;
+PlannedOptions planned_options(const Job& job) {
+  PlannedOptions planned;
   std::vector<CommandOption> bound;
-  collect(denoise, bound);
+  collect(planned, bound);
   for (const CommandOption& option : bound) {
     const auto value = job.options.find(option.name);
     if (value == job.options.end()) continue;
@@ -68,7 +81,7 @@ DenoiseOptions planned_options(const Job& job) {
   }
   for (const CommandOption& option : bound)
     if (option.finish) option.finish();
-  return denoise;
+  return planned;
 }
 
 std::size_t tile_number(const std::string& text) {
@@ -80,14 +93,20 @@ std::size_t tile_number(const std::string& text) {
 void plan_tiles(TilesOptions& options, const std::vector<std::string>& arguments, const Context& context,
                 Console& console) {
   if (arguments.size() < 2) misused("rfsmooth tiles plan takes IN... JOB");
-  if (options.denoise.outliers == Outliers::mark || options.denoise.outliers == Outliers::remove)
+  const Outliers outliers = options.planned.denoise.outliers;
+  if (outliers == Outliers::mark || outliers == Outliers::remove)
     misused("in tiles outliers are kept or smoothed: every row stays, and no field is added");
+  const std::vector<std::string> inputs(arguments.begin(), arguments.end() - 1);
+  NormalsFields& normals = options.planned.normals;
+  check(normals);
+  if (const auto how = normals_in_tiles(normals, inputs, context); how && how->viewpoint)
+    normals.viewpoint =
+        fmt::format("{},{},{}", (*how->viewpoint)[0], (*how->viewpoint)[1], (*how->viewpoint)[2]);
   std::vector<CommandOption> bound;
-  collect(options.denoise, bound);
-  const Job job =
-      pipeline::tiles::plan_job({arguments.begin(), arguments.end() - 1}, arguments.back(),
-                                {std::uint64_t(options.tile_points), std::uint64_t(options.sample_points)},
-                                json_object(bound), context);
+  collect(options.planned, bound);
+  const Job job = pipeline::tiles::plan_job(
+      inputs, arguments.back(), {std::uint64_t(options.tile_points), std::uint64_t(options.sample_points)},
+      json_object(bound), context);
   console.say(fmt::format("{}: {} points in {} tiles", arguments.back(), job.points, job.tiles.size()));
 }
 
@@ -98,7 +117,8 @@ void join_tiles(const TilesOptions& options, const std::vector<std::string>& arg
   std::vector<std::string> inputs, outputs;
   for (const auto& input : job.inputs) inputs.push_back(input.path);
   for (const cli::Job& file : plan_jobs(inputs, arguments[1])) outputs.push_back(file.output);
-  const auto joined = pipeline::tiles::join_job(job, outputs, options.force, options.keep_scale, context);
+  const auto joined = pipeline::tiles::join_job(job, outputs, options.force, options.keep_scale,
+                                                planned_options(job).normals.normals, context);
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     tell_scale(job.inputs[i].path, joined[i].scale, joined[i].noise, joined[i].noise_left, console);
     if (joined[i].las) warn_of_index(outputs[i], console);
@@ -138,14 +158,16 @@ void work_on_tiles(const std::string& step, const std::vector<std::string>& argu
   if (arguments.empty() || (step == "settle") != (arguments.size() == 1))
     misused(fmt::format("rfsmooth tiles {} takes JOB{}", step, step == "settle" ? "" : " TILE..."));
   const Job job = pipeline::tiles::open_job(arguments[0]);
-  const DenoiseOptions denoise = planned_options(job);
-  if (step == "settle") return pipeline::tiles::settle_job(job, denoise, context);
+  const PlannedOptions planned = planned_options(job);
+  if (step == "settle") return pipeline::tiles::settle_job(job, planned.denoise, context);
+  std::optional<NormalsOptions> normals;
+  if (planned.normals.normals) normals = NormalsOptions{typed_viewpoint(planned.normals)};
   for (std::size_t i = 1; i < arguments.size(); ++i) {
     const std::size_t tile = tile_number(arguments[i]);
     if (step == "measure")
       pipeline::tiles::measure_tile(job, tile, context);
     else
-      pipeline::tiles::run_tile(job, tile, denoise, context);
+      pipeline::tiles::run_tile(job, tile, planned.denoise, normals, context);
   }
 }
 
@@ -156,7 +178,7 @@ int run_tiles(TilesOptions& options, const Invocation& typed) {
     misused(fmt::format("rfsmooth tiles takes one of {}", fmt::join(kSteps, ", ")));
   if (step != "plan") {
     std::vector<CommandOption> planned;
-    DenoiseOptions unused;
+    PlannedOptions unused;
     collect(unused, planned);
     for (const auto& [name, text] : typed.options)
       if (std::any_of(planned.begin(), planned.end(), [&n = name](const auto& o) { return o.name == n; }))

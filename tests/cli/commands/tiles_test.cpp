@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <csignal>
+#include <cstring>
 #include <filesystem>
 #include <future>
 #include <numeric>
@@ -31,6 +32,10 @@ constexpr int kLong = 900, kWide = 24;
 
 enum class Kind { own, with_tails, shared, in_steps };
 
+double bent(double x) {
+  return 6 * std::sin(x / 40);
+}
+
 /// A long strip of a gently bent surface, points `noise` spacings off it; every thousandth is NaN. Noise is
 /// of each point, of each with a tenth six times as loud, of each square of four by four, or rounding
 /// besides.
@@ -52,7 +57,7 @@ RichCloud strip(double noise, bool pcd = false, Kind kind = Kind::own) {
         if (i % kTogether == 0 && j % kTogether == 0) here = off;
         off = here + 0.1 * off;
       }
-      double z = 6 * std::sin(x / 40) + noise * off;
+      double z = bent(x) + noise * off;
       if (kind == Kind::in_steps) z = std::round(z);
       const double bad = cloud.size() % 1000 == 7 ? std::nan("") : 0;
       cloud.xyz.insert(cloud.xyz.end(), {x, y, z + bad});
@@ -60,25 +65,25 @@ RichCloud strip(double noise, bool pcd = false, Kind kind = Kind::own) {
   return cloud;
 }
 
-constexpr int kAcross = 160;
 constexpr double kWall = 0.6, kWallNoise = 0.6;  // half of the wall's thickness, and the noise
+constexpr int kWallEnds = 100;
 
-bool in_wall(int i, int j) {
-  return i < kAcross / 2 && j < kAcross / 2;
-}
-
-/// A plane with points `kWallNoise` spacings off it; those of a quarter off two, kWall on either side of it.
-RichCloud plane_with_wall() {
+/// A long sheet with ridges near its end, where the learned step would act, and points `kWallNoise` spacings
+/// off it; those of its first quarter off two, kWall on either side of it.
+RichCloud sheet_with_wall() {
+  constexpr int kRows = 400, kColumns = 64, kFlat = 340, kHalfRidge = 10;
   std::mt19937_64 engine(11);
   std::normal_distribution<double> normal(0, 1);
   RichCloud cloud;
   cloud.doubles = true;
-  for (int i = 0; i < kAcross; ++i)
-    for (int j = 0; j < kAcross; ++j) {
-      const double half = in_wall(i, j) ? (engine() % 2 != 0 ? kWall : -kWall) : 0;
+  for (int i = 0; i < kRows; ++i) {
+    const int ridge = i < kFlat ? 0 : kHalfRidge - std::abs((i - kFlat) % (2 * kHalfRidge) - kHalfRidge);
+    for (int j = 0; j < kColumns; ++j) {
+      const double half = i < kWallEnds ? (engine() % 2 != 0 ? kWall : -kWall) : 0;
       cloud.xyz.insert(cloud.xyz.end(), {i + 0.2 * normal(engine), j + 0.2 * normal(engine),
-                                         half + kWallNoise * normal(engine)});
+                                         2 * ridge + half + kWallNoise * normal(engine)});
     }
+  }
   return cloud;
 }
 
@@ -262,22 +267,42 @@ TEST_F(Tiles, OneTileIsTheWholeCloudToTheByte) {
   EXPECT_GT(same(0.2, Kind::in_steps).noise->step, 0);
 }
 
-TEST_F(Tiles, ManyTilesAreTheWholeCloudButForRounding) {
-  for (const double noise : {0.1, 0.4}) expect_as_whole(strip(noise), "3000");
+TEST_F(Tiles, ManyTilesAreTheWholeCloudAndAsNearToTheTruth) {
+  for (const double noise : {0.1, 0.5, 1.3, 2.0}) {
+    const RichCloud cloud = strip(noise);
+    const Both both = expect_as_whole(cloud, "3000");
+    std::vector<double> cuts;
+    const nlohmann::json plan = nlohmann::json::parse(take(both.job + "/job.json"));
+    for (const auto& tile : plan["tiles"]) cuts.push_back(tile["box"][1][0].get<double>());
+    const auto at_seam = [&](std::size_t i) {
+      return std::any_of(cuts.begin(), cuts.end(),
+                         [&](double x) { return std::abs(cloud.xyz[3 * i] - x) < 3; });
+    };
+    const auto off = [&](const std::string& bytes, bool seams) {  // mean square
+      double squares = 0, count = 0;
+      for (std::size_t i = 0; i < cloud.size(); ++i) {
+        if (!std::isfinite(cloud.xyz[3 * i + 2]) || (seams && !at_seam(i))) continue;
+        squares += std::pow(cloud.coordinate(bytes, i, 2) - bent(cloud.coordinate(bytes, i, 0)), 2);
+        ++count;
+      }
+      return squares / count;
+    };
+    EXPECT_LT(off(both.tiled, false), 1.005 * off(both.whole, false)) << noise;
+    EXPECT_LT(off(both.tiled, true), 1.01 * off(both.whole, true)) << noise;
+  }
 }
 
-// A wall thinner than the noise in a corner of a plane, which is a tile. The halos of the others reach into
-// it: that a tile without any such points leaves out the learned step as the whole cloud does is not shown
-// here.
+// A wall thinner than the noise at one end of a sheet, which is a tile: what the whole cloud says of it
+// holds in all tiles, also of the learned step, which is not taken where there are such walls.
 TEST_F(Tiles, WallsHiddenInOneTileAreWhatTheyAreInTheWholeCloud) {
-  const RichCloud cloud = plane_with_wall();
+  const RichCloud cloud = sheet_with_wall();
   for (const char* learned : {"", "--learned"}) {
     const Both both = expect_as_whole(cloud, "6400", learned);
     EXPECT_GT(both.statistics.sheets->evidence, 7);
     const auto parted = [&](const std::string& bytes) {  // share of the wall's points
       double beside = 0, all = 0;
       for (std::size_t i = 0; i < cloud.size(); ++i) {
-        if (!in_wall(int(i) / kAcross, int(i) % kAcross)) continue;
+        if (cloud.xyz[3 * i] > kWallEnds) continue;
         beside += std::abs(cloud.coordinate(bytes, i, 2)) > kWall / 2 ? 1 : 0;
         ++all;
       }
@@ -305,6 +330,95 @@ TEST_F(Tiles, AThinPlateCutAlongItsPlaneIsAsInTheWholeCloud) {
   const nlohmann::json tiles = nlohmann::json::parse(take(both.job + "/job.json"))["tiles"];
   ASSERT_EQ(tiles.size(), 2u);
   EXPECT_NEAR(tiles[0]["box"][1][0].get<double>(), 0, kApart / 2) << "cut between the sheets";
+}
+
+/// Points of a sphere of that radius, spacing about 1, noise 0.3.
+RichCloud noisy_ball(double radius, bool pcd) {
+  const auto count = int(4 * M_PI * radius * radius);
+  std::mt19937_64 engine(8);
+  std::normal_distribution<double> normal(0, 1);
+  RichCloud cloud;
+  cloud.pcd = pcd;
+  cloud.doubles = true;
+  for (int i = 0; i < count; ++i) {
+    const double z = 1 - (2 * i + 1.0) / count, turn = i * M_PI * (3 - std::sqrt(5.0)),
+                 r = std::sqrt(1 - z * z);
+    const double at = radius + 0.3 * normal(engine);
+    cloud.xyz.insert(cloud.xyz.end(), {at * r * std::cos(turn), at * r * std::sin(turn), at * z});
+  }
+  return cloud;
+}
+
+/// The normals in the fields that came behind all others.
+std::vector<std::array<float, 3>> added_normals(const RichCloud& cloud, const std::string& bytes) {
+  const std::size_t row = cloud.row_bytes() + 12, first = bytes.size() - cloud.size() * row;
+  std::vector<std::array<float, 3>> normals(cloud.size());
+  for (std::size_t i = 0; i < normals.size(); ++i)
+    std::memcpy(normals[i].data(), bytes.data() + first + i * row + cloud.row_bytes(), 12);
+  return normals;
+}
+
+TEST_F(Tiles, NormalsAreOutwardAcrossTilesAndOneTileHasThoseOfTheWholeCloud) {
+  for (const bool pcd : {false, true}) {
+    const RichCloud cloud = noisy_ball(30, pcd);
+    put(cloud.name(), cloud.bytes());
+    const std::string job = pcd ? "pcd" : "ply";
+    EXPECT_EQ(run({"denoise", "--force", "--normals", cloud.name(), cloud.output()}).code, 0);
+    const std::string whole = take(cloud.output());
+    std::filesystem::remove(at(cloud.output()));
+    const std::string one =
+        joined({cloud.name()}, job + "1", cloud.output(), "1000000", "1000000", "--normals");
+    EXPECT_TRUE(one == whole);
+    std::filesystem::remove(at(cloud.output()));
+    const std::string many = joined({cloud.name()}, job, cloud.output(), "3000", "1000000", "--normals");
+    ASSERT_EQ(many.size(), whole.size());
+    ASSERT_GE(tiles_of(job).size(), 4u);
+    const auto normals = added_normals(cloud, many);
+    std::size_t outward = 0;
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      double along = 0;
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        along += double(normals[i][axis]) * cloud.xyz[3 * i + axis];
+      outward += std::size_t(along > 0.9 * 30);
+    }
+    EXPECT_GT(double(outward), 0.999 * double(cloud.size()));
+    std::filesystem::resize_file(at(job + "/done/1.normals"), 100);  // found, and made again
+    EXPECT_EQ(run({"tiles", "join", job, "again.ply"}).code, 2);
+    step({"run", job, "1"});
+    std::filesystem::remove(at(cloud.output()));
+    step({"join", job, cloud.output()});
+    EXPECT_TRUE(take(cloud.output()) == many);
+    std::filesystem::remove(at(cloud.output()));
+  }
+}
+
+TEST_F(Tiles, NormalsFaceTheViewpointAndElseTheSameSideInAllTiles) {
+  const RichCloud cloud = strip(0.3);
+  put("in.ply", cloud.bytes());
+  std::size_t number = 0;
+  for (const std::string viewpoint : {"450,12,-3000", "auto"}) {
+    const std::string job = "job" + std::to_string(++number), out = job + ".ply";
+    step({"plan", "--normals", "--viewpoint", viewpoint, "--tile-points", "6000", "in.ply", job});
+    const std::vector<std::string> tiles = tiles_of(job);
+    ASSERT_GE(tiles.size(), 4u);
+    for (const std::string& tile : tiles) step({"measure", job, tile});
+    step({"settle", job});
+    for (const std::string& tile : tiles) step({"run", job, tile});
+    step({"join", job, out});
+    double up = 0, finite = 0;
+    const auto normals = added_normals(cloud, take(out));
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      const bool there = std::isfinite(cloud.xyz[3 * i + 2]);
+      ASSERT_EQ(std::isfinite(normals[i][2]), there);
+      up += there && normals[i][2] > 0 ? 1 : 0;
+      finite += there ? 1 : 0;
+    }
+    const double share = up / finite;
+    if (viewpoint != "auto") {
+      EXPECT_NEAR(share, 0, 0.001);
+    }
+    EXPECT_NEAR(std::abs(share - 0.5), 0.5, 0.001) << "all on one side";
+  }
 }
 
 TEST_F(Tiles, AFolderOfFilesIsOneCloud) {
@@ -341,9 +455,9 @@ TEST_F(Tiles, DenoiseTakesTilesWhereTheMemoryIsLess) {
   const Ran wrong = run({"denoise", "--memory", "much", "in.ply", "x.ply"});
   EXPECT_EQ(wrong.code, 2);
   EXPECT_THAT(wrong.err, HasSubstr("'much'"));
-  const Ran whole = run({"denoise", "--memory", "10M", "--normals", "in.ply", "x.ply"});
+  const Ran whole = run({"denoise", "--memory", "10M", "--html", "x.html", "in.ply", "x.ply"});
   EXPECT_EQ(whole.code, 2);
-  EXPECT_THAT(whole.err, HasSubstr("--normals needs the whole cloud"));
+  EXPECT_THAT(whole.err, HasSubstr("--html needs the whole cloud"));
 }
 
 // As denoise has it (las_test.cpp), the bytes too: one tile is the whole.
