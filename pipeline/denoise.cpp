@@ -173,7 +173,7 @@ void land_tails(const double* xyz, const std::vector<double>& strength, const De
   if (automatic == nullptr || report.outliers == 0 || !(report.tail_times > 1)) return;
   const rfs_mesh::SpatialIndex surface(now, context);
   const double most =
-      smoothing::kFarthestMove * std::max(1.0, automatic->strength) * report.tail_times * report.noise;
+      rfs_mesh::kNoiseReach * std::max(1.0, automatic->strength) * report.tail_times * report.noise;
   for (std::size_t i = 0; i < report.outlier.size(); ++i) {
     if (report.outlier[i] == 0) continue;
     const Eigen::Vector3d was = Eigen::Vector3d(xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]) - cloud.origin;

@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include "base/parallel.h"
+#include "rfs_mesh/levels.h"
 #include "rfs_mesh/points.h"
 #include "rfs_mesh/search/neighbors.h"
 
@@ -41,8 +42,8 @@ bool keep_sides(const double* xyz, std::size_t n, const double* before, double* 
       agreements(cloud, Vectors(before, 3, Eigen::Index(n)), Vectors(normals, 3, Eigen::Index(n)));
 
   const rfs_mesh::SpatialIndex index(cloud.points, context);
-  constexpr int kNeighbours = 24;  // random sides give sum |v| / sum |a| of sqrt(2 / (25 pi)), about 0.16
-  const rfs_mesh::NeighborTable near = index.nearest(kNeighbours, context);
+  // Random sides give sum |v| / sum |a| of sqrt(2 / (25 pi)), about 0.16.
+  const rfs_mesh::NeighborTable near = index.nearest(int(rfs_mesh::kNeighbourhood), context);
   std::vector<double> vote(a.size()), most(a.size());
   for_each_index(context, a.size(), [&](std::size_t p) {
     vote[p] = a[p];

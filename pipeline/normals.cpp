@@ -7,6 +7,7 @@
 
 #include "base/parallel.h"
 #include "pipeline/normals_by_part.h"
+#include "rfs_mesh/levels.h"
 #include "rfs_mesh/normals/bilateral_normals.h"
 #include "rfs_mesh/normals/orient.h"
 #include "rfs_mesh/search/neighbors.h"
@@ -21,21 +22,20 @@ namespace {
 
 constexpr int kFiltered = 128;  // neighbours over which normals are made calm
 
-/// A normal more than 60 degrees off the mean of the 32 nearest takes that mean, unless those disagree among
+/// A normal more than 60 degrees off the mean of the 24 nearest takes that mean, unless those disagree among
 /// themselves, as across a thin wall or at the tip of a wedge. Needed by few, most of them in creases, where
 /// the filter has taken the side of one flank too many.
 void settle(const Positions& points, const rfs_mesh::SpatialIndex& index, const Mesh& mesh,
             Positions& normals, const Context& context) {
-  constexpr int kAsked = 32;
-  constexpr double kOff = 0.5, kAgreed = 0.4;  // cosine; length of a mean of unit vectors
   Positions settled = normals;
   for_blocks(context, normals.size(), 4096, [&](std::size_t begin, std::size_t end) {
     std::vector<rfs_mesh::Neighbor> near;
     for (std::size_t i = begin; i < end; ++i) {
       const auto ring = mesh.one_ring[i];
-      if (std::none_of(ring.begin(), ring.end(), [&](Index j) { return normals[i].dot(normals[j]) < kOff; }))
+      if (std::none_of(ring.begin(), ring.end(),
+                       [&](Index j) { return normals[i].dot(normals[j]) < kSameSheet; }))
         continue;
-      index.nearest(points[i], kAsked + 1, near);
+      index.nearest(points[i], int(kNeighbourhood) + 1, near);
       const double square = 1.1 * near.back().squared_distance;
       if (!(square > 0)) continue;
       Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -46,7 +46,8 @@ void settle(const Positions& points, const rfs_mesh::SpatialIndex& index, const 
         weights += weight;
       }
       const double length = sum.norm();
-      if (length > kAgreed * weights && normals[i].dot(sum) < kOff * length) settled[i] = sum / length;
+      if (length > kSameSheet * weights && normals[i].dot(sum) < kSameSheet * length)
+        settled[i] = sum / length;
     }
   });
   normals.swap(settled);

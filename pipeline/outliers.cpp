@@ -11,32 +11,30 @@
 #include "base/median.h"
 #include "base/parallel.h"
 #include "rfs_mesh/fit/local_surface.h"
+#include "rfs_mesh/levels.h"
 #include "rfs_mesh/search/neighbors.h"
 
 namespace rfsmooth::pipeline {
 
 namespace {
 
+using rfs_mesh::kNeighbourhood;
 using rfs_mesh::Neighbor;
 
 // Chosen on the development shapes (tests/bench/quality), clean and with noise of up to 4 spacings, with and
 // without 1 % strays: none of theirs is called an outlier but one in a million.
-constexpr std::size_t kTooFew = 100;  // points: below, nothing is usual
-constexpr std::size_t kNear = 8;      // neighbours that say how dense it is
-constexpr double kIsolated = 2;       // times the usual reach
-constexpr int kKnownBy = 1;           // points that may have an outlier as a neighbour
-constexpr std::size_t kPlane = 48;    // points of the plane
-constexpr double kSigmas = 5;         // beyond which a point does not belong to the surface
-constexpr double kOff = 1.2;          // the same in usual reaches: what a clean surface may curve by
-constexpr double kFarOff = 6;         // usual reaches: an outlier wherever the plane is
-constexpr int kRounds = 20;           // strays behind strays; three are usual
+constexpr std::size_t kNear = 8;    // neighbours that say how dense it is
+constexpr double kIsolated = 2;     // times the usual reach
+constexpr int kKnownBy = 1;         // points that may have an outlier as a neighbour
+constexpr std::size_t kPlane = 48;  // points of the plane
+constexpr double kSigmas = 5;       // beyond which a point does not belong to the surface
+constexpr double kOff = 1.2;        // the same in usual reaches: what a clean surface may curve by
+constexpr double kFarOff = 6;       // usual reaches: an outlier wherever the plane is
 
-constexpr double kThin = 4;                     // times the reach of the surface beside floating points
-constexpr std::size_t kRegion = 64;             // points among which that surface is
+constexpr double kThin = 4;          // times the reach of the surface beside floating points
+constexpr std::size_t kRegion = 64;  // points among which that surface is; in fewer, nothing is usual
 constexpr std::size_t kSurface = kRegion / 10;  // its share of them
-constexpr std::size_t kCloud = 24;              // points that fill space or do not
 constexpr double kFlat = 0.08;                  // least variance over the sum; 1/3 = a ball
-constexpr double kFlatSigmas = 3;               // what noise may fill
 
 /// The plane through some points, by its normal, with their variances along the axes, ascending.
 struct Plane {
@@ -82,8 +80,8 @@ class Search {
   }
 
   std::vector<char> run() {
-    for (int round = 0; round < kRounds; ++round) {
-      context_.report("outliers", double(round) / kRounds);
+    for (int round = 0;; ++round) {
+      context_.report("outliers", 1 - 1 / (1 + 0.5 * double(round)));  // three rounds are usual
       if (!find(round > 0)) break;
       for_each_index(context_, points_.size(), [&](std::size_t i) {
         look_[i] = 0;
@@ -163,7 +161,7 @@ class Search {
     measure_isolation();
     const auto surface = sum_over(context_, points_.size(), std::size_t{0},
                                   [&](std::size_t i) { return std::size_t(on_surface(Index(i))); });
-    if (surface < kTooFew) return false;
+    if (surface < kRegion) return false;
     if (again) measure_again();
     const auto known = known_by();
     std::vector<char> found(points_.size(), 0);
@@ -189,23 +187,10 @@ class Search {
     if (reach_[i] > kFarOff * usual_[i]) return true;
     nearest_on_surface(points_[i], 1, around);
     if (around.empty()) return false;
-    const Index beside = around.front().index;
-    if (!may_be_off(i, beside)) return false;
-    nearest_on_surface(points_[beside], std::max(kPlane, noise_.neighbours), around);
+    nearest_on_surface(points_[around.front().index], std::max(kPlane, noise_.neighbours), around);
     const Plane plane = fit_plane(points_, around);
     const double off = std::abs(plane.normal.dot(points_[i] - plane.centre));
     return off > kOff * usual_[i] && off > kSigmas * std::max(std::sqrt(plane.variances[0]), noise_.sigma);
-  }
-
-  /// Whether i is worth the search for a plane, by the middle of the nearest around the point beside it,
-  /// which is on this side of the plane if at all: a point of the noise's tail hardly ever is.
-  bool may_be_off(std::size_t i, Index beside) const {
-    constexpr double kSurely = 0.7;
-    Eigen::Vector3d middle = points_[beside];
-    for (const Index j : near_[beside]) middle += points_[j];
-    middle /= double(kNear + 1);
-    const double least = kSurely * std::max(kOff * usual_[i], kSigmas * noise_.sigma);
-    return (points_[i] - middle).squaredNorm() > least * least;
   }
 
   bool floats(std::size_t i, std::vector<Neighbor>& around) const {
@@ -216,9 +201,9 @@ class Search {
     for (std::size_t k = 0; k < kRegion; ++k) reaches[k] = reach_[around[k].index];
     std::nth_element(reaches.begin(), reaches.begin() + kSurface, reaches.end());
     if (!(reach_[i] > kThin * reaches[kSurface])) return false;
-    around.resize(kCloud);
+    around.resize(kNeighbourhood);
     const Eigen::Vector3d variances = fit_plane(points_, around).variances;
-    return variances[0] > kFlat * variances.sum() && std::sqrt(variances[0]) > kFlatSigmas * noise_.sigma;
+    return variances[0] > kFlat * variances.sum() && std::sqrt(variances[0]) > kSigmas * noise_.sigma;
   }
 
   const rfs_mesh::SpatialIndex& index_;
@@ -249,14 +234,14 @@ rfs_mesh::NeighborTable nearest_few(const rfs_mesh::NeighborTable& near, const C
 std::vector<char> find_outliers(const rfs_mesh::SpatialIndex& index, const rfs_mesh::NeighborTable& near,
                                 const Context& context, std::optional<Statistics::Outlying>* usual) {
   std::optional<Statistics::Outlying> measured;
-  if (index.points().size() < kTooFew) return std::vector<char>(index.points().size(), 0);
+  if (index.points().size() < kRegion) return std::vector<char>(index.points().size(), 0);
   return Search(index, near.k < int(kNear) ? index.nearest(int(kNear), context) : nearest_few(near, context),
                 usual != nullptr ? *usual : measured, context)
       .run();
 }
 
 std::vector<char> find_outliers(const Positions& points, const Context& context) {
-  if (points.size() < kTooFew) return std::vector<char>(points.size(), 0);
+  if (points.size() < kRegion) return std::vector<char>(points.size(), 0);
   const rfs_mesh::SpatialIndex index(points, context);
   return find_outliers(index, index.nearest(int(kNear), context), context);
 }

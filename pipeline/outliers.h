@@ -12,11 +12,11 @@
 ///    the usual r, wherever the plane is (beyond a rim it goes on).
 ///
 /// Where strays are many, they are neighbours of strays. So the outliers found are taken out and the points
-/// that had them as neighbours are tested again, until no more are found (at most 20 rounds).
+/// that had them as neighbours are tested again, until no more are found.
 ///
 /// A point is also an outlier, whatever has it as a neighbour, if it floats: r_i is more than four times both
 /// the median of the cloud and the lower decile of the 64 nearest, and the 24 nearest fill space (the least
-/// variance is more than 8 % of the sum) beyond three sigma.
+/// variance is more than 8 % of the sum) beyond five sigma.
 ///
 /// No single test suffices: a point in the tail of Gaussian noise is isolated but within 5 sigma, a corner is
 /// off its plane but not isolated, a sparse wall has a large r but is flat. Isolation by the neighbours'
@@ -34,7 +34,7 @@
 
 namespace rfsmooth::pipeline {
 
-/// n flags: 1 = outlier. None in clouds of fewer than 100 points. `points`: n x 3, finite, distinct; fastest
+/// n flags: 1 = outlier. None in clouds of fewer than 64 points. `points`: n x 3, finite, distinct; fastest
 /// along a Morton curve. O(n log n), about 120 bytes a point; parallel, the same for any number of threads.
 std::vector<char> find_outliers(const Positions& points, const Context& context);
 

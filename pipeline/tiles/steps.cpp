@@ -16,6 +16,7 @@
 #include "pipeline/tiles/row_file.h"
 #include "pipeline/tiles/statistics_json.h"
 #include "pipeline/tiles/tile_normals.h"
+#include "rfs_mesh/levels.h"
 #include "rfs_mesh/search/neighbors.h"
 
 namespace rfsmooth::pipeline::tiles {
@@ -82,7 +83,7 @@ double typical_radius(const std::vector<double>& xyz, std::size_t m, const Conte
   for (std::size_t i = 0; i < points.size(); ++i)
     points[i] = Vector3d(xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]);
   const rfs_mesh::SpatialIndex index(points, context);
-  const std::size_t places = std::min(points.size(), kPlacesOfRadius);
+  const std::size_t places = std::min(points.size(), rfs_mesh::kPlacesOfCloud);
   std::vector<double> radii(places);
   for_each_index(
       context, places,

@@ -9,6 +9,7 @@
 #include "base/median.h"
 #include "base/parallel.h"
 #include "rfs_mesh/fit/quadric.h"
+#include "rfs_mesh/levels.h"
 
 namespace rfsmooth::rfs_mesh {
 
@@ -70,8 +71,7 @@ double mean_spacing(const Positions& points, const NeighborTable& near, const Co
 }
 
 double mean_spacing(const SpatialIndex& index, const Context& context) {
-  constexpr std::size_t kSamples = 50000;
-  const std::size_t n = index.points().size(), count = std::min(n, kSamples);
+  const std::size_t n = index.points().size(), count = std::min(n, kSampleOfCloud);
   if (n < 2) return 0;
   std::vector<double> nearest(count);
   for_blocks(context, count, 256, [&](std::size_t begin, std::size_t end) {
@@ -98,9 +98,8 @@ struct Deviation {
 
 /// The flat places' residual and the median radius of neighbourhoods of m.
 Deviation deviation_at(const SpatialIndex& index, std::size_t m, const Context& context) {
-  constexpr std::size_t kSamples = 1000;
-  constexpr double kEffective = 5.0 / 9;  // what the distance weights leave of m samples on a disk
-  const std::size_t n = index.points().size(), samples = std::min(n, kSamples);
+  constexpr double kEffective = 5.0 / 9;  // (mean w)^2 / mean w^2 of w = (1 - t^2)^2 over a disk
+  const std::size_t n = index.points().size(), samples = std::min(n, kPlacesOfCloud);
   std::vector<double> residuals(samples), radii(samples);
   for_blocks(context, samples, 16, [&](std::size_t begin, std::size_t end) {
     QuadricWorkspace workspace;
@@ -121,14 +120,14 @@ Deviation deviation_at(const SpatialIndex& index, std::size_t m, const Context& 
 }  // namespace
 
 NoiseScale noise_scale(const SpatialIndex& index, const Context& context) {
-  // From the neighbourhoods looked at anyway to a radius of eleven spacings.
-  constexpr std::size_t kNarrowest = 24, kWidest = 384;
+  // Up to a radius of eleven spacings.
+  constexpr std::size_t kWidest = 384;
   constexpr double kShareOfRadius = 0.18;  // a radius of 5.5 sigma: the ball holds the slab and is not in it
   constexpr double kGrowthOfNoise = 1.26;  // cube root of 2: a ball inside a slab; faster growth is shape
   const std::size_t n = index.points().size();
   NoiseScale best;
   double least = std::numeric_limits<double>::infinity();
-  for (std::size_t m = kNarrowest; m <= kWidest && m < n; m *= 2) {
+  for (std::size_t m = kNeighbourhood; m <= kWidest && m < n; m *= 2) {
     const Deviation d = deviation_at(index, m, context);
     if (best.neighbours > 0 && d.sigma > kGrowthOfNoise * best.sigma) break;
     const double share = d.radius > 0 ? d.sigma / d.radius : 0;

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "base/parallel.h"
+#include "rfs_mesh/levels.h"
 
 namespace rfsmooth::rfs_mesh {
 
@@ -19,9 +20,8 @@ constexpr int kPasses = 3;
 constexpr std::size_t kJudged = 16;  // neighbours that say how calm the normals are
 constexpr std::size_t kMiddle = 6;   // which of them, from the calmest
 constexpr double kTolerance = 2;
-constexpr std::size_t kScattered = 24;  // neighbours that say how well points lie on the surface
-constexpr double kOfScatter = 230;      // radians per (r / R)^2
-constexpr double kCalmest = 0.05;       // radians: what normals of a flat place may differ by
+constexpr double kOfScatter = 230;  // radians per (r / R)^2
+constexpr double kCalmest = 0.05;   // radians: what normals of a flat place may differ by
 constexpr double kLeastMost = 0.02, kGreatestMost = 0.5;  // radians: bounds of the most
 
 constexpr std::size_t kNormalLanes = 8;  // numbers side by side in registers
@@ -49,7 +49,7 @@ std::vector<double> limits(const Positions& points, const NeighborTable& near,
   std::vector<double> limit(points.size());
   for_each_index(context, points.size(), [&](std::size_t i) {
     const Adjacency::Row row = near[i];
-    const std::size_t count = std::min(kScattered, row.size());
+    const std::size_t count = std::min(kNeighbourhood, row.size());
     double sum = scatter[i];
     for (std::size_t k = 0; k < count; ++k) sum += scatter[row[k]];
     const double r = sum / double(count + 1), square = (points[row[count - 1]] - points[i]).squaredNorm();

@@ -8,6 +8,7 @@
 #include "base/collect.h"
 #include "base/median.h"
 #include "base/parallel.h"
+#include "rfs_mesh/levels.h"
 #include "rfs_mesh/measure.h"
 #include "rfs_mesh/normals/sides.h"
 #include "rfs_mesh/normals/visible.h"
@@ -19,15 +20,13 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t kSmall = 32;  // points: such a part follows its bridge
 constexpr double kFlatPart = 0.01;  // volume / (area x extent) below which a part has no outside
 // Chosen on the closed development shapes (tests/bench/normals).
-constexpr std::size_t kSamples = 50000;  // points that the winding number is asked for
-constexpr int kSteps = 4;                // more follow the noise
-constexpr double kAreaError = 0.15;      // half the share by which areas may be off
-constexpr double kClosed = 0.15;         // root mean square of w - 1/2 that a closed surface keeps below
-constexpr double kRest = 0.01;           // share of the samples in other parts that is let pass
-constexpr double kBetter = 0.8;          // of it: what votes must bring to be believed
+constexpr int kSteps = 4;            // more follow the noise
+constexpr double kAreaError = 0.15;  // half the share by which areas may be off
+constexpr double kClosed = 0.15;     // root mean square of w - 1/2 that a closed surface keeps below
+constexpr double kRest = 0.01;       // share of the samples in other parts that is let pass
+constexpr double kBetter = 0.8;      // of it: what votes must bring to be believed
 
 double agreement(const Vector3d& p, const Vector3d& n, const Vector3d& q, const Vector3d& m) {
   const Vector3d e = q - p;
@@ -100,7 +99,7 @@ class Orienter {
   /// Points spread evenly over the rows, each standing for several.
   struct Samples {
     Samples(const Positions& points, const std::vector<double>& areas_of_points) {
-      const std::size_t n = points.size(), m = std::min(n, kSamples);
+      const std::size_t n = points.size(), m = std::min(n, kSampleOfCloud);
       for (std::size_t s = 0; s < m; ++s) row.push_back(Index(s * n / m));
       for (const Index i : row) {
         at.push_back(points[i]);
@@ -224,7 +223,7 @@ class Orienter {
     bool any = false;
     for (const SideLink& link : bridges) {
       const Sides::Root a = sides.find(link.a), b = sides.find(link.b);
-      const auto hangs = [&](Index r) { return size[r] < kSmall && judged[r] == 0; };
+      const auto hangs = [&](Index r) { return size[r] < kNeighbourhood && judged[r] == 0; };
       if (a.index == b.index || !(hangs(a.index) || hangs(b.index))) continue;
       sides.join(a.index, b.index, (link.agreement < 0) != (a.turned != b.turned));
       const Index root = std::min(a.index, b.index);

@@ -10,6 +10,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "base/parallel.h"
+#include "rfs_mesh/levels.h"
 #include "rfs_mesh/normals/winding.h"
 
 namespace rfsmooth::rfs_mesh {
@@ -21,9 +22,7 @@ using Eigen::Vector3d;
 
 // Chosen on the closed development shapes at 50,000 points, without noise and after 1 %
 // (tests/bench/normals).
-constexpr std::size_t kPartSamples = 50000;
-constexpr int kAround = 24;          // samples over which w is judged
-constexpr std::size_t kOfArea = 9;   // of them: those that say how much area a sample has
+constexpr std::size_t kOfArea = 9;   // neighbours that say how much area a sample has
 constexpr double kOff = 0.25;        // e above which something is tried
 constexpr double kMostOff = 0.3;     // share of the samples that may be: rotor's walls are 0.17
 constexpr double kMostLeft = 0.4;    // of all e squared, if more are: 0.31 on rotor after 2 %, 0.52 on scans
@@ -64,10 +63,10 @@ class ThinParts {
  public:
   ThinParts(const SpatialIndex& index, const Context& context)
       : index_(index), points_(index.points()), context_(context) {
-    const std::size_t n = points_.size(), m = std::min(n, kPartSamples);
+    const std::size_t n = points_.size(), m = std::min(n, kSampleOfCloud);
     for (std::size_t s = 0; s < m; ++s) row_.push_back(Index(s * n / m));
     for (const Index i : row_) at_.push_back(points_[i]);
-    around_ = SpatialIndex(at_, context).nearest(kAround, context);
+    around_ = SpatialIndex(at_, context).nearest(int(kNeighbourhood), context);
     if (around_.k == 0) return;
     area_.resize(m);
     for_each_index(context, m, [&](std::size_t s) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Cholesky>
@@ -10,6 +11,7 @@
 
 #include "base/parallel.h"
 #include "rfs_mesh/fit/tangent_plane.h"
+#include "rfs_mesh/levels.h"
 
 namespace rfsmooth::rfs_mesh {
 
@@ -17,17 +19,14 @@ namespace {
 
 // Chosen on the shapes rotor, armadillo and femur (50,000 points, noise of 1 %). The share of normals that
 // end up on the right side there hardly changes with them.
-constexpr int kWallRounds = 2;        // a side that was put right helps others
-constexpr double kParallel = 0.5;     // cosine
-constexpr double kOtherSheet = 0.15;  // least share of its neighbours
-constexpr std::size_t kGlance = 4;    // at every so many neighbours first: one on another sheet is no wall
-constexpr double kFlatness = 0.5;     // mean square about the sheets, beside that of their distance
+constexpr std::size_t kGlance = 4;  // at every so many neighbours first: one on another sheet is no wall
+constexpr double kFlatness = 0.5;   // mean square about the sheets, beside that of their distance
 constexpr double kWallRidge = 1e-9;
 
 bool faces_another(const Positions& normals, std::size_t i, const Adjacency::Row& row) {
   std::size_t opposite = 0;
   for (std::size_t k = kGlance - 1; k < row.size(); k += kGlance)
-    opposite += normals[i].dot(normals[row[k]]) < -kParallel ? 1 : 0;
+    opposite += normals[i].dot(normals[row[k]]) < -kSameSheet ? 1 : 0;
   return opposite > 1;
 }
 
@@ -42,10 +41,10 @@ bool on_other_sheet(const Positions& points, const Positions& normals, std::size
   const double in_radii = 1 / std::sqrt(square);
   Eigen::Matrix4d a = Eigen::Matrix4d::Zero();
   Eigen::Vector4d right = Eigen::Vector4d::Zero();
-  double all = 0, opposite = 0, squares = 0;
+  double all = 0, squares = 0;
   for (const Index j : row) {
     const double cosine = normal.dot(normals[j]);
-    if (std::abs(cosine) < kParallel) continue;
+    if (std::abs(cosine) < kSameSheet) continue;
     const Eigen::Vector3d r = in_radii * (points[j] - points[i]);
     const double inside = 1 - r.squaredNorm(), weight = inside * inside;
     const Eigen::Vector2d at = plane.project(r);
@@ -55,9 +54,7 @@ bool on_other_sheet(const Positions& points, const Positions& normals, std::size
     right += weight * height * f;
     squares += weight * height * height;
     all += weight;
-    opposite += cosine < 0 ? weight : 0;
   }
-  if (!(opposite > kOtherSheet * all)) return false;
   a.diagonal().array() += kWallRidge * all;
   const Eigen::Vector4d x = a.ldlt().solve(right);
   const double middle = x[0], apart = x[3];
@@ -71,21 +68,20 @@ std::size_t turn_to_own_sheet(const Positions& points, const NeighborTable& near
                               const Context& context) {
   if (normals.size() != points.size() || (near.k > 0 && near.size() != points.size()))
     throw std::invalid_argument("turn_to_own_sheet: points, neighbours and normals differ in number");
-  std::size_t turned = 0;
-  if (near.k == 0) return turned;
+  if (near.k == 0) return 0;
   std::vector<char> other(points.size());
-  for (int round = 0; round < kWallRounds; ++round) {
+  std::size_t all = 0, before = 0, turned = 0;
+  do {  // a side that was put right helps others, while there are ever fewer
     for_each_index(context, points.size(), [&](std::size_t i) {
       const Adjacency::Row row = near[i];
-      other[i] = faces_another(normals, i, row) && on_other_sheet(points, normals, i, row) ? 1 : 0;
+      other[i] = char(faces_another(normals, i, row) && on_other_sheet(points, normals, i, row));
     });
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      if (other[i] == 0) continue;
-      normals[i] = -normals[i];
-      ++turned;
-    }
-  }
-  return turned;
+    for (std::size_t i = 0; i < points.size(); ++i)
+      if (other[i] != 0) normals[i] = -normals[i];
+    before = std::exchange(turned, std::size_t(std::count(other.begin(), other.end(), 1)));
+    all += turned;
+  } while (turned > 0 && (before == 0 || turned < before));
+  return all;
 }
 
 }  // namespace rfsmooth::rfs_mesh

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "rfs_mesh/levels.h"
 #include "rfs_mesh/noise/depth_steps.h"
 #include "smoothing/automatic/hidden_sheets.h"
 #include "smoothing/automatic/learned/last_step.h"
@@ -36,7 +37,6 @@ constexpr double kStrayFrom = 5;          // sigma
 constexpr double kCalm = 0.1;             // of the figure: so much calmer places have no part in the tails
 constexpr std::size_t kSeeing = 2;        // the scale that looks for walls, of 9 sigma: from 0
 
-constexpr std::size_t kTooFew = 32;   // points
 constexpr std::size_t kDense = 4;     // a subset with a point in so many has its own among the nearest
 constexpr std::size_t kOwnMean = 60;  // from this many members on, patches average; below, near neighbours do
 constexpr float kNearEvidence = 10;   // nats per sigma^2 of a near mean
@@ -162,10 +162,9 @@ void mix(const HeightField& field, std::vector<float> first, std::vector<Scale> 
 double told_by_residuals(const HeightField& field, const std::vector<float>& height,
                          const std::vector<float>& own, const rfs_mesh::NoiseField& noise,
                          const Context& context) {
-  constexpr std::size_t kPlaces = 20000;
   constexpr double kSmoothed = 0.5;  // mean of 1 - own: elsewhere the data stayed, and tell nothing
   constexpr double kMostSquare = kStrayFrom * kStrayFrom;
-  const std::size_t n = field.size(), places = std::min(n, kPlaces);
+  const std::size_t n = field.size(), places = std::min(n, rfs_mesh::kSampleOfCloud);
   std::vector<double> told(places, -1);
   for_each_index(context, places, [&](std::size_t place) {
     const std::size_t at = place * n / places;
@@ -398,7 +397,7 @@ Positions automatic_smoothing(Mesh& mesh, bool keep_rings, rfs_mesh::NoiseField 
   const std::size_t n = mesh.positions.size();
   report = {};
   report.left = noise.sigma;
-  if (n < kTooFew || !(noise.sigma > 0)) return mesh.positions;
+  if (n < std::size_t(HeightField::kNear) || !(noise.sigma > 0)) return mesh.positions;
   const auto guide_strength = [&] {
     const double share = noise.sigma / spacing;
     return kGuide * share * share * std::max(1.0, share * share) * noise.shared;

@@ -15,6 +15,7 @@
 #include "base/raw_array.h"
 #include "base/small_cholesky.h"
 #include "rfs_mesh/fit/plane_normal.h"
+#include "rfs_mesh/levels.h"
 #include "rfs_mesh/search/neighbors.h"
 #include "smoothing/automatic/patches/quadric_sums.h"
 
@@ -22,8 +23,9 @@ namespace rfsmooth::smoothing {
 
 namespace {
 
+using rfs_mesh::kNeighbourhood;
+
 // Chosen on the development shapes (tests/bench/quality).
-constexpr int kNearOfFrame = 24;      // neighbours of the frame and its quadric
 constexpr std::size_t kPushers = 12;  // neighbours that push
 constexpr float kReach = 1.9F;        // R in local distances between points
 constexpr double kGain = 0.4;         // step / (sigma/d)^2, in R f
@@ -64,9 +66,9 @@ struct Frame {
 
 /// The neighbours of a point in its frame, by axis, in units of the farthest.
 struct Around {
-  static_assert(kNearOfFrame % kLanes == 0);
-  std::array<float, kNearOfFrame> u, v, height, weight;
-  std::array<float, kNearOfFrame> cosine;  ///< between the normals
+  static_assert(kNeighbourhood % kLanes == 0);
+  std::array<float, kNeighbourhood> u, v, height, weight;
+  std::array<float, kNeighbourhood> cosine;  ///< between the normals
 };
 
 /// Whether there is a neighbour in each of the six sectors of 60 degrees: nearly always.
@@ -100,7 +102,7 @@ bool surrounded(const Around& around) {
   // A neighbour in each sector leaves no gap of 120 degrees.
   static_assert(kWidestGap > 2 * M_PI / 3);
   if (all_around(around)) return true;
-  std::array<double, kNearOfFrame> angles = {};
+  std::array<double, kNeighbourhood> angles = {};
   for (std::size_t k = 0; k < angles.size(); ++k)
     angles[k] = std::atan2(double(around.v[k]), double(around.u[k]));
   std::sort(angles.begin(), angles.end());
@@ -109,14 +111,14 @@ bool surrounded(const Around& around) {
   return widest < kWidestGap;
 }
 
-/// The kNearOfFrame nearest of every point.
+/// The kNeighbourhood nearest of every point.
 class Near {
  public:
   /// Picks them out of the rows of a table, in place. Also makes the normals of their planes.
   Near(rfs_mesh::NeighborTable table, const Positions& points, std::vector<Eigen::Vector3f>& normals,
        const Context& context)
       : table_(std::move(table)) {
-    if (table_.size() != points.size() || table_.k < kNearOfFrame || table_.k > kMostRanked)
+    if (table_.size() != points.size() || table_.k < int(kNeighbourhood) || table_.k > kMostRanked)
       throw std::invalid_argument("equalize: every point needs 24 to 256 neighbours");
     normals.resize(points.size());
     const auto width = std::size_t(table_.k);
@@ -128,7 +130,7 @@ class Near {
 
   Adjacency::Row operator[](std::size_t i) const {
     const Index* const first = table_.items.data() + i * std::size_t(table_.k);
-    return {first, first + kNearOfFrame};
+    return {first, first + kNeighbourhood};
   }
 
  private:
@@ -251,7 +253,7 @@ Eigen::Vector3f push(const Positions& points, const Eigen::Vector3d& p, const In
 void slide_back(Positions& points, const Positions& before, double share, rfs_mesh::NeighborTable table,
                 const Context& context) {
   const std::size_t n = points.size();
-  if (n <= std::size_t(kNearOfFrame)) return;
+  if (n <= kNeighbourhood) return;
   std::vector<Eigen::Vector3f> normals;
   const Near near(std::move(table), points, normals, context);
   Positions back(n);
@@ -266,7 +268,7 @@ void slide_back(Positions& points, const Positions& before, double share, rfs_me
 Equalized equalize(Positions& points, const Positions& before, const std::vector<double>& sigma,
                    double spacing, rfs_mesh::NeighborTable table, const Context& context) {
   const std::size_t n = points.size();
-  if (n <= std::size_t(kNearOfFrame)) return {};
+  if (n <= kNeighbourhood) return {};
   std::vector<Eigen::Vector3f> normals;
   const Near near(std::move(table), points, normals, context);
   RawArray<Frame> frames(n);

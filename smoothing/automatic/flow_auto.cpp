@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "base/parallel.h"
-#include "rfs_mesh/fit/local_surface.h"
+#include "rfs_mesh/levels.h"
 #include "rfs_mesh/noise/noise.h"
 #include "smoothing/automatic/equalize.h"
 
@@ -36,12 +36,12 @@ rfs_mesh::NoiseField scaled(rfs_mesh::NoiseField noise, double sigma, double str
   return noise;
 }
 
-/// Takes back what a move has beyond kFarthestMove. `local`: the noise around each point times `strength`;
+/// Takes back what a move has beyond kNoiseReach. `local`: the noise around each point times `strength`;
 /// `tail_times` of it where there are tails.
 void limit(const Positions& before, const std::vector<double>& local, double strength, double tail_times,
            Positions& points, const Context& context) {
   for_each_index(context, points.size(), [&](std::size_t i) {
-    const double most = kFarthestMove * std::max(1.0, 1 / strength) * tail_times * local[i];
+    const double most = rfs_mesh::kNoiseReach * std::max(1.0, 1 / strength) * tail_times * local[i];
     const Eigen::Vector3d move = points[i] - before[i];
     if (const double length = move.norm(); length > most) points[i] = before[i] + most / length * move;
   });

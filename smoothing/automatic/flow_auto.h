@@ -1,9 +1,9 @@
 /// The automatic smoother on a mesh: measures the noise, smooths as strongly as it asks for at every point
 /// (automatic.h), evens the points out along the surface (equalize.h).
 ///
-/// How far a point may move in a step: at most kFarthestMove times the noise around it, measured or stated;
-/// strength times that where the strength is above one, and AutomaticReport::tail_times that where some
-/// points are much noisier than the others. Strays, which would go farther still (automatic.h), stay.
+/// How far a point may move in a step: at most kNoiseReach (levels.h) times the noise around it, measured or
+/// stated; strength times that where the strength is above one, and AutomaticReport::tail_times that where
+/// some points are much noisier than the others. Strays, which would go farther still (automatic.h), stay.
 #pragma once
 
 #include <memory>
@@ -14,10 +14,6 @@
 #include "smoothing/automatic/automatic.h"
 
 namespace rfsmooth::smoothing {
-
-/// In units of the noise's standard deviation around the point. Gaussian noise goes beyond it in one point of
-/// 16,000, and on the development shapes the limit costs nothing.
-constexpr double kFarthestMove = 4;
 
 /// The measured noise in a few figures. O(n).
 NoiseSummary summary_of(const rfs_mesh::NoiseField& noise);

@@ -6,23 +6,24 @@
 #include <Eigen/Core>
 
 #include "base/parallel.h"
+#include "rfs_mesh/levels.h"
 
 namespace rfsmooth::smoothing {
 
 namespace {
+
+using rfs_mesh::kNoiseReach;  // residuals beyond belong to strays
 
 // From the development shapes at 10,000 and 50,000 points, noise of 1 to 3 %, also along the ray and with
 // strays: where walls are hidden (rotor) the evidence is 8.4 to 180, elsewhere at most 4.2.
 constexpr double kEvidence = 7;              // nats
 constexpr float kLouder = 1.3F;              // v / c from which a place counts
 constexpr float kLoudest = 4;                // v: beyond, one sees two sheets
-constexpr double kLeastSheetShare = 0.05;    // of the cloud
 constexpr double kMostSheetShare = 0.75;     // more is another kind of noise; rotor's walls are at most 0.62
 constexpr float kMostOwn = 0.25F;            // points that were hardly smoothed say nothing
 constexpr double kPrior = 0.15;              // standard deviation of ln c
 constexpr int kSheetRounds = 4, kAgain = 4;  // local means in all 16, over some 500 points
 constexpr float kNone = 1e9F;                // in lanes without a point: its values count as too large
-constexpr double kFar = 4;                   // sigma: residuals beyond belong to strays
 constexpr double kSharper = 4;               // than the posterior mean, where
 constexpr double kSharpFrom = 0.5;           // d^2 / c is above this (hidden_sheets.h)
 
@@ -102,7 +103,7 @@ HiddenSheets split_hidden_sheets(const HeightField& field, double sigma, std::ve
   const std::size_t n = field.size();
   std::vector<float> residual(n), v(n);
   for_each_index(context, n, [&](std::size_t i) {
-    residual[i] = float(std::clamp((field.height(i) - double(height[i])) / sigma, -kFar, kFar));
+    residual[i] = float(std::clamp((field.height(i) - double(height[i])) / sigma, -kNoiseReach, kNoiseReach));
     v[i] = residual[i] * residual[i] + 2 * own[i];
   });
   // A mean over few points follows its own points and makes any noise look like two sheets: where it does not

@@ -41,6 +41,9 @@
 
 namespace rfsmooth::smoothing {
 
+/// Of the cloud: walls that take less say nothing of it, here as in thin_walls.h.
+constexpr double kLeastSheetShare = 0.05;
+
 /// What was found.
 struct HiddenSheets : Statistics::Sheets {
   std::size_t split = 0;  ///< points put onto one of two sheets

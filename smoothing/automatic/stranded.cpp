@@ -10,17 +10,16 @@
 #include <Eigen/Eigenvalues>
 
 #include "base/parallel.h"
+#include "rfs_mesh/levels.h"
 #include "rfs_mesh/search/neighbors.h"
+#include "smoothing/automatic/patches/height_field.h"
 
 namespace rfsmooth::smoothing {
 
 namespace {
 
-constexpr std::size_t kTenth = 9;  // the neighbours whose distances
-constexpr std::size_t kLast = 31;  // measure density
+constexpr std::size_t kTenth = 9;  // the neighbour whose distance measures density, as does that of the last
 constexpr float kThin = 1.7F;      // times the usual: 1.4 takes points at edges, 2 leaves small islands
-constexpr int kOfPlane = 24;       // points of the plane
-constexpr std::size_t kTooFewPoints = 100;  // points: below, nothing is usual
 constexpr int kStrandedRounds = 2;
 
 using rfs_mesh::Neighbor;
@@ -88,7 +87,7 @@ std::vector<Index> find_stranded(const Mesh& mesh, const Positions& guide, const
   std::vector<Distances> distance(n);
   for_each_index(context, n, [&](std::size_t i) {
     for (std::size_t r = 0; r < 2; ++r)
-      distance[i][r] = float((guide[near[i][r == 0 ? kTenth : kLast]] - guide[i]).norm());
+      distance[i][r] = float((guide[near[i][r == 0 ? kTenth : near[i].size() - 1]] - guide[i]).norm());
   });
   for_each_index(context, n, [&](std::size_t i) {
     // Above so many times the lower quartile: that many are below this.
@@ -96,7 +95,7 @@ std::vector<Index> find_stranded(const Mesh& mesh, const Positions& guide, const
     std::array<std::size_t, 2> below = {};
     for (const Index j : near[i])
       for (std::size_t r = 0; r < 2; ++r) below[r] += std::size_t(distance[j][r] < usual[r]);
-    if (std::max(below[0], below[1]) > (kLast + 1) / 4) stranded[i] = 1;
+    if (std::max(below[0], below[1]) > near[i].size() / 4) stranded[i] = 1;
   });
   std::vector<Index> found;
   for (std::size_t i = 0; i < n; ++i)
@@ -107,7 +106,7 @@ std::vector<Index> find_stranded(const Mesh& mesh, const Positions& guide, const
 /// p projected onto the plane through the points nearest to `at`.
 Eigen::Vector3d project(const MovingGuide& surface, const Positions& guide, const Eigen::Vector3d& at,
                         const Eigen::Vector3d& p, MovingGuide::Search& search) {
-  const std::vector<Neighbor>& near = surface.nearest(at, kOfPlane, search);
+  const std::vector<Neighbor>& near = surface.nearest(at, rfs_mesh::kNeighbourhood, search);
   const double square = 1.05 * near.back().squared_distance;
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
   double weights = 0;
@@ -174,14 +173,14 @@ std::vector<char> beside_moved(const MovingGuide& surface, const NeighborTable& 
 
 Landed land_stranded(const Mesh& mesh, double most, Positions& guide, const Context& context) {
   MovingGuide surface(guide, context);
-  NeighborTable near = surface.before().nearest(int(kLast) + 1, context);
-  if (guide.size() < kTooFewPoints) return {0, std::move(near), surface.release_tree()};
+  NeighborTable near = surface.before().nearest(HeightField::kNear, context);
+  if (near.k < HeightField::kNear) return {0, std::move(near), surface.release_tree()};
   std::vector<Index> moved;
   std::size_t first = 0;
   for (int round = 0; round < kStrandedRounds; ++round) {
     const std::vector<Index> stranded = find_stranded(mesh, guide, near, context);
     if (round == 0) first = stranded.size();
-    if (stranded.empty() || guide.size() - stranded.size() < kTooFewPoints) break;
+    if (stranded.empty() || guide.size() - stranded.size() <= std::size_t(HeightField::kNear)) break;
     // None of them is part of the surface that they are put onto, wherever it was put before.
     std::vector<Index> others;
     std::set_difference(moved.begin(), moved.end(), stranded.begin(), stranded.end(),

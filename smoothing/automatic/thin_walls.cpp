@@ -9,8 +9,10 @@
 #include <Eigen/Geometry>
 
 #include "base/parallel.h"
+#include "rfs_mesh/levels.h"
 #include "rfs_mesh/search/wide_neighbors.h"
 #include "rfs_mesh/sheets/sheet_pair.h"
+#include "smoothing/automatic/hidden_sheets.h"
 #include "smoothing/automatic/patches/thinning.h"
 
 namespace rfsmooth::smoothing {
@@ -22,8 +24,6 @@ using Eigen::Vector3d;
 constexpr std::array<std::size_t, 3> kWider = {1, 2, 4};  // times the members of the patches that saw it
 constexpr double kFlat = 0.7;            // cosine from which a normal counts for the patch's axis
 constexpr double kPlaced = 0.3;          // and from which a point is put onto a sheet: no points of rims
-constexpr double kStray = 4;             // sigma
-constexpr double kLeastShare = 0.05;     // of the cloud: less says nothing, as for hidden_sheets.h
 constexpr double kLeastCovered = 10;     // sum of weights, in points
 constexpr std::size_t kFirstLook = 512;  // members that nine unknowns are well known from
 
@@ -121,7 +121,9 @@ class Walls {
       const rfs_mesh::SheetPoint& p = points[k];
       const Index i = near.index()[k];
       const double height = sheets.nearer(p), inside = 1 - double(near.squared()[k]) / square;
-      if (std::abs(p.height - height) > kStray || std::abs(normal.dot(field_.normal(i))) < kPlaced) continue;
+      if (std::abs(p.height - height) > rfs_mesh::kNoiseReach ||
+          std::abs(normal.dot(field_.normal(i))) < kPlaced)
+        continue;
       // The more points, the better is what they say.
       moves.push_back(
           {i, float(inside * inside * weights), (sigma * (height - p.estimate) * normal).cast<float>()});
@@ -143,7 +145,7 @@ ThinWalls part_thin_walls(const HeightField& field, const Positions& data, const
     throw std::invalid_argument("part_thin_walls: the field and what belongs to its points differ in number");
   ThinWalls done;
   const double most = double(seeds.size()) * double(kWider.back() * members);  // points they can reach
-  const bool enough = parted ? *parted : most >= kLeastShare * double(field.size());
+  const bool enough = parted ? *parted : most >= kLeastSheetShare * double(field.size());
   if (!parted) parted = false;
   if (seeds.empty() || !enough) return done;
   const bool known = *parted;
@@ -158,7 +160,7 @@ ThinWalls part_thin_walls(const HeightField& field, const Positions& data, const
   }
   const auto covered = [](const Mean& mean) { return mean.weight >= kLeastCovered; };
   const auto points = std::size_t(std::count_if(means.begin(), means.end(), covered));
-  if (!known && double(points) < kLeastShare * double(means.size())) return done;
+  if (!known && double(points) < kLeastSheetShare * double(means.size())) return done;
   parted = true;
   done.points = points;
   for_each_index(context, means.size(), [&](std::size_t i) {

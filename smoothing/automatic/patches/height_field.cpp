@@ -13,7 +13,6 @@ namespace rfsmooth::smoothing {
 
 namespace {
 
-constexpr std::size_t kPlane = 24;  // neighbours of the plane that gives the normal
 constexpr std::size_t kLinked = 8;  // neighbours with which a normal agrees on a side; 6 leave islands
 constexpr float kByteUnit = 255, kByteRounded = 0.5F;
 
@@ -27,8 +26,8 @@ HeightField::HeightField(Positions guide, rfs_mesh::KdTree tree, rfs_mesh::Neigh
   local_.resize(size());
   for_each_index(context, size(), [&](std::size_t i) {
     const auto row = near_[i];
-    const Eigen::Vector3d normal =
-        rfs_mesh::plane_normal(guide_, i, {row.begin(), row.begin() + std::min(row.size(), kPlane)});
+    const Eigen::Vector3d normal = rfs_mesh::plane_normal(
+        guide_, i, {row.begin(), row.begin() + std::min(row.size(), rfs_mesh::kNeighbourhood)});
     local_[i].normal = normal.allFinite() ? Eigen::Vector3f(normal.cast<float>()) : Eigen::Vector3f::UnitZ();
   });
   orient(context);

@@ -16,6 +16,7 @@
 #include <rfsmooth/context.h>
 
 #include "base/raw_array.h"
+#include "rfs_mesh/levels.h"
 #include "rfs_mesh/search/neighbors.h"
 
 namespace rfsmooth::smoothing {
@@ -73,10 +74,9 @@ class HeightField {
   RawArray<std::uint8_t> near_weight_;  ///< of near_, in 1/255: 1 - d^2/r^2; 0 on another sheet
 };
 
-/// cos^2 of the angle between two normals from its cosine; 0 beyond 60 degrees: another sheet, or round an
-/// edge.
+/// cos^2 of the angle between two normals from its cosine; 0 on another sheet.
 inline float same_sheet(float cosine) {
-  return cosine < 0.5F ? 0 : cosine * cosine;
+  return cosine < float(rfs_mesh::kSameSheet) ? 0 : cosine * cosine;
 }
 
 }  // namespace rfsmooth::smoothing

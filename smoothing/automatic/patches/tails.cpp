@@ -5,15 +5,16 @@
 #include <cmath>
 #include <cstddef>
 
+#include "rfs_mesh/levels.h"
+
 namespace rfsmooth::smoothing {
 
 namespace {
 
-constexpr double kBeyondTails = 4;  // s: 6e-5 of a normal distribution lie farther
-constexpr double kLeastFar =
-    0.003;  // share of them; white noise on the development shapes leaves at most 0.001
-constexpr double kFarthestTail =
-    12;  // s: what lies beyond is a stray and does not say how wide the tails are
+// Share of the points beyond what noise reaches; white noise on the development shapes leaves at most 0.001.
+constexpr double kLeastFar = 0.003;
+// s: what lies beyond is a stray and does not say how wide the tails are.
+constexpr double kFarthestTail = 12;
 constexpr double kMostInTails = 0.35;  // more is noise that differs over the cloud
 constexpr double kTwice = 2.1;         // least `times`: less is a scale that varies a little
 constexpr int kTailRounds = 50;
@@ -32,7 +33,7 @@ double scale(const std::vector<float>& values) {
 
 double share_of_far(const std::vector<float>& values, double unit) {
   const auto far = std::count_if(values.begin(), values.end(), [&](float r) {
-    return double(std::abs(r)) > kBeyondTails * unit && double(std::abs(r)) < kFarthestTail * unit;
+    return double(std::abs(r)) > rfs_mesh::kNoiseReach * unit && double(std::abs(r)) < kFarthestTail * unit;
   });
   const auto known = std::count_if(values.begin(), values.end(), [](float r) { return !std::isnan(r); });
   return known > 0 ? double(far) / double(known) : 0;

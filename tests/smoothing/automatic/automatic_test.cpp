@@ -126,13 +126,13 @@ TEST(Automatic, NoPointMovesFartherThanItsShareOfTheNoiseAroundIt) {
     Mesh smooth = mesh;
     const auto report = smooth_automatically(smooth, options, {});
     ASSERT_TRUE(report.has_value());
-    const double most = kFarthestMove * std::max(1.0, strength) * report->tail_times;
+    const double most = rfs_mesh::kNoiseReach * std::max(1.0, strength) * report->tail_times;
     double largest = 0;
     for (std::size_t i = 0; i < mesh.positions.size(); ++i)
       largest = std::max(largest, (smooth.positions[i] - mesh.positions[i]).norm() / field.local[i]);
     EXPECT_LE(largest, most * (1 + 1e-9)) << strength;
     if (strength == 1) {
-      EXPECT_GT(largest, 0.99 * kFarthestMove) << "nothing was there to limit";
+      EXPECT_GT(largest, 0.99 * rfs_mesh::kNoiseReach) << "nothing was there to limit";
     }
   }
 }

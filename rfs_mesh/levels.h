@@ -1,0 +1,26 @@
+/// What several stages mean by "around a point", "the same sheet", "noise" and "a whole cloud": one number
+/// each.
+#pragma once
+
+#include <cstddef>
+
+namespace rfsmooth::rfs_mesh {
+
+/// Neighbours that show what is around a point, as its plane, its normal or its side: about two and a half
+/// rings of a surface mesh.
+constexpr std::size_t kNeighbourhood = 24;
+
+/// Cosine of the angle between two normals, 60 degrees, beyond which they are of different sheets, or of two
+/// sides of an edge.
+constexpr double kSameSheet = 0.5;
+
+/// Standard deviations that noise carries a point: a normal variable goes beyond in one case of 16,000.
+constexpr double kNoiseReach = 4;
+
+/// Points that stand for all of a cloud in a mean or a median over it, which they give to half a per cent.
+constexpr std::size_t kSampleOfCloud = 50000;
+
+/// Places of a cloud at which something costly is measured for a median.
+constexpr std::size_t kPlacesOfCloud = 1000;
+
+}  // namespace rfsmooth::rfs_mesh
