@@ -10,6 +10,9 @@ namespace rfsmooth::rfs_mesh {
 /// rings of a surface mesh.
 constexpr std::size_t kNeighbourhood = 24;
 
+/// Points that a quadric is fitted to at least: two more than its six coefficients.
+constexpr std::size_t kFewestOfQuadric = 8;
+
 /// Cosine of the angle between two normals, 60 degrees, beyond which they are of different sheets, or of two
 /// sides of an edge.
 constexpr double kSameSheet = 0.5;

@@ -11,6 +11,7 @@
 #include "base/avx2.h"
 #include "base/median.h"
 #include "rfs_mesh/fit/quadric_moments.h"
+#include "rfs_mesh/levels.h"
 
 namespace rfsmooth::rfs_mesh {
 
@@ -21,9 +22,8 @@ using Eigen::Vector3d;
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
-constexpr std::size_t kSmallestQuadric = 8;  ///< two more than its six coefficients
-constexpr double kTukey = 4.685;             ///< biweight cut-off in sigmas: 95 % efficient on Gaussian noise
-constexpr double kRidge = 1e-9;  ///< relative; keeps collinear and gridded neighbourhoods solvable
+constexpr double kTukey = 4.685;  ///< biweight cut-off in sigmas: 95 % efficient on Gaussian noise
+constexpr double kRidge = 1e-9;   ///< relative; keeps collinear and gridded neighbourhoods solvable
 
 double square(double x) {
   return x * x;
@@ -235,7 +235,7 @@ Quadric fit_quadric(const Positions& points, const Vector3d& p, const Index* nei
 
   turn_into(q, w);
   std::copy_n(w.distance.begin(), w.padded, w.weight.begin());
-  const int terms = count >= kSmallestQuadric ? 6 : 3;
+  const int terms = count >= kFewestOfQuadric ? 6 : 3;
   q.c = fit(w, terms);
   for (int round = 0; terms == 6 && round < robust_rounds && reweight(w, q); ++round) q.c = fit(w, terms);
   if (!q.c.allFinite()) {

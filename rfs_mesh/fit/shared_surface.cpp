@@ -7,6 +7,7 @@
 #include "base/parallel.h"
 #include "rfs_mesh/fit/local_surface.h"
 #include "rfs_mesh/fit/quadric.h"
+#include "rfs_mesh/fit/scatter.h"
 #include "rfs_mesh/search/cells.h"
 #include "rfs_mesh/search/wide_neighbors.h"
 
@@ -26,8 +27,6 @@ constexpr std::size_t kFewestInGroup = 8;
 /// lie at its sides.
 constexpr double kCellEdge = 3;
 constexpr double kMisfit = 1.4;  ///< residual over noise: well above what that of pure noise scatters
-/// A quadric has nothing to say about points farther off it than this many residuals: another sheet.
-constexpr double kFarthestOff = 3;
 /// A quadric's tangent plane is surest at its centre, and the quadrics of a point lie on all sides of it: its
 /// normal is the mean of theirs a third of the way. On spheres with noise of 0.5 to 2 spacings that is nearer
 /// the truth than a quadric of the point's own, and than the whole way.
@@ -133,7 +132,7 @@ class SharedQuadrics {
       if (inside <= 0) continue;
       const double u = q.t1.dot(d), v = q.t2.dot(d), above = q.n.dot(d) - q.height(u, v);
       const double scatter = std::max(q.residual, sigma_), off = squared(above * q.radius / scatter);
-      if (off > squared(kFarthestOff)) continue;
+      if (off > squared(kScatterWindow)) continue;  // another sheet
       const double trust = inside * squared(squared(sigma_ / scatter)) * std::exp(-0.5 * off);
       const double weight = inside * inside * trust;
       // The normal over (u, v) is (n - a t1 - b t2) / sqrt(1 + a^2 + b^2), and so is the turned one.

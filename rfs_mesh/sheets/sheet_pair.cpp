@@ -18,13 +18,12 @@ using Matrix9 = Eigen::Matrix<double, 9, 9>;
 constexpr int kPairRounds = 12;
 constexpr double kRidgeOfPair = 1e-6;    // of the normal equations, beside the weights
 constexpr double kLeastWeights = 30;     // nine unknowns, and
-constexpr double kUnknowns = 13;         // what they take of the variance: the weights are not all one
+constexpr double kUnknowns = 9;          // of the two sheets
 constexpr double kLeastVariance = 0.35;  // s^2
 // Chosen on rotor, armadillo, anchor_dense and plate at 10,000 and 50,000 points, noise of 1 to 3 %, and so
 // that the depths of real sensors, which come in steps, say nothing: patches on rotor's walls at 1 % have
 // nats of 3 to 40, known of 0.65 to 1, less than 0.12 of place and 1.3 to 2 between a sheet and the middle;
 // those that did harm elsewhere 2.2 to 3; sensors' steps known of 0.45 to 0.85 and 0.05 to 0.45 of place.
-constexpr double kLeastSingle = 1.4;  // variance about one quadric below which there is nothing to part
 constexpr double kNats = 3;
 constexpr double kMostLeftByPair = 1.25;
 constexpr double kMostOfPlace = 0.12;  // of the variance of the sides, explained by the place
@@ -85,8 +84,8 @@ SheetPair::SheetPair(std::vector<SheetPoint>& points) {
   for (const SheetPoint& p : points) weights_ += p.weight;
   if (weights_ < kLeastWeights) return;
   fit_one(points);
-  possible_ = kByChance * single_ > kLeastSingle;
-  if (!(single_ > kLeastSingle)) return;
+  possible_ = kByChance * single_ > 1;
+  if (!(single_ > 1)) return;  // no more than noise: nothing to part
   fit_two(points);
   if (middle_.allFinite() && apart_.allFinite()) judge(points);
 }

@@ -307,7 +307,6 @@ std::vector<Scale> try_scales(const HeightField& field, const rfs_mesh::NoiseFie
 
 Pass smooth_heights(const HeightField& field, const rfs_mesh::NoiseField& noise, double spacing, bool learned,
                     Statistics::Pass& whole, const Context& context) {
-  constexpr std::size_t kTailMembers = 64;
   std::vector<float> first;
   std::vector<Scale> scales = try_scales(field, noise, spacing, whole, first, context);
   Pass pass;
@@ -316,7 +315,7 @@ Pass smooth_heights(const HeightField& field, const rfs_mesh::NoiseField& noise,
   pass.several = seeing.several;
   for (const Scale& scale : scales) {
     pass.wide = scale.prediction.height;
-    if (scale.members >= kTailMembers && &scale != &scales.front()) break;
+    if (scale.members >= kOwnMean && &scale != &scales.front()) break;
   }
   mix(field, std::move(first), std::move(scales), noise.shared, pass.height, pass.own,
       learned ? &pass.told : nullptr, whole.shares, context);

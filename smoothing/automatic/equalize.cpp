@@ -32,10 +32,7 @@ constexpr double kGain = 0.4;         // step / (sigma/d)^2, in R f
 constexpr double kStep = 0.3;         // the longest
 constexpr int kSteps = 6;
 constexpr double kMostMove = 0.5 * (1 - 1e-6);  // of the local distance; single precision rounds
-constexpr double kMostSigmas = 0.7;
-constexpr float kSameNormal = 0.85F;          // cosine: a neighbour beyond it means an edge
-constexpr float kEdgeNormal = 0.6F;           // cosine: the same, so near that the point stays
-constexpr std::size_t kFewestOfQuadric = 10;  // points of the quadric, twice its unknowns
+constexpr float kSameNormal = 0.85F;            // cosine: a neighbour beyond it means an edge
 constexpr float kMostRise = 0.3F;  // of the way along the surface: a quadric is not to be trusted beyond
 constexpr double kShare = 0.75;    // of the tangential offset that is given back at little noise; the rims of
 constexpr double kShareUpTo = 1.6;  // open sheets want it up to this many sigma per spacing
@@ -206,7 +203,7 @@ Frame open_frame(const Positions& points, const std::vector<Eigen::Vector3f>& no
   Vector5 quadric = SmallCholesky<5>(a).solve(sums.right.tail<5>());
   quadric.tail<3>() /= reach;
   f.quadric = quadric.cast<float>();
-  f.movable = same >= kFewestOfQuadric && f.quadric.allFinite();
+  f.movable = same >= rfs_mesh::kFewestOfQuadric && f.quadric.allFinite();
   return f;
 }
 
@@ -222,7 +219,7 @@ Frame make_frame(const Positions& points, const std::vector<Eigen::Vector3f>& no
   float least = kSameNormal;
   for (std::size_t k = 0; k < kPushers; ++k) {
     const float cosine = around.cosine[k];
-    if (cosine < kEdgeNormal) f.movable = false;
+    if (cosine < float(rfs_mesh::kSameSheet)) f.movable = false;  // on the edge
     if (cosine >= least) continue;
     least = cosine;
     const Eigen::Vector3f edge = f.n.cross(normals[near[k]]);
@@ -300,8 +297,7 @@ Equalized equalize(Positions& points, const Positions& before, const std::vector
       if (f.slides) force = f.along * f.along.dot(force);
       const double share = sigma[i] / double(f.distance);
       moved[i] += float(std::min(kStep, kGain * share * share)) * reach * force;
-      const auto limit =
-          float(std::min(kMostMove * std::min(double(f.distance), spacing), kMostSigmas * sigma[i]));
+      const auto limit = float(kMostMove * std::min(double(f.distance), spacing));
       if (const float length = moved[i].norm(); length > limit) moved[i] *= limit / length;
       next[i] = f.slide(points[i], start[i] + moved[i]);
     });

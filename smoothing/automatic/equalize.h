@@ -45,11 +45,10 @@ void slide_back(Positions& points, const Positions& before, double share, rfs_me
 
 /// Moves `points` (n x 3, near a surface), which noise with standard deviation `sigma` (n, world units) had
 /// moved; `before` (n x 3): where they were then. By pushing no point moves farther along the surface than
-/// half the local distance between points, half of `spacing` (world units), or 0.7 sigma: noise has hardly
-/// carried it farther. `near`: n x 24 or more (up to 256), neighbours of every point where it was about as
-/// near to them as now, say on the guide: the 24 nearest are picked among those (clouds of 24 points or fewer
-/// stay as they are). O(n), parallel, the same bits for any number of threads. \throw std::invalid_argument
-/// if there are fewer.
+/// half the local distance between points or half of `spacing` (world units). `near`: n x 24 or more (up to
+/// 256), neighbours of every point where it was about as near to them as now, say on the guide: the 24
+/// nearest are picked among those (clouds of 24 points or fewer stay as they are). O(n), parallel, the same
+/// bits for any number of threads. \throw std::invalid_argument if there are fewer.
 Equalized equalize(Positions& points, const Positions& before, const std::vector<double>& sigma,
                    double spacing, rfs_mesh::NeighborTable near, const Context& context);
 

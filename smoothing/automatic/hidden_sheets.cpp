@@ -16,16 +16,16 @@ using rfs_mesh::kNoiseReach;  // residuals beyond belong to strays
 
 // From the development shapes at 10,000 and 50,000 points, noise of 1 to 3 %, also along the ray and with
 // strays: where walls are hidden (rotor) the evidence is 8.4 to 180, elsewhere at most 4.2.
-constexpr double kEvidence = 7;              // nats
-constexpr float kLouder = 1.3F;              // v / c from which a place counts
-constexpr float kLoudest = 4;                // v: beyond, one sees two sheets
-constexpr double kMostSheetShare = 0.75;     // more is another kind of noise; rotor's walls are at most 0.62
-constexpr float kMostOwn = 0.25F;            // points that were hardly smoothed say nothing
-constexpr double kPrior = 0.15;              // standard deviation of ln c
-constexpr int kSheetRounds = 4, kAgain = 4;  // local means in all 16, over some 500 points
-constexpr float kNone = 1e9F;                // in lanes without a point: its values count as too large
-constexpr double kSharper = 4;               // than the posterior mean, where
-constexpr double kSharpFrom = 0.5;           // d^2 / c is above this (hidden_sheets.h)
+constexpr double kEvidence = 7;           // nats
+constexpr float kLouder = 1.3F;           // v / c from which a place counts
+constexpr float kLoudest = 4;             // v: beyond, one sees two sheets
+constexpr double kMostSheetShare = 0.75;  // more is another kind of noise; rotor's walls are at most 0.62
+constexpr float kMostOwn = 0.25F;         // points that were hardly smoothed say nothing
+constexpr double kPrior = 0.15;           // standard deviation of ln c
+constexpr int kSheetRounds = 4;           // of as many local means in all 16, over some 500 points
+constexpr float kNone = 1e9F;             // in lanes without a point: its values count as too large
+constexpr double kSharper = 4;            // than the posterior mean, where
+constexpr double kSharpFrom = 0.5;        // d^2 / c is above this (hidden_sheets.h)
 
 /// So many points are weighed side by side.
 using Lanes = Eigen::Array<float, 16, 1>;
@@ -109,7 +109,7 @@ HiddenSheets split_hidden_sheets(const HeightField& field, double sigma, std::ve
   // A mean over few points follows its own points and makes any noise look like two sheets: where it does not
   // even then, one over more would not either.
   for (int round = 0; round < kSheetRounds; ++round) {
-    for (int again = 0; again < kAgain; ++again) v = field.local_mean(v, context);
+    for (int again = 0; again < kSheetRounds; ++again) v = field.local_mean(v, context);
     if (known) continue;
     found = best_evidence(residual, own, v, whole, context);
     if (!found.there()) break;

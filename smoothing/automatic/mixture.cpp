@@ -14,9 +14,8 @@ namespace rfsmooth::smoothing {
 
 namespace {
 
-constexpr int kMostCandidates = 16;     // candidates
-constexpr int kMixtureRounds = 3;       // of expectation maximisation: a fourth changes the third digit
-constexpr double kLeastOfScale = 1e-4;  // a scale that nearly no point wants may still be right for a few
+constexpr int kMostCandidates = 16;  // candidates
+constexpr int kMixtureRounds = 3;    // of expectation maximisation: a fourth changes the third digit
 
 using CandidateWeights = Eigen::Array<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMostCandidates, 1>;
 
@@ -60,7 +59,7 @@ void Mixture::average(std::vector<float>& height, std::vector<float>& own, std::
   for (int round = 0; !known && round < kMixtureRounds; ++round) {
     const CandidateWeights sum = sum_over(context, n, CandidateWeights(CandidateWeights::Zero(rows)),
                                           [&](std::size_t i) { return weights(i, shares); });
-    shares = (sum / double(n)).max(kLeastOfScale);
+    shares = sum.max(1) / double(n);  // a scale that no point wants may still be right for one
   }
   found.assign(shares.data(), shares.data() + rows);
   height.resize(n);

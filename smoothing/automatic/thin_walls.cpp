@@ -22,10 +22,8 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::array<std::size_t, 3> kWider = {1, 2, 4};  // times the members of the patches that saw it
-constexpr double kFlat = 0.7;            // cosine from which a normal counts for the patch's axis
-constexpr double kPlaced = 0.3;          // and from which a point is put onto a sheet: no points of rims
-constexpr double kLeastCovered = 10;     // sum of weights, in points
-constexpr std::size_t kFirstLook = 512;  // members that nine unknowns are well known from
+constexpr double kLeastCovered = 10;                      // sum of weights, in points
+constexpr std::size_t kFirstLook = 512;                   // members that nine unknowns are well known from
 
 /// What a patch says of a member.
 struct Move {
@@ -69,7 +67,7 @@ class Walls {
       Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
       for (std::size_t k = 0; k < members_; k += stride) {
         const Vector3d normal = field_.normal(near.index()[k]);
-        if (again > 0 && std::abs(normal.dot(axis)) < kFlat) continue;
+        if (again > 0 && std::abs(normal.dot(axis)) < rfs_mesh::kSameSheet) continue;
         sum += std::pow(1 - double(near.squared()[k]) / square, 2) * normal * normal.transpose();
       }
       axis = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(sum).eigenvectors().col(2);
@@ -122,8 +120,8 @@ class Walls {
       const Index i = near.index()[k];
       const double height = sheets.nearer(p), inside = 1 - double(near.squared()[k]) / square;
       if (std::abs(p.height - height) > rfs_mesh::kNoiseReach ||
-          std::abs(normal.dot(field_.normal(i))) < kPlaced)
-        continue;
+          std::abs(normal.dot(field_.normal(i))) < rfs_mesh::kSameSheet)
+        continue;  // no points of rims
       // The more points, the better is what they say.
       moves.push_back(
           {i, float(inside * inside * weights), (sigma * (height - p.estimate) * normal).cast<float>()});

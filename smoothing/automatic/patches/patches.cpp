@@ -24,8 +24,6 @@ constexpr std::size_t kAxis = 12;                      // nearest points whose n
 constexpr float kWeightUnit = 65535, kRounded = 0.5F;  // of the weights kept
 constexpr float kCovered = 0.2F * kWeightUnit;         // least weight of the best patch over a point
 constexpr std::size_t kPowers[6][2] = {{0, 0}, {1, 0}, {0, 1}, {2, 0}, {1, 1}, {0, 2}};  // of u and v
-constexpr float kOpposite = 0.7F;      // cosine of a normal of another sheet that is parallel
-constexpr float kFacing = 0.1F;        // share of such members, and
 constexpr double kRough = 0.1;         // variance beyond the noise's, sigma^2: there is more than one sheet
 constexpr std::size_t kTogether = 64;  // patches fitted in a row: each tells the next how far to look
 constexpr std::size_t kRange = 16384;  // points whose lists are made together
@@ -147,8 +145,6 @@ Patches::Members Patches::gather(std::size_t s, Workspace& work) {
     const float cosine = along.dot(here.normal);
     const float inside = 1 - near.squared()[k] / square;
     const float w = same_sheet(cosine) * inside * inside;
-    all.parallel += std::abs(cosine) > kOpposite ? inside * inside : 0;
-    all.opposite += cosine < -kOpposite ? inside * inside : 0;
     const Eigen::Vector3f r(near.x()[k], near.y()[k], near.z()[k]);
     work.u[k] = u.dot(r);
     work.v[k] = v.dot(r);
@@ -200,7 +196,7 @@ void Patches::fit_one(std::size_t s, double sigma, Workspace& work) {
   const double leverage = inverse.cwiseProduct(squared).sum();
   const double points = all.sum * all.sum / all.squares, variance = 6 / points;
   const double excess = (residuals - (all.sum - leverage)) / all.sum - std::sqrt(2 / points);
-  patch.several = all.opposite > kFacing * all.parallel || excess > kRough;
+  patch.several = excess > kRough;
   patch.weight = float(variance / (variance + std::max(0.0, excess)));
 }
 

@@ -72,8 +72,8 @@ class Patches {
 
   Prediction predict(const Context& context) const;
 
-  /// Seeds, ascending, of the patches that see more than one sheet: members with the opposite normal, or
-  /// residuals that vary by more than the noise.
+  /// Seeds, ascending, of the patches that see more than one sheet: residuals that vary by more than the
+  /// noise.
   std::vector<Index> with_several_sheets() const;
 
   /// Averages over patches of the patches' averages: a mean over about twice `members` points. O(n).
@@ -86,9 +86,8 @@ class Patches {
   void fit(std::size_t first, std::size_t last, const std::vector<double>& sigma, const Context& context);
   /// Of the members of a patch: its radius and sums of their weights.
   struct Members {
-    double radius = 0;                 ///< world units
-    double sum = 0, squares = 0;       ///< of the weights
-    float parallel = 0, opposite = 0;  ///< of those whose normals are parallel, and opposite, to the axis
+    double radius = 0;            ///< world units
+    double sum = 0, squares = 0;  ///< of the weights
   };
   void fit_one(std::size_t s, double sigma, Workspace& work);
   Eigen::Vector3d axis_at(Index seed) const;       ///< the mean normal about it, unit
