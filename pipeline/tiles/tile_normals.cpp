@@ -18,8 +18,6 @@ namespace {
 using Eigen::Vector3d;
 using nlohmann::ordered_json;
 
-constexpr double kFlatPiece = 0.01;  // volume / (points x extent) below which there is no outside
-
 /// Sums over the points p of a piece, around the middle of the cloud's box, and their normals n.
 struct Piece {
   Vector3d at = Vector3d::Zero(), normal = Vector3d::Zero();
@@ -44,14 +42,10 @@ struct Piece {
     vote += sign * other.vote;
   }
   bool wrong_side() const {
-    if (vote != 0) return vote < 0;
     const Vector3d centre = at / points;
     const double volume = outward - centre.dot(normal),
                  extent = std::sqrt(std::max(0.0, square / points - centre.squaredNorm()));
-    if (std::abs(volume) > kFlatPiece * extent * points) return volume < 0;
-    for (const int axis : {2, 1, 0})
-      if (normal[axis] != 0) return normal[axis] < 0;
-    return false;
+    return rfs_mesh::on_wrong_side(vote, volume, extent * points, normal);
   }
 };
 

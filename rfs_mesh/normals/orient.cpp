@@ -20,7 +20,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kFlatPart = 0.01;  // volume / (area x extent) below which a part has no outside
 // Chosen on the closed development shapes (tests/bench/normals).
 constexpr int kSteps = 4;            // more follow the noise
 constexpr double kAreaError = 0.15;  // half the share by which areas may be off
@@ -33,12 +32,6 @@ double agreement(const Vector3d& p, const Vector3d& n, const Vector3d& q, const 
   const double square = e.squaredNorm();
   if (!(square > 0)) return n.dot(m);
   return n.dot(m) - 2 * m.dot(e) * n.dot(e) / square;
-}
-
-bool turn_to_positive(const Vector3d& v) {
-  for (const int axis : {2, 1, 0})
-    if (v[axis] != 0) return v[axis] < 0;
-  return false;
 }
 
 class Orienter {
@@ -188,12 +181,7 @@ class Orienter {
       if (regions.of_point[r] != r) continue;
       ++parts_;
       const Sum& sum = sums[r];
-      if (sum.vote != 0)
-        turn[r] = sum.vote < 0 ? 1 : 0;
-      else if (std::abs(sum.volume) > kFlatPart * sum.extent)
-        turn[r] = sum.volume < 0 ? 1 : 0;
-      else
-        turn[r] = turn_to_positive(sum.normal) ? 1 : 0;
+      turn[r] = on_wrong_side(sum.vote, sum.volume, sum.extent, sum.normal) ? 1 : 0;
     }
     for_each_index(context_, n, [&](std::size_t i) {
       if (turn[regions.of_point[i]] != 0) normals[i] = -normals[i];

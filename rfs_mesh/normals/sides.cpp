@@ -143,6 +143,19 @@ class Growth {
 
 }  // namespace
 
+bool turn_to_positive(const Eigen::Vector3d& v) {
+  for (const int axis : {2, 1, 0})
+    if (v[axis] != 0) return v[axis] < 0;
+  return false;
+}
+
+bool on_wrong_side(double vote, double volume, double extent, const Eigen::Vector3d& normals) {
+  constexpr double kFlatPart = 0.01;  // volume / (area x extent) below which a part has no outside
+  if (vote != 0) return vote < 0;
+  if (std::abs(volume) > kFlatPart * extent) return volume < 0;
+  return turn_to_positive(normals);
+}
+
 Regions grow_regions(std::size_t n, std::vector<SideLink> links, const std::vector<double>& votes,
                      const Context& context) {
   Growth growth(n, std::move(links), votes, context);

@@ -19,6 +19,8 @@
 #include <numeric>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include <rfsmooth/context.h>
 
 #include "rfs_mesh/points.h"
@@ -57,6 +59,14 @@ class Sides {
   std::vector<Index> parent_;
   std::vector<char> turned_;
 };
+
+/// Whether the last coordinate of v that is not zero is negative.
+bool turn_to_positive(const Eigen::Vector3d& v);
+
+/// Whether a part of the surface is on the wrong side: by its votes where it has any, else by the volume
+/// within it, which is negative inside out, else, where it is flat, by the sum of its normals.
+/// \param extent the sum over its area of the distances from its middle, times as much as the volume is.
+bool on_wrong_side(double vote, double volume, double extent, const Eigen::Vector3d& normals);
 
 /// How well the sides of two points, or of two regions, agree.
 struct SideLink {

@@ -135,6 +135,16 @@ void find_nearest_but(const KdTree& tree, const Vector3d& q, Skip&& skip, double
 
 constexpr double kNoBound = std::numeric_limits<double>::infinity();
 
+/// The same of n points, and only those that there are.
+template <class Skip>
+void find_up_to(const KdTree& tree, std::size_t n, const Vector3d& q, Skip&& skip, double bound, int k,
+                std::vector<Neighbor>& out) {
+  out.clear();
+  if (k < 1 || n == 0) return;
+  find_nearest_but(tree, q, skip, bound, std::min(std::size_t(k), n), out);
+  while (!out.empty() && out.back().index == kNone) out.pop_back();
+}
+
 /// The k nearest of q except the point `self`.
 void find_nearest(const KdTree& tree, const Vector3d& q, Index self, std::size_t k,
                   std::vector<Neighbor>& out) {
@@ -223,21 +233,14 @@ void SpatialIndex::nearest(const Vector3d& query, int k, std::vector<Neighbor>& 
 
 void SpatialIndex::nearest_staying(const Vector3d& query, int k, const std::vector<char>& gone,
                                    std::vector<Neighbor>& out) const {
-  out.clear();
-  if (k < 1 || points_.empty()) return;
-  find_nearest_but(
-      tree_, query, [&](Index i) { return gone[i] != 0; }, kNoBound, std::min(std::size_t(k), points_.size()),
-      out);
-  while (!out.empty() && out.back().index == kNone) out.pop_back();  // fewer stay
+  find_up_to(
+      tree_, points_.size(), query, [&](Index i) { return gone[i] != 0; }, kNoBound, k, out);
 }
 
 void SpatialIndex::nearest_within(const Vector3d& query, int k, double bound,
                                   std::vector<Neighbor>& out) const {
-  out.clear();
-  if (k < 1 || points_.empty()) return;
-  find_nearest_but(
-      tree_, query, [](Index) { return false; }, bound, std::min(std::size_t(k), points_.size()), out);
-  while (!out.empty() && out.back().index == kNone) out.pop_back();  // fewer are so near
+  find_up_to(
+      tree_, points_.size(), query, [](Index) { return false; }, bound, k, out);
 }
 
 namespace {
