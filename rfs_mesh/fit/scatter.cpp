@@ -7,6 +7,8 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
+#include "base/avx2.h"
+
 namespace rfsmooth::rfs_mesh {
 
 namespace {
@@ -15,6 +17,8 @@ constexpr double kLeastKept = 0.75;  // of the weight; 3 sigma of half the true 
 constexpr double kLeastFlat = 0.5;   // the patch's radius over the ball's, where the window is high
 constexpr double kLine = 0.1;        // breadth: rings have 0.004 to 0.04, surfaces 0.2 and more
 constexpr int kScatterRounds = 3;    // the first without a window
+
+typedef double FourSums __attribute__((vector_size(4 * sizeof(double))));
 
 /// Axes of least to most spread of the points about `place`, nearer ones weighing more. `breadth`: as in
 /// Scatter.
@@ -77,35 +81,50 @@ double ScatterFit::gather(const Positions& points, const Eigen::Vector3d& place,
   return all;
 }
 
-ScatterFit::Sums ScatterFit::sums_within(double window, const Vector6& c, bool first, bool last) const {
-  Sums sums;
+RFSMOOTH_AVX2
+void ScatterFit::sum_within(double window, const Vector6& c, bool first, bool last, Sums& sums) const {
+  const double q[6] = {c[0], c[1], c[2], c[3], c[4], c[5]};
+  // Of the columns of a and b: the first four rows, and of both together the last two.
+  FourSums a[4] = {}, b[4] = {}, ends[6] = {}, right = {}, right_end = {};
   for (std::size_t i = 0; i < local_.size(); ++i) {
     const double u = local_[i].x(), v = local_[i].y(), z = local_[i].z();
     // Before there is a window, height weighs too: a second sheet at the rim of the ball must not pull.
     const double low = 1 - z * z;
     const double w = first ? weight_[i] * (last ? low * low : low) : weight_[i];
-    const Vector6 f = (Vector6() << 1, u, v, u * u, u * v, v * v).finished();
-    if (std::abs(z - f.dot(c)) > window) continue;
+    const double f[6] = {1, u, v, u * u, u * v, v * v};
+    const double height = (q[0] + (f[2] * q[2] + f[4] * q[4])) + (f[1] * q[1] + (f[3] * q[3] + f[5] * q[5]));
+    if (std::abs(z - height) > window) continue;
+    const FourSums start = {f[0], f[1], f[2], f[3]}, end = {f[4], f[5], f[4], f[5]};
     for (int column = 0; column < 6; ++column) {
       const double once = w * f[column], twice = w * w * f[column];
-      for (int row = column; row < 6; ++row) {
-        sums.a(row, column) += once * f[row];
-        sums.b(row, column) += twice * f[row];
+      if (column < 4) {
+        a[column] += once * start;
+        b[column] += twice * start;
       }
+      ends[column] += FourSums{once, once, twice, twice} * end;
     }
-    sums.right += w * z * f;
+    right += w * z * start;
+    right_end += w * z * end;
     sums.heights += w * z * z;
     sums.kept += w;
     sums.squares += w * w;
   }
-  return sums;
+  for (int column = 0; column < 6; ++column)
+    for (int row = column; row < 6; ++row) {
+      sums.a(row, column) = row < 4 ? a[column][row] : ends[column][row - 4];
+      sums.b(row, column) = row < 4 ? b[column][row] : ends[column][row - 2];
+    }
+  for (int row = 0; row < 6; ++row) sums.right[row] = row < 4 ? right[row] : right_end[row - 4];
 }
 
 Scatter ScatterFit::operator()(const SpatialIndex& index, const Eigen::Vector3d& place, std::size_t m,
-                               double sigma) {
+                               double sigma, KeptNeighbors* kept) {
   static const double kInside = variance_inside(kScatterWindow);
   const Positions& points = index.points();
-  index.nearest(place, int(m), near_);
+  if (kept != nullptr)
+    kept->nearest(index, place, m, near_);
+  else
+    index.nearest(place, int(m), near_);
   Scatter s;
   s.foot = place;
   s.radius = std::sqrt(near_.back().squared_distance);
@@ -120,7 +139,8 @@ Scatter ScatterFit::operator()(const SpatialIndex& index, const Eigen::Vector3d&
   Vector6 c = Vector6::Zero();
   double window = std::numeric_limits<double>::infinity();
   for (int round = 0; round < (sigma > 0 ? kScatterRounds : 1); ++round) {
-    Sums sums = sums_within(window, c, round == 0, !(sigma > 0));
+    Sums sums;
+    sum_within(window, c, round == 0, !(sigma > 0), sums);
     s.freedom = 0;
     s.foot = place;
     s.normal = axes.col(0);

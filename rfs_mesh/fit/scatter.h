@@ -19,7 +19,7 @@
 
 #include <Eigen/Core>
 
-#include "rfs_mesh/search/neighbors.h"
+#include "rfs_mesh/search/kept_neighbors.h"
 
 namespace rfsmooth::rfs_mesh {
 
@@ -46,8 +46,10 @@ struct Scatter {
 class ScatterFit {
  public:
   /// Fits the m points nearest to `place`; 1 <= m <= n. \param sigma world units: the window reaches
-  /// kScatterWindow times as far to either side of the quadric; 0: no window. O(log n + m).
-  Scatter operator()(const SpatialIndex& index, const Eigen::Vector3d& place, std::size_t m, double sigma);
+  /// kScatterWindow times as far to either side of the quadric; 0: no window. \param kept of the place, or
+  /// null. O(log n + m).
+  Scatter operator()(const SpatialIndex& index, const Eigen::Vector3d& place, std::size_t m, double sigma,
+                     KeptNeighbors* kept = nullptr);
 
  private:
   using Vector6 = Eigen::Matrix<double, 6, 1>;
@@ -64,8 +66,9 @@ class ScatterFit {
   /// along the axes from most to least spread (no v on a line). Returns the sum of the weights.
   double gather(const Positions& points, const Eigen::Vector3d& place, const Eigen::Matrix3d& axes, double r,
                 double flat, bool line);
-  /// Over the points within the window of the quadric c. \param first, last which of the rounds it is
-  Sums sums_within(double window, const Vector6& c, bool first, bool last) const;
+  /// Over the points within the window of the quadric c. \param first, last which of the rounds it is.
+  /// \param sums zero
+  void sum_within(double window, const Vector6& c, bool first, bool last, Sums& sums) const;
 
   std::vector<Neighbor> near_;
   std::vector<Eigen::Vector3d> local_;  ///< u, v, z; u and v over the patch's radius, z over the ball's

@@ -46,6 +46,7 @@ class Listener {
         at_(at),
         centre_(at),
         group_(at.size()),
+        kept_(at.size(), KeptNeighbors(std::min(cloud.points().size(), 2 * start.m))),
         sigma(at.size(), std::max(start.sigma, start.least)),
         floor(at.size(), 0),
         speaks(at.size(), 0) {
@@ -59,8 +60,8 @@ class Listener {
   void find_floor(const DepthSteps* steps) {
     if (cloud_.points().size() < 2 * kPlateauTo) return;
     const std::vector<double> open(at_.size(), 0);
-    const std::vector<Scatter> few = fits(cloud_, at_, kPlateauFrom, open, context_);
-    const std::vector<Scatter> many = fits(cloud_, at_, kPlateauTo, open, context_);
+    const std::vector<Scatter> many = fits(cloud_, at_, kPlateauTo, open, context_, &kept_);
+    const std::vector<Scatter> few = fits(cloud_, at_, kPlateauFrom, open, context_, &kept_);
     for_each_index(
         context_, at_.size(),
         [&](std::size_t s) {
@@ -83,7 +84,7 @@ class Listener {
   /// Fits m points with each site's own window and renews `sigma`; `move`: the places go to the surface.
   /// Returns the fits.
   std::vector<Scatter> hear(std::size_t m, bool move) {
-    std::vector<Scatter> all = fits(cloud_, centre_, m, sigma, context_);
+    std::vector<Scatter> all = fits(cloud_, centre_, m, sigma, context_, &kept_);
     for_each_index(
         context_, at_.size(),
         [&](std::size_t s) {
@@ -108,6 +109,7 @@ class Listener {
   const Positions& at_;
   Positions centre_;
   std::vector<std::vector<Neighbor>> group_;
+  std::vector<KeptNeighbors> kept_;
 
  public:
   std::vector<double> sigma;  ///< around each site; as before where it does not speak

@@ -73,11 +73,13 @@ Positions pick(const Positions& points, std::size_t count) {
 }
 
 std::vector<Scatter> fits(const SpatialIndex& index, const Positions& places, std::size_t m,
-                          const std::vector<double>& sigma, const Context& context) {
+                          const std::vector<double>& sigma, const Context& context,
+                          std::vector<KeptNeighbors>* kept) {
   std::vector<Scatter> all(places.size());
   for_blocks(context, places.size(), 16, [&](std::size_t begin, std::size_t end) {
     ScatterFit fit;
-    for (std::size_t s = begin; s < end; ++s) all[s] = fit(index, places[s], m, sigma[s]);
+    for (std::size_t s = begin; s < end; ++s)
+      all[s] = fit(index, places[s], m, sigma[s], kept != nullptr ? &(*kept)[s] : nullptr);
   });
   return all;
 }

@@ -47,7 +47,9 @@ double mean_variance(const std::vector<Scatter>& all, double share, double devia
 Positions pick(const Positions& points, std::size_t count);
 
 /// A fit to the m nearest of each place with the window `sigma` of each (scatter.h). Parallel.
+/// \param kept of each place, for places that are looked at again; or null.
 std::vector<Scatter> fits(const SpatialIndex& index, const Positions& places, std::size_t m,
-                          const std::vector<double>& sigma, const Context& context);
+                          const std::vector<double>& sigma, const Context& context,
+                          std::vector<KeptNeighbors>* kept = nullptr);
 
 }  // namespace rfsmooth::rfs_mesh

@@ -231,10 +231,10 @@ void SpatialIndex::nearest(const Vector3d& query, int k, std::vector<Neighbor>& 
   find_nearest(tree_, query, kNone, std::min(std::size_t(k), points_.size()), out);
 }
 
-void SpatialIndex::nearest_staying(const Vector3d& query, int k, const std::vector<char>& gone,
+void SpatialIndex::nearest_staying(const Vector3d& query, int k, const std::vector<char>& gone, double bound,
                                    std::vector<Neighbor>& out) const {
   find_up_to(
-      tree_, points_.size(), query, [&](Index i) { return gone[i] != 0; }, kNoBound, k, out);
+      tree_, points_.size(), query, [&](Index i) { return gone[i] != 0; }, bound, k, out);
 }
 
 void SpatialIndex::nearest_within(const Vector3d& query, int k, double bound,

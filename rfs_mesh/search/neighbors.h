@@ -74,11 +74,12 @@ class SpatialIndex {
   /// the cloud at the query is included. Replaces `out`.
   void nearest(const Eigen::Vector3d& query, int k, std::vector<Neighbor>& out) const;
 
-  /// The same of the points not flagged in `gone` (n); all if fewer are left.
-  void nearest_staying(const Eigen::Vector3d& query, int k, const std::vector<char>& gone,
+  /// The same of the points not flagged in `gone` (n) with |point - query|^2 <= bound; all if there are
+  /// fewer.
+  void nearest_staying(const Eigen::Vector3d& query, int k, const std::vector<char>& gone, double bound,
                        std::vector<Neighbor>& out) const;
 
-  /// The same of the points with |point - query|^2 <= bound; all if there are fewer.
+  /// The same of all points with |point - query|^2 <= bound.
   void nearest_within(const Eigen::Vector3d& query, int k, double bound, std::vector<Neighbor>& out) const;
 
   /// All points with |point - query| <= radius, ascending by (distance, index). Replaces `out`.

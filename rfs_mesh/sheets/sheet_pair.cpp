@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/avx2.h"
 #include "base/small_cholesky.h"
 
 namespace rfsmooth::rfs_mesh {
@@ -14,6 +15,8 @@ using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 using Vector9 = Eigen::Matrix<double, 9, 1>;
 using Matrix9 = Eigen::Matrix<double, 9, 9>;
+
+typedef double FourOfPair __attribute__((vector_size(4 * sizeof(double))));
 
 constexpr int kPairRounds = 12;
 constexpr double kRidgeOfPair = 1e-6;    // of the normal equations, beside the weights
@@ -78,6 +81,25 @@ struct PairColumns {
   }
 };
 
+/// Of w f f^T (lower half) and w z f.
+RFSMOOTH_AVX2
+void sum_quadric_of(const std::vector<SheetPoint>& points, Matrix6& a, Vector6& right) {
+  FourOfPair first[4] = {}, last[3] = {}, of_heights = {}, of_heights_end = {};  // rows 0 to 3, 4 and 5 twice
+  for (const SheetPoint& p : points) {
+    const double f[6] = {1, p.u, p.v, p.u * p.u, p.u * p.v, p.v * p.v};
+    const FourOfPair start = {f[0], f[1], f[2], f[3]}, end = {f[4], f[5], f[4], f[5]};
+    for (int column = 0; column < 4; ++column) first[column] += p.weight * start * f[column];
+    for (int column = 0; column < 6; column += 2)
+      last[column / 2] += p.weight * end * FourOfPair{f[column], f[column], f[column + 1], f[column + 1]};
+    of_heights += p.weight * p.height * start;
+    of_heights_end += p.weight * p.height * end;
+  }
+  for (int column = 0; column < 6; ++column)
+    for (int row = column; row < 6; ++row)
+      a(row, column) = row < 4 ? first[column][row] : last[column / 2][row - 4 + 2 * (column % 2)];
+  for (int row = 0; row < 6; ++row) right[row] = row < 4 ? of_heights[row] : of_heights_end[row - 4];
+}
+
 }  // namespace
 
 SheetPair::SheetPair(std::vector<SheetPoint>& points) {
@@ -91,7 +113,8 @@ SheetPair::SheetPair(std::vector<SheetPoint>& points) {
 }
 
 double SheetPair::middle(const SheetPoint& p) const {
-  return middle_.dot(quadric(p));
+  const Vector6& c = middle_;
+  return (c[0] + (p.v * c[2] + p.u * p.v * c[4])) + (p.u * c[1] + (p.u * p.u * c[3] + p.v * p.v * c[5]));
 }
 
 double SheetPair::apart(const SheetPoint& p) const {
@@ -100,12 +123,8 @@ double SheetPair::apart(const SheetPoint& p) const {
 
 void SheetPair::fit_one(std::vector<SheetPoint>& points) {
   Matrix6 a = Matrix6::Zero();
-  Vector6 right = Vector6::Zero();
-  for (const SheetPoint& p : points) {
-    const Vector6 f = quadric(p);
-    a.noalias() += p.weight * f * f.transpose();
-    right += p.weight * p.height * f;
-  }
+  Vector6 right;
+  sum_quadric_of(points, a, right);
   a.diagonal().array() += kRidgeOfPair * weights_;
   moments_ = a;
   heights_ = right;

@@ -54,14 +54,44 @@ class MovingGuide {
     std::vector<Neighbor> found, moved;
   };
 
-  /// The k nearest of `at`, ascending.
-  const std::vector<Neighbor>& nearest(const Eigen::Vector3d& at, std::size_t k, Search& search) const {
+  /// The k nearest of `at`, ascending. \param bound squared distance that at least k are surely within
+  const std::vector<Neighbor>& nearest(const Eigen::Vector3d& at, std::size_t k, Search& search,
+                                       double bound = std::numeric_limits<double>::infinity()) const {
+    index_.nearest_staying(at, int(k), gone_, bound, search.found);
+    return with_moved(at, k, search, bound);
+  }
+
+  /// The same of point i. \param row its nearest before anything moved, if it stays
+  const std::vector<Neighbor>& nearest_of(Index i, const Positions& guide, Adjacency::Row row, std::size_t k,
+                                          Search& search) const {
     std::vector<Neighbor>& found = search.found;
-    index_.nearest_staying(at, int(k), gone_, found);
+    found.clear();
+    if (stays(i)) {
+      found.push_back({i, 0});
+      for (auto j = row.begin(); j != row.end() && found.size() < k; ++j)
+        if (stays(*j)) found.push_back({*j, rfs_mesh::squared_distance(before_[*j], before_[i])});
+    }
+    if (found.size() < k) return nearest(guide[i], k, search);
+    std::sort(found.begin(), found.end());  // others may be at the same place
+    return with_moved(guide[i], k, search, found.back().squared_distance);
+  }
+
+  /// The squared distance from `at` to the nearest of `some` that stay; infinite if none does.
+  double to_nearest_staying(const Eigen::Vector3d& at, Adjacency::Row some) const {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Index j : some)
+      if (stays(j)) least = std::min(least, rfs_mesh::squared_distance(before_[j], at));
+    return least;
+  }
+
+ private:
+  /// Merges the moved points among the k nearest into those found of the others.
+  const std::vector<Neighbor>& with_moved(const Eigen::Vector3d& at, std::size_t k, Search& search,
+                                          double bound) const {
+    std::vector<Neighbor>& found = search.found;
     if (moved_index_) {
-      const double farthest =
-          found.size() < k ? std::numeric_limits<double>::infinity() : found.back().squared_distance;
-      moved_index_->nearest_within(at, int(k), farthest, search.moved);
+      moved_index_->nearest_within(at, int(k), found.size() < k ? bound : found.back().squared_distance,
+                                   search.moved);
       for (const Neighbor& q : search.moved) found.push_back({moved_[q.index], q.squared_distance});
       std::sort(found.begin(), found.end());
     }
@@ -69,7 +99,6 @@ class MovingGuide {
     return found;
   }
 
- private:
   const Positions before_;
   rfs_mesh::SpatialIndex index_;
   std::vector<char> gone_;
@@ -103,10 +132,8 @@ std::vector<Index> find_stranded(const Mesh& mesh, const Positions& guide, const
   return found;
 }
 
-/// p projected onto the plane through the points nearest to `at`.
-Eigen::Vector3d project(const MovingGuide& surface, const Positions& guide, const Eigen::Vector3d& at,
-                        const Eigen::Vector3d& p, MovingGuide::Search& search) {
-  const std::vector<Neighbor>& near = surface.nearest(at, rfs_mesh::kNeighbourhood, search);
+/// p projected onto the plane through the points `near` of some place, ascending.
+Eigen::Vector3d project(const Positions& guide, const std::vector<Neighbor>& near, const Eigen::Vector3d& p) {
   const double square = 1.05 * near.back().squared_distance;
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
   double weights = 0;
@@ -127,14 +154,21 @@ Eigen::Vector3d project(const MovingGuide& surface, const Positions& guide, cons
 
 /// Lands the points `stranded`; returns which found a place. The others stay.
 std::vector<Index> land(const Mesh& mesh, const std::vector<Index>& stranded, double most,
-                        MovingGuide& surface, Positions& guide, const Context& context) {
+                        const NeighborTable& near, const MovingGuide& surface, Positions& guide,
+                        const Context& context) {
+  constexpr std::size_t kAround = rfs_mesh::kNeighbourhood;
   Positions landed(stranded.size());
   for_blocks(context, stranded.size(), 256, [&](std::size_t begin, std::size_t end) {
     MovingGuide::Search search;
     for (std::size_t k = begin; k < end; ++k) {
       const Eigen::Vector3d& p = mesh.positions[stranded[k]];
-      const Eigen::Vector3d from = guide[surface.nearest(p, 1, search).front().index];
-      landed[k] = project(surface, guide, project(surface, guide, from, p, search), p, search);
+      const double bound = surface.to_nearest_staying(p, near[stranded[k]]);
+      const Index from = surface.nearest(p, 1, search, bound).front().index;
+      const std::vector<Neighbor>& found = surface.nearest_of(from, guide, near[from], kAround, search);
+      const Eigen::Vector3d at = project(guide, found, p);
+      double reach = 0;
+      for (const Neighbor& q : found) reach = std::max(reach, rfs_mesh::squared_distance(guide[q.index], at));
+      landed[k] = project(guide, surface.nearest(at, kAround, search, reach), p);
     }
   });
   std::vector<Index> moved;
@@ -169,14 +203,12 @@ std::vector<char> beside_moved(const MovingGuide& surface, const NeighborTable& 
   return beside;
 }
 
-}  // namespace
-
-Landed land_stranded(const Mesh& mesh, double most, Positions& guide, const Context& context) {
-  MovingGuide surface(guide, context);
-  NeighborTable near = surface.before().nearest(HeightField::kNear, context);
-  if (near.k < HeightField::kNear) return {0, std::move(near), surface.release_tree()};
+/// Moves the points (stranded.h) and returns which. `near`: of where the guide was; rows of moved points are
+/// no longer right. \param first set to the number of those that were found at first
+std::vector<Index> move_stranded(const Mesh& mesh, double most, MovingGuide& surface, NeighborTable& near,
+                                 Positions& guide, std::size_t& first, const Context& context) {
   std::vector<Index> moved;
-  std::size_t first = 0;
+  if (near.k < HeightField::kNear) return moved;
   for (int round = 0; round < kStrandedRounds; ++round) {
     const std::vector<Index> stranded = find_stranded(mesh, guide, near, context);
     if (round == 0) first = stranded.size();
@@ -187,23 +219,42 @@ Landed land_stranded(const Mesh& mesh, double most, Positions& guide, const Cont
                         std::back_inserter(others));
     for (const Index i : stranded) surface.set_gone(i, true);
     surface.set_moved(others, guide, context);
-    const std::vector<Index> landed = land(mesh, stranded, most, surface, guide, context);
+    const std::vector<Index> landed = land(mesh, stranded, most, near, surface, guide, context);
     for (const Index i : stranded)
       if (!std::binary_search(moved.begin(), moved.end(), i)) surface.set_gone(i, false);
     std::vector<Index> all;
     std::set_union(moved.begin(), moved.end(), landed.begin(), landed.end(), std::back_inserter(all));
     for (const Index i : landed) surface.set_gone(i, true);
     moved = std::move(all);
+    if (round + 1 == kStrandedRounds) break;
     surface.set_moved(moved, guide, context);
     for_blocks(context, moved.size(), 256, [&](std::size_t begin, std::size_t end) {
       MovingGuide::Search search;
       for (std::size_t k = begin; k < end; ++k) renew(surface, guide, moved[k], near, search);
     });
   }
-  const std::vector<char> beside = moved.empty() ? std::vector<char>() : beside_moved(surface, near, context);
+  return moved;
+}
+
+}  // namespace
+
+Landed land_stranded(const Mesh& mesh, double most, Positions& guide, const Context& context) {
+  MovingGuide surface(guide, context);
+  NeighborTable near = surface.before().nearest(HeightField::kNear, context);
+  std::size_t first = 0;
+  std::vector<char> beside;
+  if (!move_stranded(mesh, most, surface, near, guide, first, context).empty())
+    beside = beside_moved(surface, near, context);
   rfs_mesh::SpatialIndex index(guide, surface.release_tree(), context);
   if (!beside.empty()) index.renew(near, beside, context);
   return {first, std::move(near), index.release_tree()};
+}
+
+void land_stranded_only(const Mesh& mesh, double most, Positions& guide, const Context& context) {
+  MovingGuide surface(guide, context);
+  NeighborTable near = surface.before().nearest(HeightField::kNear, context);
+  std::size_t first = 0;
+  move_stranded(mesh, most, surface, near, guide, first, context);
 }
 
 }  // namespace rfsmooth::smoothing

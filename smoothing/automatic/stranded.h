@@ -28,4 +28,7 @@ struct Landed {
 /// denser, and smaller islands stand out. O(n log n), parallel, deterministic.
 Landed land_stranded(const Mesh& mesh, double most, Positions& guide, const Context& context);
 
+/// The same where nobody needs anything of the guide afterwards.
+void land_stranded_only(const Mesh& mesh, double most, Positions& guide, const Context& context);
+
 }  // namespace rfsmooth::smoothing

@@ -98,9 +98,12 @@ TEST_P(Neighbors, ThoseThatStayMatchBruteForce) {
                                     [&](const Neighbor& e) { return gone[e.index] != 0; }),
                      expected.end());
       for (const std::size_t k : {200, 12}) {
-        index.nearest_staying(points[at], int(k), gone, found);
         expected.resize(std::min(expected.size(), k));
-        EXPECT_EQ(found, expected);
+        for (const double bound :
+             {std::numeric_limits<double>::infinity(), expected.back().squared_distance}) {
+          index.nearest_staying(points[at], int(k), gone, bound, found);
+          EXPECT_EQ(found, expected);
+        }
       }
     }
   }
