@@ -24,10 +24,11 @@ constexpr std::size_t kAxis = 12;                      // nearest points whose n
 constexpr float kWeightUnit = 65535, kRounded = 0.5F;  // of the weights kept
 constexpr float kCovered = 0.2F * kWeightUnit;         // least weight of the best patch over a point
 constexpr std::size_t kPowers[6][2] = {{0, 0}, {1, 0}, {0, 1}, {2, 0}, {1, 1}, {0, 2}};  // of u and v
-constexpr double kRough = 0.1;         // variance beyond the noise's, sigma^2: there is more than one sheet
-constexpr std::size_t kTogether = 64;  // patches fitted in a row: each tells the next how far to look
-constexpr std::size_t kRange = 16384;  // points whose lists are made together
-constexpr std::size_t kGroup = 4096;   // members looked through together for them
+constexpr double kRough = 0.1;  // variance beyond the noise's, sigma^2: there is more than one sheet
+constexpr std::size_t kMostForMissing = 8;  // times the patches given: 4 cost rotor 3 % of p2s
+constexpr std::size_t kTogether = 64;       // patches fitted in a row: each tells the next how far to look
+constexpr std::size_t kRange = 16384;       // points whose lists are made together
+constexpr std::size_t kGroup = 4096;        // members looked through together for them
 
 typedef float Floats __attribute__((vector_size(4 * sizeof(float))));
 
@@ -76,18 +77,28 @@ Patches::Patches(const HeightField& field, std::size_t members, std::vector<Inde
   Covering covering(field_.size());
   fit(0, seeds_.size(), sigma, context);
   count(0, seeds_.size(), covering, context);
-  // A place between sheets or at the end of something thin may be in no patch, or only at the rim of one.
-  const auto missing = rfsmooth::collect<Index>(context, field_.size(), [&](std::size_t i, auto&& emit) {
-    if (covering.covered[i] == 0) emit(Index(i));
-  });
-  if (!missing.empty()) {
+  cover_missing(sigma, covering, context);
+  transpose(covering, context);
+}
+
+/// A place between sheets or at the end of something thin may be in no patch, or only at the rim of one: such
+/// places get patches of their own. Where there are many, some of these patches reach most of the others.
+void Patches::cover_missing(const std::vector<double>& sigma, Covering& covering, const Context& context) {
+  const std::size_t most = kMostForMissing * seeds_.size();
+  std::size_t before = field_.size() + 1;  // so many were missing
+  for (bool last = false; !last;) {
+    const auto missing = rfsmooth::collect<Index>(context, field_.size(), [&](std::size_t i, auto&& emit) {
+      if (covering.covered[i] == 0) emit(Index(i));
+    });
+    std::vector<Index> more = thin(field_.guide(), missing, context);
+    last = more.size() <= most || missing.size() >= before;
+    before = missing.size();
+    while (!last && more.size() > most) more = thin(field_.guide(), more, context);
     const std::size_t first = seeds_.size();
-    const std::vector<Index> more = thin(field.guide(), missing, context);
     seeds_.insert(seeds_.end(), more.begin(), more.end());
     fit(first, seeds_.size(), sigma, context);
     count(first, seeds_.size(), covering, context);
   }
-  transpose(covering, context);
 }
 
 void Patches::fit(std::size_t first, std::size_t last, const std::vector<double>& sigma,

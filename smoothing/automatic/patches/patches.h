@@ -92,6 +92,7 @@ class Patches {
   void fit_one(std::size_t s, double sigma, Workspace& work);
   Eigen::Vector3d axis_at(Index seed) const;       ///< the mean normal about it, unit
   Members gather(std::size_t s, Workspace& work);  ///< the members of patch s, and its frame
+  void cover_missing(const std::vector<double>& sigma, Covering& covering, const Context& context);
   void count(std::size_t first, std::size_t last, Covering& covering, const Context& context);
   void transpose(const Covering& covering, const Context& context);
 
