@@ -19,16 +19,15 @@ namespace rfsmooth::pipeline {
 namespace {
 
 using rfs_mesh::kNeighbourhood;
+using rfs_mesh::kRing;
 using rfs_mesh::Neighbor;
 
 // Chosen on the development shapes (tests/bench/quality), clean and with noise of up to 4 spacings, with and
 // without 1 % strays: none of theirs is called an outlier but one in a million.
-constexpr std::size_t kNear = 8;    // neighbours that say how dense it is
 constexpr double kIsolated = 2;     // times the usual reach
 constexpr int kKnownBy = 1;         // points that may have an outlier as a neighbour
 constexpr std::size_t kPlane = 48;  // points of the plane
-constexpr double kSigmas = 5;       // beyond which a point does not belong to the surface
-constexpr double kOff = 1.2;        // the same in usual reaches: what a clean surface may curve by
+constexpr double kOff = 1.2;        // usual reaches off the surface: what a clean surface may curve by
 constexpr double kFarOff = 6;       // usual reaches: an outlier wherever the plane is
 
 constexpr double kThin = 4;          // times the reach of the surface beside floating points
@@ -58,7 +57,7 @@ Plane fit_plane(const Positions& points, const std::vector<Neighbor>& near) {
 
 class Search {
  public:
-  /// \param near rows of kNear
+  /// \param near rows of kRing
   Search(const rfs_mesh::SpatialIndex& index, rfs_mesh::NeighborTable near,
          std::optional<Statistics::Outlying>& usual, const Context& context)
       : index_(index),
@@ -93,13 +92,13 @@ class Search {
   }
 
  private:
-  void measure_reach(std::size_t i) { reach_[i] = (points_[near_[i][kNear - 1]] - points_[i]).norm(); }
+  void measure_reach(std::size_t i) { reach_[i] = (points_[near_[i][kRing - 1]] - points_[i]).norm(); }
 
   void measure_isolation() {
     for_each_index(context_, points_.size(), [&](std::size_t i) {
-      std::array<double, kNear / 4 + 1> least = {};
+      std::array<double, kRing / 4 + 1> least = {};
       least.fill(std::numeric_limits<double>::infinity());
-      for (std::size_t k = 0; k < kNear; ++k) {
+      for (std::size_t k = 0; k < kRing; ++k) {
         double reach = reach_[near_[i][k]];
         for (double& kept : least) {  // no branches: which is less is anyone's guess
           const double lower = reach < kept ? reach : kept;
@@ -135,9 +134,9 @@ class Search {
       std::vector<Neighbor> around;
       for (std::size_t i = begin; i < end; ++i) {
         if (look_[i] == 0) continue;
-        nearest_on_surface(points_[i], kNear + 1, around);
-        Index* row = near_.items.data() + i * kNear;
-        for (std::size_t k = 0, to = 0; to < kNear; ++k)
+        nearest_on_surface(points_[i], kRing + 1, around);
+        Index* row = near_.items.data() + i * kRing;
+        for (std::size_t k = 0, to = 0; to < kRing; ++k)
           if (around[k].index != i) row[to++] = around[k].index;
         measure_reach(i);
       }
@@ -190,7 +189,8 @@ class Search {
     nearest_on_surface(points_[around.front().index], std::max(kPlane, noise_.neighbours), around);
     const Plane plane = fit_plane(points_, around);
     const double off = std::abs(plane.normal.dot(points_[i] - plane.centre));
-    return off > kOff * usual_[i] && off > kSigmas * std::max(std::sqrt(plane.variances[0]), noise_.sigma);
+    return off > kOff * usual_[i] &&
+           off > rfs_mesh::kStray * std::max(std::sqrt(plane.variances[0]), noise_.sigma);
   }
 
   bool floats(std::size_t i, std::vector<Neighbor>& around) const {
@@ -203,7 +203,8 @@ class Search {
     if (!(reach_[i] > kThin * reaches[kSurface])) return false;
     around.resize(kNeighbourhood);
     const Eigen::Vector3d variances = fit_plane(points_, around).variances;
-    return variances[0] > kFlat * variances.sum() && std::sqrt(variances[0]) > kSigmas * noise_.sigma;
+    return variances[0] > kFlat * variances.sum() &&
+           std::sqrt(variances[0]) > rfs_mesh::kStray * noise_.sigma;
   }
 
   const rfs_mesh::SpatialIndex& index_;
@@ -218,13 +219,13 @@ class Search {
   double median_reach_ = 0;
 };
 
-/// The first kNear of every row.
+/// The first kRing of every row.
 rfs_mesh::NeighborTable nearest_few(const rfs_mesh::NeighborTable& near, const Context& context) {
   rfs_mesh::NeighborTable few;
-  few.k = int(kNear);
-  few.items.resize(near.size() * kNear);
+  few.k = int(kRing);
+  few.items.resize(near.size() * kRing);
   for_each_index(context, near.size(), [&](std::size_t i) {
-    std::copy_n(near[i].begin(), kNear, few.items.begin() + std::ptrdiff_t(i * kNear));
+    std::copy_n(near[i].begin(), kRing, few.items.begin() + std::ptrdiff_t(i * kRing));
   });
   return few;
 }
@@ -235,7 +236,7 @@ std::vector<char> find_outliers(const rfs_mesh::SpatialIndex& index, const rfs_m
                                 const Context& context, std::optional<Statistics::Outlying>* usual) {
   std::optional<Statistics::Outlying> measured;
   if (index.points().size() < kRegion) return std::vector<char>(index.points().size(), 0);
-  return Search(index, near.k < int(kNear) ? index.nearest(int(kNear), context) : nearest_few(near, context),
+  return Search(index, near.k < int(kRing) ? index.nearest(int(kRing), context) : nearest_few(near, context),
                 usual != nullptr ? *usual : measured, context)
       .run();
 }
@@ -243,15 +244,15 @@ std::vector<char> find_outliers(const rfs_mesh::SpatialIndex& index, const rfs_m
 std::vector<char> find_outliers(const Positions& points, const Context& context) {
   if (points.size() < kRegion) return std::vector<char>(points.size(), 0);
   const rfs_mesh::SpatialIndex index(points, context);
-  return find_outliers(index, index.nearest(int(kNear), context), context);
+  return find_outliers(index, index.nearest(int(kRing), context), context);
 }
 
 bool land(const rfs_mesh::SpatialIndex& surface, double most, Eigen::Vector3d& point) {
   std::vector<Neighbor> around;
   surface.nearest(point, 1, around);
   if (around.empty()) return false;
-  surface.nearest(surface.points()[around.front().index], int(2 * kNear), around);
-  if (around.size() < 2 * kNear) return false;
+  surface.nearest(surface.points()[around.front().index], int(2 * kRing), around);
+  if (around.size() < 2 * kRing) return false;
   const Plane plane = fit_plane(surface.points(), around);
   const double off = plane.normal.dot(point - plane.centre);
   if (!(std::abs(off) <= most)) return false;

@@ -10,6 +10,9 @@ namespace rfsmooth::rfs_mesh {
 /// rings of a surface mesh.
 constexpr std::size_t kNeighbourhood = 24;
 
+/// Nearest neighbours that are the ring around a point: how dense it is there, and on which side.
+constexpr std::size_t kRing = 8;
+
 /// Points that a quadric is fitted to at least: two more than its six coefficients.
 constexpr std::size_t kFewestOfQuadric = 8;
 
@@ -19,6 +22,9 @@ constexpr double kSameSheet = 0.5;
 
 /// Standard deviations that noise carries a point: a normal variable goes beyond in one case of 16,000.
 constexpr double kNoiseReach = 4;
+
+/// Standard deviations beyond which a point is a stray and does not belong to the surface.
+constexpr double kStray = 5;
 
 /// Points that stand for all of a cloud in a mean or a median over it, which they give to half a per cent.
 constexpr std::size_t kSampleOfCloud = 50000;

@@ -27,8 +27,6 @@ using Eigen::AlignedBox3d;
 using Eigen::Vector3d;
 using nlohmann::ordered_json;
 
-constexpr std::size_t kPlacesOfRadius = 500;
-
 [[noreturn]] void refuse_step(const Job& job, const std::string& message) {
   throw Failure({ErrorCode::usage, fmt::format("{}: {}", job.folder.string(), message)});
 }

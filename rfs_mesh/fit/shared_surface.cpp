@@ -8,6 +8,7 @@
 #include "rfs_mesh/fit/local_surface.h"
 #include "rfs_mesh/fit/quadric.h"
 #include "rfs_mesh/fit/scatter.h"
+#include "rfs_mesh/levels.h"
 #include "rfs_mesh/search/cells.h"
 #include "rfs_mesh/search/wide_neighbors.h"
 
@@ -22,7 +23,6 @@ using Eigen::Vector3d;
 constexpr double kPointsPerSeed = 1.0 / 6;
 /// The same in cubes, at whose sides groups are smaller.
 constexpr double kPointsPerSeedInCubes = 1.0 / 8;
-constexpr std::size_t kFewestInGroup = 8;
 /// Edge of a cube over the radius of a neighbourhood: some twenty groups on the surface in it, so that few
 /// lie at its sides.
 constexpr double kCellEdge = 3;
@@ -82,7 +82,7 @@ Groups groups_of(const SpatialIndex& index, const NoiseScale& scale, const Vecto
   const auto m = double(scale.neighbours);
   if (corner != nullptr)
     return group_in_cells(index.points(), *corner, kCellEdge * scale.radius,
-                          std::max(kFewestInGroup, std::size_t(m * kPointsPerSeedInCubes)), context);
+                          std::max(kFewestOfQuadric, std::size_t(m * kPointsPerSeedInCubes)), context);
   const KdTree& tree = index.tree();
   Groups groups;
   groups.member.reserve(index.points().size());

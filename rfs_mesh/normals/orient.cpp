@@ -21,11 +21,10 @@ namespace {
 using Eigen::Vector3d;
 
 // Chosen on the closed development shapes (tests/bench/normals).
-constexpr int kSteps = 4;            // more follow the noise
-constexpr double kAreaError = 0.15;  // half the share by which areas may be off
-constexpr double kClosed = 0.15;     // root mean square of w - 1/2 that a closed surface keeps below
-constexpr double kRest = 0.01;       // share of the samples in other parts that is let pass
-constexpr double kBetter = 0.8;      // of it: what votes must bring to be believed
+constexpr int kSteps = 4;         // more follow the noise
+constexpr double kClosed = 0.15;  // w - 1/2 of a closed surface: in the mean, and root mean square
+constexpr double kRest = 0.01;    // share of the samples in other parts that is let pass
+constexpr double kBetter = 0.8;   // of it: what votes must bring to be believed
 
 double agreement(const Vector3d& p, const Vector3d& n, const Vector3d& q, const Vector3d& m) {
   const Vector3d e = q - p;
@@ -246,7 +245,7 @@ class Orienter {
     for (std::size_t p = 0; p < sum.size(); ++p) {
       if (!(count[p] > 0)) continue;
       const double mean = sum[p] / count[p];
-      const double level = std::clamp(mean, 0.5 - kAreaError, 0.5 + kAreaError);
+      const double level = std::clamp(mean, 0.5 - kClosed, 0.5 + kClosed);
       sum[p] = std::sqrt(std::max(0.0, squares[p] / count[p] - 2 * level * mean + level * level));
     }
     return sum;

@@ -26,16 +26,16 @@ namespace rfsmooth::smoothing {
 
 namespace {
 
+using rfs_mesh::kStray;
+
 // Chosen on the development shapes (tests/bench/quality) at 10,000 and 50,000 points, noise of 1 to 3 %.
 constexpr std::size_t kMostOverlap = 14;  // patches over a point; a thinning leaves 0.4 of them
 constexpr double kGuide = 10;             // c = kGuide (sigma/h)^2, to the fourth power above h
 constexpr double kNarrowest = 52.6;       // m_0 = kNarrowest (sigma/h)^2: a radius of 4.5 sigma
 constexpr double kFewest = 16;            // m_0 at small noise: a quadric has six unknowns
-constexpr double kWidest = 1600;          // the widest patches, and
-constexpr double kWidestShare = 4;        // at least this many times m_0
-constexpr double kStrayFrom = 5;          // sigma
+constexpr double kWidest = 1600;          // the widest patches, unless those that look for walls are wider
 constexpr double kCalm = 0.1;             // of the figure: so much calmer places have no part in the tails
-constexpr std::size_t kSeeing = 2;        // the scale that looks for walls, of 9 sigma: from 0
+constexpr int kSeeing = 2;                // the scale that looks for walls, of 9 sigma: from 0
 
 constexpr std::size_t kDense = 4;     // a subset with a point in so many has its own among the nearest
 constexpr std::size_t kOwnMean = 60;  // from this many members on, patches average; below, near neighbours do
@@ -163,7 +163,7 @@ double told_by_residuals(const HeightField& field, const std::vector<float>& hei
                          const std::vector<float>& own, const rfs_mesh::NoiseField& noise,
                          const Context& context) {
   constexpr double kSmoothed = 0.5;  // mean of 1 - own: elsewhere the data stayed, and tell nothing
-  constexpr double kMostSquare = kStrayFrom * kStrayFrom;
+  constexpr double kMostSquare = kStray * kStray;
   const std::size_t n = field.size(), places = std::min(n, rfs_mesh::kSampleOfCloud);
   std::vector<double> told(places, -1);
   for_each_index(context, places, [&](std::size_t place) {
@@ -199,7 +199,7 @@ double noise_left(const HeightField& field, const std::vector<float>& height, co
         const double e = field.height(i) - double(height[i]),
                      share = double(own_of_all(own[i], float(noise.shared))),
                      measured = noise.local[i] * noise.local[i], square = told * measured;
-        if (!(std::abs(e) <= kStrayFrom * std::max(noise.sigma, noise.local[i])))
+        if (!(std::abs(e) <= kStray * std::max(noise.sigma, noise.local[i])))
           return Eigen::Vector4d(0, 0, 0, 0);
         return Eigen::Vector4d(1, share * square, e * e + (2 * share - 1) * square, measured);
       });
@@ -211,7 +211,7 @@ double noise_left(const HeightField& field, const std::vector<float>& height, co
 std::unique_ptr<HeightField> raise_field(const Mesh& mesh, double sigma, AutomaticReport& report,
                                          Statistics::Pass& whole, const Context& context) {
   Positions guide = fair(mesh, report.guide_strength, whole.reductions, context);
-  Landed landed = land_stranded(mesh, kStrayFrom * sigma, guide, context);
+  Landed landed = land_stranded(mesh, kStray * sigma, guide, context);
   report.stranded = landed.stranded;
   return std::make_unique<HeightField>(std::move(guide), std::move(landed.tree), std::move(landed.near),
                                        mesh.positions, context);
@@ -291,7 +291,7 @@ std::vector<Scale> try_scales(const HeightField& field, const rfs_mesh::NoiseFie
   Ladder ladder(field, noise);
   const double share = noise.sigma / spacing;
   const double narrowest = std::max(kFewest * noise.shared, kNarrowest * share * share);
-  const double widest = std::max(kWidest, kWidestShare * narrowest);
+  const double widest = std::max(kWidest, std::ldexp(narrowest, kSeeing));
   if (noise.shared > 1 && !whole.narrow) whole.narrow = ladder.scale_of(kFewest, context);
   first = whole.narrow ? ladder.narrow(*whole.narrow, context) : heights(field, context);
   const bool known = !whole.scales.empty();
@@ -310,7 +310,7 @@ Pass smooth_heights(const HeightField& field, const rfs_mesh::NoiseField& noise,
   std::vector<float> first;
   std::vector<Scale> scales = try_scales(field, noise, spacing, whole, first, context);
   Pass pass;
-  const Scale& seeing = scales[std::min(kSeeing, scales.size() - 1)];
+  const Scale& seeing = scales[std::min(std::size_t(kSeeing), scales.size() - 1)];
   pass.members_seeing = seeing.members;
   pass.several = seeing.several;
   for (const Scale& scale : scales) {
@@ -347,7 +347,7 @@ void land_hovering(const HeightField& field, const Pass& pass, const Mesh& mesh,
     smooth[i] = field.guide()[i] + double(pass.height[i]) * field.normal(i);
   });
   Positions landed = smooth;
-  land_stranded_only(mesh, kStrayFrom * tails.times * noise.sigma, landed, context);
+  land_stranded_only(mesh, kStray * tails.times * noise.sigma, landed, context);
   for_each_index(context, smooth.size(), [&](std::size_t i) {
     if (landed[i] == smooth[i] || noise.local[i] < kCalm * noise.sigma) return;
     const Eigen::Vector3d off = mesh.positions[i] - landed[i];
@@ -403,7 +403,7 @@ Positions automatic_smoothing(Mesh& mesh, bool keep_rings, rfs_mesh::NoiseField 
   };
   report.guide_strength = guide_strength();
   std::vector<double> most = noise.local;
-  for (double& limit : most) limit = kStrayFrom * std::max(limit, noise.sigma);
+  for (double& limit : most) limit = kStray * std::max(limit, noise.sigma);
   whole.passes.resize(std::max<std::size_t>(1, whole.passes.size()));
   auto field = raise_field(mesh, noise.sigma, report, whole.passes[0], context);
   context.report("smooth", 0.1);

@@ -13,7 +13,6 @@ namespace rfsmooth::smoothing {
 
 namespace {
 
-constexpr std::size_t kLinked = 8;  // neighbours with which a normal agrees on a side; 6 leave islands
 constexpr float kByteUnit = 255, kByteRounded = 0.5F;
 
 }  // namespace
@@ -50,7 +49,7 @@ HeightField::HeightField(Positions guide, rfs_mesh::KdTree tree, rfs_mesh::Neigh
 void HeightField::orient(const Context& context) {
   const auto linked = [&](std::size_t i) {
     const auto near = near_[i];
-    return std::make_pair(near.begin(), near.begin() + std::min(near.size(), kLinked));
+    return std::make_pair(near.begin(), near.begin() + std::min(near.size(), rfs_mesh::kRing));
   };
   const auto links = [&](std::size_t begin, std::size_t end, std::vector<rfs_mesh::SideLink>& out) {
     for (std::size_t i = begin; i < end; ++i) {
