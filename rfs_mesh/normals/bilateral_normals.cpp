@@ -21,8 +21,8 @@ constexpr std::size_t kJudged = 16;  // neighbours that say how calm the normals
 constexpr std::size_t kMiddle = 6;   // which of them, from the calmest
 constexpr double kTolerance = 2;
 constexpr double kOfScatter = 230;  // radians per (r / R)^2
-constexpr double kCalmest = 0.05;   // radians: what normals of a flat place may differ by
-constexpr double kLeastMost = 0.02, kGreatestMost = 0.5;  // radians: bounds of the most
+// Radians: bounds of what normals of one place may differ by.
+constexpr double kCalmest = 0.02, kWildest = 0.5;
 
 constexpr std::size_t kNormalLanes = 8;  // numbers side by side in registers
 using Lanes = Eigen::Array<float, int(kNormalLanes), 1>;
@@ -53,8 +53,7 @@ std::vector<double> limits(const Positions& points, const NeighborTable& near,
     double sum = scatter[i];
     for (std::size_t k = 0; k < count; ++k) sum += scatter[row[k]];
     const double r = sum / double(count + 1), square = (points[row[count - 1]] - points[i]).squaredNorm();
-    limit[i] =
-        square > 0 ? std::clamp(kOfScatter * r * r / square, kLeastMost, kGreatestMost) : kGreatestMost;
+    limit[i] = square > 0 ? std::clamp(kOfScatter * r * r / square, kCalmest, kWildest) : kWildest;
   });
   return limit;
 }

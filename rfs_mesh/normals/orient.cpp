@@ -23,7 +23,6 @@ using Eigen::Vector3d;
 // Chosen on the closed development shapes (tests/bench/normals).
 constexpr int kSteps = 4;         // more follow the noise
 constexpr double kClosed = 0.15;  // w - 1/2 of a closed surface: in the mean, and root mean square
-constexpr double kRest = 0.01;    // share of the samples in other parts that is let pass
 constexpr double kBetter = 0.8;   // of it: what votes must bring to be believed
 
 double agreement(const Vector3d& p, const Vector3d& n, const Vector3d& q, const Vector3d& m) {
@@ -106,15 +105,14 @@ class Orienter {
     double area = 0;
   };
 
-  /// Whether the winding number is near 1/2 nearly everywhere, or there is no surface to ask.
+  /// Whether the winding number is near 1/2 in every part, or there is no surface to ask.
   bool closes(const Regions& parts, const Positions& normals) const {
     const Samples samples(calm_, areas_);
     if (!(samples.area > 0)) return true;  // points in a line, or too few for a face
     const Winding winding(samples.at, samples.softening(), context_);
     const std::vector<double> open = openness(winding, samples, parts, normals);
-    std::size_t above = 0;
-    for (const Index i : samples.row) above += open[parts.of_point[i]] > kClosed ? 1 : 0;
-    return double(above) <= kRest * double(samples.row.size());
+    return std::none_of(samples.row.begin(), samples.row.end(),
+                        [&](Index i) { return open[parts.of_point[i]] > kClosed; });
   }
 
   std::vector<SideLink> links(const Positions& at) const {

@@ -1,7 +1,6 @@
 #include "rfs_mesh/sheets/thin_parts.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
@@ -26,18 +25,10 @@ constexpr std::size_t kOfArea = 9;   // neighbours that say how much area a samp
 constexpr double kOff = 0.25;        // e above which something is tried
 constexpr double kMostOff = 0.3;     // share of the samples that may be: rotor's walls are 0.17
 constexpr double kMostLeft = 0.4;    // of all e squared, if more are: 0.31 on rotor after 2 %, 0.52 on scans
-constexpr double kMiddleOff = 0.12;  // by which the median of w may be off 1/2: rotor's is 0.09
-constexpr double kMostAbove = 0.07;  // by which its ninth tenth may be above: at most 0.03 there
+constexpr double kMiddleOff = 0.12;  // by which the median of w may be off 1/2, its ninth tenth above
 constexpr double kLeastTurned = 0.12;
 constexpr int kMiddleCount = 64;
-constexpr double kPower = -0.75;
-constexpr double kThinnest = 1e-4;  // of C's eigenvalues, beside the largest
-
-/// What is tried: out of walls or of slits, and how near e must come to be believed.
-struct Try {
-  double sign, of_e;
-};
-constexpr std::array<Try, 3> kTries = {Try{1, 0.95}, Try{-1, 0.8}, Try{1, 0.95}};
+constexpr double kThinnest = 1e-9;  // of C's eigenvalues, beside the largest
 
 /// Where the point i of `near`, which holds it and its neighbours, lies about their middle.
 Vector3d out_of_middle(const Positions& points, std::size_t i, const std::vector<Neighbor>& near) {
@@ -54,7 +45,7 @@ Vector3d out_of_middle(const Positions& points, std::size_t i, const std::vector
   if (!(largest > 0)) return Vector3d::Zero();
   Vector3d offset = axes.eigenvectors().transpose() * (points[i] - mean);
   for (int axis = 0; axis < 3; ++axis)
-    offset[axis] *= std::pow(std::max(axes.eigenvalues()[axis] / largest, 0.0) + kThinnest, kPower);
+    offset[axis] /= std::max(axes.eigenvalues()[axis] / largest, kThinnest);
   const double length = offset.norm();
   return length > 0 ? Vector3d(axes.eigenvectors() * offset / length) : Vector3d(Vector3d::Zero());
 }
@@ -90,15 +81,12 @@ class ThinParts {
 
     const double before = squares(off);
     std::vector<double> sign(at_.size(), 0);  // with which each sample was turned last; 0: never
-    for (const Try& attempt : kTries) {
-      const Positions tried = out_of_middles(off, attempt.sign, now);
+    for (const double side : {1, -1, 1}) {    // out of walls, out of slits, walls again
+      const Positions tried = out_of_middles(off, side, now);
       const std::vector<double> then = offness(numbers(winding, tried));
       std::vector<char> better(at_.size());
       for_each_index(context_, at_.size(), [&](std::size_t s) {
-        better[s] =
-            off[s] > kOff && then[s] < attempt.of_e * off[s] && turned_around(s, now, tried) >= kLeastTurned
-                ? 1
-                : 0;
+        better[s] = off[s] > kOff && then[s] < off[s] && turned_around(s, now, tried) >= kLeastTurned ? 1 : 0;
       });
       Positions next = now;
       for_each_index(context_, at_.size(), [&](std::size_t s) {
@@ -107,7 +95,7 @@ class ThinParts {
       std::vector<double> left = offness(numbers(winding, next));
       if (!(squares(left) < squares(off))) continue;
       for_each_index(context_, at_.size(), [&](std::size_t s) {
-        if (better[s] != 0) sign[s] = attempt.sign;
+        if (better[s] != 0) sign[s] = side;
       });
       now.swap(next);
       off.swap(left);
@@ -131,7 +119,7 @@ class ThinParts {
       std::nth_element(w.begin(), it, w.end());
       return *it;
     };
-    return std::abs(at(0.5) - 0.5) < kMiddleOff && at(0.9) - 0.5 < kMostAbove;
+    return std::abs(at(0.5) - 0.5) < kMiddleOff && at(0.9) - 0.5 < kMiddleOff;
   }
 
   /// e of every sample.

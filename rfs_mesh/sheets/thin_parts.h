@@ -7,11 +7,11 @@
 /// sides is how the points lie about their middle. With c and C the mean and the covariance of a point p and
 /// its 64 nearest,
 ///
-///     n ~ C^(-3/4) (p - c)
+///     n ~ C^-1 (p - c)
 ///
-/// points out of the wall; at its rim, or all around a finger, it points away from the middle. (C^-1 is the
-/// gradient of the Gaussian density with that c and C, and nearly blind to rims. C^0, the plain offset, turns
-/// with the uneven spacing of the points.) The opposite direction points out of a slit, which is a wall seen
+/// points out of the wall; at its rim, or all around a finger, it points away from the middle. (It is the
+/// gradient of the Gaussian density with that c and C. The plain offset turns with the uneven spacing of the
+/// points.) The opposite direction points out of a slit, which is a wall seen
 /// from the solid.
 ///
 /// Both are tried where w is off, and kept where they bring w nearer to 1/2 all around:

@@ -20,7 +20,6 @@ namespace {
 // Chosen on the shapes rotor, armadillo and femur (50,000 points, noise of 1 %). The share of normals that
 // end up on the right side there hardly changes with them.
 constexpr std::size_t kGlance = 4;  // at every so many neighbours first: one on another sheet is no wall
-constexpr double kFlatness = 0.5;   // mean square about the sheets, beside that of their distance
 constexpr double kWallRidge = 1e-9;
 
 bool faces_another(const Positions& normals, std::size_t i, const Adjacency::Row& row) {
@@ -59,7 +58,7 @@ bool on_other_sheet(const Positions& points, const Positions& normals, std::size
   const Eigen::Vector4d x = a.ldlt().solve(right);
   const double middle = x[0], apart = x[3];
   const double left = (squares - x.dot(right)) / all;  // about the two planes, mean square
-  return middle > 0 && middle < 2 * apart && left < kFlatness * apart * apart;
+  return middle > 0 && middle < 2 * apart && left < apart * apart;
 }
 
 }  // namespace
