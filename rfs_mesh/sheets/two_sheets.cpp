@@ -17,9 +17,9 @@ using Eigen::Vector3d;
 
 constexpr std::size_t kFewest = 5;  ///< points that make a sheet: more than strays in a row
 
-/// A point beyond the middle has the other sheet within 1.25 of its own distance d on the far side, give or
-/// take a quarter of d and half a spacing to the side; on a single sheet the nearest shadow is 2.25 d away.
-constexpr double kMirror = 1.25, kMirrorReach = 1.75;
+/// A point beyond the middle has the other sheet within 1.25 of its own distance d on the far side. What is
+/// no farther than that from there is looked for: on a single sheet the nearest shadow is 2.25 d away.
+constexpr double kMirror = 1.25;
 
 /// A shadow and how high it lies over the point.
 struct Height {
@@ -77,7 +77,7 @@ class Parter {
     if (2 * off_ones > row.size()) return true;
     if (3 * far_ones <= row.size()) return false;
     if (across_ones > 0) return true;
-    return shadows_.any_within(p + kMirror * away, kMirrorReach * away.norm());
+    return shadows_.any_within(p + kMirror * away, kMirror * away.norm());
   }
 
   /// The shadows around point i by height along the axis of their normals, split in two. False if the normals
