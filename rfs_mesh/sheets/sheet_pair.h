@@ -42,7 +42,6 @@ class SheetPair {
   /// - one sheet with more noise explains the heights as well (less than 3 nats worse);
   /// - more variance is left than the noise has, or the residuals' means over the cells of a 5 x 5 grid are
   ///   more than noise: the shape is a different one;
-  /// - the place (u, v) of a point predicts its sheet: a step;
   /// - the estimates do not follow the two sheets. Sheets that show only in the scatter of the heights may be
   ///   more noise, and one place has too few points to tell (hidden_sheets.h can);
   /// - the sheets are more than 2.1 from the middle.
@@ -64,8 +63,7 @@ class SheetPair {
   Vector6 middle_ = Vector6::Zero();
   Eigen::Vector3d apart_ = Eigen::Vector3d::Zero();
   Matrix6 moments_;  ///< one quadric's normal equations,
-  Vector6 heights_;  ///< their right-hand side,
-  Matrix6 normal_;   ///< and the inverse
+  Vector6 heights_;  ///< and their right-hand side
   double weights_ = 0;
   double single_ = 0;    ///< variance about one quadric
   double variance_ = 1;  ///< s^2
