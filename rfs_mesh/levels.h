@@ -26,6 +26,10 @@ constexpr double kNoiseReach = 4;
 /// Standard deviations beyond which a point is a stray and does not belong to the surface.
 constexpr double kStray = 5;
 
+/// The most sigma over radius of a ball of neighbours that holds the slab of noisy points, and is not inside
+/// of it: a radius of 5.5 sigma.
+constexpr double kFlatSlab = 0.18;
+
 /// Points that stand for all of a cloud in a mean or a median over it, which they give to half a per cent.
 constexpr std::size_t kSampleOfCloud = 50000;
 

@@ -122,7 +122,6 @@ Deviation deviation_at(const SpatialIndex& index, std::size_t m, const Context& 
 NoiseScale noise_scale(const SpatialIndex& index, const Context& context) {
   // Up to a radius of eleven spacings.
   constexpr std::size_t kWidest = 384;
-  constexpr double kShareOfRadius = 0.18;  // a radius of 5.5 sigma: the ball holds the slab and is not in it
   constexpr double kGrowthOfNoise = 1.26;  // cube root of 2: a ball inside a slab; faster growth is shape
   const std::size_t n = index.points().size();
   NoiseScale best;
@@ -135,7 +134,7 @@ NoiseScale noise_scale(const SpatialIndex& index, const Context& context) {
       least = share;
       best = {d.sigma, m, d.radius};
     }
-    if (share <= kShareOfRadius) break;
+    if (share <= kFlatSlab) break;
   }
   return best;
 }

@@ -13,10 +13,11 @@ namespace rfsmooth::rfs_mesh {
 
 namespace {
 
-constexpr double kLeastKept = 0.75;  // of the weight; 3 sigma of half the true sigma keep 0.87
-constexpr double kLeastFlat = 0.5;   // the patch's radius over the ball's, where the window is high
-constexpr double kLine = 0.1;        // breadth: rings have 0.004 to 0.04, surfaces 0.2 and more
-constexpr int kScatterRounds = 3;    // the first without a window
+constexpr double kLeastKept = 0.75;   // of the weight; 3 sigma of half the true sigma keep 0.87
+constexpr double kLeastWithin = 0.2;  // of the weight: what a window of a quarter of sigma keeps
+constexpr double kLeastFlat = 0.5;    // the patch's radius over the ball's, where the window is high
+constexpr double kLine = 0.1;         // breadth: rings have 0.004 to 0.04, surfaces 0.2 and more
+constexpr int kScatterRounds = 3;     // the first without a window
 
 typedef double FourSums __attribute__((vector_size(4 * sizeof(double))));
 
@@ -138,13 +139,15 @@ Scatter ScatterFit::operator()(const SpatialIndex& index, const Eigen::Vector3d&
   const double all = gather(points, place, axes, r, flat, line);
   Vector6 c = Vector6::Zero();
   double window = std::numeric_limits<double>::infinity();
+  bool silent = false;
   for (int round = 0; round < (sigma > 0 ? kScatterRounds : 1); ++round) {
     Sums sums;
     sum_within(window, c, round == 0, !(sigma > 0), sums);
     s.freedom = 0;
     s.foot = place;
     s.normal = axes.col(0);
-    if (round > 0 && sums.kept < kLeastKept * all) return s;
+    silent = round > 0 && sums.kept < kLeastKept * all;
+    if (silent && sums.kept < kLeastWithin * all) return s;
     sums.a.diagonal().array() += 1e-9 * sums.kept;
     const Eigen::LLT<Matrix6> solver(sums.a.selfadjointView<Eigen::Lower>());
     c = solver.solve(sums.right);
@@ -158,6 +161,11 @@ Scatter ScatterFit::operator()(const SpatialIndex& index, const Eigen::Vector3d&
     s.foot = place + r * c[0] * axes.col(0);
     s.normal = (axes.col(0) - c[1] / flat * axes.col(2) - c[2] / flat * axes.col(1)).normalized();
     window = high;
+  }
+  s.within = s.variance;
+  if (silent) {
+    s.freedom = 0;
+    s.foot = place;
   }
   return s;
 }

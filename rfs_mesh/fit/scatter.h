@@ -37,7 +37,8 @@ struct Scatter {
   double radius = 0;    ///< of the ball of neighbours, world units
   double together = 1;  ///< kNearestTogether nearest are above (1) or below (-1): their sum squared, over as
                         ///< many; in the mean 1 of points on their own, whatever their noise. Without window
-  double breadth = 0;   ///< variance of the neighbours across their longest axis over that along it, 0 to 1
+  double within = 0;   ///< s^2 also where the window cuts off so much that the place says nothing; 0: unknown
+  double breadth = 0;  ///< variance of the neighbours across their longest axis over that along it, 0 to 1
   Eigen::Vector3d foot = Eigen::Vector3d::Zero();    ///< the surface at the place
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< there; zero if the points coincide
 };

@@ -17,8 +17,6 @@ namespace {
 // Chosen on the development shapes with noise of 0.1 to 4 spacings, Gaussian and along the ray
 // (tests/bench/noise).
 constexpr std::size_t kFewestPoints = 25;
-constexpr int kMostLouder = 2;     // parts, one louder than the other
-constexpr double kNothing = 1e-3;  // of the figure: what is calmer is so in name only
 // The quantile of sites that is the figure: at m = 16 noise may be below the detail.
 constexpr double kFigureNarrow = 0.4, kFigureWide = 0.45;
 // Where hardly a site speaks, most of the cloud is rough, and what does speak there is half roughness.
@@ -99,121 +97,72 @@ std::vector<double> blend(const SpatialIndex& sites, const std::vector<double>& 
   return local;
 }
 
-/// What was measured in a part of the cloud.
-struct Part {
-  std::size_t m = kNarrowestScatter;
-  double sigma = 0, shape = 0, shared = 1;
-  double least = 0;  ///< what counts as zero
-  NoiseSites sites;
-  std::vector<double> local;  ///< by site, world units
-};
-
-/// The figure of a part from what its sites say.
-void sum_up(const NoiseStart& start, Part& part) {
-  std::vector<Weighed> heard, shape;
-  double all = 0, saying = 0;
-  for (std::size_t s = 0; s < part.sites.at.size(); ++s) {
-    all += part.sites.area[s];
-    if (!part.sites.speaks[s]) continue;
-    saying += part.sites.area[s];
-    heard.push_back({part.sites.sigma[s], part.sites.area[s]});
-    if (part.sites.sigma[s] > start.least) shape.push_back({part.sites.shape[s], part.sites.area[s]});
-  }
-  double share = start.m == kNarrowestScatter ? kFigureNarrow : kFigureWide;
-  if (saying < kFewSpeak * all) share = kFigureOfFew;
-  part.sigma = heard.empty() ? start.sigma : quantile(heard, share);
-  part.shape = shape.empty() ? 0 : quantile(shape, 0.5);
-  if (start.m > kNarrowestScatter && part.shape < kLittleShape) part.sigma = mean_of_alike(heard, part.sigma);
-  if (part.sigma <= start.least) part.sigma = 0;
-  part.sigma = std::min(part.sigma, start.most);  // the windows let a second sheet in nearly everywhere
+/// The windows let a second sheet in nearly everywhere: then the calmer fifth, too, hears more than it shows
+/// without, and all hear so much less.
+void bound_sites(double most, NoiseSites& sites) {
+  constexpr double kCalmFifth = 0.2;
+  std::vector<Weighed> all;
+  for (std::size_t s = 0; s < sites.at.size(); ++s) all.push_back({sites.sigma[s], sites.area[s]});
+  const double calm = quantile(all, kCalmFifth);
+  if (!(calm > most)) return;
+  for (double& sigma : sites.sigma) sigma *= most / calm;
 }
 
-/// The noise around some places of the cloud.
-Part measure_part(const SpatialIndex& index, const Positions& where, const DepthSteps* steps,
-                  const Context& context) {
-  Part part;
-  const Positions places = search_places(where);
+/// The figure, and how much of it shape had, from what the sites say. Of places that have noise, where these
+/// are a tenth of the cloud or more: the rest has nothing to smooth.
+void sum_up(const NoiseSites& sites, const NoiseStart& start, NoiseModel& noise) {
+  constexpr double kLeastPart = 0.1;
+  const double some = kNoNoise * noise.spacing;
+  std::vector<Weighed> heard, noisy, shape;
+  double all = 0, saying = 0, loud = 0;
+  for (std::size_t s = 0; s < sites.at.size(); ++s) {
+    const double sigma = sites.sigma[s], area = sites.area[s];
+    all += area;
+    if (!sites.speaks[s]) continue;
+    saying += area;
+    heard.push_back({sigma, area});
+    if (sigma > start.least) shape.push_back({sites.shape[s], area});
+    if (!(sigma > some)) continue;
+    noisy.push_back({sigma, area});
+    loud += area;
+  }
+  if (loud > kLeastPart * saying) heard = std::move(noisy);
+  double share = start.m == kNarrowestScatter ? kFigureNarrow : kFigureWide;
+  if (saying < kFewSpeak * all) share = kFigureOfFew;
+  noise.sigma = heard.empty() ? std::min(start.sigma, start.most) : quantile(heard, share);
+  noise.shape = shape.empty() ? 0 : quantile(shape, 0.5);
+  if (start.m > kNarrowestScatter && noise.shape < kLittleShape)
+    noise.sigma = mean_of_alike(heard, noise.sigma);
+  if (noise.sigma <= start.least) noise.sigma = 0;
+}
+
+/// Fills the model's figures and sites.
+void measure(const SpatialIndex& index, const DepthSteps* steps, NoiseModel& noise, const Context& context) {
+  const Positions places = search_places(index.points());
   NoiseStart start = search_noise(index, places, context);
-  part.least = start.least;
-  part.shared = double(start.narrowest) / double(kNarrowestScatter);
-  if (!(start.least > 0)) return part;
+  noise.shared = double(start.narrowest) / double(kNarrowestScatter);
+  if (!(start.least > 0)) return;
   const SharedNoise shared = find_shared_noise(index, places, start, steps, context);
   if (shared.points > 1) {
     start.sigma = shared.sigma;
     start.m = shared.m;
     start.shape_grows = kGrowthOfSmoothShape;
     start.most = std::max(start.most, shared.sigma);
-    part.shared = std::max(part.shared, shared.points);
+    noise.shared = std::max(noise.shared, shared.points);
   }
-  part.m = start.m;
-  part.sites = listen(index, listening_places(where, start.m), start, steps, context);
-  sum_up(start, part);
-  part.local.assign(part.sites.at.size(), 0);
-  if (!(part.sigma > 0)) return part;
-  part.local = relative_noise(part.sites, part.sigma, context);
-  for (double& v : part.local) v *= part.sigma;
-  return part;
-}
-
-/// Whether the scatter at the places is noise: that grows less with the neighbourhood than edges do, of which
-/// twice the points see twice the variance.
-bool is_noise(const SpatialIndex& index, const Positions& places, double sigma, std::size_t m,
-              const Context& context) {
-  constexpr double kMostGrowth = 1.75, kDeviateOfHalf = 0;
-  double seen[2] = {};
-  for (int wide = 0; wide < 2; ++wide) {
-    const std::vector<double> open(places.size(), 0);
-    const std::vector<Scatter> all = fits(index, places, std::size_t(wide + 1) * m, open, context);
-    std::vector<Weighed> variances = comparable(all, areas(all), kDeviateOfHalf);
-    if (variances.empty()) return false;
-    seen[wide] = quantile(variances, 0.5);
+  noise.neighbours = start.m;
+  NoiseSites sites = listen(index, listening_places(index.points(), start.m), start, steps, context);
+  bound_sites(std::max(start.most, kNoNoise * noise.spacing), sites);
+  sum_up(sites, start, noise);
+  if (!(noise.sigma > 0)) return;
+  noise.at_sites = relative_noise(sites, noise.sigma, context);
+  for (double& v : noise.at_sites) v = noise.sigma * std::max(v, kStays);
+  noise.sites = std::move(sites.at);
+  const double first = noise.at_sites.front();
+  if (std::all_of(noise.at_sites.begin(), noise.at_sites.end(), [&](double v) { return v == first; })) {
+    noise.sites.resize(1);
+    noise.at_sites.resize(1);
   }
-  return seen[0] > sigma * sigma / 4 && seen[1] < kMostGrowth * seen[0];
-}
-
-/// The part of the cloud that scatters so much more than what was measured that its places said nothing
-/// (beyond the window) or something else. Its sigma is zero if there is none.
-Part measure_loud(const SpatialIndex& index, const Part& calm, const DepthSteps* steps, double spacing,
-                  const Context& context) {
-  constexpr double kLeastPart = 0.1, kMuch = 3, kLouder = 2;  // of the area; times the noise of the rest
-  constexpr double kMostlyNoise = 0.3;                        // most of s^2 that may be shape
-  constexpr std::size_t kAround = 24;
-  const Positions& at = calm.sites.at;
-  if (at.empty()) return {};
-  const std::vector<Scatter> all = fits(index, at, kAround, std::vector<double>(at.size(), 0), context);
-  const std::vector<double> areas_of = areas(all);
-  const double least = std::max(kMuch * calm.sigma, kNoNoise * spacing);
-  Positions where;
-  double area = 0, whole = 0;
-  for (std::size_t s = 0; s < at.size(); ++s) {
-    whole += areas_of[s];
-    if (!says(all[s]) || all[s].variance < least * least) continue;
-    where.push_back(at[s]);
-    area += areas_of[s];
-  }
-  if (where.size() < kFewestPoints || area < kLeastPart * whole) return {};
-  Part loud = measure_part(index, where, steps, context);
-  if (!(loud.sigma > kLouder * calm.sigma) || loud.shape > kMostlyNoise) return {};
-  if (!is_noise(index, search_places(where), loud.sigma, 2 * loud.m, context)) return {};
-  return loud;
-}
-
-/// The part's sites say what they heard; others that are at the same places no longer count.
-void take_over(const Part& loud, Positions& at, std::vector<double>& local) {
-  std::size_t kept = 0, next = 0;
-  for (std::size_t s = 0; s < at.size(); ++s) {
-    if (next < loud.sites.at.size() && at[s] == loud.sites.at[next]) {
-      ++next;
-      continue;
-    }
-    at[kept] = at[s];
-    local[kept] = local[s];
-    ++kept;
-  }
-  at.resize(kept);
-  local.resize(kept);
-  at.insert(at.end(), loud.sites.at.begin(), loud.sites.at.end());
-  local.insert(local.end(), loud.local.begin(), loud.local.end());
 }
 
 }  // namespace
@@ -223,32 +172,9 @@ NoiseField measure_noise(const SpatialIndex& index, const Context& context) {
   NoiseModel noise;
   noise.spacing = mean_spacing(index, context);
   if (n < kFewestPoints) return spread_noise(noise, index.points(), context);
-  Positions at;
-  std::vector<double> local;
-  const std::optional<DepthSteps> in_steps = find_depth_steps(index.points());
-  const DepthSteps* const steps = in_steps ? &*in_steps : nullptr;
-  Part part = measure_part(index, index.points(), steps, context);
-  if (in_steps) noise.step = in_steps->typical;
-  for (int louder = 0;; ++louder) {
-    noise.neighbours = part.m;
-    noise.shared = part.shared;
-    noise.sigma = part.sigma;
-    noise.shape = part.shape;
-    take_over(part, at, local);
-    if (louder == kMostLouder) break;
-    Part next = measure_loud(index, part, steps, noise.spacing, context);
-    if (!(next.sigma > 0)) break;
-    part = std::move(next);
-  }
-  if (noise.sigma > 0) {
-    for (double& v : local) v = std::max(v, kNothing * noise.sigma);
-    if (std::all_of(local.begin(), local.end(), [&](double v) { return v == local.front(); })) {
-      at.resize(1);
-      local.resize(1);
-    }
-    noise.sites = std::move(at);
-    noise.at_sites = std::move(local);
-  }
+  const std::optional<DepthSteps> steps = find_depth_steps(index.points());
+  if (steps) noise.step = steps->typical;
+  measure(index, steps ? &*steps : nullptr, noise, context);
   return spread_noise(std::move(noise), index.points(), context);
 }
 

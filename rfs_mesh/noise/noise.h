@@ -9,14 +9,14 @@
 /// - Shape that a quadric does not follow: it grows with the neighbourhood, and is taken off.
 /// - Depths in steps and noise that neighbours share: they grow, too, but stop growing (noise_sites.h,
 ///   shared_noise.h).
-/// - Parts that are much louder than the rest: measured for themselves. The figure is then theirs, since the
-///   rest has little to smooth.
+/// - Places that are louder than the rest: their windows open until they hold the scatter (noise_sites.h).
 /// - Scans have most points where their surface is nearest: places count by their area.
 ///
-/// The figure is the typical place's. The field is the mean of places that are near each other and face the
-/// same way, relative to the figure (noise_field.h), and says nothing of less than 7 to 10 % (what the
-/// measurement itself scatters by): on a cloud of even noise it is constant. Real scans agree with what a
-/// plane through their flat places leaves, within a factor of 1.7.
+/// The figure is that of the typical place, of those that have noise where a tenth of the cloud has. The
+/// field is the mean of places that are near each other and face the same way, relative to the figure
+/// (noise_field.h), and says nothing of less than 7 to 10 % (what the measurement itself scatters by): on a
+/// cloud of even noise it is constant. Real scans agree with what a plane through their flat places leaves,
+/// within a factor of 1.7.
 #pragma once
 
 #include <vector>
@@ -29,6 +29,15 @@ namespace rfsmooth::rfs_mesh {
 
 /// Spacings: noise below this cannot be told from detail.
 inline constexpr double kNoNoise = 0.05;
+
+/// Of the figure: the noise of places that are calmer than that, of which points stay where they are. It is
+/// above zero, since others' is told in units of it.
+inline constexpr double kStays = 1e-3;
+
+/// Whether points of so much noise stay. \param figure of the cloud.
+inline bool stays(double local, double figure) {
+  return local < 2 * kStays * figure;
+}
 
 /// The noise of a cloud, at every point.
 struct NoiseField : NoiseModel {

@@ -13,8 +13,8 @@ namespace {
 // Chosen on the development shapes with noise of 0.1 to 4 spacings, Gaussian and along the ray
 // (tests/bench/noise), but for the narrow pair: that is for clouds of which one half is louder
 // (noise_test.cpp).
-constexpr double kLeast = 0.2, kMost = 3;  // of the figure
 constexpr double kAlike = 2.5;
+constexpr double kCalmer = 2;  // times: what shows so much less than the mean around it is calm
 // How far below and above the mean a fit pulls in proportion: logarithm of variance. Edges and second sheets
 // are above, places within one step of the depths below.
 constexpr float kBelow = 2, kAbove = 1.5;
@@ -72,6 +72,13 @@ struct Heard {
     hear(sites);
   }
 
+  /// Those do not speak any more.
+  void silence(const std::vector<char>& sites) {
+    for (std::size_t i = 0; i < sites.size(); ++i)
+      if (sites[i] != 0) weight[Eigen::Index(i)] = 0;
+    find_mean();
+  }
+
  private:
   /// Enters values and weights.
   void hear(const NoiseSites& sites) {
@@ -84,7 +91,6 @@ struct Heard {
     }
     const double typical = said.empty() ? 0 : quantile(said, 0.5);
     if (!(typical > 0)) return;
-    std::vector<Weighed> all;
     for (std::size_t i = 0; i < n; ++i) {
       if (!speaks(sites, i)) continue;
       const auto k = Eigen::Index(i);
@@ -95,15 +101,23 @@ struct Heard {
       else if (variance[i] > sites.floor[i] * sites.floor[i])
         value[k] += float(1 / f + 1 / (3 * f * f));  // E log(chi-square / f), but for the sign
       weight[k] = float(sites.area[i] * f / (f + 2));
-      all.push_back({value[k], weight[k]});
     }
+    find_mean();
+  }
+
+  /// Enters the mean of those that say something.
+  void find_mean() {
+    std::vector<Weighed> all;
+    for (Eigen::Index i = 0; i < value.size(); ++i)
+      if (weight[i] > 0) all.push_back({value[i], weight[i]});
+    if (all.empty()) return;
     mean = float(quantile(all, 0.5));
     for (int round = 0; round < kFieldRounds; ++round)
       mean += (weight * pull(value - mean)).sum() / weight.sum();
   }
 
   static bool speaks(const NoiseSites& sites, std::size_t i) {
-    return sites.speaks[i] && (says(sites.fits[i]) || sites.floor[i] > 0);
+    return sites.speaks[i] && ((says(sites.fits[i]) && !sites.cut[i]) || sites.floor[i] > 0);
   }
 };
 
@@ -148,11 +162,10 @@ Means around(const Heard& heard, const Reach& reach, const Context& context) {
   return means;
 }
 
-}  // namespace
-
-std::vector<double> relative_noise(const NoiseSites& sites, double figure, const Context& context) {
+/// By site: the mean around it over the figure.
+std::vector<double> mean_around(const Heard& heard, const NoiseSites& sites, double figure,
+                                const Context& context) {
   std::vector<double> relative(sites.at.size(), 1);
-  const Heard heard(sites);
   if (!(heard.weight.sum() > 0)) return relative;
   Means best;
   for (const Reach& reach : kReaches) {
@@ -167,10 +180,25 @@ std::vector<double> relative_noise(const NoiseSites& sites, double figure, const
   const double typical = quantile(alike, 0.5);
   for (std::size_t i = 0; i < relative.size(); ++i) {
     // Half: of the standard deviation, not of the variance.
-    const double d =
-        std::clamp((best.value[Eigen::Index(i)] - typical) / 2, std::log(kLeast), std::log(kMost));
+    const double d = (best.value[Eigen::Index(i)] - typical) / 2;
     if (std::abs(d) > best.no_say) relative[i] = std::exp(d - best.no_say * best.no_say / d);
   }
+  return relative;
+}
+
+}  // namespace
+
+std::vector<double> relative_noise(const NoiseSites& sites, double figure, const Context& context) {
+  Heard heard(sites);
+  std::vector<double> relative = mean_around(heard, sites, figure, context);
+  const auto at_most = [&](std::size_t s) { return std::max(sites.most[s], sites.floor[s]) / figure; };
+  std::vector<char> calm(relative.size(), 0);
+  for (std::size_t s = 0; s < calm.size(); ++s) calm[s] = char(kCalmer * at_most(s) < relative[s]);
+  if (std::find(calm.begin(), calm.end(), 1) == calm.end()) return relative;
+  heard.silence(calm);
+  relative = mean_around(heard, sites, figure, context);
+  for (std::size_t s = 0; s < calm.size(); ++s)
+    if (calm[s] != 0) relative[s] = at_most(s);
   return relative;
 }
 

@@ -19,6 +19,10 @@
 /// Directions count far across the cloud or places count narrowly, (R, A) one of two pairs: the one that
 /// predicts better the fits that have no point in common with those asked.
 ///
+/// Where the mean is more than twice what is seen at a site without any window, the place is calm: it has
+/// what is seen there, and does not speak for others, which would have too little noise wherever they border
+/// on it.
+///
 /// Relative to the median of the sites whose neighbourhoods show the figure of the cloud within a factor
 /// of 2.5; what is below the measurement's own scatter counts as no difference. On the development shapes
 /// with noise along rays a constant field is off by 11 %, a median over the nearest sites by 10 % (it is as
@@ -33,7 +37,7 @@
 
 namespace rfsmooth::rfs_mesh {
 
-/// By site: its noise over the figure of the cloud, 0.2 to 3. \param figure typical of sites.sigma, positive.
+/// By site: its noise over the figure of the cloud. \param figure typical of sites.sigma, positive.
 /// O(sites^2). Parallel, deterministic.
 std::vector<double> relative_noise(const NoiseSites& sites, double figure, const Context& context);
 

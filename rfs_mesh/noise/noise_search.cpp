@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rfs_mesh/levels.h"
+
 namespace rfsmooth::rfs_mesh {
 
 namespace {
@@ -36,7 +38,7 @@ double open_window(double window, double seen) {
 /// What the calmer fifth of the places shows without a window: more than the noise where there is shape, so a
 /// bound. The neighbourhood doubles until the slab is flat in it, or until shape shows.
 double bound(const SpatialIndex& index, const Positions& places, const Context& context) {
-  constexpr double kShareOfRadius = 0.18, kGrowthOfNoise = 1.26, kShare = 0.2, kDeviate = -0.84;
+  constexpr double kGrowthOfNoise = 1.26, kShare = 0.2, kDeviate = -0.84;
   constexpr std::size_t kFirst = 24, kLast = 1536;
   const std::vector<double> none(places.size(), 0);
   double sigma = 0, least = 1;
@@ -52,7 +54,7 @@ double bound(const SpatialIndex& index, const Positions& places, const Context& 
       least = radius > 0 ? next / radius : 0;
       sigma = next;
     }
-    if (least <= kShareOfRadius) break;
+    if (least <= kFlatSlab) break;
   }
   return sigma;
 }
@@ -100,6 +102,14 @@ std::size_t narrowest_surface(const SpatialIndex& index, const Positions& places
 
 }  // namespace
 
+std::size_t widest_scatter(const SpatialIndex& index) {
+  return std::clamp(index.points().size() / kShareOfCloud, kNarrowestScatter, kWidest);
+}
+
+double scatter_reach(double sigma, double narrow) {
+  return std::hypot(kScatterWindow * sigma, std::max(0.9 * narrow, kFlat * sigma));
+}
+
 Positions search_places(const Positions& places) {
   return pick(places, std::min(places.size(), kSearchSites));
 }
@@ -109,8 +119,7 @@ NoiseStart search_noise(const SpatialIndex& index, Positions places, const Conte
   constexpr double kSettled = 1.03, kGrowing = 1.1;
   constexpr double kAboveBound = 1.15;
   constexpr int kMostSteps = 12;
-  const std::size_t n = index.points().size();
-  const std::size_t widest = std::clamp(n / kShareOfCloud, kNarrowestScatter, kWidest);
+  const std::size_t widest = widest_scatter(index);
   NoiseStart start;
   std::vector<Scatter> all = fits(index, places, start.m, std::vector<double>(places.size(), 0), context);
   start.narrowest = narrowest_surface(index, places, all, widest, context);
@@ -122,8 +131,7 @@ NoiseStart search_noise(const SpatialIndex& index, Positions places, const Conte
   start.most = kAboveBound * bound(index, places, context);
   double said = 0;
   for (int step = 0; step < kMostSteps && start.sigma > start.least; ++step) {
-    const double reach =
-        std::hypot(kScatterWindow * start.sigma, std::max(0.9 * narrow, kFlat * start.sigma));
+    const double reach = scatter_reach(start.sigma, narrow);
     while (5 * start.m / 4 <= widest && median_radius(index, places, start.m) < 0.97 * reach)
       start.m = 5 * start.m / 4;
     all = fits(index, places, start.m, std::vector<double>(places.size(), start.sigma), context);

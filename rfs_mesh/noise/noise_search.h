@@ -23,6 +23,13 @@ struct NoiseStart {
   std::size_t narrowest = kNarrowestScatter;  ///< least m that is a piece of surface and not of a line
 };
 
+/// Most neighbours of a fit in a cloud.
+std::size_t widest_scatter(const SpatialIndex& index);
+
+/// How far the ball of a fit must reach for noise sigma: to a patch of 2 sigma with all of the window above
+/// and below it. \param narrow radius of the ball of the least m.
+double scatter_reach(double sigma, double narrow);
+
 /// Places at which the search looks: up to 500 of the given ones, evenly over their order.
 Positions search_places(const Positions& places);
 

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "base/parallel.h"
+#include "rfs_mesh/levels.h"
 
 namespace rfsmooth::rfs_mesh {
 
@@ -24,6 +26,12 @@ constexpr double kLeastNarrow = 0.4, kLeastWide = 0.5;
 // Wider, the ball is still a little too narrow for the slab, and shows that much more at 2 m.
 constexpr double kOfTheSlab = 1.07;
 constexpr std::size_t kPlateauFrom = 24, kPlateauTo = 192;
+// The residuals within a window show its own variance if they are of a normal distribution that it was made
+// for, three times that if they fill it evenly, as those of a far louder one do: the mean of the two factors.
+constexpr double kEven = 3, kFilled = 1.73;
+constexpr double kLouder = 2;        // times the start: beyond, m is another
+constexpr double kFromOpen = 0.125;  // of the scatter without a window: the narrowest window
+constexpr int kOpeningRounds = 8;    // windows widen by up to 1.7 in each
 
 /// What scatter at `few` and `many` neighbours makes sure of. \param radius of the ball of the few.
 double plateau(double few, double many, double radius) {
@@ -47,7 +55,13 @@ class Listener {
         centre_(at),
         group_(at.size()),
         kept_(at.size(), KeptNeighbors(std::min(cloud.points().size(), 2 * start.m))),
+        narrow_(at.size(), 0),
+        open_(at.size(), 0),
+        widest_(widest_scatter(cloud)),
+        louder_(kLouder * start.sigma),
+        m(at.size(), start.m),
         sigma(at.size(), std::max(start.sigma, start.least)),
+        most(at.size(), std::numeric_limits<double>::infinity()),
         floor(at.size(), 0),
         speaks(at.size(), 0) {
     const SpatialIndex index(at_, context);
@@ -56,63 +70,140 @@ class Listener {
         context, at.size(), [&](std::size_t s) { index.nearest(at_[s], group, group_[s]); }, 64);
   }
 
-  /// Sets `floor`; no window is narrower.
-  void find_floor(const DepthSteps* steps) {
-    if (cloud_.points().size() < 2 * kPlateauTo) return;
+  /// Looks without windows: sets `open_`, `most` and `floor`; no window is narrower than that.
+  void look(const DepthSteps* steps) {
+    const std::size_t n = cloud_.points().size();
     const std::vector<double> open(at_.size(), 0);
-    const std::vector<Scatter> many = fits(cloud_, at_, kPlateauTo, open, context_, &kept_);
-    const std::vector<Scatter> few = fits(cloud_, at_, kPlateauFrom, open, context_, &kept_);
-    for_each_index(
-        context_, at_.size(),
-        [&](std::size_t s) {
-          std::vector<double> narrow, wide, radius, of_steps;
-          for (const Neighbor& q : group_[s]) {
-            radius.push_back(few[q.index].radius);
-            narrow.push_back(few[q.index].variance);
-            wide.push_back(many[q.index].variance);
-            if (steps != nullptr) of_steps.push_back(steps->sigma(at_[q.index], many[q.index].normal));
-          }
-          const double seen = std::sqrt(quantile(wide, kTypical));
-          floor[s] = plateau(std::sqrt(quantile(narrow, kTypical)), seen, quantile(radius, 0.5));
-          // A stack of slices has few depths, too, and none of the scatter.
-          if (steps != nullptr) floor[s] = std::max(floor[s], std::min(seen, quantile(of_steps, 0.5)));
-          sigma[s] = std::max(sigma[s], floor[s]);
-        },
-        64);
-  }
-
-  /// Fits m points with each site's own window and renews `sigma`; `move`: the places go to the surface.
-  /// Returns the fits.
-  std::vector<Scatter> hear(std::size_t m, bool move) {
-    std::vector<Scatter> all = fits(cloud_, centre_, m, sigma, context_, &kept_);
+    const std::size_t few_points = std::min(n, kPlateauFrom),
+                      wide = std::min(n, std::max(kPlateauFrom, m.front()));
+    const std::vector<Scatter> many =
+        n < 2 * kPlateauTo ? std::vector<Scatter>() : fits(cloud_, at_, kPlateauTo, open, context_, &kept_);
+    const std::vector<Scatter> few = fits(cloud_, at_, few_points, open, context_, &kept_);
+    const std::vector<Scatter> all =
+        wide == few_points ? few : fits(cloud_, at_, wide, open, context_, &kept_);
     for_each_index(
         context_, at_.size(),
         [&](std::size_t s) {
           std::vector<Scatter> around;
-          std::size_t saying = 0;
-          for (const Neighbor& q : group_[s]) {
-            around.push_back(all[q.index]);
-            if (around.back().freedom > 0) ++saying;
-          }
-          const double variance = mean_variance(around, kTypical, kTypicalDeviate);
-          speaks[s] = char(variance > 0 && double(saying) >= kMostSpeak * double(around.size()));
-          if (speaks[s]) sigma[s] = std::sqrt(variance);
-          if (move) centre_[s] = all[s].foot;
+          for (const Neighbor& q : group_[s]) around.push_back(few[q.index]);
+          open_[s] = std::sqrt(mean_variance(around, kTypical, kTypicalDeviate));
+          bound(s, all);
+          if (n >= 2 * kPlateauTo) find_floor(s, few, many, steps);
         },
         64);
+  }
+
+  /// One round that opens windows which are too narrow for their places; false if there are none. A place
+  /// far louder than the start fills its window evenly, and keeps so little of the weight that no fit says
+  /// anything. Where the second sheet of a wall is cut off, no more does, but the window is not full.
+  bool open_windows() {
+    const std::vector<Scatter> all = fits(cloud_, centre_, m, sigma, context_, &kept_);
+    const std::vector<double> before = sigma;
+    std::vector<char> opened(at_.size(), 0);
+    for_each_index(
+        context_, at_.size(),
+        [&](std::size_t s) {
+          std::vector<double> full, radius;
+          for (const Neighbor& q : group_[s]) {
+            const double window = before[q.index];
+            radius.push_back(all[q.index].radius);
+            if (all[q.index].within > 0) full.push_back(all[q.index].within / (window * window));
+          }
+          if (!hear_at(s, all)) {
+            const double typical = full.empty() ? kEven : quantile(full, 0.5);
+            opened[s] = char(typical > kFilled);
+            if (opened[s] != 0) sigma[s] = std::max(kFromOpen * open_[s], std::sqrt(typical) * before[s]);
+          }
+          if (sigma[s] > louder_ && widen(s, quantile(radius, 0.5))) opened[s] = 1;
+        },
+        64);
+    for_each_index(context_, at_.size(), [&](std::size_t s) { centre_[s] = all[s].foot; });
+    return std::find(opened.begin(), opened.end(), 1) != opened.end();
+  }
+
+  /// Fits `times` m points with each site's own window and renews `sigma`; `move`: the places go to the
+  /// surface. Returns the fits.
+  std::vector<Scatter> hear(std::size_t times, bool move) {
+    std::vector<std::size_t> points = m;
+    for (std::size_t& count : points) count = std::min(times * count, cloud_.points().size());
+    std::vector<Scatter> all = fits(cloud_, centre_, points, sigma, context_, &kept_);
+    for_each_index(
+        context_, at_.size(), [&](std::size_t s) { hear_at(s, all); }, 64);
+    if (move) for_each_index(context_, at_.size(), [&](std::size_t s) { centre_[s] = all[s].foot; });
     return all;
   }
 
  private:
+  /// Sets sigma and whether it is of this place; returns that.
+  bool hear_at(std::size_t s, const std::vector<Scatter>& all) {
+    std::vector<Scatter> around;
+    std::size_t saying = 0;
+    for (const Neighbor& q : group_[s]) {
+      around.push_back(all[q.index]);
+      if (around.back().freedom > 0) ++saying;
+    }
+    const double variance = mean_variance(around, kTypical, kTypicalDeviate);
+    speaks[s] = char(variance > 0 && double(saying) >= kMostSpeak * double(around.size()));
+    if (speaks[s] != 0) sigma[s] = std::sqrt(variance);
+    return speaks[s] != 0;
+  }
+
+  /// Sets `most` from what the nearest sites see without windows.
+  void bound(std::size_t s, const std::vector<Scatter>& open) {
+    constexpr double kNearlyAll = 0.75;
+    std::vector<double> radius, variance;
+    for (std::size_t k = 0; k < std::min(kSmallestGroup, group_[s].size()); ++k) {
+      const Scatter& fit = open[group_[s][k].index];
+      radius.push_back(fit.radius);
+      variance.push_back(fit.variance);
+    }
+    const double seen = std::sqrt(quantile(variance, kNearlyAll));
+    if (seen < kFlatSlab * quantile(radius, 0.5)) most[s] = seen;
+  }
+
+  /// Sets `floor` from what is seen without windows.
+  void find_floor(std::size_t s, const std::vector<Scatter>& few, const std::vector<Scatter>& many,
+                  const DepthSteps* steps) {
+    std::vector<double> narrow, wide, radius, of_steps;
+    for (const Neighbor& q : group_[s]) {
+      radius.push_back(few[q.index].radius);
+      narrow.push_back(few[q.index].variance);
+      wide.push_back(many[q.index].variance);
+      if (steps != nullptr) of_steps.push_back(steps->sigma(at_[q.index], many[q.index].normal));
+    }
+    const double seen = std::sqrt(quantile(wide, kTypical));
+    floor[s] = plateau(std::sqrt(quantile(narrow, kTypical)), seen, quantile(radius, 0.5));
+    // A stack of slices has few depths, too, and none of the scatter.
+    if (steps != nullptr) floor[s] = std::max(floor[s], std::min(seen, quantile(of_steps, 0.5)));
+    sigma[s] = std::max(sigma[s], floor[s]);
+  }
+
+  /// Takes more points where their ball is narrow for the window, as search_noise does for the whole cloud.
+  /// False if they are enough.
+  bool widen(std::size_t s, double radius) {
+    if (narrow_[s] == 0) narrow_[s] = radius * std::sqrt(double(kNarrowestScatter) / double(m[s]));
+    const double reach = scatter_reach(sigma[s], narrow_[s]);
+    if (!(radius < 0.97 * reach) || m[s] >= widest_) return false;
+    const double more = std::clamp(reach * reach / (radius * radius), 1.25, 2.0);
+    m[s] = std::min(widest_, std::size_t(more * double(m[s])));
+    return true;
+  }
+
   const SpatialIndex& cloud_;
   const Context& context_;
   const Positions& at_;
   Positions centre_;
   std::vector<std::vector<Neighbor>> group_;
   std::vector<KeptNeighbors> kept_;
+  std::vector<double> narrow_;  ///< radius of the ball of the fewest neighbours; 0: not asked for yet
+  std::vector<double> open_;    ///< what the fits around show without windows, world units
+  std::size_t widest_;
+  double louder_;
 
  public:
+  std::vector<std::size_t> m;
   std::vector<double> sigma;  ///< around each site; as before where it does not speak
+  std::vector<double> most;   ///< infinite: not known
   std::vector<double> floor;
   std::vector<char> speaks;
 };
@@ -125,24 +216,29 @@ Positions listening_places(const Positions& places, std::size_t m) {
 
 NoiseSites listen(const SpatialIndex& index, Positions at, const NoiseStart& start, const DepthSteps* steps,
                   const Context& context) {
-  const std::size_t n = index.points().size();
   NoiseSites sites;
   sites.at = std::move(at);
   Listener listener(index, sites.at, start, context);
-  listener.find_floor(steps);
-  for (int round = 0; round < 3; ++round) listener.hear(start.m, true);
-  sites.fits = listener.hear(start.m, false);
+  listener.look(steps);
+  for (int round = 0; round < kOpeningRounds && listener.open_windows(); ++round)
+    ;
+  for (int round = 0; round < 3; ++round) listener.hear(1, true);
+  const std::vector<double> windows = listener.sigma;
+  sites.fits = listener.hear(1, false);
+  for (std::size_t s = 0; s < windows.size(); ++s)
+    sites.cut.push_back(char(sites.fits[s].within > kFilled * windows[s] * windows[s]));
   sites.area = areas(sites.fits);
   sites.sigma = listener.sigma;
   sites.speaks = listener.speaks;
   sites.floor = listener.floor;
-  for (int round = 0; round < 2; ++round) listener.hear(std::min(n, 2 * start.m), false);
+  sites.most = listener.most;
+  for (int round = 0; round < 2; ++round) listener.hear(2, false);
 
-  const double least = start.m == kNarrowestScatter ? kLeastNarrow : kLeastWide;
   sites.shape.assign(sites.at.size(), 0);
   for (std::size_t s = 0; s < sites.at.size(); ++s) {
     const double a = sites.sigma[s] * sites.sigma[s];
-    const double of_the_slab = start.m == kNarrowestScatter ? 1 : kOfTheSlab;
+    const bool narrow = listener.m[s] == kNarrowestScatter;
+    const double of_the_slab = narrow ? 1 : kOfTheSlab, least = narrow ? kLeastNarrow : kLeastWide;
     const double growth = std::max(0.0, listener.sigma[s] * listener.sigma[s] - of_the_slab * a);
     const double floor = listener.floor[s];
     const double left = std::max({least * a, a - growth / (start.shape_grows - 1), floor * floor});

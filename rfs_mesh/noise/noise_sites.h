@@ -1,8 +1,16 @@
 /// The noise around up to 2,000 sites of a cloud.
 ///
 /// Around a site speaks the mean of its nearest sites' fits, each with the site's own window (scatter.h),
-/// four rounds from the figure to start from. Then two things are told apart that both make the scatter s(m)
-/// grow with the number of neighbours m:
+/// from the figure to start from. Where that window is too narrow it cuts off so much that no fit says
+/// anything. So it does where a wall has its second sheet beside it; but there what is left within the window
+/// scatters as little as the window was made for, while louder noise fills it evenly, at three times that
+/// variance. Windows that are filled open to what they show, in up to eight rounds, and at more than twice
+/// the start their fits take more points, as many as such noise needs.
+///
+/// Without a window the scatter is more than the noise, so that of nearly all of the dozen nearest sites is a
+/// bound, where their balls hold the slab.
+///
+/// Then two things are told apart that both make the scatter s(m) grow with the number of neighbours m:
 ///
 /// - Shape that a quadric does not follow grows without an end: s^2(m) = sigma^2 + b m to first order, so
 ///   sigma^2 = 2 s^2(m) - s^2(2 m), at most 0.6 of s^2(m) taken off. Where noise is shared and m wide, only
@@ -26,6 +34,8 @@ struct NoiseSites {
   std::vector<double> shape;  ///< part of s^2(m) taken off as shape, 0 to 0.6
   std::vector<double> area;   ///< how much the site counts, 0 to 1
   std::vector<char> speaks;   ///< whether sigma is of this place; else it is what came nearest to it
+  std::vector<char> cut;      ///< whether the site's own fit fills its window, which is its neighbours'
+  std::vector<double> most;   ///< what is seen without windows around it, world units; infinite: not known
   std::vector<double> floor;  ///< what depths in steps or shared noise make sure of, world units; 0: nothing
   std::vector<Scatter> fits;  ///< to the m nearest of the site by itself
 };

@@ -75,11 +75,17 @@ Positions pick(const Positions& points, std::size_t count) {
 std::vector<Scatter> fits(const SpatialIndex& index, const Positions& places, std::size_t m,
                           const std::vector<double>& sigma, const Context& context,
                           std::vector<KeptNeighbors>* kept) {
+  return fits(index, places, std::vector<std::size_t>(places.size(), m), sigma, context, kept);
+}
+
+std::vector<Scatter> fits(const SpatialIndex& index, const Positions& places,
+                          const std::vector<std::size_t>& m, const std::vector<double>& sigma,
+                          const Context& context, std::vector<KeptNeighbors>* kept) {
   std::vector<Scatter> all(places.size());
   for_blocks(context, places.size(), 16, [&](std::size_t begin, std::size_t end) {
     ScatterFit fit;
     for (std::size_t s = begin; s < end; ++s)
-      all[s] = fit(index, places[s], m, sigma[s], kept != nullptr ? &(*kept)[s] : nullptr);
+      all[s] = fit(index, places[s], m[s], sigma[s], kept != nullptr ? &(*kept)[s] : nullptr);
   });
   return all;
 }

@@ -51,5 +51,9 @@ Positions pick(const Positions& points, std::size_t count);
 std::vector<Scatter> fits(const SpatialIndex& index, const Positions& places, std::size_t m,
                           const std::vector<double>& sigma, const Context& context,
                           std::vector<KeptNeighbors>* kept = nullptr);
+/// With m of each.
+std::vector<Scatter> fits(const SpatialIndex& index, const Positions& places,
+                          const std::vector<std::size_t>& m, const std::vector<double>& sigma,
+                          const Context& context, std::vector<KeptNeighbors>* kept = nullptr);
 
 }  // namespace rfsmooth::rfs_mesh

@@ -37,12 +37,6 @@ constexpr double kLeastInCell = 0.3;  // sum of squared weights
 // By so much all points may be below what some of them show: four deviations of the variance of a hundred.
 constexpr double kByChance = 1.6;
 
-Vector6 quadric(const SheetPoint& p) {
-  Vector6 f;
-  f << 1, p.u, p.v, p.u * p.u, p.u * p.v, p.v * p.v;
-  return f;
-}
-
 double side(const SheetPoint& p) {
   return 2 * p.upper - 1;
 }

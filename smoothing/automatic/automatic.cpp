@@ -67,6 +67,26 @@ float own_of_all(float own, float shared) {
   return own * shared / (1 + own * (shared - 1));
 }
 
+/// (sigma / sigma_i)^2, 0 of points that stay; empty if the noise is the same everywhere.
+std::vector<float> precisions(const rfs_mesh::NoiseField& noise, const Context& context) {
+  const std::vector<double>& local = noise.local;
+  if (std::all_of(local.begin(), local.end(), [&](double s) { return s == local.front(); })) return {};
+  std::vector<float> precision(local.size());
+  for_each_index(context, local.size(), [&](std::size_t i) {
+    const double share = noise.sigma / local[i];
+    precision[i] = rfs_mesh::stays(local[i], noise.sigma) ? 0 : float(share * share);
+  });
+  return precision;
+}
+
+/// From means of risks in units of each point's own noise those of each point: what neighbours tell of the
+/// error counts by how well they know it. `around`: the same means of the precisions.
+void in_own_units(const std::vector<float>& precision, const std::vector<float>& around,
+                  std::vector<float>& mean, const Context& context) {
+  for_each_index(context, mean.size(),
+                 [&](std::size_t i) { mean[i] *= around[i] > 0 ? precision[i] / around[i] : 0; });
+}
+
 /// What the patches of one scale say.
 struct Scale {
   std::size_t members;
@@ -78,8 +98,8 @@ struct Scale {
 
 /// `before` holds the risk of the scale before it.
 Scale try_scale(const HeightField& field, std::size_t members, const std::vector<Index>& seeds,
-                const rfs_mesh::NoiseField& noise, std::vector<float>& before, Patches::Memory& memory,
-                const Context& context) {
+                const rfs_mesh::NoiseField& noise, const std::vector<float>& precision,
+                std::vector<float>& before, Patches::Memory& memory, const Context& context) {
   const std::vector<double>& sigma = noise.local;
   const auto shared = float(noise.shared);
   const Patches patches(field, members, seeds, sigma, memory, context);
@@ -90,11 +110,16 @@ Scale try_scale(const HeightField& field, std::size_t members, const std::vector
     const float e = (field.local()[i].height - prediction.height[i]) / float(sigma[i]);
     const float of_all = own_of_all(prediction.own[i], shared);
     const float risk = prediction.covered[i] != 0 ? e * e + 2 * of_all - 1 : before[i];
-    scale.worse[i] = risk - before[i];
+    scale.worse[i] = precision.empty() || precision[i] > 0 ? risk - before[i] : 0;
     before[i] = risk;
   });
-  if (double(members) >= double(kOwnMean) * noise.shared)
+  if (double(members) >= double(kOwnMean) * noise.shared) {
     scale.mean = patches.mean(patches.mean(scale.worse, context), context);
+    if (!precision.empty()) {
+      const std::vector<float> around = patches.mean(patches.mean(precision, context), context);
+      in_own_units(precision, around, scale.mean, context);
+    }
+  }
   return scale;
 }
 
@@ -133,11 +158,15 @@ std::vector<ScalesSay> tell(const std::vector<Scale>& scales, std::size_t n, con
 /// The mixture of all scales by their evidence, and of `first`, the data or what stands for them. `told`: for
 /// the learned step; null: not taken.
 void mix(const HeightField& field, std::vector<float> first, std::vector<Scale> scales, double shared,
-         std::vector<float>& height, std::vector<float>& own, std::vector<ScalesSay>* told,
-         std::vector<double>& shares, const Context& context) {
+         const std::vector<float>& precision, std::vector<float>& height, std::vector<float>& own,
+         std::vector<ScalesSay>* told, std::vector<double>& shares, const Context& context) {
   const auto alone = float(1 / shared);
   Mixture mixture(std::move(first));
   average_near(field, scales, context);
+  if (!precision.empty()) {
+    const std::vector<float> around = field.local_mean(field.local_mean(precision, context), context);
+    for (Scale& scale : scales) in_own_units(precision, around, scale.worse, context);
+  }
   if (told != nullptr) *told = tell(scales, field.size(), context);
   for (Scale& scale : scales) {
     // A wide patch is judged over its own width, but must not be far off anywhere near the point either: the
@@ -154,7 +183,11 @@ void mix(const HeightField& field, std::vector<float> first, std::vector<Scale> 
                 context);
     scale = {};
   }
-  mixture.average(height, own, shares, context);
+  std::vector<float> say(field.size(), 1);
+  // A point counts by its variance: it has that much to lose.
+  for_each_index(context, precision.size(),
+                 [&](std::size_t i) { say[i] = precision[i] > 0 ? std::min(1.0F, 1 / precision[i]) : 0; });
+  mixture.average(height, own, shares, say, context);
 }
 
 /// The variance that the residuals tell, over that which was measured: the median over places of
@@ -220,7 +253,8 @@ std::unique_ptr<HeightField> raise_field(const Mesh& mesh, double sigma, Automat
 /// The ladder of scales.
 class Ladder {
  public:
-  Ladder(const HeightField& field, const rfs_mesh::NoiseField& noise) : field_(field), noise_(noise) {
+  Ladder(const HeightField& field, const rfs_mesh::NoiseField& noise, const std::vector<float>& precision)
+      : field_(field), noise_(noise), precision_(precision) {
     risk_.assign(field.size(), 1);  // of the data themselves: no error, all their own
   }
 
@@ -234,7 +268,7 @@ class Ladder {
 
   void add(const Statistics::Scale& how, const Context& context) {
     const std::size_t members = make_way(how, context);
-    scales.push_back(try_scale(field_, members, seeds_, noise_, risk_, memory_, context));
+    scales.push_back(try_scale(field_, members, seeds_, noise_, precision_, risk_, memory_, context));
   }
 
   /// The heights as the narrowest patches see them; the data where there are none. Before any scale.
@@ -269,6 +303,7 @@ class Ladder {
 
   const HeightField& field_;
   const rfs_mesh::NoiseField& noise_;
+  const std::vector<float>& precision_;
   std::vector<float> risk_;
   Patches::Memory memory_;
   std::vector<Index> seeds_;
@@ -286,9 +321,10 @@ struct Pass {
 
 /// All scales of a field, and in `first` the heights that stand for the data. `whole`: how those of the whole
 /// cloud are made; what is not there is entered.
-std::vector<Scale> try_scales(const HeightField& field, const rfs_mesh::NoiseField& noise, double spacing,
-                              Statistics::Pass& whole, std::vector<float>& first, const Context& context) {
-  Ladder ladder(field, noise);
+std::vector<Scale> try_scales(const HeightField& field, const rfs_mesh::NoiseField& noise,
+                              const std::vector<float>& precision, double spacing, Statistics::Pass& whole,
+                              std::vector<float>& first, const Context& context) {
+  Ladder ladder(field, noise, precision);
   const double share = noise.sigma / spacing;
   const double narrowest = std::max(kFewest * noise.shared, kNarrowest * share * share);
   const double widest = std::max(kWidest, std::ldexp(narrowest, kSeeing));
@@ -308,7 +344,8 @@ std::vector<Scale> try_scales(const HeightField& field, const rfs_mesh::NoiseFie
 Pass smooth_heights(const HeightField& field, const rfs_mesh::NoiseField& noise, double spacing, bool learned,
                     Statistics::Pass& whole, const Context& context) {
   std::vector<float> first;
-  std::vector<Scale> scales = try_scales(field, noise, spacing, whole, first, context);
+  const std::vector<float> precision = precisions(noise, context);
+  std::vector<Scale> scales = try_scales(field, noise, precision, spacing, whole, first, context);
   Pass pass;
   const Scale& seeing = scales[std::min(std::size_t(kSeeing), scales.size() - 1)];
   pass.members_seeing = seeing.members;
@@ -317,7 +354,7 @@ Pass smooth_heights(const HeightField& field, const rfs_mesh::NoiseField& noise,
     pass.wide = scale.prediction.height;
     if (scale.members >= kOwnMean && &scale != &scales.front()) break;
   }
-  mix(field, std::move(first), std::move(scales), noise.shared, pass.height, pass.own,
+  mix(field, std::move(first), std::move(scales), noise.shared, precision, pass.height, pass.own,
       learned ? &pass.told : nullptr, whole.shares, context);
   return pass;
 }
@@ -336,6 +373,40 @@ std::vector<float> off_neighbours(const HeightField& field, const Pass& pass,
   at_most = field.local_mean(at_most, context);
   for_each_index(context, off.size(), [&](std::size_t i) { off[i] -= at_most[i]; });
   return off;
+}
+
+/// How many times more of the neighbours of points that lie far off do so, too, than of all points. 1 for
+/// tails, which are each point's own; beside shape, and where the noise is louder than was measured, far
+/// points stand together.
+double far_together(const HeightField& field, const std::vector<float>& off, const Context& context) {
+  constexpr float kFar = 3;                                                 // sigma
+  const auto far = [&](std::size_t i) { return std::abs(off[i]) > kFar; };  // not if unknown
+  // Points, far ones, their neighbours, and far ones of these.
+  const Eigen::Vector4d sums =
+      sum_over(context, field.size(), Eigen::Vector4d(0, 0, 0, 0), [&](std::size_t i) {
+        Eigen::Vector4d one(1, 0, 0, 0);
+        if (!far(i)) return one;
+        one[1] = 1;
+        for (const Index j : field.neighbors()[i]) one += Eigen::Vector4d(0, 0, 1, far(j) ? 1 : 0);
+        return one;
+      });
+  return sums[2] > 0 ? sums[3] * sums[0] / (sums[1] * sums[2]) : 0;
+}
+
+/// Divides by what the neighbours' tell where they are farther off, too, than the noise has it.
+void relate_to_neighbours(const HeightField& field, std::vector<float>& relative, std::vector<float>& least,
+                          const Context& context) {
+  constexpr float kMost = 2, kMeanOfNormal = 0.766F;  // the mean of min(|x|, 2), x normal
+  std::vector<float> typical(field.size());
+  for_each_index(context, typical.size(), [&](std::size_t i) {
+    typical[i] = std::isnan(relative[i]) ? kMeanOfNormal : std::min(kMost, std::abs(relative[i]));
+  });
+  typical = field.local_mean(typical, context);
+  for_each_index(context, typical.size(), [&](std::size_t i) {
+    const float times = std::max(1.0F, typical[i] / kMeanOfNormal);
+    relative[i] /= times;
+    least[i] /= times;
+  });
 }
 
 /// Points of the tails that a first smoothing left beside the surface, since their neighbours are each other,
@@ -361,6 +432,8 @@ Tails tame(const HeightField& field, const Pass& pass, const Mesh& mesh, Positio
            rfs_mesh::NoiseField& noise, std::optional<Statistics::Tails>& whole, const Context& context) {
   if (rfs_mesh::rounding_noise(noise.step) > noise.sigma) return {};  // terraces stand out as tails do
   constexpr float kMostItsOwn = 0.8F;
+  constexpr double kByChance = 1.6;  // far points together: tails have 0.7 to 1.1 in ten thousand points
+  constexpr double kGroups = 5;      // the same: groups of points that share what they are off by
   const std::vector<float> off = off_neighbours(field, pass, noise, context);
   constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
   std::vector<float> relative(off.size(), kUnknown), least(off.size(), kUnknown);
@@ -373,6 +446,9 @@ Tails tame(const HeightField& field, const Pass& pass, const Mesh& mesh, Positio
     // Where the mixture had to be narrow, a wide patch says little.
     least[i] = std::min(std::abs(relative[i]), std::abs(without) / sigma);
   });
+  const double together = far_together(field, least, context);
+  if (noise.shared > 1 && together > kGroups) return {};
+  if (together > kByChance) relate_to_neighbours(field, relative, least, context);
   if (!whole) whole = find_tails(relative, least);
   const Tails tails{*whole};
   if (!(tails.share > 0)) return tails;

@@ -16,6 +16,8 @@
 ///    points can judge), and the scales are mixed with weights exp(-size of the evidence) (Leung and Barron
 ///    2006) times how well each serves the cloud as a whole (mixture.h): smooth places take wide patches,
 ///    edges and thin parts narrow ones, and where every patch is worse than the data the data stay.
+///    Where the noise differs from place to place, the risks that a mean is of count by 1 / sigma^2, and
+///    those of points that stay, having none, do not: in units of their noise any patch would be far off.
 /// 4. Walls thinner than the noise, which look like one sheet with more of it, are taken apart where the
 ///    cloud as a whole says that they are walls (hidden_sheets.h); those of a few sigma get their two sheets
 ///    fitted together (thin_walls.h). Where neither found anything but patches contradict each other, a
@@ -32,7 +34,9 @@
 /// 16 points are the first candidate, so that where every wide patch is worse the points are left calm.
 ///
 /// Where some points are several times noisier than their neighbours (tails.h), steps 1 to 3 are done twice,
-/// the second time with those drawn towards the surface that the others show.
+/// the second time with those drawn towards the surface that the others show. Such points are off each by
+/// itself; where far points stand together, it is shape, or noise that was missed there, and what their
+/// neighbours are off by is taken off first.
 ///
 /// One strength for the whole cloud cannot do this: on the development shapes the best single c differs by
 /// 100 times between the flat and the thin parts of one cloud. Points move along the guide's normals from the

@@ -262,7 +262,7 @@ void slide_back(Positions& points, const Positions& before, double share, rfs_me
   points = std::move(back);
 }
 
-Equalized equalize(Positions& points, const Positions& before, const std::vector<double>& sigma,
+Equalized equalize(Positions& points, const Positions& before, const rfs_mesh::NoiseField& noise,
                    double spacing, rfs_mesh::NeighborTable table, const Context& context) {
   const std::size_t n = points.size();
   if (n <= kNeighbourhood) return {};
@@ -282,8 +282,9 @@ Equalized equalize(Positions& points, const Positions& before, const std::vector
   Positions now(n);
   std::vector<Eigen::Vector2f> start(n), moved(n, Eigen::Vector2f::Zero());
   for_each_index(context, n, [&](std::size_t i) {
-    const double noise = sigma[i] / (kShareUpTo * spacing);
-    const auto given_back = float(kShare / (1 + noise * noise * noise * noise));
+    const double calm = std::min(1.0, noise.local[i] / noise.sigma),
+                 much = noise.local[i] / (kShareUpTo * spacing);
+    const auto given_back = float((1 - (1 - kShare) * calm * calm) / (1 + much * much * much * much));
     start[i] = given_back * frames[i].offset((before[i] - points[i]).cast<float>());
     now[i] = frames[i].slide(points[i], start[i]);
   });
@@ -295,7 +296,7 @@ Equalized equalize(Positions& points, const Positions& before, const std::vector
       const float reach = kReach * f.distance;
       Eigen::Vector2f force = f.offset(push(now, now[i], near[i].begin(), reach));
       if (f.slides) force = f.along * f.along.dot(force);
-      const double share = sigma[i] / double(f.distance);
+      const double share = noise.local[i] / double(f.distance);
       moved[i] += float(std::min(kStep, kGain * share * share)) * reach * force;
       const auto limit = float(kMostMove * std::min(double(f.distance), spacing));
       if (const float length = moved[i].norm(); length > limit) moved[i] *= limit / length;

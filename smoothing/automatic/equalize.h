@@ -4,7 +4,10 @@
 /// Where noise sigma is small against the spacing h, where a point was says more of where it belongs, so
 /// first it goes back by a share of its tangential offset,
 ///
-///     0.75 / (1 + (sigma / 1.6 h)^4).
+///     (1 - min(1, sigma / sigma_0)^2 / 4) / (1 + (sigma / 1.6 h)^4),
+///
+/// sigma_0 the noise of the cloud as a whole, for which the fairing was made: calmer points went with the
+/// others, and go back all the way.
 ///
 /// Then every point is pushed along its tangent plane by the neighbours that are too near,
 ///
@@ -26,6 +29,7 @@
 
 #include <rfsmooth/context.h>
 
+#include "rfs_mesh/noise/noise.h"
 #include "rfs_mesh/points.h"
 #include "rfs_mesh/search/neighbors.h"
 
@@ -43,13 +47,13 @@ struct Equalized {
 void slide_back(Positions& points, const Positions& before, double share, rfs_mesh::NeighborTable near,
                 const Context& context);
 
-/// Moves `points` (n x 3, near a surface), which noise with standard deviation `sigma` (n, world units) had
+/// Moves `points` (n x 3, near a surface), which `noise` (local: n) had
 /// moved; `before` (n x 3): where they were then. By pushing no point moves farther along the surface than
 /// half the local distance between points or half of `spacing` (world units). `near`: n x 24 or more (up to
 /// 256), neighbours of every point where it was about as near to them as now, say on the guide: the 24
 /// nearest are picked among those (clouds of 24 points or fewer stay as they are). O(n), parallel, the same
 /// bits for any number of threads. \throw std::invalid_argument if there are fewer.
-Equalized equalize(Positions& points, const Positions& before, const std::vector<double>& sigma,
+Equalized equalize(Positions& points, const Positions& before, const rfs_mesh::NoiseField& noise,
                    double spacing, rfs_mesh::NeighborTable near, const Context& context);
 
 }  // namespace rfsmooth::smoothing

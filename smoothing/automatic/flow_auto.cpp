@@ -28,11 +28,10 @@ rfs_mesh::NoiseField scaled(rfs_mesh::NoiseField noise, double sigma, double str
     if (strength > 1) return strength * std::max(s, hidden);
     return s > hidden ? strength * s : 0.0;
   };
-  constexpr double kStays = 1e-3;  // of the figure: so little that a point cannot move to speak of
   const double measured = noise.sigma;
   noise.sigma = of(sigma);
   for (double& local : noise.local)
-    local = std::max(of(measured > 0 ? local * sigma / measured : sigma), kStays * noise.sigma);
+    local = std::max(of(measured > 0 ? local * sigma / measured : sigma), rfs_mesh::kStays * noise.sigma);
   return noise;
 }
 
@@ -105,8 +104,7 @@ std::optional<AutomaticReport> smooth_automatically(Mesh& mesh, const AutomaticO
   report.measured = summary;
   if (report.guide_strength > 0) {
     if (options.equalize) {
-      const Equalized moved =
-          equalize(mesh.positions, before, noise.local, spacing, std::move(near), context);
+      const Equalized moved = equalize(mesh.positions, before, noise, spacing, std::move(near), context);
       report.equalized = moved.rms;
       report.equalized_most = moved.largest;
     } else {  // back to where the guide took them from, so that they move along normals only

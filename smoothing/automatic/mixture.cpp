@@ -38,7 +38,7 @@ void Mixture::add(std::vector<float> height, std::vector<float> own, std::vector
 }
 
 void Mixture::average(std::vector<float>& height, std::vector<float>& own, std::vector<double>& found,
-                      const Context& context) {
+                      const std::vector<float>& say, const Context& context) {
   const std::size_t n = evidence_.size(), count = candidates_.size();
   const auto rows = Eigen::Index(count);
   // From here on e^(evidence - the largest): the exponential is the dear part.
@@ -53,13 +53,15 @@ void Mixture::average(std::vector<float>& height, std::vector<float>& own, std::
       w[Eigen::Index(s)] = shares[Eigen::Index(s)] * double(candidates_[s].evidence[i]);
     return CandidateWeights(w * (1 / w.sum()));
   };
+  const double votes = sum_over(context, n, 0.0, [&](std::size_t i) { return double(say[i]); });
   CandidateWeights shares = CandidateWeights::Constant(rows, 1 / double(count));
   const bool known = found.size() == count;
   if (known) shares = Eigen::Map<const Eigen::ArrayXd>(found.data(), rows);
   for (int round = 0; !known && round < kMixtureRounds; ++round) {
-    const CandidateWeights sum = sum_over(context, n, CandidateWeights(CandidateWeights::Zero(rows)),
-                                          [&](std::size_t i) { return weights(i, shares); });
-    shares = sum.max(1) / double(n);  // a scale that no point wants may still be right for one
+    const CandidateWeights sum =
+        sum_over(context, n, CandidateWeights(CandidateWeights::Zero(rows)),
+                 [&](std::size_t i) { return CandidateWeights(double(say[i]) * weights(i, shares)); });
+    shares = sum.max(1) / votes;  // a scale that no point wants may still be right for one
   }
   found.assign(shares.data(), shares.data() + rows);
   height.resize(n);

@@ -31,9 +31,9 @@ class Mixture {
 
   /// Replaces `height` and `own` (n) by the averages; the mixture is used up. O(n) times the number of
   /// candidates; parallel, the same bits for any number of threads. \param shares pi_s, taken if there is one
-  /// for each candidate, else found and entered.
+  /// for each candidate, else found and entered. \param say n: how much each point counts for the shares.
   void average(std::vector<float>& height, std::vector<float>& own, std::vector<double>& shares,
-               const Context& context);
+               const std::vector<float>& say, const Context& context);
 
  private:
   struct Candidate {

@@ -38,6 +38,8 @@ NoiseSites room(
     sites.floor.push_back(0);
     sites.area.push_back(1);
     sites.speaks.push_back(1);
+    sites.cut.push_back(0);
+    sites.most.push_back(std::numeric_limits<double>::infinity());
   }
   return sites;
 }
@@ -85,6 +87,36 @@ TEST(NoiseField, DoesNotHearSitesThatDoNotSpeakNorThoseFarAbove) {
   }
   for (std::size_t s = 2; s < kSites; s += 7) sites.fits[s] = {};
   EXPECT_LT(error(sites, 1, even), 0.03);
+}
+
+TEST(NoiseField, DoesNotHearSitesWhoseWindowIsTheirNeighbours) {
+  const auto even = [](const auto&, const auto&) { return 1.0; };
+  NoiseSites sites = room(even);
+  for (std::size_t s = 0; s < kSites; s += 2) {
+    sites.fits[s].variance = 0.1;
+    sites.cut[s] = 1;
+  }
+  EXPECT_LT(error(sites, 1, even), 0.03);
+}
+
+// One half is exact and its sites know: they are as calm as what is seen there, and the others as loud as
+// ever up to the border.
+TEST(NoiseField, CalmPlacesAreWhatIsSeenThereAndDoNotSpeakForLoudOnes) {
+  const auto half = [](const auto& at, const auto&) { return at.x() > 0 ? 1.0 : 0.01; };
+  NoiseSites sites = room(half);
+  for (std::size_t s = 0; s < kSites; ++s)
+    if (sites.at[s].x() <= 0) sites.most[s] = 0.01;
+  const std::vector<double> relative = relative_noise(sites, 1, Context());
+  std::size_t beside = 0;
+  for (std::size_t s = 0; s < kSites; ++s) {
+    if (sites.at[s].x() <= 0) {
+      EXPECT_EQ(relative[s], 0.01) << s;
+    } else if (sites.at[s].x() < 0.1) {
+      ++beside;
+      EXPECT_NEAR(relative[s], 1, 0.2) << s;
+    }
+  }
+  EXPECT_GT(beside, 20U);
 }
 
 TEST(NoiseField, OfACrowdOnASmallObjectIsNotThatOfTheRoom) {
@@ -145,8 +177,8 @@ TEST(NoiseField, ScalesWithTheCloudAndStaysInItsRange) {
                             b = relative_noise(there, 1024, Context());
   for (std::size_t s = 0; s < kSites; ++s) {
     EXPECT_NEAR(a[s], b[s], 1e-3) << s;
-    EXPECT_GE(a[s], 0.2);
-    EXPECT_LE(a[s], 3);
+    EXPECT_GT(a[s], 0.02);
+    EXPECT_LT(a[s], 50);
   }
 }
 

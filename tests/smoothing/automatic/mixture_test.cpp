@@ -15,7 +15,7 @@ TEST(Mixture, AloneTheDataAreTheirOwnMixture) {
   const Values data{1, -2, 3};
   Values height, own;
   std::vector<double> shares;
-  Mixture(data).average(height, own, shares, {});
+  Mixture(data).average(height, own, shares, Values(3, 1), {});
   EXPECT_EQ(height, data);
   EXPECT_EQ(own, Values(3, 1));
 }
@@ -26,7 +26,7 @@ TEST(Mixture, LargeEvidenceDecidesAndEvidenceAddsUpAlongTheChain) {
   mixture.add({2, 2, 2}, {0.1F, 0.1F, 0.1F}, {60, 60, -60}, {});  // in all: 120, 0, 0
   Values height, own;
   std::vector<double> shares;
-  mixture.average(height, own, shares, {});
+  mixture.average(height, own, shares, Values(3, 1), {});
   EXPECT_NEAR(height[0], 2, 1e-9);
   EXPECT_NEAR(own[0], 0.1, 1e-6);
   EXPECT_GT(height[1], 0);  // the data and the second candidate, by their shares in the cloud
@@ -40,7 +40,7 @@ TEST(Mixture, WhereThereIsNoPredictionTheOthersServe) {
   mixture.add({2, 2}, {0.1F, 0.1F}, {-120, 60}, {});
   Values height, own;
   std::vector<double> shares;
-  mixture.average(height, own, shares, {});
+  mixture.average(height, own, shares, Values(2, 1), {});
   EXPECT_NEAR(height[0], 1, 1e-9);
   EXPECT_NEAR(height[1], 2, 1e-9);
 }
@@ -53,14 +53,34 @@ TEST(Mixture, TheRestOfTheCloudOutvotesFaintEvidence) {
   mixture.add(one, zero, gain, {});
   Values height, own;
   std::vector<double> shares;
-  mixture.average(height, own, shares, {});
+  mixture.average(height, own, shares, Values(n, 1), {});
   EXPECT_GT(height[7], 0.9);
   gain[7] = -30;  // but certainty counts
   Mixture certain(zero);
   certain.add(one, zero, gain, {});
   shares.clear();
-  certain.average(height, own, shares, {});
+  certain.average(height, own, shares, Values(n, 1), {});
   EXPECT_LT(height[7], 0.01);
+}
+
+// Of a thousand points half say that the data are right; where these count for nothing, the faint evidence of
+// one point is outvoted by the other half.
+TEST(Mixture, PointsThatDoNotCountHaveNoVote) {
+  const std::size_t n = 1000;
+  Values gain(n, 20), one(n, 1), zero(n, 0), say(n, 1), height, own;
+  for (std::size_t i = n / 2; i < n; ++i) gain[i] = -20;
+  gain[7] = -1;
+  double counted = 0;
+  for (const bool all : {true, false}) {
+    for (std::size_t i = n / 2; i < n && !all; ++i) say[i] = 0;
+    Mixture mixture(zero);
+    mixture.add(one, zero, gain, {});
+    std::vector<double> shares;
+    mixture.average(height, own, shares, say, {});
+    EXPECT_EQ(height[7] > 0.9, !all);
+    counted = double(height[7]) - counted;
+  }
+  EXPECT_GT(counted, 0.5);
 }
 
 TEST(Mixture, StatesHowManyCandidatesItTakes) {
