@@ -92,6 +92,21 @@ TEST(LearnedStep, IsTheSameForAnyNumberOfThreads) {
   EXPECT_EQ(smoothed(mesh, true, kSigma, one), smoothed(mesh, true, kSigma, three));
 }
 
+// A part of a cloud that has none of them: what was settled for the whole decides, as in the other parts.
+TEST(LearnedStep, IsNotTakenWhereTheWholeCloudHasHiddenWalls) {
+  const Mesh mesh = noisy_ring(kThick);
+  AutomaticOptions options;
+  options.noise = Length{kSigma, false};
+  options.learned = true;
+  for (const double evidence : {0.0, 100.0}) {
+    Mesh part = mesh;
+    Statistics settled;
+    settled.sheets = Statistics::Sheets{evidence, 1};
+    const auto report = smooth_automatically(part, options, {}, Connectivity::kept, nullptr, &settled);
+    EXPECT_EQ(report->learned > 0, evidence == 0) << evidence;
+  }
+}
+
 TEST(LearnedStep, LeavesLittleNoiseAlone) {
   Mesh mesh = noisy_ring(kLimb);
   AutomaticOptions options;
