@@ -478,13 +478,13 @@ Positions automatic_smoothing(Mesh& mesh, bool keep_rings, rfs_mesh::NoiseField 
     return kGuide * share * share * std::max(1.0, share * share) * noise.shared;
   };
   report.guide_strength = guide_strength();
-  std::vector<double> most = noise.local;
-  for (double& limit : most) limit = kStray * std::max(limit, noise.sigma);
   whole.passes.resize(std::max<std::size_t>(1, whole.passes.size()));
   auto field = raise_field(mesh, noise.sigma, report, whole.passes[0], context);
   context.report("smooth", 0.1);
   Pass pass = smooth_heights(*field, noise, spacing, learned, whole.passes[0], context);
   Positions data = mesh.positions;  // as tamed
+  std::vector<double> most = noise.local;
+  for (double& limit : most) limit = kStray * std::max(limit, noise.sigma);
   if (const Tails tails = tame(*field, pass, mesh, data, noise, whole.tails, context); tails.share > 0) {
     report.tail_times = tails.times;
     for (double& limit : most) limit *= tails.times;

@@ -27,8 +27,10 @@ constexpr std::size_t kPowers[6][2] = {{0, 0}, {1, 0}, {0, 1}, {2, 0}, {1, 1}, {
 constexpr double kRough = 0.1;  // variance beyond the noise's, sigma^2: there is more than one sheet
 constexpr std::size_t kMostForMissing = 8;  // times the patches given: 4 cost rotor 3 % of p2s
 constexpr std::size_t kTogether = 64;       // patches fitted in a row: each tells the next how far to look
-constexpr std::size_t kRange = 16384;       // points whose lists are made together
-constexpr std::size_t kGroup = 4096;        // members looked through together for them
+constexpr std::size_t kWave = 1 << 20;      // members that wait to be put behind those before,
+constexpr std::size_t kLeastWave = 8 * kTogether;  // and patches
+constexpr std::size_t kRange = 16384;              // points whose lists are made together
+constexpr std::size_t kGroup = 4096;               // members looked through together for them
 
 typedef float Floats __attribute__((vector_size(4 * sizeof(float))));
 
@@ -57,7 +59,7 @@ struct Patches::Workspace {
 /// in groups; both lie in memory about as in space, so a group has members in few ranges.
 struct Patches::Covering {
   explicit Covering(std::size_t n) : groups((n + kRange - 1) / kRange), patches(n, 0), covered(n, 0) {}
-  /// The members [begin, end).
+  /// The patches [begin, end).
   struct Group {
     std::size_t begin, end;
   };
@@ -70,6 +72,7 @@ Patches::Patches(const HeightField& field, std::size_t members, std::vector<Inde
                  const std::vector<double>& sigma, Memory& memory, const Context& context)
     : field_(field), members_(std::min(members, field.size())), seeds_(std::move(seeds)), memory_(memory) {
   memory_.patches_ = {};  // wide patches are few
+  memory_.start_.assign(1, 0);
   memory_.member_.clear();
   memory_.member_weight_.clear();
   memory_.over_.clear();
@@ -105,12 +108,32 @@ void Patches::fit(std::size_t first, std::size_t last, const std::vector<double>
                   const Context& context) {
   if (last * members_ > kNone) throw std::length_error("Patches: too many members");
   memory_.patches_.resize(last);
-  memory_.member_.resize(last * members_);
-  memory_.member_weight_.resize(last * members_);
-  for_blocks(context, last - first, kTogether, [&](std::size_t begin, std::size_t end) {
-    Workspace work(field_, members_);
-    for (std::size_t s = first + begin; s < first + end; ++s) fit_one(s, sigma[seeds_[s]], work);
-  });
+  memory_.start_.resize(last + 1);
+  // Room for all; what the members of other sheets leave at the end is never touched, and takes no memory.
+  const std::size_t most = memory_.start_[first] + (last - first) * members_;
+  memory_.member_.resize(most);
+  memory_.member_weight_.resize(most);
+  const std::size_t wave = std::max(kWave / members_ / kTogether * kTogether, kLeastWave);
+  RawArray<Index> member(std::min(wave, last - first) * members_);
+  RawArray<Weight> weight(member.size());
+  for (std::size_t from = first; from < last; from += wave) {
+    const std::size_t count = std::min(wave, last - from);
+    std::vector<std::size_t> kept(count);
+    for_blocks(context, count, kTogether, [&](std::size_t begin, std::size_t end) {
+      Workspace work(field_, members_);
+      for (std::size_t k = begin; k < end; ++k)
+        kept[k] = fit_one(from + k, sigma[seeds_[from + k]], work, member.data() + k * members_,
+                          weight.data() + k * members_);
+    });
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::size_t to = memory_.start_[from + k];
+      std::copy_n(member.data() + k * members_, kept[k], memory_.member_.data() + to);
+      std::copy_n(weight.data() + k * members_, kept[k], memory_.member_weight_.data() + to);
+      memory_.start_[from + k + 1] = Index(to + kept[k]);
+    }
+  }
+  memory_.member_.resize(memory_.start_[last]);
+  memory_.member_weight_.resize(memory_.start_[last]);
 }
 
 Eigen::Vector3d Patches::axis_at(Index seed) const {
@@ -123,7 +146,7 @@ Eigen::Vector3d Patches::axis_at(Index seed) const {
   return sum_of_normals.cast<double>().normalized();
 }
 
-Patches::Members Patches::gather(std::size_t s, Workspace& work) {
+Patches::Members Patches::gather(std::size_t s, Workspace& work, Index* member, Weight* weight) {
   Patch& patch = memory_.patches_[s];
   rfs_mesh::WideNeighbors& near = work.near;
   near.find(patch.centre);
@@ -148,8 +171,6 @@ Patches::Members Patches::gather(std::size_t s, Workspace& work) {
   }
 
   const auto in_radii = float(1 / all.radius);
-  Weight* const weights = memory_.member_weight_.data() + s * members_;
-  Index* const indices = memory_.member_.data() + s * members_;
   for (std::size_t k = 0; k < members_; ++k) {
     const Index i = near.index()[k];
     const HeightField::Local& here = field_.local()[i];
@@ -162,15 +183,16 @@ Patches::Members Patches::gather(std::size_t s, Workspace& work) {
     work.height[k] = w > 0 ? up.dot(r) + here.height * in_radii / cosine : 0;
     work.weight[k] = w;
     work.cosine[k] = cosine;
-    indices[k] = i;
-    weights[k] = Weight(w * kWeightUnit + kRounded);
+    member[all.kept] = i;
+    weight[all.kept] = Weight(w * kWeightUnit + kRounded);
+    all.kept += std::size_t(weight[all.kept] != 0);
     all.sum += double(w);
     all.squares += double(w) * double(w);
   }
   return all;
 }
 
-void Patches::fit_one(std::size_t s, double sigma, Workspace& work) {
+std::size_t Patches::fit_one(std::size_t s, double sigma, Workspace& work, Index* member, Weight* weight) {
   using Matrix6 = Eigen::Matrix<double, 6, 6>;
   using Vector6 = Eigen::Matrix<double, 6, 1>;
   Patch& patch = memory_.patches_[s];
@@ -180,8 +202,8 @@ void Patches::fit_one(std::size_t s, double sigma, Workspace& work) {
   patch.quadric.fill(0);
   patch.spread.fill(0);
   patch.spread_u4 = 0;
-  const Members all = gather(s, work);
-  if (!(all.sum > 0)) return;
+  const Members all = gather(s, work, member, weight);
+  if (!(all.sum > 0)) return 0;
   const std::size_t size = padded(members_);
   QuadricSums sums;
   sum_quadric(size, work.u.data(), work.v.data(), work.height.data(), work.weight.data(), sums);
@@ -209,22 +231,22 @@ void Patches::fit_one(std::size_t s, double sigma, Workspace& work) {
   const double excess = (residuals - (all.sum - leverage)) / all.sum - std::sqrt(2 / points);
   patch.several = excess > kRough;
   patch.weight = float(variance / (variance + std::max(0.0, excess)));
+  return all.kept;
 }
 
 /// Counts the patches [first, last) over the points.
 void Patches::count(std::size_t first, std::size_t last, Covering& covering, const Context& context) {
   const std::size_t in_group = std::max<std::size_t>(1, kGroup / members_);
-  const auto members_of = [&](std::size_t g) {
-    return Covering::Group{(first + g * in_group) * members_,
-                           std::min(last, first + (g + 1) * in_group) * members_};
+  const auto patches_of = [&](std::size_t g) {
+    return Covering::Group{first + g * in_group, std::min(last, first + (g + 1) * in_group)};
   };
   std::vector<std::vector<Index>> ranges((last - first + in_group - 1) / in_group);  // that a group touches
   for_each_index(
       context, ranges.size(),
       [&](std::size_t g) {
-        const Covering::Group group = members_of(g);
+        const Covering::Group group = patches_of(g);
         Index before = kNone;
-        for (std::size_t k = group.begin; k < group.end; ++k) {
+        for (std::size_t k = memory_.start_[group.begin]; k < memory_.start_[group.end]; ++k) {
           const auto range = Index(memory_.member_[k] / kRange);
           if (range == before) continue;
           before = range;
@@ -234,15 +256,15 @@ void Patches::count(std::size_t first, std::size_t last, Covering& covering, con
       },
       16);
   for (std::size_t g = 0; g < ranges.size(); ++g)
-    for (const Index range : ranges[g]) covering.groups[range].push_back(members_of(g));
+    for (const Index range : ranges[g]) covering.groups[range].push_back(patches_of(g));
   for_each_index(
       context, covering.groups.size(),
       [&](std::size_t range) {
         for (const Covering::Group& group : covering.groups[range]) {
-          if (group.begin < first * members_) continue;  // counted before
-          for (std::size_t k = group.begin; k < group.end; ++k) {
+          if (group.begin < first) continue;  // counted before
+          for (std::size_t k = memory_.start_[group.begin]; k < memory_.start_[group.end]; ++k) {
             const Index i = memory_.member_[k];
-            if (i / kRange != range || memory_.member_weight_[k] == 0) continue;
+            if (i / kRange != range) continue;
             ++covering.patches[i];
             if (memory_.member_weight_[k] >= kCovered) covering.covered[i] = 1;
           }
@@ -267,10 +289,10 @@ void Patches::transpose(const Covering& covering, const Context& context) {
         std::vector<Index> next(memory_.over_start_.begin() + std::ptrdiff_t(begin),
                                 memory_.over_start_.begin() + std::ptrdiff_t(end));
         for (const Covering::Group& group : covering.groups[range])
-          for (std::size_t s = group.begin / members_; s < group.end / members_; ++s)
-            for (std::size_t k = s * members_; k < (s + 1) * members_; ++k) {
+          for (std::size_t s = group.begin; s < group.end; ++s)
+            for (std::size_t k = memory_.start_[s]; k < memory_.start_[s + 1]; ++k) {
               const Index i = memory_.member_[k];
-              if (i / kRange != range || memory_.member_weight_[k] == 0) continue;
+              if (i / kRange != range) continue;
               const Index to = next[i - begin]++;
               memory_.over_[to] = Index(s);
               memory_.over_weight_[to] = memory_.member_weight_[k];
@@ -323,8 +345,9 @@ std::vector<float> Patches::mean(const std::vector<float>& values, const Context
   for_each_index(
       context, memory_.patches_.size(),
       [&](std::size_t s) {
-        const WeightedSum inside = weighted_sum(members_, memory_.member_.data() + s * members_,
-                                                memory_.member_weight_.data() + s * members_, values.data());
+        const std::size_t begin = memory_.start_[s];
+        const WeightedSum inside = weighted_sum(memory_.start_[s + 1] - begin, memory_.member_.data() + begin,
+                                                memory_.member_weight_.data() + begin, values.data());
         if (inside.weights > 0) of_patch[s] = inside.sum / inside.weights;
       },
       kTogether);

@@ -55,8 +55,9 @@ class Patches {
   class Memory {
     friend class Patches;
     RawArray<Patch> patches_;
-    RawArray<Index> member_;          ///< patches x members
-    RawArray<Weight> member_weight_;  ///< (1 - d^2/r^2)^2 cos^2 of each; 0 for points of another sheet
+    std::vector<Index> start_;        ///< patches + 1: where each one's members begin
+    RawArray<Index> member_;          ///< of all patches, those of another sheet left out
+    RawArray<Weight> member_weight_;  ///< (1 - d^2/r^2)^2 cos^2 of each, not 0
     std::vector<Index> over_start_;   ///< n + 1
     RawArray<Index> over_;            ///< of each point: the patches over it, ascending, weight not 0
     RawArray<Weight> over_weight_;    ///< the point's weight in each
@@ -88,10 +89,13 @@ class Patches {
   struct Members {
     double radius = 0;            ///< world units
     double sum = 0, squares = 0;  ///< of the weights
+    std::size_t kept = 0;         ///< how many have one
   };
-  void fit_one(std::size_t s, double sigma, Workspace& work);
-  Eigen::Vector3d axis_at(Index seed) const;       ///< the mean normal about it, unit
-  Members gather(std::size_t s, Workspace& work);  ///< the members of patch s, and its frame
+  /// Enters the members whose weight is not 0 from `member` and `weight` on; returns how many.
+  std::size_t fit_one(std::size_t s, double sigma, Workspace& work, Index* member, Weight* weight);
+  Eigen::Vector3d axis_at(Index seed) const;  ///< the mean normal about it, unit
+  /// The members of patch s, and its frame.
+  Members gather(std::size_t s, Workspace& work, Index* member, Weight* weight);
   void cover_missing(const std::vector<double>& sigma, Covering& covering, const Context& context);
   void count(std::size_t first, std::size_t last, Covering& covering, const Context& context);
   void transpose(const Covering& covering, const Context& context);
