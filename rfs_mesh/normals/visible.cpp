@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <unordered_map>
 
 #include "base/median.h"
 #include "base/parallel.h"
@@ -14,7 +14,6 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kCell = 3, kBehind = 10;  // spacings
-constexpr std::size_t kMostCells = 512;    // along an edge of the cube: 12 MB
 
 /// The cell of a direction: the face of the cube by the largest coordinate, then rows and columns.
 std::size_t cell_of(const Vector3d& direction, std::size_t cells) {
@@ -38,18 +37,21 @@ std::vector<double> seen_squarely(const Positions& points, const Positions& norm
   for_each_index(context, n, [&](std::size_t i) { distance[i] = (points[i] - viewpoint).norm(); });
   std::vector<double> sorted = distance;
   const double wanted = 2 * median(sorted) / (kCell * spacing);
-  const auto cells = std::size_t(std::clamp(wanted, 1.0, double(kMostCells)));
-  std::vector<double> nearest(6 * cells * cells, std::numeric_limits<double>::infinity());
+  const auto cells = std::size_t(std::clamp(wanted, 1.0, double(n)));
+  std::vector<std::size_t> cell(n);
+  for_each_index(context, n, [&](std::size_t i) {
+    if (distance[i] > 0) cell[i] = cell_of(points[i] - viewpoint, cells);
+  });
+  std::unordered_map<std::size_t, double> nearest;  // of the cells that hold points
   for (std::size_t i = 0; i < n; ++i) {
     if (!(distance[i] > 0)) continue;
-    double& least = nearest[cell_of(points[i] - viewpoint, cells)];
+    double& least = nearest.try_emplace(cell[i], distance[i]).first->second;
     least = std::min(least, distance[i]);
   }
   for_each_index(context, n, [&](std::size_t i) {
     if (!(distance[i] > 0)) return;
-    const Vector3d ray = viewpoint - points[i];
-    if (distance[i] <= nearest[cell_of(-ray, cells)] + kBehind * spacing)
-      seen[i] = normals[i].dot(ray) / distance[i];
+    if (distance[i] <= nearest.at(cell[i]) + kBehind * spacing)
+      seen[i] = normals[i].dot(viewpoint - points[i]) / distance[i];
   });
   return seen;
 }

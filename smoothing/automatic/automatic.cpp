@@ -359,11 +359,12 @@ Pass smooth_heights(const HeightField& field, const rfs_mesh::NoiseField& noise,
   return pass;
 }
 
+constexpr float kMostOfOne = 2;  // sigma: what one neighbour's distance counts as in a mean over them
+
 /// How far each point lies off a patch that is wide enough not to follow it, beyond what its neighbours do,
 /// too: they all lie off it beside an edge.
 std::vector<float> off_neighbours(const HeightField& field, const Pass& pass,
                                   const rfs_mesh::NoiseField& noise, const Context& context) {
-  constexpr float kMostOfOne = 2;  // sigma
   std::vector<float> off(field.size()), at_most(field.size());
   for_each_index(context, off.size(), [&](std::size_t i) {
     off[i] = field.local()[i].height - pass.wide[i];
@@ -396,10 +397,10 @@ double far_together(const HeightField& field, const std::vector<float>& off, con
 /// Divides by what the neighbours' tell where they are farther off, too, than the noise has it.
 void relate_to_neighbours(const HeightField& field, std::vector<float>& relative, std::vector<float>& least,
                           const Context& context) {
-  constexpr float kMost = 2, kMeanOfNormal = 0.766F;  // the mean of min(|x|, 2), x normal
+  constexpr float kMeanOfNormal = 0.766F;  // the mean of min(|x|, kMostOfOne), x normal
   std::vector<float> typical(field.size());
   for_each_index(context, typical.size(), [&](std::size_t i) {
-    typical[i] = std::isnan(relative[i]) ? kMeanOfNormal : std::min(kMost, std::abs(relative[i]));
+    typical[i] = std::isnan(relative[i]) ? kMeanOfNormal : std::min(kMostOfOne, std::abs(relative[i]));
   });
   typical = field.local_mean(typical, context);
   for_each_index(context, typical.size(), [&](std::size_t i) {

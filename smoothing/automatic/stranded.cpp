@@ -22,6 +22,7 @@ constexpr std::size_t kTenth = 9;  // the neighbour whose distance measures dens
 constexpr float kThin = 1.7F;      // times the usual: 1.4 takes points at edges, 2 leaves small islands
 constexpr int kStrandedRounds = 2;
 
+using rfs_mesh::kNeighbourhood;
 using rfs_mesh::Neighbor;
 using rfs_mesh::NeighborTable;
 
@@ -156,7 +157,6 @@ Eigen::Vector3d project(const Positions& guide, const std::vector<Neighbor>& nea
 std::vector<Index> land(const Mesh& mesh, const std::vector<Index>& stranded, double most,
                         const NeighborTable& near, const MovingGuide& surface, Positions& guide,
                         const Context& context) {
-  constexpr std::size_t kAround = rfs_mesh::kNeighbourhood;
   Positions landed(stranded.size());
   for_blocks(context, stranded.size(), 256, [&](std::size_t begin, std::size_t end) {
     MovingGuide::Search search;
@@ -164,11 +164,12 @@ std::vector<Index> land(const Mesh& mesh, const std::vector<Index>& stranded, do
       const Eigen::Vector3d& p = mesh.positions[stranded[k]];
       const double bound = surface.to_nearest_staying(p, near[stranded[k]]);
       const Index from = surface.nearest(p, 1, search, bound).front().index;
-      const std::vector<Neighbor>& found = surface.nearest_of(from, guide, near[from], kAround, search);
+      const std::vector<Neighbor>& found =
+          surface.nearest_of(from, guide, near[from], kNeighbourhood, search);
       const Eigen::Vector3d at = project(guide, found, p);
       double reach = 0;
       for (const Neighbor& q : found) reach = std::max(reach, rfs_mesh::squared_distance(guide[q.index], at));
-      landed[k] = project(guide, surface.nearest(at, kAround, search, reach), p);
+      landed[k] = project(guide, surface.nearest(at, kNeighbourhood, search, reach), p);
     }
   });
   std::vector<Index> moved;
