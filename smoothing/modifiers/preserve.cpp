@@ -17,8 +17,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kRestored = 1e-9;       // of its size: far above rounding, far below what a user could see
-constexpr double kLargestScaling = 0.9;  // a t of -1 would shrink the mesh to a point
+constexpr double kRestored = 1e-9;  // of its size: far above rounding, far below what a user could see
 
 class Preserving : public WrappedFlow {
  public:
@@ -59,8 +58,8 @@ class Preserving : public WrappedFlow {
       const double probe = 1e-4 * std::max(span, 1e-300);
       const double slope = (at(t + probe) - at(t - probe)) / (2 * probe);
       const double next = t + gap / slope;
-      if (!std::isfinite(next) || (invariant_ != Preserve::height_field && std::abs(next) > kLargestScaling))
-        break;
+      // A t of -1 would shrink the mesh to a point.
+      if (!std::isfinite(next) || (invariant_ != Preserve::height_field && std::abs(next) >= 1)) break;
       t = next;
       value = at(t);
     }
