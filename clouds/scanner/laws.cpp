@@ -32,7 +32,8 @@ std::vector<Law> make_laws() {
   add("tails20", "20 % of the points have four times as much", kUsual).loud_share = 0.2;
   add("correlated7", "correlated over 7 neighbours", kUsual).correlated = 7;
   add("correlated30", "correlated over 30 neighbours", kUsual).correlated = 30;
-  add("half", "half of the cloud is exact", kUsual).half = true;
+  add("half", "half of the cloud is exact", kUsual).half = 0;
+  add("contrast", "half of the cloud has a fifth of the noise of the other", 0.5).half = 0.2;
   add("steps1", "depth in steps of one spacing", 0).step = 1;
   add("steps4", "depth in steps of four spacings", 0).step = 4;
   Law& scans = add("scans", "ten scans that miss each other by 0.3 spacings", 0.2);
@@ -75,11 +76,11 @@ Positions standard_noise(const Positions& points, int k, Random& random) {
 }
 
 /// One side of a plane through the middle that no face or symmetry of a usual shape lies along.
-std::vector<char> exact_half(const Positions& points, const Vector3d& centre) {
+std::vector<char> calm_half(const Positions& points, const Vector3d& centre) {
   const Vector3d across(0.48, 0.6, 0.64);
-  std::vector<char> exact(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) exact[i] = (points[i] - centre).dot(across) > 0;
-  return exact;
+  std::vector<char> calm(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) calm[i] = (points[i] - centre).dot(across) > 0;
+  return calm;
 }
 
 /// Turns by an angle and shifts, each of a standard deviation of between / sqrt(2) at the rim of the cloud.
@@ -141,14 +142,16 @@ NoisyCloud add_noise(const Law& law, const Spots& spots, double spacing, std::ui
   NoisyCloud cloud;
   cloud.eye = frame.eye;
   cloud.measured = spots.points;
-  if (law.half) cloud.exact = exact_half(spots.points, frame.centre);
+  const std::vector<char> calm = law.half < 1 ? calm_half(spots.points, frame.centre) : std::vector<char>();
+  if (law.half == 0) cloud.exact = calm;
   const Positions noise = standard_noise(spots.points, law.correlated, random);
   for (std::size_t i = 0; i < noise.size(); ++i) {
     const double loud = law.loud_share > 0 && random.uniform() < law.loud_share ? law.loud_times : 1;
-    if (law.half && cloud.exact[i] != 0) continue;
     const Vector3d ray = spots.points[i] - frame.eye;
     const double range = std::pow(ray.norm() / (kEyeDistance * frame.radius), law.range_power);
-    const double sigma = law.sigma * spacing * loud * range;
+    const double of_half = !calm.empty() && calm[i] != 0 ? law.half : 1;
+    if (of_half == 0) continue;
+    const double sigma = law.sigma * spacing * of_half * loud * range;
     cloud.measured[i] += sigma * (law.along_ray ? Vector3d(noise[i][0] * ray.normalized()) : noise[i]);
   }
   if (law.clumps > 0 && !spots.clump.empty()) {

@@ -44,7 +44,7 @@ struct Law {
   double loud_share = 0;   ///< this share of the points, anywhere among the others, ...
   double loud_times = 4;   ///< ... has noise of so many sigma
   int correlated = 1;  ///< noise is the sum over this many nearest points (oneself is the first), scaled back
-  bool half = false;   ///< one half of the cloud is exact
+  double half = 1;     ///< one half of the cloud has so many sigma; 0: it is exact
   double clumps = 0;   ///< each clump is off as a whole, standard deviation per coordinate
   int scans = 1;       ///< points come from so many scans, at random, ...
   double between = 0;  ///< ... each moved rigidly, by this standard deviation per coordinate or less

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "base/parallel.h"
 
@@ -14,7 +15,8 @@ namespace {
 // (tests/bench/noise), but for the narrow pair: that is for clouds of which one half is louder
 // (noise_test.cpp).
 constexpr double kAlike = 2.5;
-constexpr double kCalmer = 2;  // times: what shows so much less than the mean around it is calm
+constexpr float kMuchLouder = 3;  // times: so much calmer ones say nothing of a place
+constexpr double kCalmer = 2;     // times: what shows so much less than the mean around it is calm
 // How far below and above the mean a fit pulls in proportion: logarithm of variance. Edges and second sheets
 // are above, places within one step of the depths below.
 constexpr float kBelow = 2, kAbove = 1.5;
@@ -48,13 +50,14 @@ float cost(float d) {
 /// What the fits say, by coordinate.
 struct Heard {
   Eigen::ArrayXf x, y, z, nx, ny, nz, radius;
+  Eigen::ArrayXf about;   ///< logarithm of what the sites around show
   Eigen::ArrayXf value;   ///< logarithm of the variance over the typical one, without bias
   Eigen::ArrayXf weight;  ///< 0: says nothing
   float mean = 0;         ///< of the values
 
   explicit Heard(const NoiseSites& sites) {
     const auto n = Eigen::Index(sites.at.size());
-    for (Eigen::ArrayXf* a : {&x, &y, &z, &nx, &ny, &nz, &radius, &value, &weight}) a->setZero(n);
+    for (Eigen::ArrayXf* a : {&x, &y, &z, &nx, &ny, &nz, &radius, &about, &value, &weight}) a->setZero(n);
     Eigen::Vector3d middle = Eigen::Vector3d::Zero();
     for (const auto& p : sites.at) middle += p / double(n);
     double square = 0;
@@ -68,6 +71,7 @@ struct Heard {
       x[i] = at.x(), y[i] = at.y(), z[i] = at.z();
       nx[i] = normal.x(), ny[i] = normal.y(), nz[i] = normal.z();
       radius[i] = float(fit.radius / extent);
+      about[i] = std::log(std::max(std::numeric_limits<float>::min(), float(sites.sigma[std::size_t(i)])));
     }
     hear(sites);
   }
@@ -82,7 +86,7 @@ struct Heard {
  private:
   /// Enters values and weights.
   void hear(const NoiseSites& sites) {
-    constexpr double kFar = 50;
+    constexpr double kFar = 400;  // a part twenty times as loud as another
     const std::size_t n = sites.at.size();
     std::vector<double> variance(n, 0), said;
     for (std::size_t i = 0; i < n; ++i) {
@@ -123,32 +127,42 @@ struct Heard {
 
 /// The mean around each site, and how well it predicts those that it does not overlap with.
 struct Means {
-  Eigen::ArrayXf value;  ///< as of the fits
-  double gain = 0;       ///< a fit, of cost against that of one figure for all
-  double no_say = 0;     ///< as of the reach
+  Eigen::ArrayXf value;   ///< as of the fits
+  Eigen::ArrayXf of_all;  ///< the same with calmer ones around louder
+  double gain = 0;        ///< a fit, of cost against that of one figure for all
+  double no_say = 0;      ///< as of the reach
 };
 
 Means around(const Heard& heard, const Reach& reach, const Context& context) {
   const Eigen::Index n = heard.x.size();
   Means means;
   means.value.resize(n);
+  means.of_all.resize(n);
   Eigen::ArrayXd gain = Eigen::ArrayXd::Zero(n);
   const auto near = float(1 / (reach.place * reach.place)),
              alike = float(1 / (reach.direction * reach.direction));
+  const float louder = 1 / (std::log(kMuchLouder) * std::log(kMuchLouder));
   for_blocks(context, std::size_t(n), 64, [&](std::size_t begin, std::size_t end) {
-    Eigen::ArrayXf squared(n), w(n), off(n);
-    for (auto i = Eigen::Index(begin); i < Eigen::Index(end); ++i) {
-      squared =
-          (heard.x - heard.x[i]).square() + (heard.y - heard.y[i]).square() + (heard.z - heard.z[i]).square();
-      w = (heard.nx * heard.nx[i] + heard.ny * heard.ny[i] + heard.nz * heard.nz[i]).square();
-      w = (1 - near * squared - alike * (1 - w)).max(0.0F).square() * heard.weight;
+    Eigen::ArrayXf squared(n), like(n), w(n), off(n);
+    const auto mean_by = [&] {
       const float weights = w.sum() + kCloud;
       float mean = ((w * heard.value).sum() + kCloud * heard.mean) / weights;
       for (int round = 0; round < kFieldRounds; ++round) {
         off = w * pull(heard.value - mean);
         mean += (off.sum() + kCloud * pull(heard.mean - mean)) / weights;
       }
-      means.value[i] = mean;
+      return mean;
+    };
+    for (auto i = Eigen::Index(begin); i < Eigen::Index(end); ++i) {
+      squared =
+          (heard.x - heard.x[i]).square() + (heard.y - heard.y[i]).square() + (heard.z - heard.z[i]).square();
+      like = (heard.nx * heard.nx[i] + heard.ny * heard.ny[i] + heard.nz * heard.nz[i]).square();
+      like = 1 - near * squared - alike * (1 - like);
+      w = like.max(0.0F).square() * heard.weight;
+      means.of_all[i] = mean_by();
+      off = (heard.about[i] - heard.about).max(0.0F).square();
+      w = (like - louder * off).max(0.0F).square() * heard.weight;
+      const float mean = means.value[i] = mean_by();
       if (!(heard.weight[i] > 0)) continue;
       w = (squared > (heard.radius + heard.radius[i]).square()).select(w, 0);
       off = w * pull(heard.value - mean);
@@ -175,7 +189,7 @@ std::vector<double> mean_around(const Heard& heard, const NoiseSites& sites, dou
   std::vector<double> alike;
   for (std::size_t i = 0; i < relative.size(); ++i)
     if (sites.sigma[i] < kAlike * figure && kAlike * sites.sigma[i] > figure)
-      alike.push_back(best.value[Eigen::Index(i)]);
+      alike.push_back(best.of_all[Eigen::Index(i)]);
   if (alike.empty()) return relative;
   const double typical = quantile(alike, 0.5);
   for (std::size_t i = 0; i < relative.size(); ++i) {

@@ -19,6 +19,7 @@ constexpr std::size_t kSites = 2000, kFewestSites = 250;
 constexpr std::size_t kWork = 100000;    // sites x m
 constexpr std::size_t kGroupWork = 800;  // a fit of many points says much, and reaches far by itself
 constexpr std::size_t kSmallestGroup = 12, kLargestGroup = 48;
+constexpr double kDiffers = 1.5;  // of variances of a dozen fits: two standard errors and more
 constexpr double kTypical = 0.35, kTypicalDeviate = -0.385;  // the quantile of fits that is typical
 constexpr double kMostSpeak = 0.7;                           // of the fits around a site, to be believed
 // At m = 16 noise may be below the detail: less of s^2(m) need be noise.
@@ -138,12 +139,16 @@ class Listener {
   bool hear_at(std::size_t s, const std::vector<Scatter>& all) {
     std::vector<Scatter> around;
     std::size_t saying = 0;
+    double near = 0;
     for (const Neighbor& q : group_[s]) {
+      if (around.size() == kSmallestGroup && double(saying) >= kMostSpeak * double(kSmallestGroup))
+        near = mean_variance(around, kTypical, kTypicalDeviate);
       around.push_back(all[q.index]);
       if (around.back().freedom > 0) ++saying;
     }
-    const double variance = mean_variance(around, kTypical, kTypicalDeviate);
+    double variance = mean_variance(around, kTypical, kTypicalDeviate);
     speaks[s] = char(variance > 0 && double(saying) >= kMostSpeak * double(around.size()));
+    if (near > 0 && (near > kDiffers * variance || variance > kDiffers * near)) variance = near;
     if (speaks[s] != 0) sigma[s] = std::sqrt(variance);
     return speaks[s] != 0;
   }

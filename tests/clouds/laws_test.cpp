@@ -129,6 +129,18 @@ TEST(Laws, HalfExactIsExactThereAndNoisyElsewhere) {
   EXPECT_NEAR(per_coordinate(noisy) / (law.sigma * 0.01), 1, kFive * 1.5);
 }
 
+TEST(Laws, HalfCalmHasAFifthOfTheOthersNoise) {
+  const Law& law = *find_law("contrast");
+  const NoisyCloud cloud = add_noise(law, sphere_spots(), 0.01, kSeed);
+  const NoisyCloud half = add_noise(*find_law("half"), sphere_spots(), 0.01, kSeed);
+  EXPECT_TRUE(cloud.exact.empty());
+  Positions calm, loud;
+  for (std::size_t i = 0; i < cloud.measured.size(); ++i)
+    (half.exact[i] != 0 ? calm : loud).push_back(cloud.measured[i] - sphere_spots().points[i]);
+  EXPECT_NEAR(per_coordinate(loud) / (law.sigma * 0.01), 1, kFive * 1.5);
+  EXPECT_NEAR(per_coordinate(calm) / per_coordinate(loud), 0.2, 0.2 * kFive * 2);
+}
+
 TEST(Laws, DepthsAreWholeStepsAndPointsStayOnTheirRays) {
   constexpr double kStep = 0.125;
   Law law;

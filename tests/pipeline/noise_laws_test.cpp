@@ -75,6 +75,21 @@ TEST(NoiseLaws, TheCalmHalfStaysAndTheLoudHalfIsSmoothed) {
   }
 }
 
+// Both halves are noisy: neither may hide the other's noise, nor keep it from being smoothed up to the
+// border.
+TEST(NoiseLaws, ALoudHalfIsSmoothedBesideACalmOneThatIsNoisyToo) {
+  const auto loud = [](std::size_t i) { return sphere()[i].x() > 0; };
+  const auto calm = [](std::size_t i) { return sphere()[i].x() < -0.2; };
+  for (const double times : {3.0, 5.0}) {
+    std::mt19937_64 engine(8);
+    std::normal_distribution<double> normal(0, 0.1 * spacing());
+    const Positions noisy = off_sphere([&](std::size_t i) { return (loud(i) ? times : 1) * normal(engine); });
+    const Positions smooth = denoised(noisy);
+    EXPECT_LT(rms_off(smooth, loud), 0.12 * rms_off(noisy, loud)) << times;
+    EXPECT_LT(rms_off(smooth, calm), 0.25 * rms_off(noisy, calm)) << times;
+  }
+}
+
 TEST(NoiseLaws, PointsThatAreNoisierThanTheirNeighboursComeToTheSurface) {
   for (const double share : {0.05, 0.2}) {
     std::mt19937_64 engine(4);

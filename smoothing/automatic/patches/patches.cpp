@@ -27,8 +27,8 @@ constexpr std::size_t kPowers[6][2] = {{0, 0}, {1, 0}, {0, 1}, {2, 0}, {1, 1}, {
 constexpr double kRough = 0.1;  // variance beyond the noise's, sigma^2: there is more than one sheet
 constexpr std::size_t kMostForMissing = 8;  // times the patches given: 4 cost rotor 3 % of p2s
 constexpr std::size_t kTogether = 64;       // patches fitted in a row: each tells the next how far to look
-constexpr std::size_t kWave = 1 << 20;      // members that wait to be put behind those before,
-constexpr std::size_t kLeastWave = 8 * kTogether;  // and patches
+constexpr std::size_t kWave = 1 << 20;      // members fitted before they are put behind those before, ...
+constexpr std::size_t kLeastWave = 8 * kTogether;  // ... of at least so many patches
 constexpr std::size_t kRange = 16384;              // points whose lists are made together
 constexpr std::size_t kGroup = 4096;               // members looked through together for them
 
