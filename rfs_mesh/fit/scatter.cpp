@@ -162,7 +162,7 @@ Scatter ScatterFit::operator()(const SpatialIndex& index, const Eigen::Vector3d&
     s.normal = (axes.col(0) - c[1] / flat * axes.col(2) - c[2] / flat * axes.col(1)).normalized();
     window = high;
   }
-  s.within = s.variance;
+  if (says(s)) s.within = s.variance;
   if (silent) {
     s.freedom = 0;
     s.foot = place;

@@ -37,11 +37,17 @@ struct Scatter {
   double radius = 0;    ///< of the ball of neighbours, world units
   double together = 1;  ///< kNearestTogether nearest are above (1) or below (-1): their sum squared, over as
                         ///< many; in the mean 1 of points on their own, whatever their noise. Without window
-  double within = 0;   ///< s^2 also where the window cuts off so much that the place says nothing; 0: unknown
-  double breadth = 0;  ///< variance of the neighbours across their longest axis over that along it, 0 to 1
+  double within = 0;    ///< s^2 also where the window cuts off so much that the place says nothing; 0: too
+                        ///< few points are left within it to tell
+  double breadth = 0;   ///< variance of the neighbours across their longest axis over that along it, 0 to 1
   Eigen::Vector3d foot = Eigen::Vector3d::Zero();    ///< the surface at the place
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< there; zero if the points coincide
 };
+
+/// Whether a fit has degrees of freedom enough to say anything.
+inline bool says(const Scatter& fit) {
+  return fit.freedom > 0.5;
+}
 
 /// Fits one after the other, keeping its buffers. Not for several threads at once.
 class ScatterFit {

@@ -148,7 +148,7 @@ class Listener {
     }
     double variance = mean_variance(around, kTypical, kTypicalDeviate);
     speaks[s] = char(variance > 0 && double(saying) >= kMostSpeak * double(around.size()));
-    if (near > 0 && (near > kDiffers * variance || variance > kDiffers * near)) variance = near;
+    if (near > kDiffers * variance) variance = near;
     if (speaks[s] != 0) sigma[s] = std::sqrt(variance);
     return speaks[s] != 0;
   }

@@ -1,13 +1,13 @@
 /// The noise around up to 2,000 sites of a cloud.
 ///
 /// Around a site speaks the mean of its nearest sites' fits, each with the site's own window (scatter.h),
-/// from the figure to start from: of up to 48, but where the dozen nearest show 1.5 times their variance or
-/// less than 1 / 1.5 of it, the site is beside a louder or calmer part, and these speak alone. Where that
-/// window is too narrow it cuts off so much that no fit says anything. So it does where a wall has its second
-/// sheet beside it; but there what is left within the window scatters as little as the window was made for,
-/// while louder noise fills it evenly, at three times that variance. Windows that are filled open to what
-/// they show, in up to eight rounds, and at more than twice the start their fits take more points, as many as
-/// such noise needs.
+/// from the figure to start from: of up to 48, but where the dozen nearest show 1.5 times their variance,
+/// these speak alone: a loud part beside a calm one. (The other way round they do not: a flat beside an edge
+/// would be told from it, and noise that is read too large is hardly seen.) Where that window is too narrow
+/// it cuts off so much that no fit says anything. So it does where a wall has its second sheet beside it; but
+/// there what is left within the window scatters as little as the window was made for, while louder noise
+/// fills it evenly, at three times that variance. Windows that are filled open to what they show, in up to
+/// eight rounds, and at more than twice the start their fits take more points, as many as such noise needs.
 ///
 /// Without a window the scatter is more than the noise, so that of nearly all of the dozen nearest sites is a
 /// bound, where their balls hold the slab.

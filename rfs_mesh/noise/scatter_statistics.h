@@ -27,11 +27,6 @@ double quantile(std::vector<Weighed>& values, double share);
 /// How much each fit counts: 0 to 1.
 std::vector<double> areas(const std::vector<Scatter>& all);
 
-/// Whether a fit has degrees of freedom enough to say anything.
-inline bool says(const Scatter& fit) {
-  return fit.freedom > 0.5;
-}
-
 /// The variances of the fits that say something, each over the quantile of its own distribution (chi-square
 /// over its degrees of freedom, by Wilson and Hilferty 1931) at a standard normal `deviate`: so that fits of
 /// different freedom compare. \param area of each fit.

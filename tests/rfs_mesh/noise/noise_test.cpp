@@ -1,6 +1,7 @@
 #include "rfs_mesh/noise/noise.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <Eigen/Geometry>
@@ -78,17 +79,30 @@ Positions noisy_plane(const std::function<double(double)>& sigma) {
   return points;
 }
 
-TEST(Noise, OfOneHalfOfAPlaneIsSeenThereAndNotInTheOther) {
-  const NoiseField noise = measured(noisy_plane([](double x) { return x < 0.5 ? 0.002 : 0.006; }));
+/// The noise measured away from the border of the halves of noisy_plane, over what is there.
+std::array<double, 2> halves(double calm, double loud) {
+  const NoiseField noise = measured(noisy_plane([&](double x) { return x < 0.5 ? calm : loud; }));
   const Positions points = noisy_plane([](double) { return 0; });
-  double calm = 0, loud = 0;
-  std::size_t calms = 0, louds = 0;
+  std::array<double, 2> sum = {}, count = {};
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (points[i].x() < 0.4) calm += noise.local[i], ++calms;
-    if (points[i].x() > 0.6) loud += noise.local[i], ++louds;
+    if (std::abs(points[i].x() - 0.5) < 0.1) continue;
+    const std::size_t half = points[i].x() < 0.5 ? 0 : 1;
+    sum[half] += noise.local[i];
+    ++count[half];
   }
-  EXPECT_NEAR(calm / double(calms) / 0.002, 1, 0.15);
-  EXPECT_NEAR(loud / double(louds) / 0.006, 1, 0.15);
+  return {sum[0] / count[0] / calm, sum[1] / count[1] / loud};
+}
+
+TEST(Noise, OfOneHalfOfAPlaneIsSeenThereAndNotInTheOther) {
+  const auto [calm, loud] = halves(0.002, 0.006);
+  EXPECT_NEAR(calm, 1, 0.15);
+  EXPECT_NEAR(loud, 1, 0.15);
+}
+
+TEST(Noise, OfAHalfThatIsTwentyTimesAsLoudAsTheOtherIsSeenWhole) {
+  const auto [calm, loud] = halves(0.001, 0.02);
+  EXPECT_NEAR(calm, 1, 0.15);
+  EXPECT_NEAR(loud, 1, 0.15);
 }
 
 TEST(Noise, AlongARayIsLessWhereTheRayGrazes) {
