@@ -298,7 +298,7 @@ TEST_F(Tiles, WallsHiddenInOneTileAreWhatTheyAreInTheWholeCloud) {
   const RichCloud cloud = sheet_with_wall();
   for (const char* learned : {"", "--learned"}) {
     const Both both = expect_as_whole(cloud, "6400", learned);
-    EXPECT_GT(both.statistics.sheets->evidence, 2);
+    EXPECT_GT(both.statistics.sheets->evidence, 7);
     const auto parted = [&](const std::string& bytes) {  // share of the wall's points
       double beside = 0, all = 0;
       for (std::size_t i = 0; i < cloud.size(); ++i) {
