@@ -205,7 +205,7 @@ struct LocalSurface {
 struct NoiseLevel {
   double spacing = 0;         ///< h: mean distance to the nearest neighbour, world units
   double sigma = 0;           ///< standard deviation of the noise along the normal, world units
-  std::vector<double> field;  ///< n: each point's own residual, unsmoothed, world units
+  std::vector<double> field;  ///< n: sigma around each point as its surface has it, world units
 };
 
 /// Everything the stages made. All of it refers to the points by index.

@@ -15,6 +15,8 @@
 #include "rfs_mesh/connect/sdg.h"
 #include "rfs_mesh/connect/umbrella.h"
 #include "rfs_mesh/fit/local_surface.h"
+#include "rfs_mesh/noise/noise.h"
+#include "rfs_mesh/noise/scatter_statistics.h"
 #include "rfs_mesh/search/neighbors.h"
 #include "rfs_mesh/sheets/two_sheets.h"
 #include "rfs_mesh/small_holes.h"
@@ -73,7 +75,8 @@ constexpr double kNoiseLeft = 1.0 / 3;
 /// The ground at the shadows of the points. Quadrics no wider than the neighbourhoods looked at are fitted a
 /// second time, on the shadows; wider ones have the better normals already.
 Ground shadow_ground(const Positions& points, std::vector<LocalSurface> surfaces, const NoiseScale& scale,
-                     const Eigen::Vector3d* corner, const ConnectOptions& options, const Context& context) {
+                     const NoiseLevel& noise, const Eigen::Vector3d* corner, const ConnectOptions& options,
+                     const Context& context) {
   const int k = options.neighbours;
   Ground ground;
   ground.surfaces = std::move(surfaces);
@@ -82,11 +85,13 @@ Ground shadow_ground(const Positions& points, std::vector<LocalSurface> surfaces
   ground.near = index.nearest(k, context);
   ground.tree = boruvka(index, ground.near, context);
   if (scale.neighbours <= std::size_t(k)) {
-    const NoiseScale left = {kNoiseLeft * scale.sigma, scale.neighbours, scale.radius};
-    ground.surfaces = shared_local_surfaces(index, ground.near, left, scale.neighbours, context, corner);
+    std::vector<double> left = noise.field;
+    for (double& sigma : left) sigma *= kNoiseLeft;
+    ground.surfaces =
+        shared_local_surfaces(index, ground.near, scale, left, scale.neighbours, context, corner);
   }
   ground.between =
-      part_sheets(points, index, ground.near, scale.sigma, options.sheets, ground.surfaces, context);
+      part_sheets(points, index, ground.near, noise.sigma, options.sheets, ground.surfaces, context);
   ground.at = shadows(ground.surfaces, context);
   return ground;
 }
@@ -111,6 +116,49 @@ Cloud search(const Positions& points, const ConnectOptions& options, const Conte
   return {std::move(index), std::move(near)};
 }
 
+/// The noise at the sites, none less than can be told from detail. Not empty.
+std::vector<double> at_sites(const NoiseModel& noise) {
+  std::vector<double> sigma = noise.at_sites;
+  if (sigma.empty()) sigma.push_back(noise.sigma);
+  for (double& s : sigma) s = std::max(s, kNoNoise * noise.spacing);
+  return sigma;
+}
+
+/// Of the louder parts of the cloud, too: the root of the mean square.
+double loudness(const NoiseModel& noise) {
+  double sum = 0;
+  const std::vector<double> sigma = at_sites(noise);
+  for (const double s : sigma) sum += s * s;
+  return std::sqrt(sum / double(sigma.size()));
+}
+
+/// The scale of the quadrics: that of what the calm quarter of places shows, times how much louder the cloud
+/// is than that. It is less than what was measured where that took a second sheet for noise. But depths in
+/// steps and noise that neighbours share do not show in narrow neighbourhoods: there the measure decides.
+NoiseScale scale_for(const SpatialIndex& index, const NoiseModel& noise, const Context& context) {
+  if (!(noise.sigma > 0)) return {};
+  std::vector<double> sigma = at_sites(noise);
+  const double loud = loudness(noise), calm = quantile(sigma, 0.25);
+  const bool hidden = noise.shared > 1 || noise.step > 0;
+  NoiseScale scale = noise_scale(index, context, hidden ? loud : 0, std::max(1.0, loud / calm));
+  scale.sigma = std::min(scale.sigma, loud);
+  return scale;
+}
+
+/// What `whole` says of the noise; what it does not say is measured and entered.
+NoiseLevel measure(const SpatialIndex& index, const NeighborTable& near, const Context& context,
+                   Statistics& whole) {
+  NoiseField field =
+      whole.noise ? spread_noise(*whole.noise, index.points(), context) : measure_noise(index, context);
+  if (!whole.noise) whole.noise = field;
+  if (!whole.spacing) whole.spacing = mean_spacing(index.points(), near, context);
+  if (!whole.scale) whole.scale = scale_for(index, field, context);
+  const double loud = loudness(field), least = kNoNoise * field.spacing;
+  const double share = loud > 0 ? whole.scale->sigma / loud : 0;
+  for (double& sigma : field.local) sigma = std::max(share * sigma, least);
+  return {*whole.spacing, field.sigma, std::move(field.local)};
+}
+
 /// The first stages, up to the surfaces: what is measured on the points themselves. Fills emst, noise and
 /// on_shadow of `c`; returns what the tests are made on.
 Ground survey(Cloud cloud, const ConnectOptions& options, const Context& context, const Positions* guide,
@@ -119,29 +167,25 @@ Ground survey(Cloud cloud, const ConnectOptions& options, const Context& context
   const NeighborTable& near = cloud.near;
   const Positions& points = index.points();
   const std::size_t n = points.size();
-  if (!whole.scale) whole.scale = stages.run("noise", 0.15, [&] { return noise_scale(index, context); });
-  if (!whole.spacing) whole.spacing = mean_spacing(points, near, context);
+  c.noise = stages.run("noise", 0.15, [&] { return measure(index, near, context, whole); });
   const NoiseScale scale = *whole.scale;
   const Eigen::Vector3d* const corner = whole.corner ? &*whole.corner : nullptr;
-  c.noise.spacing = *whole.spacing;
-  c.noise.sigma = scale.sigma;
   c.on_shadow = guide == nullptr && n > 0 && scale.sigma > options.shadow_from * c.noise.spacing;
   c.emst = stages.run("emst", 0.2, [&] {
     return options.tree_of_points || !c.on_shadow ? emst(index, near, context) : std::vector<Edge>();
   });
   auto surfaces = stages.run("local surfaces", 0.4, [&] {
     const auto least = std::min(std::size_t(options.neighbours), scale.neighbours);
-    return c.on_shadow ? shared_local_surfaces(index, near, scale, least, context, corner)
+    return c.on_shadow ? shared_local_surfaces(index, near, scale, c.noise.field, least, context, corner)
                        : local_surfaces(points, near, context);
   });
-  c.noise.field.resize(n);
-  for_each_index(context, n, [&](std::size_t i) { c.noise.field[i] = surfaces[i].residual; });
   if (guide == nullptr && !c.on_shadow)
     return {points, std::move(surfaces), std::move(cloud.near), c.emst, {}};
   cloud.near = NeighborTable();  // neighbours among the noisy points: not needed any more
   return stages.run(guide != nullptr ? "guide" : "shadow", 0.5, [&] {
-    return guide != nullptr ? ground_at(*guide, options.neighbours, context)
-                            : shadow_ground(points, std::move(surfaces), scale, corner, options, context);
+    return guide != nullptr
+               ? ground_at(*guide, options.neighbours, context)
+               : shadow_ground(points, std::move(surfaces), scale, c.noise, corner, options, context);
   });
 }
 

@@ -34,22 +34,25 @@ std::vector<LocalSurface> local_surfaces(const Positions& points, const Neighbor
 /// of one quadric per point, and the shadows scatter a little less, since several quadrics agree on each.
 ///
 /// The points are divided into compact groups of m / 6, m = `scale.neighbours`. A quadric is fitted to the m
-/// nearest of the point in the middle of each group. If its residual is far above `scale.sigma`, it has met
+/// nearest of the point in the middle of each group. If its residual is far above the noise there, it has met
 /// an edge, a second sheet or strong curvature, and m is halved, down to `least`. A point at offset d from a
 /// quadric's centre and e above it takes the mean over the quadrics of its own group and of its neighbours'
 /// groups (rows of `near`), with weights
 ///
 ///     (1 - |d|^2 / R^2)^3 s^-4 exp(-e^2 / (2 s^2)),    s = max(residual, sigma),
 ///
-/// so that it follows the sheet nearest to it; for normals the first factor is not cubed. A point that no
-/// quadric explains gets one of its own. `near` has k >= 1 unless n < 2. O(n m / 6 + n k), parallel,
-/// deterministic.
-/// \param corner null: groups are subtrees of the index, of which every point of the cloud has a say. Else of
-/// a cube of three times `scale.radius` that groups end at (cells.h): a part of a cloud then has the groups
-/// of the whole.
+/// sigma the noise of the point, so that it follows the sheet nearest to it; for normals the first factor is
+/// not cubed. A point that no quadric explains gets one of its own. `near` has k >= 1 unless n < 2.
+/// O(n m / 6 + n k), parallel, deterministic.
+///
+/// \param noise n: sigma around each point, world units.
+///
+/// \param corner null: groups are subtrees of the index, of which every point of the cloud has a say. Else
+/// of a cube of three times `scale.radius` that groups end at (cells.h): a part of a cloud then has the
+/// groups of the whole.
 std::vector<LocalSurface> shared_local_surfaces(const SpatialIndex& index, const NeighborTable& near,
-                                                const NoiseScale& scale, std::size_t least,
-                                                const Context& context,
+                                                const NoiseScale& scale, const std::vector<double>& noise,
+                                                std::size_t least, const Context& context,
                                                 const Eigen::Vector3d* corner = nullptr);
 
 /// Mean distance to the nearest neighbour, world units; 0 for fewer than two points.
@@ -58,13 +61,19 @@ double mean_spacing(const Positions& points, const NeighborTable& near, const Co
 /// The same, over up to 50,000 points spread over the indices. O(log n).
 double mean_spacing(const SpatialIndex& index, const Context& context);
 
-/// Measures the noise. Quadrics are fitted to m = 24, 48, ... 384 neighbours at up to 1,000 points spread
-/// over the cloud; sigma is the lower quartile of their residuals (the flat places), corrected for being a
-/// quartile. A neighbourhood narrower than a few sigma is a ball inside a thick slab: it shows too little
-/// noise and no normal. One that is too wide takes shape for noise: its residual then grows faster than the
-/// cube root of m, which noise never does, and the search stops. m is the first at which sigma is at most
-/// 0.18 of the radius, else the one at which that share is least. O(1) in n after the index. Within 15 % for
-/// Gaussian noise of 0.1 to 3 spacings on a sphere of 10,000 points.
-NoiseScale noise_scale(const SpatialIndex& index, const Context& context);
+/// How much the points scatter, and how many neighbours a quadric takes for it. Quadrics are fitted to m =
+/// 24, 48, ... 384 neighbours at up to 1,000 points spread over the cloud; sigma is the lower quartile of
+/// their residuals (the flat places), corrected for being a quartile, times `louder`, or `known` if that is
+/// more. A neighbourhood narrower than a few sigma is a ball inside a thick slab: it shows too little noise
+/// and no normal. One that is too wide takes shape for noise: sigma then grows faster than the cube root of
+/// m, which noise never does, and the search stops. m is the first at which sigma is at most 0.18 of the
+/// radius, else the one at which that share is least. O(1) in n after the index. Within 15 % for Gaussian
+/// noise of 0.1 to 3 spacings on a sphere of 10,000 points; noise that is not the same everywhere, not
+/// Gaussian or not each point's own is measured by noise.h.
+///
+/// \param known world units; narrow neighbourhoods show less of noise that neighbours share, of depths in
+/// steps nothing. \param louder of the cloud over its calm quarter, 1 or more
+NoiseScale noise_scale(const SpatialIndex& index, const Context& context, double known = 0,
+                       double louder = 1);
 
 }  // namespace rfsmooth::rfs_mesh

@@ -41,8 +41,9 @@ double squared(double x) {
 /// Fits quadrics around points of an index.
 class Fitter {
  public:
-  Fitter(const SpatialIndex& index, const NoiseScale& scale, std::size_t least)
-      : index_(index), scale_(scale), least_(least), near_(index, scale.neighbours + 1) {}
+  Fitter(const SpatialIndex& index, const NoiseScale& scale, const std::vector<double>& noise,
+         std::size_t least)
+      : index_(index), noise_(noise), least_(least), near_(index, scale.neighbours + 1) {}
 
   /// Around point i, with neighbourhoods halved until they are flat enough.
   Quadric fit(Index i) {
@@ -52,9 +53,10 @@ class Fitter {
     for (std::size_t k = 0; k < near_.size(); ++k)
       if (near_.index()[k] != i) row_.push_back(near_.index()[k]);
     std::size_t count = row_.size();
+    const double most = kMisfit * noise_[i];
     Quadric quadric = fit_quadric(points, points[i], row_.data(), count, workspace_);
-    if (quadric.residual > kMisfit * scale_.sigma && count / 2 >= least_) sort(points, points[i]);
-    while (quadric.residual > kMisfit * scale_.sigma && count / 2 >= least_)
+    if (quadric.residual > most && count / 2 >= least_) sort(points, points[i]);
+    while (quadric.residual > most && count / 2 >= least_)
       quadric = fit_quadric(points, points[i], row_.data(), count /= 2, workspace_);
     return quadric;
   }
@@ -68,7 +70,7 @@ class Fitter {
   }
 
   const SpatialIndex& index_;
-  NoiseScale scale_;
+  const std::vector<double>& noise_;
   std::size_t least_;
   QuadricWorkspace workspace_;
   WideNeighbors near_;
@@ -100,14 +102,14 @@ Groups groups_of(const SpatialIndex& index, const NoiseScale& scale, const Vecto
 /// The cloud in compact groups of neighbouring points, a quadric around the point in the middle of each.
 class SharedQuadrics {
  public:
-  SharedQuadrics(const SpatialIndex& index, const NoiseScale& scale, std::size_t least,
-                 const Vector3d* corner, const Context& context)
-      : index_(index), sigma_(scale.sigma), group_(index.points().size()) {
+  SharedQuadrics(const SpatialIndex& index, const NoiseScale& scale, const std::vector<double>& noise,
+                 std::size_t least, const Vector3d* corner, const Context& context)
+      : index_(index), noise_(noise), group_(index.points().size()) {
     const Groups groups = groups_of(index, scale, corner, context);
     quadrics_.resize(groups.size());
     curvature_.resize(groups.size());
     for_blocks(context, groups.size(), 16, [&](std::size_t begin, std::size_t end) {
-      Fitter fitter(index, scale, least);
+      Fitter fitter(index, scale, noise, least);
       for (std::size_t g = begin; g < end; ++g) {
         for (const Index i : groups[g]) group_[i] = Index(g);
         quadrics_[g] = fitter.fit(middle(groups[g]));
@@ -122,6 +124,7 @@ class SharedQuadrics {
     for (const Index j : near)
       if (std::find(around.begin(), around.end(), group_[j]) == around.end()) around.push_back(group_[j]);
     const Vector3d& p = index_.points()[i];
+    const double sigma = noise_[i];
     double total = 0, agreement = 0, residual = 0, curvature = 0;
     Vector3d normal = Vector3d::Zero(), shift = Vector3d::Zero();
     for (const Index g : around) {
@@ -131,9 +134,9 @@ class SharedQuadrics {
       const double inside = 1 - d.squaredNorm();
       if (inside <= 0) continue;
       const double u = q.t1.dot(d), v = q.t2.dot(d), above = q.n.dot(d) - q.height(u, v);
-      const double scatter = std::max(q.residual, sigma_), off = squared(above * q.radius / scatter);
+      const double scatter = std::max(q.residual, sigma), off = squared(above * q.radius / scatter);
       if (off > squared(kScatterWindow)) continue;  // another sheet
-      const double trust = inside * squared(squared(sigma_ / scatter)) * std::exp(-0.5 * off);
+      const double trust = inside * squared(squared(sigma / scatter)) * std::exp(-0.5 * off);
       const double weight = inside * inside * trust;
       // The normal over (u, v) is (n - a t1 - b t2) / sqrt(1 + a^2 + b^2), and so is the turned one.
       const auto slope = [&q](double at_u, double at_v) {
@@ -169,7 +172,7 @@ class SharedQuadrics {
   }
 
   const SpatialIndex& index_;
-  double sigma_;
+  const std::vector<double>& noise_;
   std::vector<Quadric> quadrics_;
   std::vector<double> curvature_;  // of each quadric
   std::vector<Index> group_;       // n
@@ -178,12 +181,13 @@ class SharedQuadrics {
 }  // namespace
 
 std::vector<LocalSurface> shared_local_surfaces(const SpatialIndex& index, const NeighborTable& near,
-                                                const NoiseScale& scale, std::size_t least,
-                                                const Context& context, const Vector3d* corner) {
-  const SharedQuadrics quadrics(index, scale, least, corner, context);
+                                                const NoiseScale& scale, const std::vector<double>& noise,
+                                                std::size_t least, const Context& context,
+                                                const Vector3d* corner) {
+  const SharedQuadrics quadrics(index, scale, noise, least, corner, context);
   std::vector<LocalSurface> surfaces(index.points().size());
   for_blocks(context, surfaces.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    Fitter fitter(index, scale, least);
+    Fitter fitter(index, scale, noise, least);
     std::vector<Index> around;
     for (std::size_t i = begin; i < end; ++i)
       if (!quadrics.surface(Index(i), near[i], around, surfaces[i]))

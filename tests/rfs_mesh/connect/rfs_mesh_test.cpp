@@ -5,6 +5,7 @@
 
 #include "rfs_mesh/connect/connect.h"
 #include "rfs_mesh/measure.h"
+#include "rfs_mesh/noise/noise.h"
 #include "tests/support/awkward_clouds.h"
 #include "tests/support/connection.h"
 #include "tests/support/shapes.h"
@@ -201,6 +202,21 @@ TEST(Connection, GuideDecidesConnectivityAndPointsStay) {
   const Connection ideal = connected(clean);
   EXPECT_GT(share_in_common(guided.mesh.faces, ideal.mesh.faces), 0.95);
   EXPECT_TRUE(guided.mesh.positions == noisy);
+}
+
+TEST(Connection, StandsOnTheOneMeasureOfNoise) {
+  // Depths in steps of three spacings: residuals of narrow neighbourhoods are zero on a terrace, and yet the
+  // noise is known, and the tests are made on the shadow.
+  constexpr double kStep = 0.03;
+  Positions points = test::random_points(test::plane(), 10000, 3);
+  for (auto& p : points) p[2] = kStep * std::round((0.4 * p[0] + 0.1 * p[1]) / kStep);
+  const SpatialIndex index(points, {});
+  const NoiseField noise = rfs_mesh::measure_noise(index, {});
+  ASSERT_GT(noise.sigma, 0.5 * kStep / std::sqrt(12.0));
+  const Connection c = connected(points);
+  EXPECT_EQ(c.noise.sigma, noise.sigma);
+  EXPECT_EQ(c.noise.field, noise.local);
+  EXPECT_TRUE(c.on_shadow);
 }
 
 TEST(Connection, IsTheSameFromNeighboursThatAreKnown) {

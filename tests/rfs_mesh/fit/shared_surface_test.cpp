@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 
@@ -27,7 +28,14 @@ Positions with_noise(Positions points, double sigma) {
 
 std::vector<LocalSurface> shared(const Positions& points, std::size_t m, double sigma) {
   const SpatialIndex index(points, {});
-  return shared_local_surfaces(index, index.nearest(kNear, {}), {sigma, m}, kNear, {});
+  const std::vector<double> noise(points.size(), sigma);
+  return shared_local_surfaces(index, index.nearest(kNear, {}), {sigma, m}, noise, kNear, {});
+}
+
+/// The bytes of a surface.
+std::array<double, 8> numbers(const LocalSurface& s) {
+  return {s.normal[0], s.normal[1], s.normal[2], s.shadow[0],
+          s.shadow[1], s.shadow[2], s.curvature, s.residual};
 }
 
 TEST(SharedSurface, AQuadricIsReproduced) {
@@ -94,15 +102,46 @@ TEST(SharedSurface, SheetsStayApart) {
   EXPECT_LT(double(strayed), 0.001 * double(clean.size()));
 }
 
+TEST(SharedSurface, EveryPlaceIsFittedForItsOwnNoise) {
+  // A tenfold noise where x > 0.5: well inside, each half is what it were if all of the cloud had its noise.
+  constexpr double kCalm = 0.003, kLoud = 0.03, kBorder = 0.25;
+  const Positions clean = test::random_points(test::plane(), 4000, 6);
+  const Positions calm = with_noise(clean, kCalm), loud = with_noise(clean, kLoud);
+  Positions points = clean;
+  std::vector<double> noise(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const bool here = clean[i].x() > 0.5;
+    points[i] = here ? loud[i] : calm[i];
+    noise[i] = here ? kLoud : kCalm;
+  }
+  const SpatialIndex index(points, {});
+  const auto surfaces = shared_local_surfaces(index, index.nearest(kNear, {}), {kLoud, 96}, noise, kNear, {});
+  const auto all_calm = shared(points, 96, kCalm), all_loud = shared(points, 96, kLoud);
+  std::size_t inside = 0, apart = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (std::abs(clean[i].x() - 0.5) < kBorder) continue;
+    ++inside;
+    const bool here = clean[i].x() > 0.5;
+    const auto &alike = here ? all_loud[i] : all_calm[i], &other = here ? all_calm[i] : all_loud[i];
+    EXPECT_EQ(numbers(surfaces[i]), numbers(alike)) << i;
+    apart += std::size_t(numbers(surfaces[i]) != numbers(other));
+  }
+  EXPECT_GT(inside, 1000U);
+  EXPECT_GT(apart, inside / 4);
+}
+
 TEST(SharedSurface, SameBytesForAnyNumberOfThreads) {
   const Positions points = with_noise(test::random_points(test::torus(), 4000, 5), 0.03);
   const SpatialIndex index(points, {});
   const NeighborTable near = index.nearest(kNear, {});
+  const std::vector<double> noise(points.size(), 0.03);
   const auto run = [&](int threads) {
     Context context;
     context.threads = threads;
     std::vector<LocalSurface> surfaces;
-    in_arena(context, [&] { surfaces = shared_local_surfaces(index, near, {0.03, 96}, kNear, context); });
+    in_arena(context, [&] {
+      surfaces = shared_local_surfaces(index, near, {0.03, 96}, noise, kNear, context);
+    });
     return surfaces;
   };
   const auto one = run(1);
