@@ -7,6 +7,7 @@
 #include <cstring>
 #include <filesystem>
 #include <future>
+#include <limits>
 #include <numeric>
 #include <random>
 
@@ -66,18 +67,20 @@ RichCloud strip(double noise, bool pcd = false, Kind kind = Kind::own) {
 }
 
 constexpr double kWall = 0.6, kWallNoise = 0.6;  // half of the wall's thickness, and the noise
-constexpr int kWallEnds = 100;
+constexpr int kWallEnds = 100, kRidgesStart = 340;
+constexpr int kWidest = 25;  // no patch is wider
 
 /// A long sheet with ridges near its end, where the learned step would act, and points `kWallNoise` spacings
 /// off it; those of its first quarter off two, kWall on either side of it.
 RichCloud sheet_with_wall() {
-  constexpr int kRows = 400, kColumns = 64, kFlat = 340, kHalfRidge = 10;
+  constexpr int kRows = 400, kColumns = 64, kHalfRidge = 10;
   std::mt19937_64 engine(11);
   std::normal_distribution<double> normal(0, 1);
   RichCloud cloud;
   cloud.doubles = true;
   for (int i = 0; i < kRows; ++i) {
-    const int ridge = i < kFlat ? 0 : kHalfRidge - std::abs((i - kFlat) % (2 * kHalfRidge) - kHalfRidge);
+    const int ridge =
+        i < kRidgesStart ? 0 : kHalfRidge - std::abs((i - kRidgesStart) % (2 * kHalfRidge) - kHalfRidge);
     for (int j = 0; j < kColumns; ++j) {
       const double half = i < kWallEnds ? (engine() % 2 != 0 ? kWall : -kWall) : 0;
       cloud.xyz.insert(cloud.xyz.end(), {i + 0.2 * normal(engine), j + 0.2 * normal(engine),
@@ -136,7 +139,9 @@ class Tiles : public InFolder {
     return std::filesystem::is_directory(at(output)) ? "" : take(output);
   }
   /// Smooths a cloud of spacings of about one in tiles and as a whole, and compares. `option`: of both.
-  Both expect_as_whole(const RichCloud& cloud, const std::string& points, const std::string& option = "") {
+  /// `until`: points of larger x are not compared.
+  Both expect_as_whole(const RichCloud& cloud, const std::string& points, const std::string& option = "",
+                       double until = std::numeric_limits<double>::infinity()) {
     put("in.ply", cloud.bytes());
     Both both;
     both.job = "job" + std::to_string(++jobs_);
@@ -150,7 +155,7 @@ class Tiles : public InFolder {
     both.whole = take("whole.ply");
     double squares = 0, within = 0, count = 0;
     for (std::size_t i = 0; i < cloud.size(); ++i) {
-      if (!std::isfinite(cloud.xyz[3 * i + 2])) continue;
+      if (!std::isfinite(cloud.xyz[3 * i + 2]) || cloud.xyz[3 * i] > until) continue;
       double square = 0;
       for (std::size_t axis = 0; axis < 3; ++axis)
         square += std::pow(cloud.coordinate(both.tiled, i, axis) - cloud.coordinate(both.whole, i, axis), 2);
@@ -293,11 +298,13 @@ TEST_F(Tiles, ManyTilesAreTheWholeCloudAndAsNearToTheTruth) {
 }
 
 // A wall thinner than the noise at one end of a sheet, which is a tile: what the whole cloud says of it
-// holds in all tiles, also of the learned step, which is not taken where there are such walls.
+// holds in all tiles, also of the learned step, which is not taken where there are such walls. Patches that
+// reach the ridges do not fit there, chance has a say in which of them is taken, and tiles differ from the
+// whole cloud by up to 0.1 spacings.
 TEST_F(Tiles, WallsHiddenInOneTileAreWhatTheyAreInTheWholeCloud) {
   const RichCloud cloud = sheet_with_wall();
   for (const char* learned : {"", "--learned"}) {
-    const Both both = expect_as_whole(cloud, "6400", learned);
+    const Both both = expect_as_whole(cloud, "6400", learned, kRidgesStart - kWidest);
     EXPECT_GT(both.statistics.sheets->evidence, 7);
     const auto parted = [&](const std::string& bytes) {  // share of the wall's points
       double beside = 0, all = 0;
