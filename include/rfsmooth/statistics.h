@@ -70,8 +70,8 @@ struct Statistics {
   /// For a cloud that is smoothed in parts: a corner of the cubes that points are grouped in, around the
   /// middle of the box. It is not entered; without it groups are of the whole cloud.
   std::optional<Eigen::Vector3d> corner;
-  std::optional<NoiseScale> scale;
-  std::optional<double> spacing;  ///< mean distance to the nearest neighbour, of all points
+  std::optional<NoiseScale> scale;  ///< of the quadrics that connecting stands on, for the louder parts, too
+  std::optional<double> spacing;    ///< mean distance to the nearest neighbour, of all points
   std::optional<NoiseModel> noise;
   std::optional<Tails> tails;
   std::vector<Pass> passes;

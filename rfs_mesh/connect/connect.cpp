@@ -139,8 +139,8 @@ NoiseScale scale_for(const SpatialIndex& index, const NoiseModel& noise, const C
   if (!(noise.sigma > 0)) return {};
   std::vector<double> sigma = at_sites(noise);
   const double loud = loudness(noise), calm = quantile(sigma, 0.25);
-  const bool hidden = noise.shared > 1 || noise.step > 0;
-  NoiseScale scale = noise_scale(index, context, hidden ? loud : 0, std::max(1.0, loud / calm));
+  const bool understated = noise.shared > 1 || noise.step > 0;
+  NoiseScale scale = noise_scale(index, context, understated ? loud : 0, std::max(1.0, loud / calm));
   scale.sigma = std::min(scale.sigma, loud);
   return scale;
 }
