@@ -260,10 +260,14 @@ void for_each_within(const KdTree& tree, const Vector3d& query, const Neighbor& 
 
 }  // namespace
 
-void SpatialIndex::within(const Vector3d& query, double radius, std::vector<Neighbor>& out) const {
+void SpatialIndex::within_unsorted(const Vector3d& query, double radius, std::vector<Neighbor>& out) const {
   out.clear();
   if (!(radius >= 0)) return;
   for_each_within(tree_, query, {kNone, radius * radius}, [&](const Neighbor& q) { out.push_back(q); });
+}
+
+void SpatialIndex::within(const Vector3d& query, double radius, std::vector<Neighbor>& out) const {
+  within_unsorted(query, radius, out);
   std::sort(out.begin(), out.end());
 }
 

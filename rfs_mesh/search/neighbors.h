@@ -85,6 +85,9 @@ class SpatialIndex {
   /// All points with |point - query| <= radius, ascending by (distance, index). Replaces `out`.
   void within(const Eigen::Vector3d& query, double radius, std::vector<Neighbor>& out) const;
 
+  /// The same points as they come, which is faster: an order that depends on where all points are.
+  void within_unsorted(const Eigen::Vector3d& query, double radius, std::vector<Neighbor>& out) const;
+
   /// Whether a point is within `radius`. O(log n), fastest if there is none.
   bool any_within(const Eigen::Vector3d& query, double radius) const;
 

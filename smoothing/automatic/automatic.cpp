@@ -498,26 +498,27 @@ Positions automatic_smoothing(Mesh& mesh, bool keep_rings, rfs_mesh::NoiseField 
   }
   if (!keep_rings) mesh.one_ring = {};
   const double of_whole = whole.points ? double(*whole.points) / double(n) : 1;
+  const std::vector<float> mixed = learned ? pass.height : std::vector<float>();
   const HiddenSheets hidden =
       split_hidden_sheets(*field, noise.sigma, pass.height, pass.own, of_whole, whole.sheets, context);
-  const auto smooth_at = [&](std::size_t i, float height) -> Eigen::Vector3d {
-    const Eigen::Vector3d &from = mesh.positions[i],
-                          move = field->guide()[i] + double(height) * field->normal(i) - from;
-    return move.allFinite() && move.norm() <= most[i] ? from + move : from;
+  const auto allowed = [&](std::size_t i, const Eigen::Vector3d& move) {
+    return move.allFinite() && move.norm() <= most[i];
   };
   Positions smooth(n);
-  for_each_index(context, n, [&](std::size_t i) { smooth[i] = smooth_at(i, pass.height[i]); });
-  const Positions one_sheet = learned ? smooth : Positions();
+  for_each_index(context, n, [&](std::size_t i) {
+    const Eigen::Vector3d &from = mesh.positions[i],
+                          move = field->guide()[i] + double(pass.height[i]) * field->normal(i) - from;
+    smooth[i] = allowed(i, move) ? from + move : from;
+  });
   part_thin_walls(*field, data, pass.several, pass.members_seeing, noise, smooth, whole.thin_walls, context);
-  // Models of two sheets that a whole cloud or a whole patch speaks for know more than the network sees from
-  // a point.
-  if (learned && !hidden.there()) {
-    std::vector<float> height = pass.height;
-    report.learned = take_learned_step(*field, data, {pass.told, pass.own, pass.height}, noise, spacing,
-                                       height, sites, context);
-    for_each_index(context, n, [&](std::size_t i) {
-      if (smooth[i] == one_sheet[i]) smooth[i] = smooth_at(i, height[i]);
-    });
+  if (learned) {
+    const auto may_go = [&](std::size_t i, const Eigen::Vector3d& there) {
+      const Eigen::Vector3d& from = mesh.positions[i];
+      return smooth[i] != from && allowed(i, there - from);  // strays stay
+    };
+    report.learned = take_learned_step(
+        *field, data, {pass.told, pass.own, mixed, smooth, hidden.there() ? hidden.variance : 1}, noise,
+        spacing, may_go, smooth, sites, context);
   }
   report.left = noise_left(*field, pass.height, pass.own, noise, context);
   near = field->release_neighbors();

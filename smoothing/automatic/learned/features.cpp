@@ -33,87 +33,111 @@ class Writer {
   float *even_, *odd_;
 };
 
+/// So many neighbours are looked at side by side.
+using SideBySide = Eigen::Array<float, 8, 1>;
+constexpr std::size_t kSideBySide = SideBySide::SizeAtCompileTime;
+
 /// (1 - x)^2 below 1.
-float biweight(float x) {
-  return x < 1 ? (1 - x) * (1 - x) : 0;
+SideBySide biweight(const SideBySide& x) {
+  return (1 - x).max(0.0F).square();
+}
+
+SideBySide same_sheet(const SideBySide& cosine) {
+  return (cosine < float(rfs_mesh::kSameSheet)).select(0.0F, cosine.square());
 }
 
 /// Heights of points in bins, each shared by the two nearest.
 struct Histogram {
   std::array<float, 2 * kSide + 1> bin{};
-  float all = 0;
+  SideBySide all = SideBySide::Zero();
 
-  void add(float height, float weight) {
-    const float at = height * (1 / kBin) + float(kSide);
+  void add(const SideBySide& height, const SideBySide& weight) {
+    const SideBySide at = height * (1 / kBin) + float(kSide);
     all += weight;
-    if (!(at >= 0 && at < float(2 * kSide))) return;
-    const auto k = std::size_t(at);
-    const float part = at - float(k);
-    bin[k] += weight * (1 - part);
-    bin[k + 1] += weight * part;
+    for (Eigen::Index i = 0; i < Eigen::Index(kSideBySide); ++i) {
+      if (!(weight[i] > 0 && at[i] >= 0 && at[i] < float(2 * kSide))) continue;
+      const auto k = std::size_t(at[i]);
+      const float part = at[i] - float(k);
+      bin[k] += weight[i] * (1 - part);
+      bin[k + 1] += weight[i] * part;
+    }
   }
 
   /// `flat`: the weight of one flat sheet.
   void write(float flat, Writer& to) const {
-    const float unit = 1 / (all + 1e-6F);
+    const float weights = all.sum(), unit = 1 / (weights + 1e-6F);
     to.even(unit * bin[kSide]);
     for (std::size_t k = 1; k <= kSide; ++k) {
       to.even(unit * (bin[kSide + k] + bin[kSide - k]));
       to.odd(unit * (bin[kSide + k] - bin[kSide - k]));
     }
-    to.even(all / (all + flat));
+    to.even(weights / (weights + flat));
+  }
+};
+
+/// Weighted sums of N numbers, and of the weights.
+template <std::size_t N>
+struct Sums {
+  SideBySide all = SideBySide::Zero();
+  std::array<SideBySide, N> sum;
+
+  Sums() { sum.fill(SideBySide::Zero()); }
+
+  template <class... Numbers>
+  void add(const SideBySide& weight, const Numbers&... numbers) {
+    static_assert(sizeof...(numbers) == N);
+    all += weight;
+    std::size_t k = 0;
+    ((sum[k++] += weight * numbers), ...);
+  }
+
+  /// The means.
+  std::array<float, N> means() const {
+    const float unit = 1 / (all.sum() + 1e-6F);
+    std::array<float, N> mean;
+    for (std::size_t k = 0; k < N; ++k) mean[k] = unit * sum[k].sum();
+    return mean;
   }
 };
 
 /// The smoothed points around one, and how they face.
 struct Sheets {
-  float all = 0, height = 0, square = 0, facing = 0, against = 0, either = 0, same = 0, other = 0;
+  Sums<7> sums;
 
-  void add(float at, float cosine, float weight) {
-    const float along = std::max(0.0F, cosine), away = std::max(0.0F, -cosine);
-    all += weight;
-    height += weight * at;
-    square += weight * at * at;
-    facing += weight * along;
-    against += weight * away;
-    either += weight * cosine * cosine;
-    same += weight * along * at;
-    other += weight * away * at;
+  void add(const SideBySide& at, const SideBySide& cosine, const SideBySide& weight) {
+    const SideBySide along = cosine.max(0.0F), away = (-cosine).max(0.0F);
+    sums.add(weight, at, at.square(), along, away, cosine.square(), along * at, away * at);
   }
 
   void write(Writer& to) const {
-    const float unit = 1 / (all + 1e-6F);
-    to.odd(unit * height);
-    to.odd(unit * same);
-    to.odd(unit * other);
-    to.even(0.25F * unit * square);
-    to.even(unit * facing);
-    to.even(unit * against);
-    to.even(unit * either);
+    const auto [height, square, facing, against, either, same, other] = sums.means();
+    to.odd(height);
+    to.odd(same);
+    to.odd(other);
+    to.even(0.25F * square);
+    to.even(facing);
+    to.even(against);
+    to.even(either);
   }
 };
 
 /// Moments of the data up to the second.
 struct Moments {
-  float all = 0;
-  Eigen::Vector3f mean = Eigen::Vector3f::Zero();
-  Eigen::Matrix3f second = Eigen::Matrix3f::Zero();
+  Sums<9> sums;
 
-  void add(const Eigen::Vector3f& d, float weight) {
-    all += weight;
-    mean += weight * d;
-    second += weight * d * d.transpose();
+  void add(const std::array<SideBySide, 3>& d, const SideBySide& weight) {
+    const auto& [x, y, z] = d;
+    sums.add(weight, x, y, z, x * x, y * y, z * z, x * y, x * z, y * z);
   }
 
   void write(const Eigen::Vector3f& normal, Writer& to) const {
-    const float unit = 1 / (all + 1e-6F);
-    const Eigen::Vector3f m = unit * mean;
-    const Eigen::Matrix3f s = unit * second;
-    const float across = normal.dot(s * normal), off = m.dot(normal);
+    const auto [x, y, z, xx, yy, zz, xy, xz, yz] = sums.means();
+    const Eigen::Vector3f m(x, y, z), u(xx, xy, xz), v(xy, yy, yz), w(xz, yz, zz);  // rows of the second
+    const float across = normal.dot(Eigen::Vector3f(u.dot(normal), v.dot(normal), w.dot(normal))),
+                off = m.dot(normal);
     // The two eigenvalues along the surface: their sum is the rest of the trace, and their product is what
-    // the adjugate of s is along n.
-    const float half = 0.5F * (s.trace() - across);
-    const Eigen::Vector3f u = s.row(0), v = s.row(1), w = s.row(2);
+    // the adjugate is along n.
+    const float half = std::max(0.0F, 0.5F * (xx + yy + zz - across));
     const float product =
         normal.dot(normal[0] * v.cross(w) + normal[1] * w.cross(u) + normal[2] * u.cross(v));
     const float apart = std::sqrt(std::max(0.0F, half * half - product));
@@ -127,23 +151,19 @@ struct Moments {
 
 /// Means of the residuals' powers.
 struct Residuals {
-  float all = 0, first = 0, second = 0, third = 0, fourth = 0;
+  Sums<4> sums;
 
-  void add(float r, float weight) {
-    const float square = r * r;
-    all += weight;
-    first += weight * r;
-    second += weight * square;
-    third += weight * square * r;
-    fourth += weight * square * square;
+  void add(const SideBySide& r, const SideBySide& weight) {
+    const SideBySide square = r.square();
+    sums.add(weight, r, square, square * r, square.square());
   }
 
   void write(Writer& to) const {
-    const float unit = 1 / (all + 1e-6F);
-    to.odd(unit * first);
-    to.odd(unit * third / 6);
-    to.even(unit * second);
-    to.even(unit * fourth / 6);
+    const auto [first, second, third, fourth] = sums.means();
+    to.odd(first);
+    to.odd(third / 6);
+    to.even(second);
+    to.even(fourth / 6);
   }
 };
 
@@ -151,11 +171,16 @@ struct Residuals {
 
 Features::Features(const HeightField& field, const Positions& data, const Smoothed& smoothed,
                    const rfs_mesh::NoiseField& noise, double spacing, const Context& context)
-    : field_(field), data_(data), smoothed_(smoothed), noise_(noise), spacing_(spacing) {
+    : field_(field), smoothed_(smoothed), noise_(noise), spacing_(spacing) {
   constexpr int kTimes = 4;
+  packed_.resize(field.size());
   pooled_.resize(field.size());
   for_each_index(context, field.size(), [&](std::size_t i) {
-    const float r = residual(i), narrow = candidate(i, smoothed.scales[i][0].height),
+    const Eigen::Vector3d& guide = field.guide()[i];
+    const float r = std::clamp((field.local()[i].height - height(i)) / scale(i), -kFarResidual, kFarResidual);
+    packed_[i] = {(data[i] - guide).cast<float>(), (smoothed.place[i] - guide).cast<float>(),
+                  field.local()[i].normal, r};
+    const float narrow = candidate(i, smoothed.scales[i][0].height),
                 third = candidate(i, smoothed.scales[i][2].height);
     pooled_[i] << r, r * r, r * r * r / 6, r * r * r * r / 6, smoothed.own[i], narrow * narrow, third * third,
         0;
@@ -163,13 +188,9 @@ Features::Features(const HeightField& field, const Positions& data, const Smooth
   for (int t = 0; t < kTimes; ++t) pooled_ = field.local_mean(pooled_, context);
 }
 
-float Features::residual(std::size_t i) const {
-  return std::clamp((field_.local()[i].height - smoothed_.height[i]) / scale(i), -kFarResidual, kFarResidual);
-}
-
-float Features::candidate(std::size_t i, float height) const {
-  if (std::isnan(height)) return 0;
-  return std::clamp((height - smoothed_.height[i]) / scale(i), -kFarCandidate, kFarCandidate);
+float Features::candidate(std::size_t i, float that) const {
+  if (std::isnan(that)) return 0;
+  return std::clamp((that - height(i)) / scale(i), -kFarCandidate, kFarCandidate);
 }
 
 void Features::fill(std::size_t i, Row& row, std::vector<rfs_mesh::Neighbor>& near) const {
@@ -181,31 +202,55 @@ void Features::fill(std::size_t i, Row& row, std::vector<rfs_mesh::Neighbor>& ne
     to.even(std::clamp(says.near, -kFarEvidence, kFarEvidence));
     to.even(std::clamp(says.wide, -kFarEvidence, kFarEvidence));
   }
-  to.odd(residual(i));
+  to.odd(packed_[i].residual);
+  to.odd(candidate(i, smoothed_.mixed[i]));
   to.even(smoothed_.own[i]);
   to.odd(pooled_[i][0]);
   to.odd(pooled_[i][2]);
   for (const Eigen::Index k : {1, 3, 4, 5, 6}) to.even(pooled_[i][k]);
 
-  const Eigen::Vector3d at = place(i);
-  const Eigen::Vector3f normal = field_.local()[i].normal;
+  const Eigen::Vector3d& centre = field_.guide()[i];
+  const Eigen::Vector3f normal = packed_[i].normal, at = packed_[i].place;
+  const float unit = 1 / s;
   Histogram inner, outer;
   Sheets sheets;
   Moments moments;
   Residuals close, wide;
-  field_.index().within(field_.guide()[i], kSeen * double(s), near);
-  for (const rfs_mesh::Neighbor& n : near) {
-    const std::size_t j = n.index;
-    const Eigen::Vector3f d = ((data_[j] - at) / double(s)).cast<float>(),
-                          p = ((place(j) - at) / double(s)).cast<float>();
-    const float height = d.dot(normal), square = d.squaredNorm(), beside = square - height * height;
-    inner.add(height, biweight(beside / (kInner * kInner)));
-    outer.add(height, biweight(beside / (kOuter * kOuter)));
-    const float cosine = field_.local()[j].normal.dot(normal), away = p.squaredNorm(), r = residual(j);
-    sheets.add(p.dot(normal), cosine, biweight(away / (kAround * kAround)));
-    close.add(r, same_sheet(cosine) * biweight(away / (kInner * kInner)));
-    wide.add(r, same_sheet(cosine) * biweight(away / (kOuter * kOuter)));
-    moments.add(d, biweight(square / (kMoments * kMoments)));
+  field_.index().within_unsorted(centre, kSeen * double(s), near);
+  for (std::size_t first = 0; first < near.size(); first += kSideBySide) {
+    const std::size_t count = std::min(near.size() - first, kSideBySide);
+    SideBySide there = SideBySide::Zero(), residual = SideBySide::Zero();
+    std::array<SideBySide, 3> d, p, facing;  // data and P, in s from this point's P; normals
+    d.fill(SideBySide::Zero());
+    p = facing = d;
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::size_t j = near[first + k].index;
+      const Packed& one = packed_[j];
+      const Eigen::Vector3f from = (field_.guide()[j] - centre).cast<float>() - at,
+                            data = unit * (from + one.data), place = unit * (from + one.place);
+      const auto lane = Eigen::Index(k);
+      there[lane] = 1;
+      residual[lane] = one.residual;
+      for (std::size_t c = 0; c < 3; ++c) {
+        d[c][lane] = data[Eigen::Index(c)];
+        p[c][lane] = place[Eigen::Index(c)];
+        facing[c][lane] = one.normal[Eigen::Index(c)];
+      }
+    }
+    const auto along = [&](const std::array<SideBySide, 3>& v) -> SideBySide {
+      return v[0] * normal[0] + v[1] * normal[1] + v[2] * normal[2];
+    };
+    const auto squared = [](const std::array<SideBySide, 3>& v) -> SideBySide {
+      return v[0].square() + v[1].square() + v[2].square();
+    };
+    const SideBySide height = along(d), square = squared(d), beside = square - height.square(),
+                     away = squared(p), cosine = along(facing), same = there * same_sheet(cosine);
+    inner.add(height, there * biweight(beside / (kInner * kInner)));
+    outer.add(height, there * biweight(beside / (kOuter * kOuter)));
+    sheets.add(along(p), cosine, there * biweight(away / (kAround * kAround)));
+    close.add(residual, same * biweight(away / (kInner * kInner)));
+    wide.add(residual, same * biweight(away / (kOuter * kOuter)));
+    moments.add(d, there * biweight(square / (kMoments * kMoments)));
   }
   // A flat sheet has about one point in a square spacing; the weights over a disc of radius r sum to a third
   // of its area.
@@ -218,6 +263,7 @@ void Features::fill(std::size_t i, Row& row, std::vector<rfs_mesh::Neighbor>& ne
   moments.write(normal, to);
   to.even(squashed(dense));
   to.even(s / float(noise_.local[i]));
+  to.even(float(smoothed_.variance));
 }
 
 }  // namespace rfsmooth::smoothing

@@ -2,14 +2,16 @@
 /// there.
 ///
 /// All lengths are in units of s, the noise around the point (at most the cloud's figure: walls make the
-/// field too high), heights along the point's normal n over the guide, from P = g + h n, the place that the
-/// mixture gave it. So a cloud that is turned, moved or made larger has the same features. To turn the
-/// normals round changes the sign of the odd ones and nothing else of the even ones.
+/// field too high), heights along the point's normal n over the guide, from h = (P - g) n, P being the place
+/// that the mixture, hidden sheets and thin walls gave it. So a cloud that is turned, moved or made larger
+/// has the same features. To turn the normals round changes the sign of the odd ones and nothing else of the
+/// even ones.
 ///
 /// From the scales (patches.h): the four narrowest and the widest, the widest in place of those that are not
 /// there.
 ///     even: own, the evidence near and wide (automatic.h); odd: f_m - h
-/// Of the point: r = z - h, what smoothing took; the share of its own height.
+/// Of the point: r = z - h, what smoothing took; the height that the mixture gave it (odd), the share of its
+/// own height.
 /// Moments around it: means of r, r^3 / 6 (odd), r^2, r^4 / 6 (even) over points of the same sheet within 3
 /// and 6 s; these and own, (f_0 - h)^2 and (f_2 - h)^2 (even) over the near neighbours of near neighbours,
 /// four times. Histograms: heights of the data around P in bins of 0.75 from -4.5 to 4.5 s, over discs of 3
@@ -17,7 +19,8 @@
 /// Other sheets within 5 s: mean height of the smoothed points around (odd; of those that face the same way,
 /// and the other way), their mean square, and how they face.
 /// Second moments of the data within 6 s: along n and the two along the surface, and the offsets of the mean.
-/// Of the cloud: s in spacings, s over the field's noise.
+/// Of the cloud: s in spacings, s over the field's noise, the variance of the noise where it has hidden
+/// sheets (hidden_sheets.h), over that measured.
 #pragma once
 
 #include <array>
@@ -42,18 +45,19 @@ constexpr std::size_t told_scale(std::size_t t, std::size_t count) {
   return t + 1 < kTold && t < count ? t : count - 1;
 }
 
-/// Heights as the mixture left them, and what it knew. All n.
+/// What the automatic smoother made of the points, and what it knew. All n.
 struct Smoothed {
   const std::vector<ScalesSay>& scales;
-  const std::vector<float>& own;
-  const std::vector<float>& height;
+  const std::vector<float>&own, &mixed;  ///< of the mixture: the points' own share, height over the guide
+  const Positions& place;                ///< P, world units
+  double variance;                       ///< of the noise over that measured, as hidden sheets tell; else 1
 };
 
 /// The features of the points of a field. Const functions are thread safe.
 class Features {
  public:
-  static constexpr std::size_t kEven = 5 * 3 + 1 + 9 + 14 + 2 + 4 + 4 + 2;
-  static constexpr std::size_t kOdd = 5 + 1 + 6 + 12 + 3 + 1;
+  static constexpr std::size_t kEven = 5 * 3 + 1 + 9 + 14 + 2 + 4 + 4 + 3;
+  static constexpr std::size_t kOdd = 5 + 2 + 6 + 12 + 3 + 1;
 
   /// The features of one point.
   struct Row {
@@ -69,23 +73,26 @@ class Features {
   /// s, world units.
   float scale(std::size_t i) const { return float(std::min(noise_.local[i], noise_.sigma)); }
 
-  /// P, world units.
-  Eigen::Vector3d place(std::size_t i) const {
-    return field_.guide()[i] + double(smoothed_.height[i]) * field_.normal(i);
-  }
-
   /// O(points within 6.5 s). `near`: to work in.
   void fill(std::size_t i, Row& row, std::vector<rfs_mesh::Neighbor>& near) const;
 
  private:
-  float residual(std::size_t i) const;                 ///< r, clipped
-  float candidate(std::size_t i, float height) const;  ///< f - h, clipped; 0 for NaN
+  float candidate(std::size_t i, float that) const;  ///< f - h, clipped; 0 for NaN
+  float height(std::size_t i) const {                ///< h, world units
+    return float((smoothed_.place[i] - field_.guide()[i]).dot(field_.normal(i)));
+  }
+
+  /// What neighbours need to know of a point, side by side.
+  struct Packed {
+    Eigen::Vector3f data, place, normal;  ///< data and place relative to the guide's, world units
+    float residual;                       ///< r, clipped
+  };
 
   const HeightField& field_;
-  const Positions& data_;
   const Smoothed smoothed_;
   const rfs_mesh::NoiseField& noise_;
   double spacing_;
+  std::vector<Packed> packed_;                ///< n
   std::vector<HeightField::Columns> pooled_;  ///< n: moments
 };
 

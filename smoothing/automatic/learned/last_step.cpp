@@ -1,5 +1,6 @@
 #include "smoothing/automatic/learned/last_step.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/parallel.h"
@@ -12,22 +13,30 @@ namespace {
 constexpr double kLeastNoise = 0.2;  // spacings: with less noise patches of 16 points are as wide as walls
 constexpr std::size_t kBlockOfSites = 256;
 
-/// Whether a patch of 6 to 13 sigma is worse in the mean, over its own width, than the one of half as many
-/// points. Where none is, nothing is there that a quadric does not follow, and the mixture has averaged over
-/// hundreds of points.
-bool may_matter(const ScalesSay& says) {
-  return says[1].wide > 0 || says[2].wide > 0 || says[3].wide > 0;
+/// By how much a patch of 6 to 13 sigma is worse in the mean, over its own width, than the one of half as
+/// many points, in sigma^2. Where none is, nothing is there that a quadric does not follow, and the mixture
+/// has averaged over hundreds of points.
+float contradiction(const ScalesSay& says) {
+  return std::max({says[1].wide, says[2].wide, says[3].wide, 0.0F});
+}
+
+/// The part of a step that is taken: all of it where patches contradict each other by more than chance does,
+/// and less and less below, so that what next to nothing decides makes next to no difference.
+float faded_in(float contradiction) {
+  // At 0 a sphere (50,000 points, 3 %) comes out 8 % worse, at 0.02 rotor loses a third of its gain.
+  constexpr float kFaded = 0.005F;  // sigma^2
+  return std::min(1.0F, contradiction / kFaded);
 }
 
 /// What a step is worth taking: all of a large one, nothing of those below kLeastStep. The network's small
 /// steps are mostly its own error.
 float worth_taking(float step) {
-  constexpr float kLeastStep = 0.5F;  // s
+  constexpr float kLeastStep = 0.1F;  // s
   return std::abs(step) > kLeastStep ? step - kLeastStep * kLeastStep / step : 0;
 }
 
-void write_sites(const HeightField& field, const Features& features, LearnedSites& sites,
-                 const Context& context) {
+void write_sites(const HeightField& field, const Smoothed& smoothed, const Features& features,
+                 LearnedSites& sites, const Context& context) {
   const std::size_t n = sites.point.size();
   sites.features.resize(n);
   sites.place.resize(n);
@@ -38,7 +47,7 @@ void write_sites(const HeightField& field, const Features& features, LearnedSite
     for (std::size_t k = begin; k < end; ++k) {
       const std::size_t i = sites.point[k];
       features.fill(i, sites.features[k], near);
-      sites.place[k] = features.place(i);
+      sites.place[k] = smoothed.place[i];
       sites.normal[k] = field.normal(i);
       sites.scale[k] = features.scale(i);
     }
@@ -48,29 +57,34 @@ void write_sites(const HeightField& field, const Features& features, LearnedSite
 }  // namespace
 
 std::size_t take_learned_step(const HeightField& field, const Positions& data, const Smoothed& smoothed,
-                              const rfs_mesh::NoiseField& noise, double spacing, std::vector<float>& height,
-                              LearnedSites* sites, const Context& context) {
+                              const rfs_mesh::NoiseField& noise, double spacing, const MayGo& may_go,
+                              Positions& place, LearnedSites* sites, const Context& context) {
   if (noise.shared > 1 || noise.sigma < kLeastNoise * spacing) return 0;
   const Features features(field, data, smoothed, noise, spacing, context);
   std::vector<Index> points;
   for (std::size_t i = 0; i < field.size(); ++i)
-    if (may_matter(smoothed.scales[i])) points.push_back(Index(i));
+    if (contradiction(smoothed.scales[i]) > 0) points.push_back(Index(i));
   if (sites != nullptr) {
     sites->point = std::move(points);
-    write_sites(field, features, *sites, context);
+    write_sites(field, smoothed, features, *sites, context);
     return 0;
   }
   const Network network;
-  std::vector<float> offset(points.size());
+  Positions there(points.size());  // neighbours are seen where they were
   for_blocks(context, points.size(), kBlockOfSites, [&](std::size_t begin, std::size_t end) {
     std::vector<rfs_mesh::Neighbor> near;
     Features::Row row;
     for (std::size_t k = begin; k < end; ++k) {
-      features.fill(points[k], row, near);
-      offset[k] = features.scale(points[k]) * worth_taking(network.offset(row));
+      const std::size_t i = points[k];
+      features.fill(i, row, near);
+      const float part = faded_in(contradiction(smoothed.scales[i])),
+                  offset = features.scale(i) * part * worth_taking(network.offset(row));
+      there[k] = smoothed.place[i] + double(offset) * field.normal(i);
     }
   });
-  for (std::size_t k = 0; k < points.size(); ++k) height[points[k]] += offset[k];
+  for_each_index(context, points.size(), [&](std::size_t k) {
+    if (may_go(points[k], there[k])) place[points[k]] = there[k];
+  });
   return points.size();
 }
 

@@ -4,17 +4,19 @@
 /// Where a wall, a leg or an ear is thinner than four or five sigma, quadrics over sheets that the noise has
 /// mixed do not hold it, and the mixture must choose between candidates that are all wrong. What the right
 /// place is still shows in what is known around the point (features.h): how residuals scatter, how the data
-/// lie across the surface, what the scales made of it. A small network (network.h), trained on shapes with
-/// known surfaces to come as near to them as possible in the mean square, turns that into a step along the
-/// normal.
+/// lie across the surface, what the scales and the models of two sheets made of it. A small network
+/// (network.h), trained on shapes with known surfaces to come as near to them as possible in the mean square,
+/// turns that into a step along the normal.
 ///
 /// It is asked where some patch is worse than the one of half as many points, so where there is anything that
 /// quadrics do not follow; not where neighbours share their noise, nor where there is less of it than
 /// kLeastNoise spacings. Trained on shapes that tests/bench/train makes, with noise that is white, along the
 /// ray, with tails, and louder in places. Differs from networks that denoise: it sees nothing but invariants,
-/// and moves nothing but a height.
+/// and moves nothing but a height. It is asked once: asked again about where it led, it made thirteen
+/// further meshes no better.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "smoothing/automatic/learned/features.h"
@@ -29,11 +31,14 @@ struct LearnedSites {
   std::vector<float> scale;  ///< s, world units
 };
 
-/// Moves `height` (n; as Smoothed::height has it) by what the network says. Returns the number of points that
-/// it was asked for. `sites`: if given, filled, and nothing is moved. O(n) times the points within 6.5 sigma;
-/// parallel, the same bits for any number of threads.
+/// Whether point i may go to `there`.
+using MayGo = std::function<bool(std::size_t i, const Eigen::Vector3d& there)>;
+
+/// Moves the points of `place` (n x 3: smoothed.place, which this may be) along their normals. Returns the
+/// number of points that the network was asked for. `sites`: if given, filled, and nothing is moved. O(n)
+/// times the points within 6.5 sigma; parallel, the same bits for any number of threads.
 std::size_t take_learned_step(const HeightField& field, const Positions& data, const Smoothed& smoothed,
-                              const rfs_mesh::NoiseField& noise, double spacing, std::vector<float>& height,
-                              LearnedSites* sites, const Context& context);
+                              const rfs_mesh::NoiseField& noise, double spacing, const MayGo& may_go,
+                              Positions& place, LearnedSites* sites, const Context& context);
 
 }  // namespace rfsmooth::smoothing

@@ -8,9 +8,9 @@ namespace rfsmooth::smoothing::learned {
 
 /// Of the features and their order, the network and the table: to be raised when any of them changes. Weights
 /// that were made for another one do not compile.
-inline constexpr int kFormat = 1;
+inline constexpr int kFormat = 2;
 
-inline constexpr std::size_t kInputs = 79;               ///< features, even and odd
+inline constexpr std::size_t kInputs = 81;               ///< features, even and odd
 inline constexpr std::size_t kFirst = 64, kSecond = 32;  ///< units of the two layers
 
 /// Whole numbers times a unit of their row.

@@ -4,6 +4,7 @@
 /// The file: four 32-bit numbers (format, even and odd features, targets), then for every point, in 32-bit
 /// floats: the number of its cloud, the even features, the odd ones, and the squared distances to the
 /// surface, in s^2, at kTargets places from -4 to 4 s along the normal.
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <memory>
@@ -57,7 +58,7 @@ Recipe make_recipe(std::uint64_t number) {
     recipe.law.range_power = random.uniform(2, 4);
   }
   if (random.uniform() < .2) recipe.sampling = clouds::Sampling::uniform;
-  if (random.uniform() < .3) recipe.points = std::size_t(random.uniform(5000, 30000));
+  if (random.uniform() < .35) recipe.points = std::size_t(4000 * std::pow(15, random.uniform()));
   if (random.uniform() < .5) recipe.disturbed = random.uniform(.85, 1.15);
   return recipe;
 }

@@ -302,12 +302,12 @@ TEST_F(Tiles, ManyTilesAreTheWholeCloudAndAsNearToTheTruth) {
 }
 
 // A wall thinner than the noise at one end of a sheet, which is a tile: what the whole cloud says of it
-// holds in all tiles, also of the learned step, which is not taken where there are such walls. Patches that
+// holds in all tiles, with the learned step and without. Patches that
 // reach the ridges do not fit there, chance has a say in which of them is taken, and tiles differ from the
 // whole cloud by up to 0.1 spacings.
 TEST_F(Tiles, WallsHiddenInOneTileAreWhatTheyAreInTheWholeCloud) {
   const RichCloud cloud = sheet_with_wall();
-  for (const char* learned : {"", "--learned"}) {
+  for (const char* learned : {"", "--no-learned"}) {
     const Both both = expect_as_whole(cloud, "6400", learned, kRidgesStart - kWidest);
     EXPECT_GT(both.statistics.sheets->evidence, 7);
     const auto parted = [&](const std::string& bytes) {  // share of the wall's points
