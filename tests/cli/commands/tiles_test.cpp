@@ -302,9 +302,8 @@ TEST_F(Tiles, ManyTilesAreTheWholeCloudAndAsNearToTheTruth) {
 }
 
 // A wall thinner than the noise at one end of a sheet, which is a tile: what the whole cloud says of it
-// holds in all tiles, with the learned step and without. Patches that
-// reach the ridges do not fit there, chance has a say in which of them is taken, and tiles differ from the
-// whole cloud by up to 0.1 spacings.
+// holds in all tiles, with the learned step and without. Patches that reach the ridges do not fit there,
+// chance has a say in which of them is taken, and tiles differ from the whole cloud by up to 0.1 spacings.
 TEST_F(Tiles, WallsHiddenInOneTileAreWhatTheyAreInTheWholeCloud) {
   const RichCloud cloud = sheet_with_wall();
   for (const char* learned : {"", "--no-learned"}) {
