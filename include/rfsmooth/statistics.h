@@ -67,9 +67,6 @@ struct Statistics {
   std::optional<Box> box;
   std::optional<std::size_t> points;  ///< of the whole cloud: finite, distinct, without outliers
   std::optional<Outlying> outlying;
-  /// For a cloud that is smoothed in parts: a corner of the cubes that points are grouped in, around the
-  /// middle of the box. It is not entered; without it groups are of the whole cloud.
-  std::optional<Eigen::Vector3d> corner;
   std::optional<NoiseScale> scale;  ///< of the quadrics that connecting stands on, for the louder parts, too
   std::optional<double> spacing;    ///< mean distance to the nearest neighbour, of all points
   std::optional<NoiseModel> noise;

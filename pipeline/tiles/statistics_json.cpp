@@ -88,7 +88,6 @@ ordered_json json_of(const Statistics& all) {
   if (all.points) json["points"] = *all.points;
   if (all.outlying)
     json["outlying"] = {{"scale", json_of_scale(all.outlying->scale)}, {"reach", all.outlying->reach}};
-  if (all.corner) json["corner"] = json_of_place(*all.corner);
   if (all.scale) json["scale"] = json_of_scale(*all.scale);
   if (all.spacing) json["spacing"] = *all.spacing;
   if (all.noise) json["noise"] = json_of_noise(*all.noise);
@@ -107,7 +106,6 @@ Statistics statistics_of(const ordered_json& json) {
   if (json.contains("points")) all.points = json.at("points").get<std::size_t>();
   if (json.contains("outlying"))
     all.outlying = {scale_of(json.at("outlying").at("scale")), json.at("outlying").at("reach").get<double>()};
-  if (json.contains("corner")) all.corner = place_of(json.at("corner"));
   if (json.contains("scale")) all.scale = scale_of(json.at("scale"));
   if (json.contains("spacing")) all.spacing = json.at("spacing").get<double>();
   if (json.contains("noise")) all.noise = noise_of(json.at("noise"));

@@ -258,7 +258,6 @@ void settle_job(const Job& job, const DenoiseOptions& options, const Context& co
   how.statistics.emplace();
   how.statistics->box = job.box;
   if (n < job.points) how.statistics->points = std::size_t(job.points);
-  if (job.tiles.size() > 1) how.statistics->corner = 0.5 * (job.box.low - job.box.high);
   std::vector<double> smooth = xyz;
   const DenoiseReport report = value_or_throw(denoise(smooth.data(), n, how, context));
   const Statistics& all = report.statistics;

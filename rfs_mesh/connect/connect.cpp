@@ -75,8 +75,7 @@ constexpr double kNoiseLeft = 1.0 / 3;
 /// The ground at the shadows of the points. Quadrics no wider than the neighbourhoods looked at are fitted a
 /// second time, on the shadows; wider ones have the better normals already.
 Ground shadow_ground(const Positions& points, std::vector<LocalSurface> surfaces, const NoiseScale& scale,
-                     const NoiseLevel& noise, const Eigen::Vector3d* corner, const ConnectOptions& options,
-                     const Context& context) {
+                     const NoiseLevel& noise, const ConnectOptions& options, const Context& context) {
   const int k = options.neighbours;
   Ground ground;
   ground.surfaces = std::move(surfaces);
@@ -87,8 +86,7 @@ Ground shadow_ground(const Positions& points, std::vector<LocalSurface> surfaces
   if (scale.neighbours <= std::size_t(k)) {
     std::vector<double> left = noise.field;
     for (double& sigma : left) sigma *= kNoiseLeft;
-    ground.surfaces =
-        shared_local_surfaces(index, ground.near, scale, left, scale.neighbours, context, corner);
+    ground.surfaces = shared_local_surfaces(index, ground.near, scale, left, scale.neighbours, context);
   }
   ground.between =
       part_sheets(points, index, ground.near, noise.sigma, options.sheets, ground.surfaces, context);
@@ -169,23 +167,21 @@ Ground survey(Cloud cloud, const ConnectOptions& options, const Context& context
   const std::size_t n = points.size();
   c.noise = stages.run("noise", 0.15, [&] { return measure(index, near, context, whole); });
   const NoiseScale scale = *whole.scale;
-  const Eigen::Vector3d* const corner = whole.corner ? &*whole.corner : nullptr;
   c.on_shadow = guide == nullptr && n > 0 && scale.sigma > options.shadow_from * c.noise.spacing;
   c.emst = stages.run("emst", 0.2, [&] {
     return options.tree_of_points || !c.on_shadow ? emst(index, near, context) : std::vector<Edge>();
   });
   auto surfaces = stages.run("local surfaces", 0.4, [&] {
     const auto least = std::min(std::size_t(options.neighbours), scale.neighbours);
-    return c.on_shadow ? shared_local_surfaces(index, near, scale, c.noise.field, least, context, corner)
+    return c.on_shadow ? shared_local_surfaces(index, near, scale, c.noise.field, least, context)
                        : local_surfaces(points, near, context);
   });
   if (guide == nullptr && !c.on_shadow)
     return {points, std::move(surfaces), std::move(cloud.near), c.emst, {}};
   cloud.near = NeighborTable();  // neighbours among the noisy points: not needed any more
   return stages.run(guide != nullptr ? "guide" : "shadow", 0.5, [&] {
-    return guide != nullptr
-               ? ground_at(*guide, options.neighbours, context)
-               : shadow_ground(points, std::move(surfaces), scale, c.noise, corner, options, context);
+    return guide != nullptr ? ground_at(*guide, options.neighbours, context)
+                            : shadow_ground(points, std::move(surfaces), scale, c.noise, options, context);
   });
 }
 

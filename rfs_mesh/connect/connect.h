@@ -10,7 +10,7 @@ namespace rfsmooth::rfs_mesh {
 
 /// Connects the points of `index`. `near`: their nearest `options.neighbours`. \throw std::invalid_argument
 /// if `near` is of another width or size. \param statistics `scale` and `spacing` are taken if they are
-/// there, else entered; `corner` is taken.
+/// there, else entered.
 Result<Connection> connect(SpatialIndex index, NeighborTable near, const ConnectOptions& options,
                            const Context& context, Statistics* statistics = nullptr);
 

@@ -33,27 +33,22 @@ std::vector<LocalSurface> local_surfaces(const Positions& points, const Neighbor
 /// n local surfaces of a noisy cloud, from quadrics that neighbours share. This takes a fraction of the time
 /// of one quadric per point, and the shadows scatter a little less, since several quadrics agree on each.
 ///
-/// The points are divided into compact groups of m / 6, m = `scale.neighbours`. A quadric is fitted to the m
-/// nearest of the point in the middle of each group. If its residual is far above the noise there, it has met
-/// an edge, a second sheet or strong curvature, and m is halved, down to `least`. A point at offset d from a
-/// quadric's centre and e above it takes the mean over the quadrics of its own group and of its neighbours'
-/// groups (rows of `near`), with weights
+/// The points are divided into compact groups of about m / 12, but 7 or more (groups.h), m =
+/// `scale.neighbours`. A quadric is fitted to the m nearest of the point in the middle of each group. If its
+/// residual is far above the noise there, it has met an edge, a second sheet or strong curvature, and m is
+/// halved, down to `least`. A point at offset d from a quadric's centre and e above it takes the mean over
+/// the quadrics of its own group and of its neighbours' groups (rows of `near`), with weights
 ///
 ///     (1 - |d|^2 / R^2)^3 s^-4 exp(-e^2 / (2 s^2)),    s = max(residual, sigma),
 ///
 /// sigma the noise of the point, so that it follows the sheet nearest to it; for normals the first factor is
 /// not cubed. A point that no quadric explains gets one of its own. `near` has k >= 1 unless n < 2.
-/// O(n m / 6 + n k), parallel, deterministic.
+/// O(n m / 7 + n k), parallel, deterministic.
 ///
-/// \param noise n: sigma around each point, world units.
-///
-/// \param corner null: groups are subtrees of the index, of which every point of the cloud has a say. Else
-/// of a cube of three times `scale.radius` that groups end at (cells.h): a part of a cloud then has the
-/// groups of the whole.
+/// \param noise n: sigma around each point, world units
 std::vector<LocalSurface> shared_local_surfaces(const SpatialIndex& index, const NeighborTable& near,
                                                 const NoiseScale& scale, const std::vector<double>& noise,
-                                                std::size_t least, const Context& context,
-                                                const Eigen::Vector3d* corner = nullptr);
+                                                std::size_t least, const Context& context);
 
 /// Mean distance to the nearest neighbour, world units; 0 for fewer than two points.
 double mean_spacing(const Positions& points, const NeighborTable& near, const Context& context);

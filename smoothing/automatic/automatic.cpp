@@ -11,13 +11,13 @@
 #include "base/parallel.h"
 #include "rfs_mesh/levels.h"
 #include "rfs_mesh/noise/depth_steps.h"
+#include "rfs_mesh/search/thinning.h"
 #include "smoothing/automatic/hidden_sheets.h"
 #include "smoothing/automatic/learned/last_step.h"
 #include "smoothing/automatic/mixture.h"
 #include "smoothing/automatic/patches/height_field.h"
 #include "smoothing/automatic/patches/patches.h"
 #include "smoothing/automatic/patches/tails.h"
-#include "smoothing/automatic/patches/thinning.h"
 #include "smoothing/automatic/stranded.h"
 #include "smoothing/automatic/thin_walls.h"
 #include "smoothing/integrators/solver.h"
@@ -294,11 +294,11 @@ class Ladder {
   void thin_to(std::size_t thinnings, const Context& context) {
     for (; thinnings_ < thinnings; ++thinnings_)
       if (thinnings_ == 0)
-        seeds_ = thin_all(field_.index(), field_.neighbors(), context);
+        seeds_ = rfs_mesh::thin_all(field_.guide(), field_.neighbors(), context);
       else if (seeds_.size() > field_.size() / kDense)
-        seeds_ = thin_dense(field_.index(), field_.neighbors(), seeds_, context);
+        seeds_ = rfs_mesh::thin_dense(field_.index(), field_.neighbors(), seeds_, context);
       else
-        seeds_ = thin(field_.guide(), seeds_, context);
+        seeds_ = rfs_mesh::thin(field_.guide(), seeds_, context);
   }
 
   const HeightField& field_;

@@ -10,10 +10,10 @@
 
 #include "base/parallel.h"
 #include "rfs_mesh/levels.h"
+#include "rfs_mesh/search/thinning.h"
 #include "rfs_mesh/search/wide_neighbors.h"
 #include "rfs_mesh/sheets/sheet_pair.h"
 #include "smoothing/automatic/hidden_sheets.h"
-#include "smoothing/automatic/patches/thinning.h"
 
 namespace rfsmooth::smoothing {
 
@@ -151,7 +151,7 @@ ThinWalls part_thin_walls(const HeightField& field, const Positions& data, const
   for (const std::size_t wider : kWider) {
     std::vector<Index> sparse = seeds;
     while (sparse.size() > 1 && sparse.size() * wider >= seeds.size())
-      sparse = thin(field.guide(), sparse, context);
+      sparse = rfs_mesh::thin(field.guide(), sparse, context);
     const Walls walls(field, data, smooth, noise, std::min(wider * members, field.size()));
     walls.look(sparse, means, context);
     done.patches += sparse.size();

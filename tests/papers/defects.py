@@ -321,12 +321,12 @@ def options_without_their_partner():
 
 @check
 def pose():
-    """faces that a turned noisy cloud keeps (%; no fewer than 65)"""
+    """faces that a turned noisy cloud keeps (%; no fewer than 95)"""
     x = meshes.noisy_torus_points(6000, 1)
     turn = np.linalg.qr(noise(9, 2).reshape(3, 3))[0]
     here, there = ({tuple(sorted(row[1:])) for row in rough("rfs", p)["face"][0]} for p in (x, x @ turn.T))
     value = 100 * len(here & there) / len(here | there)
-    return value, value > 65
+    return value, value > 95
 
 
 def main():

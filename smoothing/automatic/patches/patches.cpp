@@ -12,8 +12,8 @@
 #include "base/collect.h"
 #include "base/parallel.h"
 #include "base/small_cholesky.h"
+#include "rfs_mesh/search/thinning.h"
 #include "smoothing/automatic/patches/quadric_sums.h"
-#include "smoothing/automatic/patches/thinning.h"
 #include "smoothing/automatic/patches/weighted_sum.h"
 
 namespace rfsmooth::smoothing {
@@ -93,10 +93,10 @@ void Patches::cover_missing(const std::vector<double>& sigma, Covering& covering
     const auto missing = rfsmooth::collect<Index>(context, field_.size(), [&](std::size_t i, auto&& emit) {
       if (covering.covered[i] == 0) emit(Index(i));
     });
-    std::vector<Index> more = thin(field_.guide(), missing, context);
+    std::vector<Index> more = rfs_mesh::thin(field_.guide(), missing, context);
     last = more.size() <= most || missing.size() >= before;
     before = missing.size();
-    while (!last && more.size() > most) more = thin(field_.guide(), more, context);
+    while (!last && more.size() > most) more = rfs_mesh::thin(field_.guide(), more, context);
     const std::size_t first = seeds_.size();
     seeds_.insert(seeds_.end(), more.begin(), more.end());
     fit(first, seeds_.size(), sigma, context);

@@ -40,9 +40,9 @@ double bent(double x) {
 /// A long strip of a gently bent surface, points `noise` spacings off it; every thousandth is NaN. Noise is
 /// of each point, of each with a tenth six times as loud, of each square of four by four, or rounding
 /// besides.
-RichCloud strip(double noise, bool pcd = false, Kind kind = Kind::own) {
+RichCloud strip(double noise, bool pcd = false, Kind kind = Kind::own, unsigned seed = 5) {
   constexpr int kTogether = 4;
-  std::mt19937_64 engine(5);
+  std::mt19937_64 engine(seed);
   std::normal_distribution<double> normal(0, 1);
   std::array<double, kWide / kTogether> of_square{};
   RichCloud cloud;
@@ -276,28 +276,32 @@ TEST_F(Tiles, OneTileIsTheWholeCloudToTheByte) {
   EXPECT_GT(same(0.2, Kind::in_steps).noise->step, 0);
 }
 
+// Of two strips together: there are a thousand points at the seams of one, and a single close call that is
+// decided otherwise beside one of them moves their mean square by a hundredth either way.
 TEST_F(Tiles, ManyTilesAreTheWholeCloudAndAsNearToTheTruth) {
   for (const double noise : {0.1, 0.5, 1.3, 2.0}) {
-    const RichCloud cloud = strip(noise);
-    const Both both = expect_as_whole(cloud, "3000");
-    std::vector<double> cuts;
-    const nlohmann::json plan = nlohmann::json::parse(take(both.job + "/job.json"));
-    for (const auto& tile : plan["tiles"]) cuts.push_back(tile["box"][1][0].get<double>());
-    const auto at_seam = [&](std::size_t i) {
-      return std::any_of(cuts.begin(), cuts.end(),
-                         [&](double x) { return std::abs(cloud.xyz[3 * i] - x) < 3; });
-    };
-    const auto off = [&](const std::string& bytes, bool seams) {  // mean square
-      double squares = 0, count = 0;
+    std::array<double, 2> tiled{}, whole{};  // sums of squares: of all points, of those at seams
+    for (const unsigned seed : {5U, 6U}) {
+      const RichCloud cloud = strip(noise, false, Kind::own, seed);
+      const Both both = expect_as_whole(cloud, "3000");
+      std::vector<double> cuts;
+      const nlohmann::json plan = nlohmann::json::parse(take(both.job + "/job.json"));
+      for (const auto& tile : plan["tiles"]) cuts.push_back(tile["box"][1][0].get<double>());
       for (std::size_t i = 0; i < cloud.size(); ++i) {
-        if (!std::isfinite(cloud.xyz[3 * i + 2]) || (seams && !at_seam(i))) continue;
-        squares += std::pow(cloud.coordinate(bytes, i, 2) - bent(cloud.coordinate(bytes, i, 0)), 2);
-        ++count;
+        if (!std::isfinite(cloud.xyz[3 * i + 2])) continue;
+        const bool at_seam = std::any_of(cuts.begin(), cuts.end(),
+                                         [&](double x) { return std::abs(cloud.xyz[3 * i] - x) < 3; });
+        const auto add = [&](const std::string& bytes, std::array<double, 2>& to) {
+          const double off = cloud.coordinate(bytes, i, 2) - bent(cloud.coordinate(bytes, i, 0));
+          to[0] += off * off;
+          to[1] += at_seam ? off * off : 0;
+        };
+        add(both.tiled, tiled);
+        add(both.whole, whole);
       }
-      return squares / count;
-    };
-    EXPECT_LT(off(both.tiled, false), 1.005 * off(both.whole, false)) << noise;
-    EXPECT_LT(off(both.tiled, true), 1.01 * off(both.whole, true)) << noise;
+    }
+    EXPECT_LT(tiled[0], 1.005 * whole[0]) << noise;
+    EXPECT_LT(tiled[1], 1.01 * whole[1]) << noise;
   }
 }
 

@@ -152,6 +152,17 @@ TEST_P(NoisySphere, MeshStaysASurface) {
   EXPECT_LT(double(c.faceless), 0.01 * double(points.size()));
 }
 
+TEST_P(NoisySphere, ATurnedCloudKeepsItsFaces) {
+  const test::Shape sphere = test::unit_sphere();
+  const double unit = std::sqrt(sphere.area / 6000);
+  const Positions points = with_noise(test::random_points(sphere, 6000, 3), GetParam().first * unit, 4);
+  const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, -1).normalized()).matrix();
+  Positions turned = points;
+  for (auto& p : turned) p = turn * p;
+  // Wide neighbourhoods are told apart in single precision.
+  EXPECT_GT(share_in_common(connected(points).mesh.faces, connected(turned).mesh.faces), 0.95);
+}
+
 INSTANTIATE_TEST_SUITE_P(Noise, NoisySphere,
                          testing::Values(std::pair(0.5, 0.01), std::pair(1.0, 0.01), std::pair(2.0, 0.05),
                                          std::pair(3.0, 0.05)));

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <random>
 
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include "base/parallel.h"
@@ -128,6 +129,48 @@ TEST(SharedSurface, EveryPlaceIsFittedForItsOwnNoise) {
   }
   EXPECT_GT(inside, 1000U);
   EXPECT_GT(apart, inside / 4);
+}
+
+/// How many of the points' surfaces differ from `other`, where wanted.
+template <class Other, class Wanted>
+std::size_t count_others(const std::vector<LocalSurface>& surfaces, const Other& other,
+                         const Wanted& wanted) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < surfaces.size(); ++i)
+    if (wanted(i)) count += std::size_t((surfaces[i].shadow - other(i)).norm() > 1e-9);
+  return count;
+}
+
+TEST(SharedSurface, APartOfACloudHasThoseOfTheWholeAwayFromTheCut) {
+  const Positions points = with_noise(test::random_points(test::torus(), 20000, 1), 0.03);
+  Positions part;
+  std::vector<std::size_t> number;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (points[i].x() >= 0) {
+      part.push_back(points[i]);
+      number.push_back(i);
+    }
+  for (const std::size_t m : {48, 192}) {
+    const auto whole = shared(points, m, 0.03), alone = shared(part, m, 0.03);
+    EXPECT_EQ(count_others(
+                  alone, [&](std::size_t i) { return whole[number[i]].shadow; },
+                  [&](std::size_t i) { return part[i].x() > 0.8; }),
+              0u)
+        << m;
+  }
+}
+
+TEST(SharedSurface, TurnsWithTheCloud) {
+  const Positions points = with_noise(test::random_points(test::torus(), 5000, 1), 0.03);
+  const Eigen::AngleAxisd turn(0.7, Eigen::Vector3d(1, 2, -1).normalized());
+  Positions turned = points;
+  for (auto& p : turned) p = turn * p;
+  for (const std::size_t m : {48, 192}) {
+    const auto before = shared(points, m, 0.03), after = shared(turned, m, 0.03);
+    const std::size_t others = count_others(
+        after, [&](std::size_t i) { return turn * before[i].shadow; }, [](std::size_t) { return true; });
+    EXPECT_LT(others, points.size() / 10) << "the m nearest are told apart in single precision, m = " << m;
+  }
 }
 
 TEST(SharedSurface, SameBytesForAnyNumberOfThreads) {

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "base/parallel.h"
-#include "smoothing/automatic/patches/thinning.h"
+#include "rfs_mesh/search/thinning.h"
 #include "tests/support/meshes.h"
 #include "tests/support/near.h"
 
@@ -20,7 +20,7 @@ namespace {
 std::vector<Index> seeds_of(const Positions& points) {
   std::vector<Index> all(points.size());
   std::iota(all.begin(), all.end(), Index{0});
-  return thin(points, all, {});
+  return rfs_mesh::thin(points, all, {});
 }
 
 TEST(Patches, PredictAQuadricExactlyWhateverTheSharesOfThePointsAre) {

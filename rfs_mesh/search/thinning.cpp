@@ -1,19 +1,14 @@
-#include "smoothing/automatic/patches/thinning.h"
+#include "rfs_mesh/search/thinning.h"
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 
 #include "base/collect.h"
 #include "base/parallel.h"
 
-namespace rfsmooth::smoothing {
+namespace rfsmooth::rfs_mesh {
 
 namespace {
-
-constexpr std::size_t kNear = 3;
-
-using Three = std::array<Index, kNear>;
 
 enum class State : unsigned char { open, kept, dropped };
 
@@ -23,12 +18,13 @@ void mark(std::atomic<char>& at) {
   at.store(1, std::memory_order_relaxed);
 }
 
-/// The thinning of points whose three nearest are known. An edge of the graph is seen from one end only, so
-/// each end may tell the other.
+/// The thinning of points by the first k of their neighbours. An edge of the graph is seen from one end only,
+/// so each end may tell the other.
 class Thinning {
  public:
-  Thinning(const Positions& at, const std::vector<Three>& near, const Context& context)
+  Thinning(const Positions& at, const NeighborTable& near, std::size_t k, const Context& context)
       : near_(near),
+        k_(std::min(k, std::size_t(near.k))),
         context_(context),
         priority_(at.size()),
         state_(at.size(), State::open),
@@ -36,9 +32,9 @@ class Thinning {
         covered_(at.size()),
         open_(at.size()) {
     for_each_index(context, at.size(), [&](std::size_t s) {
-      // A sum, since two points that are each other's third neighbours would tie.
+      // A sum, since two points that are each other's k-th neighbours would tie.
       double sum = 0;
-      for (const Index t : near_[s]) sum += (at[t] - at[s]).squaredNorm();
+      for (const Index t : row(s)) sum += (at[t] - at[s]).squaredNorm();
       priority_[s] = sum;
       open_[s] = Index(s);
     });
@@ -48,14 +44,14 @@ class Thinning {
     while (!open_.empty()) {
       // Open ones before all their open neighbours are kept, then the neighbours of kept ones are dropped.
       for_open([&](Index s) {
-        for (const Index t : near_[s])
+        for (const Index t : row(s))
           if (state_[t] == State::open) mark(blocked_[before(t, s) ? s : t]);
       });
       for_open([&](Index s) {
         if (blocked_[s] == 0) state_[s] = State::kept;
       });
       for_open([&](Index s) {
-        for (const Index t : near_[s]) {
+        for (const Index t : row(s)) {
           if (state_[s] == State::kept) mark(covered_[t]);
           if (state_[t] == State::kept) mark(covered_[s]);
         }
@@ -65,8 +61,8 @@ class Thinning {
         if (state_[s] == State::open && covered_[s] != 0) state_[s] = State::dropped;
       });
       const std::vector<Index> all = std::move(open_);
-      open_ = rfsmooth::collect<Index>(context_, all.size(), [&](std::size_t k, auto&& emit) {
-        if (state_[all[k]] == State::open) emit(all[k]);
+      open_ = rfsmooth::collect<Index>(context_, all.size(), [&](std::size_t i, auto&& emit) {
+        if (state_[all[i]] == State::open) emit(all[i]);
       });
     }
     return rfsmooth::collect<Index>(context_, state_.size(), [&](std::size_t s, auto&& emit) {
@@ -75,15 +71,20 @@ class Thinning {
   }
 
  private:
+  Adjacency::Row row(std::size_t s) const {
+    const Index* const first = near_[s].begin();
+    return {first, first + k_};
+  }
   bool before(Index a, Index b) const {
     return priority_[a] != priority_[b] ? priority_[a] > priority_[b] : a < b;
   }
   template <class Body>
   void for_open(const Body& body) {
-    for_each_index(context_, open_.size(), [&](std::size_t k) { body(open_[k]); });
+    for_each_index(context_, open_.size(), [&](std::size_t i) { body(open_[i]); });
   }
 
-  const std::vector<Three>& near_;
+  const NeighborTable& near_;
+  std::size_t k_;
   const Context& context_;
   std::vector<double> priority_;
   std::vector<State> state_;
@@ -107,51 +108,46 @@ std::vector<Index> named(std::vector<Index> kept, const std::vector<Index>& subs
   return kept;
 }
 
-std::vector<Three> first_three(const rfs_mesh::NeighborTable& near, const Context& context) {
-  std::vector<Three> three(near.size());
-  for_each_index(context, near.size(),
-                 [&](std::size_t s) { std::copy_n(near[s].begin(), kNear, three[s].begin()); });
-  return three;
-}
-
 }  // namespace
 
 std::vector<Index> thin(const Positions& points, const std::vector<Index>& subset, const Context& context) {
-  if (subset.size() <= kNear) return first_of(subset);
+  if (subset.size() <= kThinNear) return first_of(subset);
   const Positions at = places(points, subset, context);
-  const auto three = first_three(rfs_mesh::SpatialIndex(at, context).nearest(int(kNear), context), context);
-  return named(Thinning(at, three, context).run(), subset);
+  const NeighborTable near = SpatialIndex(at, context).nearest(int(kThinNear), context);
+  return named(Thinning(at, near, kThinNear, context).run(), subset);
 }
 
-std::vector<Index> thin_all(const rfs_mesh::SpatialIndex& index, const rfs_mesh::NeighborTable& near,
-                            const Context& context) {
-  return Thinning(index.points(), first_three(near, context), context).run();
+std::vector<Index> thin_all(const Positions& points, const NeighborTable& near, const Context& context,
+                            std::size_t k) {
+  return Thinning(points, near, k, context).run();
 }
 
-std::vector<Index> thin_dense(const rfs_mesh::SpatialIndex& index, const rfs_mesh::NeighborTable& near,
+std::vector<Index> thin_dense(const SpatialIndex& index, const NeighborTable& near,
                               const std::vector<Index>& subset, const Context& context) {
   const Positions& points = index.points();
-  if (subset.size() <= kNear) return first_of(subset);
+  if (subset.size() <= kThinNear) return first_of(subset);
   std::vector<Index> number(points.size(), kNone);
   for_each_index(context, subset.size(), [&](std::size_t s) { number[subset[s]] = Index(s); });
-  std::vector<Three> three(subset.size());
+  NeighborTable three = {int(kThinNear), {}};
+  three.items.resize(kThinNear * subset.size());
   for_blocks(context, subset.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    std::vector<rfs_mesh::Neighbor> found;
+    std::vector<Neighbor> found;
     for (std::size_t s = begin; s < end; ++s) {
       std::size_t to = 0;
       const auto offer = [&](Index j) {
-        if (to < kNear && number[j] != kNone && j != subset[s]) three[s][to++] = number[j];
+        if (to < kThinNear && number[j] != kNone && j != subset[s])
+          three.items[kThinNear * s + to++] = number[j];
       };
       for (const Index j : near[subset[s]]) offer(j);
-      for (std::size_t k = 4 * std::size_t(near.k); to < kNear; k *= 4) {
+      for (std::size_t k = 4 * std::size_t(near.k); to < kThinNear; k *= 4) {
         index.nearest(points[subset[s]], int(std::min(k, points.size())), found);
         to = 0;
-        for (const rfs_mesh::Neighbor& q : found) offer(q.index);
+        for (const Neighbor& q : found) offer(q.index);
       }
     }
   });
   const Positions at = places(points, subset, context);
-  return named(Thinning(at, three, context).run(), subset);
+  return named(Thinning(at, three, kThinNear, context).run(), subset);
 }
 
-}  // namespace rfsmooth::smoothing
+}  // namespace rfsmooth::rfs_mesh

@@ -1,0 +1,54 @@
+#include "rfs_mesh/search/thinning.h"
+
+#include <algorithm>
+#include <numeric>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "rfs_mesh/search/neighbors.h"
+#include "tests/support/awkward_clouds.h"
+
+using namespace rfsmooth;
+using namespace rfsmooth::rfs_mesh;
+
+namespace {
+
+TEST(Thinning, OfASubsetIsTheSameWhereverTheNearestComeFrom) {
+  const Positions points = test::noisy_sphere(3000, 0.01, 2);
+  std::vector<Index> all(points.size());
+  std::iota(all.begin(), all.end(), Index{0});
+  const std::vector<Index> kept = thin(points, all, {});
+  // By the neighbours of all: the same, first of all points, then of what was kept.
+  const SpatialIndex index(points, {});
+  const NeighborTable near = index.nearest(3, {}), wide = index.nearest(32, {});
+  EXPECT_EQ(thin_all(points, near, {}), kept);
+  EXPECT_EQ(thin_dense(index, wide, kept, {}), thin(points, kept, {}));
+  EXPECT_EQ(thin_dense(index, near, kept, {}), thin(points, kept, {})) << "too few in the rows";
+  EXPECT_TRUE(thin(points, {}, {}).empty());
+  EXPECT_EQ(thin(points, {4}, {}), std::vector<Index>{4});
+}
+
+class ThinningBy : public testing::TestWithParam<std::size_t> {};
+
+TEST_P(ThinningBy, KeepsAnIndependentSetThatEveryPointIsNearTo) {
+  const Positions points = test::noisy_sphere(3000, 0.01, 2);
+  const std::size_t n = points.size(), k = GetParam();
+  const NeighborTable near = SpatialIndex(points, {}).nearest(24, {});
+  const std::vector<Index> kept = thin_all(points, near, {}, k);
+  EXPECT_TRUE(std::is_sorted(kept.begin(), kept.end()));
+  EXPECT_NEAR(double(n) / double(kept.size()), 1.3 + 0.5 * double(k), 0.15 * (1.3 + 0.5 * double(k)));
+  const std::set<Index> in(kept.begin(), kept.end());
+  std::vector<char> reached(n);
+  for (std::size_t i = 0; i < n; ++i)
+    for (const Index* j = near[i].begin(); j < near[i].begin() + k; ++j) {
+      EXPECT_FALSE(in.count(Index(i)) == 1 && in.count(*j) == 1) << i;
+      reached[i] = char(reached[i] | int(in.count(*j) == 1));
+      reached[*j] = char(reached[*j] | int(in.count(Index(i)) == 1));
+    }
+  for (std::size_t i = 0; i < n; ++i) EXPECT_NE(reached[i] != 0, in.count(Index(i)) == 1) << i;
+}
+
+INSTANTIATE_TEST_SUITE_P(Neighbours, ThinningBy, testing::Values(3, 7, 13, 24));
+
+}  // namespace
