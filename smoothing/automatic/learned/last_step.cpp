@@ -41,7 +41,7 @@ void write_sites(const HeightField& field, const Smoothed& smoothed, const Featu
   sites.normal.resize(n);
   sites.scale.resize(n);
   for_blocks(context, n, kBlockOfSites, [&](std::size_t begin, std::size_t end) {
-    std::vector<rfs_mesh::Neighbor> near;
+    Surroundings near = features.start();
     for (std::size_t k = begin; k < end; ++k) {
       const std::size_t i = sites.point[k];
       features.fill(i, sites.features[k], near);
@@ -70,7 +70,7 @@ std::size_t take_learned_step(const HeightField& field, const Positions& data, c
   const Network network;
   Positions there(points.size());  // neighbours are seen where they were
   for_blocks(context, points.size(), kBlockOfSites, [&](std::size_t begin, std::size_t end) {
-    std::vector<rfs_mesh::Neighbor> near;
+    Surroundings near = features.start();
     Features::Row row;
     for (std::size_t k = begin; k < end; ++k) {
       const std::size_t i = points[k];

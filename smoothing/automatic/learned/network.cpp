@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "base/avx2.h"
+
 namespace rfsmooth::smoothing {
 
 namespace {
@@ -40,6 +42,7 @@ Network::Network() {
   unpack(learned::kLastWeight, learned::kLastUnit, last_);
 }
 
+RFSMOOTH_AVX2
 float Network::behind(const First& first) const {
   Second second;
   std::copy(learned::kSecondBias, learned::kSecondBias + kSecond, second.begin());
@@ -49,6 +52,7 @@ float Network::behind(const First& first) const {
   return y;
 }
 
+RFSMOOTH_AVX2
 float Network::offset(const Features::Row& row) const {
   First one, other, odd{};
   std::copy(learned::kFirstBias, learned::kFirstBias + kFirst, one.begin());

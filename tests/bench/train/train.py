@@ -88,7 +88,7 @@ def train(network, x, table, weight, epochs, random, report):
     first = [np.zeros_like(p) for p in network.parts]
     second = [np.zeros_like(p) for p in network.parts]
     steps = epochs * (len(x) // batch)
-    step = 0
+    step, usual = 0, None  # length of the gradient
     for epoch in range(epochs):
         order = random.permutation(len(x))
         for begin in range(0, len(x) - batch + 1, batch):
@@ -98,8 +98,12 @@ def train(network, x, table, weight, epochs, random, report):
             by = (np.clip(by, -3, 3) * weight[pick] / batch).astype(np.float32)
             step += 1
             now = np.float32(rate * max(0.01, 0.5 * (1 + np.cos(np.pi * step / steps))))
-            for k, g in enumerate(network.gradients(rows, by)):
-                g = g + np.float32(towards_zero) * network.parts[k]
+            gradients = network.gradients(rows, by)
+            length = np.sqrt(sum(float((g * g).sum()) for g in gradients))
+            usual = length if usual is None else usual + 0.01 * (min(length, 3 * usual) - usual)
+            shorter = np.float32(min(1, 3 * usual / max(length, 1e-30)))  # one batch must not undo the others
+            for k, g in enumerate(gradients):
+                g = shorter * g + np.float32(towards_zero) * network.parts[k]
                 first[k] += np.float32(0.1) * (g - first[k])
                 second[k] += np.float32(0.001) * (g * g - second[k])
                 network.parts[k] -= now * (first[k] / np.float32(1 - 0.9**step)) / (

@@ -1,0 +1,145 @@
+#include "smoothing/automatic/learned/seen.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "base/avx2.h"
+#include "rfs_mesh/levels.h"
+
+namespace rfsmooth::smoothing {
+
+namespace {
+
+constexpr std::size_t kLanes = Surroundings::kLanes;
+
+inline float biweight(float x) {
+  const float rest = std::max(0.0F, 1 - x);
+  return rest * rest;
+}
+
+/// Where a block of columns of one kind begins.
+struct At {
+  At(const std::array<Surroundings::Column, 3>& columns, std::size_t first)
+      : x(columns[0].data() + first), y(columns[1].data() + first), z(columns[2].data() + first) {}
+  const float *x, *y, *z;
+};
+
+using Lanes = float[kLanes];
+
+/// Weights into the histogram: `counts` is 0 for heights that are in no bin, `at` the place among bins.
+inline void add_heights(const Lanes& weight, const Lanes& counts, const Lanes& at, Histogram& to) {
+  Lanes first, second;
+  std::int32_t low[kLanes];
+  for (std::size_t l = 0; l < kLanes; ++l) {
+    low[l] = std::int32_t(at[l]);
+    const float counted = counts[l] * weight[l];
+    to.all[l] += weight[l];
+    second[l] = counted * (at[l] - float(low[l]));
+    first[l] = counted - second[l];
+  }
+  for (std::size_t l = 0; l < kLanes; ++l) {
+    float* const bin = to.bin.data() + low[l];
+    bin[0] += first[l];
+    bin[1] += second[l];
+  }
+}
+
+inline void add_sheets(const Lanes& weight, const Lanes& height, const Lanes& facing, Sums<7>& s) {
+  for (std::size_t l = 0; l < kLanes; ++l) {
+    const float w = weight[l], at = height[l], cosine = facing[l], along = w * std::max(cosine, 0.0F),
+                away = w * std::max(-cosine, 0.0F);
+    s.all[l] += w;
+    s.sum[0][l] += w * at;
+    s.sum[1][l] += w * at * at;
+    s.sum[2][l] += along;
+    s.sum[3][l] += away;
+    s.sum[4][l] += w * cosine * cosine;
+    s.sum[5][l] += along * at;
+    s.sum[6][l] += away * at;
+  }
+}
+
+inline void add_moments(const Lanes& weight, const Lanes& dx, const Lanes& dy, const Lanes& dz, Sums<9>& s) {
+  for (std::size_t l = 0; l < kLanes; ++l) {
+    const float w = weight[l], x = dx[l], y = dy[l], z = dz[l];
+    s.all[l] += w;
+    s.sum[0][l] += w * x;
+    s.sum[1][l] += w * y;
+    s.sum[2][l] += w * z;
+    s.sum[3][l] += w * x * x;
+    s.sum[4][l] += w * y * y;
+    s.sum[5][l] += w * z * z;
+    s.sum[6][l] += w * x * y;
+    s.sum[7][l] += w * x * z;
+    s.sum[8][l] += w * y * z;
+  }
+}
+
+inline void add_residuals(const Lanes& weight, const float* residual, Sums<4>& s) {
+  for (std::size_t l = 0; l < kLanes; ++l) {
+    const float w = weight[l], r = residual[l], square = r * r;
+    s.all[l] += w;
+    s.sum[0][l] += w * r;
+    s.sum[1][l] += w * square;
+    s.sum[2][l] += w * square * r;
+    s.sum[3][l] += w * square * square;
+  }
+}
+
+}  // namespace
+
+RFSMOOTH_AVX2
+void see(const Surroundings& around, const Here& here, Seen& seen) {
+  const float ox = here.shift[0], oy = here.shift[1], oz = here.shift[2], fx = here.from[0],
+              fy = here.from[1], fz = here.from[2], nx = here.normal[0], ny = here.normal[1],
+              nz = here.normal[2];
+  const float unit = here.unit, most = here.radius * here.radius;
+  for (std::size_t first = 0; first < around.size(); first += kLanes) {
+    const At g(around.guide, first), d(around.data, first), p(around.place, first), m(around.normal, first);
+    Lanes gx, gy, gz, in_ball;
+    float any = 0;
+    for (std::size_t l = 0; l < kLanes; ++l) {
+      const float x = g.x[l] + ox, y = g.y[l] + oy, z = g.z[l] + oz;
+      gx[l] = x;
+      gy[l] = y;
+      gz[l] = z;
+      in_ball[l] = x * x + y * y + z * z <= most ? 1.0F : 0.0F;
+    }
+    for (std::size_t l = 0; l < kLanes; ++l) any += in_ball[l];
+    if (any == 0) continue;  // often: points come leaf by leaf of the tree
+    Lanes dx, dy, dz, along, facing, inner, outer, sheets, moments, close, wide, counts, at;
+    for (std::size_t l = 0; l < kLanes; ++l) {
+      const float x = gx[l], y = gy[l], z = gz[l], there = in_ball[l];
+      const float ax = x - fx, ay = y - fy, az = z - fz;
+      const float ux = unit * (ax + d.x[l]), uy = unit * (ay + d.y[l]), uz = unit * (az + d.z[l]);
+      const float vx = unit * (ax + p.x[l]), vy = unit * (ay + p.y[l]), vz = unit * (az + p.z[l]);
+      const float up = ux * nx + uy * ny + uz * nz, square = ux * ux + uy * uy + uz * uz,
+                  beside = square - up * up, away = vx * vx + vy * vy + vz * vz,
+                  cosine = m.x[l] * nx + m.y[l] * ny + m.z[l] * nz,
+                  same = (cosine < float(rfs_mesh::kSameSheet) ? 0.0F : there) * cosine * cosine;
+      dx[l] = ux;
+      dy[l] = uy;
+      dz[l] = uz;
+      along[l] = vx * nx + vy * ny + vz * nz;
+      facing[l] = cosine;
+      const float bins = up * (1 / kBin), counted = std::abs(bins) < float(kSide) ? 1.0F : 0.0F;
+      counts[l] = counted;
+      at[l] = counted * (bins + float(kSide));
+      inner[l] = there * biweight(beside / (kInner * kInner));
+      outer[l] = there * biweight(beside / (kOuter * kOuter));
+      sheets[l] = there * biweight(away / (kAround * kAround));
+      moments[l] = there * biweight(square / (kMoments * kMoments));
+      close[l] = same * biweight(away / (kInner * kInner));
+      wide[l] = same * biweight(away / (kOuter * kOuter));
+    }
+    add_sheets(sheets, along, facing, seen.sheets);
+    add_moments(moments, dx, dy, dz, seen.moments);
+    add_residuals(close, around.residual.data() + first, seen.close);
+    add_residuals(wide, around.residual.data() + first, seen.wide);
+    add_heights(inner, counts, at, seen.inner);
+    add_heights(outer, counts, at, seen.outer);
+  }
+}
+
+}  // namespace rfsmooth::smoothing
