@@ -7,6 +7,7 @@
 
 #include "base/parallel.h"
 #include "rfs_mesh/fit/local_surface.h"
+#include "rfs_mesh/levels.h"
 #include "rfs_mesh/noise/noise_field.h"
 #include "rfs_mesh/noise/shared_noise.h"
 
@@ -16,14 +17,11 @@ namespace {
 
 // Chosen on the development shapes with noise of 0.1 to 4 spacings, Gaussian and along the ray
 // (tests/bench/noise).
-constexpr std::size_t kFewestPoints = 25;
 // The quantile of sites that is the figure: at m = 16 noise may be below the detail.
 constexpr double kFigureNarrow = 0.4, kFigureWide = 0.45;
-// Where hardly a site speaks, most of the cloud is rough, and what does speak there is half roughness.
-constexpr double kFewSpeak = 0.1, kFigureOfFew = 0.2;
+constexpr double kLeastPart = 0.1;     // of the area: less does not speak for a cloud
 constexpr double kLittleShape = 0.25;  // more of it makes places differ that are as noisy
 constexpr std::size_t kBlend = 4;      // sites that a point takes the mean of
-constexpr std::size_t kSpacingSites = 4000, kSpacingPoints = 16;
 
 /// Root mean square of the values within a factor of `typical`; of noise that varies a little over the cloud,
 /// as along a ray, the mean says more than a quantile.
@@ -100,7 +98,6 @@ std::vector<double> blend(const SpatialIndex& sites, const std::vector<double>& 
 /// The windows let a second sheet in nearly everywhere: then the calmer fifth, too, hears more than it shows
 /// without, and all hear so much less.
 void bound_sites(double most, NoiseSites& sites) {
-  constexpr double kCalmFifth = 0.2;
   std::vector<Weighed> all;
   for (std::size_t s = 0; s < sites.at.size(); ++s) all.push_back({sites.sigma[s], sites.area[s]});
   const double calm = quantile(all, kCalmFifth);
@@ -109,9 +106,9 @@ void bound_sites(double most, NoiseSites& sites) {
 }
 
 /// The figure, and how much of it shape had, from what the sites say. Of places that have noise, where these
-/// are a tenth of the cloud or more: the rest has nothing to smooth.
+/// are a tenth of the cloud or more: the rest has nothing to smooth. Where hardly a site speaks, most of the
+/// cloud is rough, and what does speak there is half roughness: the calm fifth of it says the figure.
 void sum_up(const NoiseSites& sites, const NoiseStart& start, NoiseModel& noise) {
-  constexpr double kLeastPart = 0.1;
   const double some = kNoNoise * noise.spacing;
   std::vector<Weighed> heard, noisy, shape;
   double all = 0, saying = 0, loud = 0;
@@ -128,7 +125,7 @@ void sum_up(const NoiseSites& sites, const NoiseStart& start, NoiseModel& noise)
   }
   if (loud > kLeastPart * saying) heard = std::move(noisy);
   double share = start.m == kNarrowestScatter ? kFigureNarrow : kFigureWide;
-  if (saying < kFewSpeak * all) share = kFigureOfFew;
+  if (saying < kLeastPart * all) share = kCalmFifth;
   noise.sigma = heard.empty() ? std::min(start.sigma, start.most) : quantile(heard, share);
   noise.shape = shape.empty() ? 0 : quantile(shape, 0.5);
   if (start.m > kNarrowestScatter && noise.shape < kLittleShape)
@@ -171,7 +168,7 @@ NoiseField measure_noise(const SpatialIndex& index, const Context& context) {
   const std::size_t n = index.points().size();
   NoiseModel noise;
   noise.spacing = mean_spacing(index, context);
-  if (n < kFewestPoints) return spread_noise(noise, index.points(), context);
+  if (n <= kNeighbourhood) return spread_noise(noise, index.points(), context);
   const std::optional<DepthSteps> steps = find_depth_steps(index.points());
   if (steps) noise.step = steps->typical;
   measure(index, steps ? &*steps : nullptr, noise, context);
@@ -190,12 +187,12 @@ NoiseField spread_noise(NoiseModel model, const Positions& points, const Context
 std::vector<double> measure_spacing(const SpatialIndex& index, const Context& context) {
   const std::size_t n = index.points().size();
   if (n < 2) return std::vector<double>(n, 0);
-  const Positions at = pick(index.points(), std::min(n, kSpacingSites));
+  const Positions at = listening_places(index.points(), kNeighbourhood);
   std::vector<double> spacing(at.size());
   for_blocks(context, at.size(), 32, [&](std::size_t begin, std::size_t end) {
     std::vector<Neighbor> near, next;
     for (std::size_t s = begin; s < end; ++s) {
-      index.nearest(at[s], int(kSpacingPoints), near);
+      index.nearest(at[s], int(kNeighbourhood), near);
       double sum = 0;
       for (const Neighbor& q : near) {
         index.nearest(index.points()[q.index], 2, next);

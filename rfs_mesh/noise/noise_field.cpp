@@ -16,7 +16,6 @@ namespace {
 // (noise_test.cpp).
 constexpr double kAlike = 2.5;
 constexpr float kMuchLouder = 3;  // times: so much calmer ones say nothing of a place
-constexpr double kCalmer = 2;     // times: what shows so much less than the mean around it is calm
 // How far below and above the mean a fit pulls in proportion: logarithm of variance. Edges and second sheets
 // are above, places within one step of the depths below.
 constexpr float kBelow = 2, kAbove = 1.5;
@@ -207,7 +206,7 @@ std::vector<double> relative_noise(const NoiseSites& sites, double figure, const
   std::vector<double> relative = mean_around(heard, sites, figure, context);
   const auto at_most = [&](std::size_t s) { return std::max(sites.most[s], sites.floor[s]) / figure; };
   std::vector<char> calm(relative.size(), 0);
-  for (std::size_t s = 0; s < calm.size(); ++s) calm[s] = char(kCalmer * at_most(s) < relative[s]);
+  for (std::size_t s = 0; s < calm.size(); ++s) calm[s] = char(kLouder * at_most(s) < relative[s]);
   if (std::find(calm.begin(), calm.end(), 1) == calm.end()) return relative;
   heard.silence(calm);
   relative = mean_around(heard, sites, figure, context);

@@ -14,7 +14,6 @@ namespace {
 constexpr std::size_t kSearchSites = 500;
 constexpr std::size_t kWidest = 2048, kShareOfCloud = 12;  // m; at most n / 12
 constexpr double kFlat = 2;                                // sigma: the least radius of a patch
-constexpr double kCalm = 0.25, kCalmDeviate = -0.674;      // the quantile of places that the search believes
 
 double median_radius(const SpatialIndex& index, const Positions& places, std::size_t m) {
   std::vector<Neighbor> near;
@@ -38,18 +37,17 @@ double open_window(double window, double seen) {
 /// What the calmer fifth of the places shows without a window: more than the noise where there is shape, so a
 /// bound. The neighbourhood doubles until the slab is flat in it, or until shape shows.
 double bound(const SpatialIndex& index, const Positions& places, const Context& context) {
-  constexpr double kGrowthOfNoise = 1.26, kShare = 0.2, kDeviate = -0.84;
-  constexpr std::size_t kFirst = 24, kLast = 1536;
+  constexpr double kGrowthOfNoise = 1.26;
   const std::vector<double> none(places.size(), 0);
   double sigma = 0, least = 1;
-  for (std::size_t m = kFirst; m <= kLast && m < index.points().size(); m *= 2) {
+  for (std::size_t m = kNeighbourhood; m <= kWidest && m < index.points().size(); m *= 2) {
     const std::vector<Scatter> all = fits(index, places, m, none, context);
-    std::vector<Weighed> seen = comparable(all, areas(all), kDeviate);
+    std::vector<Weighed> seen = comparable(all, areas(all), kCalmFifthDeviate);
     std::vector<double> radii;
     for (const Scatter& s : all) radii.push_back(s.radius);
     if (seen.empty()) break;
-    const double next = std::sqrt(quantile(seen, kShare)), radius = quantile(radii, 0.5);
-    if (m > kFirst && next > kGrowthOfNoise * sigma) break;
+    const double next = std::sqrt(quantile(seen, kCalmFifth)), radius = quantile(radii, 0.5);
+    if (m > kNeighbourhood && next > kGrowthOfNoise * sigma) break;
     if (!(radius > 0) || next < least * radius) {
       least = radius > 0 ? next / radius : 0;
       sigma = next;
@@ -60,12 +58,12 @@ double bound(const SpatialIndex& index, const Positions& places, const Context& 
 }
 
 /// Where second sheets are as near as the neighbours nearly everywhere, fits without a window tell their
-/// distance. So windows from an eighth of that on are tried: the first that a quarter of the places fill no
-/// wider than it is.
+/// distance. So windows from an eighth of that on are tried: the first that calm places fill no wider than it
+/// is, if no fewer places say anything.
 double lowest(const SpatialIndex& index, const Positions& places, std::size_t m, double sigma,
               const Context& context) {
-  constexpr double kFrom = 0.125, kStep = 1.3, kFilled = 1.1, kLeastPlaces = 0.25;
-  for (double window = kFrom * sigma; window < 0.8 * sigma; window *= kStep) {
+  constexpr double kStep = 1.3;
+  for (double window = kNarrowestWindow * sigma; window < 0.8 * sigma; window *= kStep) {
     const std::vector<Scatter> all =
         fits(index, places, m, std::vector<double>(places.size(), window), context);
     const std::vector<double> area = areas(all);
@@ -74,8 +72,8 @@ double lowest(const SpatialIndex& index, const Positions& places, std::size_t m,
       whole += area[i];
       if (says(all[i])) saying += area[i];
     }
-    const double seen = std::sqrt(mean_variance(all, kCalm, kCalmDeviate));
-    if (saying >= kLeastPlaces * whole && seen <= kFilled * window) return seen;
+    const double seen = std::sqrt(mean_variance(all, kCalmPlaces, kCalmDeviate));
+    if (saying >= kCalmPlaces * whole && seen <= kSameNoise * window) return seen;
   }
   return sigma;
 }
@@ -116,28 +114,27 @@ Positions search_places(const Positions& places) {
 
 NoiseStart search_noise(const SpatialIndex& index, Positions places, const Context& context) {
   constexpr double kTooNarrow = 1.35;  // a window this much smaller than what it shows shows too little
-  constexpr double kSettled = 1.03, kGrowing = 1.1;
+  constexpr double kSettled = 1.03;
   constexpr double kAboveBound = 1.15;
-  constexpr int kMostSteps = 12;
   const std::size_t widest = widest_scatter(index);
   NoiseStart start;
   std::vector<Scatter> all = fits(index, places, start.m, std::vector<double>(places.size(), 0), context);
   start.narrowest = narrowest_surface(index, places, all, widest, context);
   const double narrow = median_radius(index, places, start.m);
   start.least = 1e-9 * narrow;
-  start.sigma = std::sqrt(mean_variance(all, kCalm, kCalmDeviate));
+  start.sigma = std::sqrt(mean_variance(all, kCalmPlaces, kCalmDeviate));
   // Lines are no sheets, and a window narrow enough finds some that are exact.
   if (start.narrowest == start.m) start.sigma = lowest(index, places, start.m, start.sigma, context);
   start.most = kAboveBound * bound(index, places, context);
   double said = 0;
-  for (int step = 0; step < kMostSteps && start.sigma > start.least; ++step) {
+  while (start.sigma > start.least) {  // ever wider windows, up to the bound
     const double reach = scatter_reach(start.sigma, narrow);
     while (5 * start.m / 4 <= widest && median_radius(index, places, start.m) < 0.97 * reach)
       start.m = 5 * start.m / 4;
     all = fits(index, places, start.m, std::vector<double>(places.size(), start.sigma), context);
     for (std::size_t s = 0; s < places.size(); ++s) places[s] = all[s].foot;
-    const double seen = std::sqrt(mean_variance(all, kCalm, kCalmDeviate)), ratio = seen / start.sigma;
-    if (said > 0 && seen > kGrowing * said) {  // it grows with the neighbourhood: that is shape
+    const double seen = std::sqrt(mean_variance(all, kCalmPlaces, kCalmDeviate)), ratio = seen / start.sigma;
+    if (said > 0 && seen > kSameNoise * said) {  // it grows with the neighbourhood: that is shape
       start.sigma = said;
       break;
     }
@@ -150,7 +147,7 @@ NoiseStart search_noise(const SpatialIndex& index, Positions places, const Conte
       continue;
     }
     start.sigma = said = ratio > 1 ? open_window(start.sigma, seen) : seen;
-    if (ratio < kSettled) break;
+    if (!(ratio >= kSettled)) break;
   }
   return start;
 }

@@ -13,6 +13,18 @@ namespace rfsmooth::rfs_mesh {
 
 constexpr std::size_t kNarrowestScatter = 16;  ///< least m
 
+/// Times: by so much one noise differs from itself, told by other places or by more neighbours.
+constexpr double kSameNoise = 1.1;
+
+/// The quantile of places that are believed to show noise and no shape, and of a normal variable.
+constexpr double kCalmPlaces = 0.25, kCalmDeviate = -0.674;
+
+/// The same where places are believed against most others.
+constexpr double kCalmFifth = 0.2, kCalmFifthDeviate = -0.84;
+
+/// Of what scatters without a window: the narrowest window that is tried.
+constexpr double kNarrowestWindow = 0.125;
+
 /// Where the search for the noise begins.
 struct NoiseStart {
   double sigma = 0;  ///< world units

@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t kSites = 2000, kFewestSites = 250;
 constexpr std::size_t kWork = 100000;    // sites x m
 constexpr std::size_t kGroupWork = 800;  // a fit of many points says much, and reaches far by itself
-constexpr std::size_t kSmallestGroup = 12, kLargestGroup = 48;
+constexpr std::size_t kSmallestGroup = 12;
 constexpr double kDiffers = 1.5;  // of variances of a dozen fits: two standard errors and more
 constexpr double kTypical = 0.35, kTypicalDeviate = -0.385;  // the quantile of fits that is typical
 constexpr double kMostSpeak = 0.7;                           // of the fits around a site, to be believed
@@ -26,21 +26,21 @@ constexpr double kMostSpeak = 0.7;                           // of the fits arou
 constexpr double kLeastNarrow = 0.4, kLeastWide = 0.5;
 // Wider, the ball is still a little too narrow for the slab, and shows that much more at 2 m.
 constexpr double kOfTheSlab = 1.07;
-constexpr std::size_t kPlateauFrom = 24, kPlateauTo = 192;
+// Of eight times the points: inside a thick slab their ball has twice the radius and sees twice the scatter.
+constexpr std::size_t kPlateauTo = 8 * kNeighbourhood;
 // The residuals within a window show its own variance if they are of a normal distribution that it was made
 // for, three times that if they fill it evenly, as those of a far louder one do: the mean of the two factors.
 constexpr double kEven = 3, kFilled = 1.73;
-constexpr double kLouder = 2;        // times the start: beyond, m is another
-constexpr double kFromOpen = 0.125;  // of the scatter without a window: the narrowest window
-constexpr int kOpeningRounds = 8;    // windows widen by up to 1.7 in each
+constexpr int kOpeningRounds = 8;  // windows widen by up to 1.7 in each
 
-/// What scatter at `few` and `many` neighbours makes sure of. \param radius of the ball of the few.
+/// What scatter at kNeighbourhood points, `few`, and at kPlateauTo, `many`, makes sure of. \param radius of
+/// the ball of the few.
 double plateau(double few, double many, double radius) {
-  constexpr double kSame = 1, kSurelyGrows = 1.1, kStops = 1.6, kNeverStops = 1.9, kSure = 0.65;
+  constexpr double kStops = 1.6, kNeverStops = 1.9, kSure = 0.65;
   constexpr double kFlat = 0.14, kThick = 0.2;
   if (!(few > 0)) return 0;
   const double growth = many / few, share = few / radius;
-  const double trust = std::clamp((growth - kSame) / (kSurelyGrows - kSame), 0.0, 1.0) *
+  const double trust = std::clamp((growth - 1) / (kSameNoise - 1), 0.0, 1.0) *
                        std::clamp((kNeverStops - growth) / (kNeverStops - kStops), 0.0, 1.0) *
                        std::clamp((kThick - share) / (kThick - kFlat), 0.0, 1.0);
   return trust * std::max(few, kSure * many);
@@ -66,7 +66,7 @@ class Listener {
         floor(at.size(), 0),
         speaks(at.size(), 0) {
     const SpatialIndex index(at_, context);
-    const int group = int(std::clamp(kGroupWork / start.m, kSmallestGroup, kLargestGroup));
+    const int group = int(std::clamp(kGroupWork / start.m, kSmallestGroup, 2 * kNeighbourhood));
     for_each_index(
         context, at.size(), [&](std::size_t s) { index.nearest(at_[s], group, group_[s]); }, 64);
   }
@@ -75,8 +75,8 @@ class Listener {
   void look(const DepthSteps* steps) {
     const std::size_t n = cloud_.points().size();
     const std::vector<double> open(at_.size(), 0);
-    const std::size_t few_points = std::min(n, kPlateauFrom),
-                      wide = std::min(n, std::max(kPlateauFrom, m.front()));
+    const std::size_t few_points = std::min(n, kNeighbourhood),
+                      wide = std::min(n, std::max(kNeighbourhood, m.front()));
     const std::vector<Scatter> many =
         n < 2 * kPlateauTo ? std::vector<Scatter>() : fits(cloud_, at_, kPlateauTo, open, context_, &kept_);
     const std::vector<Scatter> few = fits(cloud_, at_, few_points, open, context_, &kept_);
@@ -113,7 +113,8 @@ class Listener {
           if (!hear_at(s, all)) {
             const double typical = full.empty() ? kEven : quantile(full, 0.5);
             opened[s] = char(typical > kFilled);
-            if (opened[s] != 0) sigma[s] = std::max(kFromOpen * open_[s], std::sqrt(typical) * before[s]);
+            if (opened[s] != 0)
+              sigma[s] = std::max(kNarrowestWindow * open_[s], std::sqrt(typical) * before[s]);
           }
           if (sigma[s] > louder_ && widen(s, quantile(radius, 0.5))) opened[s] = 1;
         },

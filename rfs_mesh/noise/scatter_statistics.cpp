@@ -54,12 +54,11 @@ double mean_variance(const std::vector<Scatter>& all, double share, double devia
   const std::vector<double> area = areas(all);
   std::vector<Weighed> variances = comparable(all, area, deviate);
   if (variances.empty()) return 0;
-  constexpr double kFarAbove = 4;
   const double typical = quantile(variances, share);
   double sum = 0, weights = 0;
   for (std::size_t i = 0; i < all.size(); ++i) {
     const Scatter& s = all[i];
-    if (!says(s) || s.variance > kFarAbove * typical) continue;
+    if (!says(s) || s.variance > kLouder * kLouder * typical) continue;
     sum += area[i] * s.freedom * s.variance;
     weights += area[i] * s.freedom;
   }

@@ -13,6 +13,9 @@
 
 namespace rfsmooth::rfs_mesh {
 
+/// Times: a deviation so much above another is not of the same noise.
+constexpr double kLouder = 2;
+
 /// A value and how much it counts.
 struct Weighed {
   double value, weight;

@@ -15,14 +15,11 @@ namespace {
 constexpr std::size_t kMostOfCloud = 24;       // m is at most so small a part: else parts are shape
 constexpr std::size_t kMostPoints = 4096;      // m: the blotches of depth cameras are that large
 constexpr std::size_t kPointsLooked = 500000;  // at each m: of wide places fewer say as much
-constexpr double kCalmPlaces = 0.25, kCalmDeviation = -0.674;
 constexpr double kCalmWithin = 1.3;  // of the calm variance: as far as chance takes fits of a hundred points
-constexpr double kTwoSheets = 4;     // of the variance
 // Of the variance, from m to 2 m: second sheets and detail grow faster than noise, shape at least so.
 constexpr double kMostGrowthOfNoise = 1.8, kLeastGrowthOfShape = 2.83;
 constexpr double kTogether = 1.4;  // times that of points on their own; they scatter by a fifth
 constexpr double kFollows = 3;     // patches follow noise of their own by kNearestTogether kFollows / m of it
-constexpr double kSurelyShared = 1.1;     // sigma over that of the start
 constexpr std::size_t kDiskPoints = 300;  // of the disk on which g is computed
 
 /// Share of the area that two disks of radius r have in common at a distance d.
@@ -129,7 +126,7 @@ Calm look(const SpatialIndex& index, const Positions& places, const NoiseStart& 
     const Positions some = pick(places, std::min(places.size(), kPointsLooked / m));
     const std::vector<Scatter> all = fits(index, some, m, std::vector<double>(some.size(), 0), context);
     const std::vector<double> area = areas(all);
-    std::vector<Weighed> variances = comparable(all, area, kCalmDeviation);
+    std::vector<Weighed> variances = comparable(all, area, kCalmDeviate);
     if (variances.empty()) continue;
     const double variance = quantile(variances, kCalmPlaces);
     if (!(variance > start.least * start.least)) continue;
@@ -165,7 +162,7 @@ SharedNoise find_shared_noise(const SpatialIndex& index, const Positions& places
   const Calm calm = look(index, places, start, steps, context);
   if (calm.m.empty()) return found;  // nothing scatters, or too few points to tell
   // What a window from below saw much less of at the same m is the distance of two sheets.
-  if (steps == nullptr && kTwoSheets * start.sigma * start.sigma < calm.seen.front()) return found;
+  if (steps == nullptr && kLouder * kLouder * start.sigma * start.sigma < calm.seen.front()) return found;
   double sill = 0, surely = 0;
   std::size_t at = 0;
   const auto make_sure = [&](std::size_t i, double sure) {
@@ -181,8 +178,7 @@ SharedNoise find_shared_noise(const SpatialIndex& index, const Positions& places
     surely = std::max(surely, without_shape(calm, i, kLeastGrowthOfShape));
     make_sure(i, without_shape(calm, i, kGrowthOfSmoothShape));
   }
-  if (!(std::max(surely, calm.steps) > kSurelyShared * kSurelyShared * start.sigma * start.sigma))
-    return found;
+  if (!(std::max(surely, calm.steps) > kSameNoise * kSameNoise * start.sigma * start.sigma)) return found;
   found.sigma = std::sqrt(sill);
   found.m = std::size_t(calm.m[at]);
   std::vector<double> left;
