@@ -12,8 +12,9 @@ namespace {
 // Chosen on the development shapes with noise of 0.1 to 4 spacings, Gaussian and along the ray
 // (tests/bench/noise).
 constexpr std::size_t kSearchSites = 500;
-constexpr std::size_t kWidest = 2048, kShareOfCloud = 12;  // m; at most n / 12
-constexpr double kFlat = 2;                                // sigma: the least radius of a patch
+// m: the blotches of depth cameras are that large; at most n / 12.
+constexpr std::size_t kWidest = 4096, kShareOfCloud = 12;
+constexpr double kFlat = 2;  // sigma: the least radius of a patch
 
 double median_radius(const SpatialIndex& index, const Positions& places, std::size_t m) {
   std::vector<Neighbor> near;
