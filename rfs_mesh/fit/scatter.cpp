@@ -8,6 +8,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "base/avx2.h"
+#include "rfs_mesh/levels.h"
 
 namespace rfsmooth::rfs_mesh {
 
@@ -51,17 +52,17 @@ double variance_inside(double c) {
 double ScatterFit::err_together(const Vector6& c) {
   // Along the patch, not in space: beside a point far above the others its nearest are above, too.
   nearest_ = local_;
-  std::nth_element(nearest_.begin(), nearest_.begin() + kNearestTogether, nearest_.end(),
+  std::nth_element(nearest_.begin(), nearest_.begin() + kRing, nearest_.end(),
                    [](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
                      return a.head<2>().squaredNorm() < b.head<2>().squaredNorm();
                    });
   int sum = 0;
-  for (std::size_t i = 0; i < kNearestTogether; ++i) {
+  for (std::size_t i = 0; i < kRing; ++i) {
     const double u = nearest_[i].x(), v = nearest_[i].y();
     const Vector6 f = (Vector6() << 1, u, v, u * u, u * v, v * v).finished();
     sum += nearest_[i].z() > f.dot(c) ? 1 : -1;
   }
-  return double(sum * sum) / double(kNearestTogether);
+  return double(sum * sum) / double(kRing);
 }
 
 double ScatterFit::gather(const Positions& points, const Eigen::Vector3d& place, const Eigen::Matrix3d& axes,
@@ -155,7 +156,7 @@ Scatter ScatterFit::operator()(const SpatialIndex& index, const Eigen::Vector3d&
     const double left = sums.kept - solver.solve(full).trace();
     const double residual = sums.heights - sums.right.dot(c);
     if (!(left > 0.02 * sums.kept) || !std::isfinite(residual)) return s;
-    if (!(sigma > 0) && local_.size() > kNearestTogether) s.together = err_together(c);
+    if (!(sigma > 0) && local_.size() > kRing) s.together = err_together(c);
     s.variance = r * r * std::max(0.0, residual) / left / (round > 0 ? kInside : 1);
     s.freedom = left * left / sums.squares;
     s.foot = place + r * c[0] * axes.col(0);

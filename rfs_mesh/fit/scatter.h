@@ -25,8 +25,6 @@ namespace rfsmooth::rfs_mesh {
 
 constexpr double kScatterWindow = 3;  ///< sigma
 
-constexpr std::size_t kNearestTogether = 7;  ///< a point and the ring around it
-
 /// Variance of a normal variable cut at +-c standard deviations, over its variance uncut.
 double variance_inside(double c);
 
@@ -35,7 +33,7 @@ struct Scatter {
   double variance = 0;  ///< s^2, world units squared
   double freedom = 0;   ///< its degrees of freedom; 0: nothing can be said here
   double radius = 0;    ///< of the ball of neighbours, world units
-  double together = 1;  ///< kNearestTogether nearest are above (1) or below (-1): their sum squared, over as
+  double together = 1;  ///< kRing nearest are above (1) or below (-1): their sum squared, over as
                         ///< many; in the mean 1 of points on their own, whatever their noise. Without window
   double within = 0;    ///< s^2 also where the window cuts off so much that the place says nothing; 0: too
                         ///< few points are left within it to tell

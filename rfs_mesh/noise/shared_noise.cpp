@@ -6,6 +6,8 @@
 
 #include <Eigen/Cholesky>
 
+#include "rfs_mesh/levels.h"
+
 namespace rfsmooth::rfs_mesh {
 
 namespace {
@@ -16,8 +18,8 @@ constexpr std::size_t kMostOfCloud = 24;  // m is at most so small a part: else 
 constexpr double kCalmWithin = 1.3;  // of the calm variance: as far as chance takes fits of a hundred points
 // Of the variance, from m to 2 m: second sheets and detail grow faster than noise, shape at least so.
 constexpr double kMostGrowthOfNoise = 1.8, kLeastGrowthOfShape = 2.83;
-constexpr double kTogether = 1.4;  // times that of points on their own; they scatter by a fifth
-constexpr double kFollows = 3;     // patches follow noise of their own by kNearestTogether kFollows / m of it
+constexpr double kTogether = 1.4;         // times that of points on their own; they scatter by a fifth
+constexpr double kFollows = 3;            // patches follow noise of their own by kRing kFollows / m of it
 constexpr std::size_t kDiskPoints = 300;  // of the disk on which g is computed
 
 /// Share of the area that two disks of radius r have in common at a distance d.
@@ -105,7 +107,7 @@ struct Calm {
 };
 
 /// The mean of Scatter::together of the fits of at most this variance: 1, less what patches follow of it, of
-/// noise that points have of their own, up to kNearestTogether where they share it.
+/// noise that points have of their own, up to kRing where they share it.
 double together(const std::vector<Scatter>& all, double variance) {
   double sum = 0, count = 0;
   for (const Scatter& s : all) {
@@ -142,7 +144,7 @@ Calm look(const SpatialIndex& index, const Positions& places, const NoiseStart& 
 
 /// Whether nearest points lie off patches of the i-th m the same way.
 bool err_together(const Calm& calm, std::size_t i) {
-  const double alone = 1 - kNearestTogether * kFollows / calm.m[i];
+  const double alone = 1 - kRing * kFollows / calm.m[i];
   return alone > 0.5 && calm.together[i] > kTogether * alone;
 }
 
