@@ -6,6 +6,7 @@
 
 #include "base/avx2.h"
 #include "base/small_cholesky.h"
+#include "rfs_mesh/levels.h"
 
 namespace rfsmooth::rfs_mesh {
 
@@ -27,7 +28,6 @@ constexpr double kLeastVariance = 0.35;  // s^2
 // that the depths of real sensors, which come in steps, say nothing: patches on rotor's walls at 1 % have
 // nats of 3 to 40, known of 0.65 to 1, and 1.3 to 2 between a sheet and the middle; those that did harm
 // elsewhere 2.2 to 3; sensors' steps known of 0.45 to 0.85.
-constexpr double kNats = 3;
 constexpr double kMostLeftByPair = 1.25;
 constexpr double kKnown = 0.6;
 constexpr double kFarApart = 2.1;     // one point in 56 crosses the middle: patches of one sheet do as well
@@ -194,7 +194,7 @@ void SheetPair::judge(const std::vector<SheetPoint>& points) {
       counted += 2;
     }
   possible_ = left_ < kByChance * kMostLeftByPair && misfit < kByChance * kMostMisfit * counted;
-  convincing_ = two - one > kNats && left_ < kMostLeftByPair && misfit < kMostMisfit * counted &&
+  convincing_ = two - one > kNatsOfTwo && left_ < kMostLeftByPair && misfit < kMostMisfit * counted &&
                 apart_[0] < kFarApart && known > kKnown * all;
 }
 

@@ -39,7 +39,7 @@ class SheetPair {
   }
 
   /// Whether there are two sheets so near to each other that they must be fitted together. False if
-  /// - one sheet with more noise explains the heights as well (less than 3 nats worse);
+  /// - one sheet with more noise explains the heights as well (less than kNatsOfTwo worse);
   /// - more variance is left than the noise has, or the residuals' means over the cells of a 5 x 5 grid are
   ///   more than noise: the shape is a different one;
   /// - the estimates do not follow the two sheets. Sheets that show only in the scatter of the heights may be

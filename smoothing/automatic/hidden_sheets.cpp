@@ -14,10 +14,9 @@ namespace {
 
 using rfs_mesh::kNoiseReach;  // residuals beyond belong to strays
 
-// Odds of 7 to 1. On the development shapes at 10,000 and 50,000 points, noise of 1 to 3 %, turned in several
+// kNatsOfTwo: on the development shapes at 10,000 and 50,000 points, noise of 1 to 3 %, turned in several
 // ways, where walls are hidden the evidence is 1.2 to 100 (rotor) and 3.2 to 7.5 (armadillo), elsewhere at
 // most 0.9.
-constexpr double kEvidence = 2;           // nats
 constexpr float kItself = 0.008F;         // a point's share in its own v: 0.0064 to 0.0088 on average
 constexpr float kLouder = 1.3F;           // v / c from which a place counts
 constexpr float kLoudest = 4;             // v: beyond, one sees two sheets
@@ -93,7 +92,7 @@ HiddenSheets best_evidence(const std::vector<float>& residual, const std::vector
 }  // namespace
 
 bool HiddenSheets::there() const {
-  return evidence >= kEvidence;
+  return evidence >= rfs_mesh::kNatsOfTwo;
 }
 
 HiddenSheets split_hidden_sheets(const HeightField& field, double sigma, std::vector<float>& height,
