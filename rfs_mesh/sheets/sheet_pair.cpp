@@ -28,11 +28,10 @@ constexpr double kLeastVariance = 0.35;  // s^2
 // that the depths of real sensors, which come in steps, say nothing: patches on rotor's walls at 1 % have
 // nats of 3 to 40, known of 0.65 to 1, and 1.3 to 2 between a sheet and the middle; those that did harm
 // elsewhere 2.2 to 3; sensors' steps known of 0.45 to 0.85.
-constexpr double kMostLeftByPair = 1.25;
+constexpr double kMostLeftByPair = 1.5;  // mean square, of points and of cells' means, over that of noise
 constexpr double kKnown = 0.6;
 constexpr double kFarApart = 2.1;     // one point in 56 crosses the middle: patches of one sheet do as well
 constexpr int kCells = 5;             // a side of the grid
-constexpr double kMostMisfit = 1.5;   // mean square of a cell's mean, beside what noise makes
 constexpr double kLeastInCell = 0.3;  // sum of squared weights
 // By so much all points may be below what some of them show: four deviations of the variance of a hundred.
 constexpr double kByChance = 1.6;
@@ -193,8 +192,8 @@ void SheetPair::judge(const std::vector<SheetPoint>& points) {
       misfit += (cell.middle * cell.middle + cell.apart * cell.apart) / (cell.squares * variance_);
       counted += 2;
     }
-  possible_ = left_ < kByChance * kMostLeftByPair && misfit < kByChance * kMostMisfit * counted;
-  convincing_ = two - one > kNatsOfTwo && left_ < kMostLeftByPair && misfit < kMostMisfit * counted &&
+  possible_ = left_ < kByChance * kMostLeftByPair && misfit < kByChance * kMostLeftByPair * counted;
+  convincing_ = two - one > kNatsOfTwo && left_ < kMostLeftByPair && misfit < kMostLeftByPair * counted &&
                 apart_[0] < kFarApart && known > kKnown * all;
 }
 
