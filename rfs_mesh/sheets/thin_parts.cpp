@@ -21,7 +21,6 @@ using Eigen::Vector3d;
 
 // Chosen on the closed development shapes at 50,000 points, without noise and after 1 %
 // (tests/bench/normals).
-constexpr std::size_t kOfArea = 9;   // neighbours that say how much area a sample has
 constexpr double kOff = 0.25;        // e above which something is tried
 constexpr double kMostOff = 0.3;     // share of the samples that may be: rotor's walls are 0.17
 constexpr double kMostLeft = 0.4;    // of all e squared, if more are: 0.31 on rotor after 2 %, 0.52 on scans
@@ -62,7 +61,7 @@ class ThinParts {
     area_.resize(m);
     for_each_index(context, m, [&](std::size_t s) {
       const Adjacency::Row row = around_[s];
-      const std::size_t count = std::min(kOfArea, row.size());
+      const std::size_t count = std::min(kRing, row.size());
       area_[s] = M_PI * (at_[row[count - 1]] - at_[s]).squaredNorm() / double(count);
     });
   }
