@@ -21,9 +21,8 @@ namespace {
 using Eigen::Vector3d;
 
 // Chosen on the closed development shapes (tests/bench/normals).
-constexpr int kSteps = 4;         // more follow the noise
-constexpr double kClosed = 0.15;  // w - 1/2 of a closed surface: in the mean, and root mean square
-constexpr double kBetter = 0.8;   // of it: what votes must bring to be believed
+constexpr int kSteps = 4;        // more follow the noise
+constexpr double kBetter = 0.8;  // of it: what votes must bring to be believed
 
 double agreement(const Vector3d& p, const Vector3d& n, const Vector3d& q, const Vector3d& m) {
   const Vector3d e = q - p;

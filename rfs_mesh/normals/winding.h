@@ -24,6 +24,10 @@
 
 namespace rfsmooth::rfs_mesh {
 
+/// By so much the winding numbers at the points of a closed surface are off 1/2, their mean and root mean
+/// square.
+constexpr double kClosed = 0.15;
+
 /// Evaluates w, its adjoint and its inverse over fixed points.
 class Winding {
  public:

@@ -21,10 +21,9 @@ using Eigen::Vector3d;
 
 // Chosen on the closed development shapes at 50,000 points, without noise and after 1 %
 // (tests/bench/normals).
-constexpr double kOff = 0.25;        // e above which something is tried
-constexpr double kMostOff = 0.3;     // share of the samples that may be: rotor's walls are 0.17
-constexpr double kMostLeft = 0.4;    // of all e squared, if more are: 0.31 on rotor after 2 %, 0.52 on scans
-constexpr double kMiddleOff = 0.12;  // by which the median of w may be off 1/2, its ninth tenth above
+constexpr double kOff = 0.25;      // e above which something is tried
+constexpr double kMostOff = 0.3;   // share of the samples that may be: rotor's walls are 0.17
+constexpr double kMostLeft = 0.4;  // of all e squared, if more are: 0.31 on rotor after 2 %, 0.52 on scans
 constexpr double kLeastTurned = 0.12;
 constexpr int kMiddleCount = 64;
 constexpr double kThinnest = 1e-9;  // of C's eigenvalues, beside the largest
@@ -111,14 +110,15 @@ class ThinParts {
     return winding.numbers(area_vectors, context_);
   }
 
-  /// Whether w is that of a closed surface but for thin parts, where it is low.
+  /// Whether w is that of a closed surface but for thin parts, where it is low: its median and its ninth
+  /// tenth.
   static bool closes(std::vector<double> w) {
     const auto at = [&](double share) {
       const auto it = w.begin() + std::ptrdiff_t(share * double(w.size() - 1));
       std::nth_element(w.begin(), it, w.end());
       return *it;
     };
-    return std::abs(at(0.5) - 0.5) < kMiddleOff && at(0.9) - 0.5 < kMiddleOff;
+    return std::abs(at(0.5) - 0.5) < kClosed && at(0.9) - 0.5 < kClosed;
   }
 
   /// e of every sample.
