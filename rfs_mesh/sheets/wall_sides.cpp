@@ -19,13 +19,12 @@ namespace {
 
 // Chosen on the shapes rotor, armadillo and femur (50,000 points, noise of 1 %). The share of normals that
 // end up on the right side there hardly changes with them.
-constexpr std::size_t kGlance = 4;  // at every so many neighbours first: one on another sheet is no wall
 constexpr double kWallRidge = 1e-9;
 
+/// Whether there is another sheet: a single normal is none.
 bool faces_another(const Positions& normals, std::size_t i, const Adjacency::Row& row) {
   std::size_t opposite = 0;
-  for (std::size_t k = kGlance - 1; k < row.size(); k += kGlance)
-    opposite += normals[i].dot(normals[row[k]]) < -kSameSheet ? 1 : 0;
+  for (const Index j : row) opposite += normals[i].dot(normals[j]) < -kSameSheet ? 1 : 0;
   return opposite > 1;
 }
 
