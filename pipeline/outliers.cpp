@@ -31,9 +31,8 @@ constexpr double kOff = 1.2;        // usual reaches off the surface: what a cle
 constexpr double kFarOff = 6;       // usual reaches: an outlier wherever the plane is
 
 constexpr double kThin = 4;          // times the reach of the surface beside floating points
-constexpr std::size_t kRegion = 64;  // points among which that surface is; in fewer, nothing is usual
-constexpr std::size_t kSurface = kRegion / 10;  // its share of them
-constexpr double kFlat = 0.08;                  // least variance over the sum; 1/3 = a ball
+constexpr std::size_t kRegion = 64;  // points among which that surface has a ring; in fewer, nothing is usual
+constexpr double kFlat = 0.08;       // least variance over the sum; 1/3 = a ball
 
 /// The plane through some points, by its normal, with their variances along the axes, ascending.
 struct Plane {
@@ -199,8 +198,8 @@ class Search {
     if (around.size() < kRegion) return false;
     std::array<double, kRegion> reaches = {};
     for (std::size_t k = 0; k < kRegion; ++k) reaches[k] = reach_[around[k].index];
-    std::nth_element(reaches.begin(), reaches.begin() + kSurface, reaches.end());
-    if (!(reach_[i] > kThin * reaches[kSurface])) return false;
+    std::nth_element(reaches.begin(), reaches.begin() + kRing, reaches.end());
+    if (!(reach_[i] > kThin * reaches[kRing])) return false;
     around.resize(kNeighbourhood);
     const Eigen::Vector3d variances = fit_plane(points_, around).variances;
     return variances[0] > kFlat * variances.sum() &&

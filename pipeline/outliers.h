@@ -15,8 +15,8 @@
 /// that had them as neighbours are tested again, until no more are found.
 ///
 /// A point is also an outlier, whatever has it as a neighbour, if it floats: r_i is more than four times both
-/// the median of the cloud and the lower decile of the 64 nearest, and the 24 nearest fill space (the least
-/// variance is more than 8 % of the sum) beyond five sigma.
+/// the median of the cloud and what nine of the 64 nearest have (a ring of a surface), and the 24 nearest
+/// fill space (the least variance is more than 8 % of the sum) beyond five sigma.
 ///
 /// No single test suffices: a point in the tail of Gaussian noise is isolated but within 5 sigma, a corner is
 /// off its plane but not isolated, a sparse wall has a large r but is flat. Isolation by the neighbours'
