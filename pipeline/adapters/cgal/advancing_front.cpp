@@ -132,10 +132,11 @@ std::vector<Face> closed(const Delaunay& tetrahedra, const Positions& points, co
   // kept and at most 0.16 looks against the normals, both on rotor, half of which is merged wall; 0.97 and
   // 0.02 on the others. An open sheet is either covered twice, and half of that looks against the normals,
   // or its opening is spanned.
-  constexpr double kMostLacking = 0.25, kLeastKept = 0.7, kMostDisagreeing = 0.22, kWidestGap = 0.7;
-  if (least_invented(front, points) > kMostLacking) return {};
+  constexpr double kMostWrong = 0.25;  // of the area: made up, left out of the front, against the normals
+  constexpr double kWidestGap = 0.7;
+  if (least_invented(front, points) > kMostWrong) return {};
   Solid solid = solid_of(tetrahedra, points, normals, front, longest_edge, context);
-  if (solid.kept < kLeastKept || solid.disagreeing > kMostDisagreeing ||
+  if (solid.kept < 1 - kMostWrong || solid.disagreeing > kMostWrong ||
       solid.widest_gap > kWidestGap * longest_edge * longest_edge)
     return {};
   return std::move(solid.faces);
