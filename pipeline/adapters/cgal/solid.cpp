@@ -64,7 +64,7 @@ class Cut {
 // Chosen on the closed development shapes with 2 % noise, 10,000 and 50,000 points: with 6 and less it is
 // cheaper to cut an ear of armadillo off than to fill its merged root, with 15 and more walls grow flaps.
 constexpr double kOfNormals = 10;
-constexpr double kOfOthers = 0.4;  // x longest edge squared: the area of an even triangle is 0.43 of it
+constexpr double kOfOthers = 0.433;  // x longest edge squared: the area of an even triangle
 constexpr double kOfFront = 0.02;
 
 class Builder {
