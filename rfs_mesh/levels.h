@@ -16,6 +16,9 @@ constexpr std::size_t kRing = 8;
 /// Points that a quadric is fitted to at least: two more than its six coefficients.
 constexpr std::size_t kFewestOfQuadric = 8;
 
+/// Points of the narrowest patches: a quadric through them leaves more than half of the noise.
+constexpr std::size_t kNarrowestPatch = 16;
+
 /// Cosine of the angle between two normals, 60 degrees, beyond which they are of different sheets, or of two
 /// sides of an edge.
 constexpr double kSameSheet = 0.5;

@@ -124,11 +124,11 @@ void sum_up(const NoiseSites& sites, const NoiseStart& start, NoiseModel& noise)
     loud += area;
   }
   if (loud > kLeastPart * saying) heard = std::move(noisy);
-  double share = start.m == kNarrowestScatter ? kFigureNarrow : kFigureWide;
+  double share = start.m == kNarrowestPatch ? kFigureNarrow : kFigureWide;
   if (saying < kLeastPart * all) share = kCalmFifth;
   noise.sigma = heard.empty() ? std::min(start.sigma, start.most) : quantile(heard, share);
   noise.shape = shape.empty() ? 0 : quantile(shape, 0.5);
-  if (start.m > kNarrowestScatter && noise.shape < kLittleShape)
+  if (start.m > kNarrowestPatch && noise.shape < kLittleShape)
     noise.sigma = mean_of_alike(heard, noise.sigma);
   if (noise.sigma <= start.least) noise.sigma = 0;
 }
@@ -137,7 +137,7 @@ void sum_up(const NoiseSites& sites, const NoiseStart& start, NoiseModel& noise)
 void measure(const SpatialIndex& index, const DepthSteps* steps, NoiseModel& noise, const Context& context) {
   const Positions places = search_places(index.points());
   NoiseStart start = search_noise(index, places, context);
-  noise.shared = double(start.narrowest) / double(kNarrowestScatter);
+  noise.shared = double(start.narrowest) / double(kNarrowestPatch);
   if (!(start.least > 0)) return;
   const SharedNoise shared = find_shared_noise(index, places, start, steps, context);
   if (shared.points > 1) {

@@ -91,7 +91,7 @@ std::size_t narrowest_surface(const SpatialIndex& index, const Positions& places
     for (const Scatter& s : all) breadths.push_back(s.breadth);
     return quantile(breadths, 0.5) >= kSurface;
   };
-  std::size_t m = kNarrowestScatter;
+  std::size_t m = kNarrowestPatch;
   while (2 * m <= widest && !is_surface()) {
     m *= 2;
     if (2 * m <= widest) all = fits(index, places, m, std::vector<double>(places.size(), 0), context);
@@ -102,7 +102,7 @@ std::size_t narrowest_surface(const SpatialIndex& index, const Positions& places
 }  // namespace
 
 std::size_t widest_scatter(const SpatialIndex& index) {
-  return std::clamp(index.points().size() / kShareOfCloud, kNarrowestScatter, kWidest);
+  return std::clamp(index.points().size() / kShareOfCloud, kNarrowestPatch, kWidest);
 }
 
 double scatter_reach(double sigma, double narrow) {

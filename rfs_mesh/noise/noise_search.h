@@ -7,11 +7,10 @@
 /// below it. What the calmer fifth shows without any window is an upper bound.
 #pragma once
 
+#include "rfs_mesh/levels.h"
 #include "rfs_mesh/noise/scatter_statistics.h"
 
 namespace rfsmooth::rfs_mesh {
-
-constexpr std::size_t kNarrowestScatter = 16;  ///< least m
 
 /// Times: by so much one noise differs from itself, told by other places or by more neighbours.
 constexpr double kSameNoise = 1.1;
@@ -30,9 +29,9 @@ struct NoiseStart {
   double sigma = 0;  ///< world units
   double least = 0;  ///< what counts as zero; 0: the points coincide
   double most = 0;   ///< bound
-  std::size_t m = kNarrowestScatter;
+  std::size_t m = kNarrowestPatch;
   double shape_grows = 2;  ///< variance that is shape, from m to 2 m points: at least so many times
-  std::size_t narrowest = kNarrowestScatter;  ///< least m that is a piece of surface and not of a line
+  std::size_t narrowest = kNarrowestPatch;  ///< least m that is a piece of surface and not of a line
 };
 
 /// Most neighbours of a fit in a cloud.

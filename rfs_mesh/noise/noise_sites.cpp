@@ -187,7 +187,7 @@ class Listener {
   /// Takes more points where their ball is narrow for the window, as search_noise does for the whole cloud.
   /// False if they are enough.
   bool widen(std::size_t s, double radius) {
-    if (narrow_[s] == 0) narrow_[s] = radius * std::sqrt(double(kNarrowestScatter) / double(m[s]));
+    if (narrow_[s] == 0) narrow_[s] = radius * std::sqrt(double(kNarrowestPatch) / double(m[s]));
     const double reach = scatter_reach(sigma[s], narrow_[s]);
     if (!(radius < 0.97 * reach) || m[s] >= widest_) return false;
     const double more = std::clamp(reach * reach / (radius * radius), 1.25, 2.0);
@@ -243,7 +243,7 @@ NoiseSites listen(const SpatialIndex& index, Positions at, const NoiseStart& sta
   sites.shape.assign(sites.at.size(), 0);
   for (std::size_t s = 0; s < sites.at.size(); ++s) {
     const double a = sites.sigma[s] * sites.sigma[s];
-    const bool narrow = listener.m[s] == kNarrowestScatter;
+    const bool narrow = listener.m[s] == kNarrowestPatch;
     const double of_the_slab = narrow ? 1 : kOfTheSlab, least = narrow ? kLeastNarrow : kLeastWide;
     const double growth = std::max(0.0, listener.sigma[s] * listener.sigma[s] - of_the_slab * a);
     const double floor = listener.floor[s];

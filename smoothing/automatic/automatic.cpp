@@ -26,16 +26,16 @@ namespace rfsmooth::smoothing {
 
 namespace {
 
+using rfs_mesh::kNarrowestPatch;
 using rfs_mesh::kStray;
 
 // Chosen on the development shapes (tests/bench/quality) at 10,000 and 50,000 points, noise of 1 to 3 %.
 constexpr std::size_t kMostOverlap = 14;  // patches over a point; a thinning leaves 0.4 of them
 constexpr double kGuide = 10;             // c = kGuide (sigma/h)^2, to the fourth power above h
-constexpr double kNarrowest = 52.6;       // m_0 = kNarrowest (sigma/h)^2: a radius of 4.5 sigma
-constexpr double kFewest = 16;            // m_0 at small noise: a quadric has six unknowns
-constexpr double kWidest = 1600;          // the widest patches, unless those that look for walls are wider
-constexpr double kCalm = 0.1;             // of the figure: so much calmer places have no part in the tails
-constexpr int kSeeing = 2;                // the scale that looks for walls, of 9 sigma: from 0
+constexpr double kNarrowest = 52.6;  // m_0 = kNarrowest (sigma/h)^2 if that is more: a radius of 4.5 sigma
+constexpr double kWidest = 1600;     // the widest patches, unless those that look for walls are wider
+constexpr double kCalm = 0.1;        // of the figure: so much calmer places have no part in the tails
+constexpr int kSeeing = 2;           // the scale that looks for walls, of 9 sigma: from 0
 
 constexpr std::size_t kDense = 4;     // a subset with a point in so many has its own among the nearest
 constexpr std::size_t kOwnMean = 60;  // from this many members on, patches average; below, near neighbours do
@@ -326,9 +326,9 @@ std::vector<Scale> try_scales(const HeightField& field, const rfs_mesh::NoiseFie
                               std::vector<float>& first, const Context& context) {
   Ladder ladder(field, noise, precision);
   const double share = noise.sigma / spacing;
-  const double narrowest = std::max(kFewest * noise.shared, kNarrowest * share * share);
+  const double narrowest = std::max(double(kNarrowestPatch) * noise.shared, kNarrowest * share * share);
   const double widest = std::max(kWidest, std::ldexp(narrowest, kSeeing));
-  if (noise.shared > 1 && !whole.narrow) whole.narrow = ladder.scale_of(kFewest, context);
+  if (noise.shared > 1 && !whole.narrow) whole.narrow = ladder.scale_of(double(kNarrowestPatch), context);
   first = whole.narrow ? ladder.narrow(*whole.narrow, context) : heights(field, context);
   const bool known = !whole.scales.empty();
   double m = narrowest;
