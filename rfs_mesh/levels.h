@@ -23,6 +23,9 @@ constexpr std::size_t kNarrowestPatch = 16;
 /// sides of an edge.
 constexpr double kSameSheet = 0.5;
 
+/// Standard deviations within which points show the noise: what is beyond may be something else.
+constexpr double kScatterWindow = 3;
+
 /// Standard deviations that noise carries a point: a normal variable goes beyond in one case of 16,000.
 constexpr double kNoiseReach = 4;
 

@@ -19,11 +19,10 @@
 
 #include <Eigen/Core>
 
+#include "rfs_mesh/levels.h"
 #include "rfs_mesh/search/kept_neighbors.h"
 
 namespace rfsmooth::rfs_mesh {
-
-constexpr double kScatterWindow = 3;  ///< sigma
 
 /// Variance of a normal variable cut at +-c standard deviations, over its variance uncut.
 double variance_inside(double c);

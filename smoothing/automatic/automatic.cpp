@@ -380,8 +380,9 @@ std::vector<float> off_neighbours(const HeightField& field, const Pass& pass,
 /// tails, which are each point's own; beside shape, and where the noise is louder than was measured, far
 /// points stand together.
 double far_together(const HeightField& field, const std::vector<float>& off, const Context& context) {
-  constexpr float kFar = 3;                                                 // sigma
-  const auto far = [&](std::size_t i) { return std::abs(off[i]) > kFar; };  // not if unknown
+  const auto far = [&](std::size_t i) {  // not if unknown
+    return double(std::abs(off[i])) > rfs_mesh::kScatterWindow;
+  };
   // Points, far ones, their neighbours, and far ones of these.
   const Eigen::Vector4d sums =
       sum_over(context, field.size(), Eigen::Vector4d(0, 0, 0, 0), [&](std::size_t i) {
