@@ -12,11 +12,11 @@ namespace rfsmooth::smoothing {
 
 namespace {
 
-/// Where most of the scatter is shape, a little noise cannot be told from detail: better leave a clean cloud
-/// alone. Both numbers from the development shapes, clean and with noise of 0.1 spacings.
+/// Where most of the scatter is shape, noise of twice kNoNoise cannot be told from detail either: better
+/// leave a clean cloud alone.
 double measured(const rfs_mesh::NoiseField& noise, double spacing) {
-  constexpr double kLittle = 0.1, kMostlyShape = 0.4;
-  return noise.sigma < kLittle * spacing && noise.shape > kMostlyShape ? 0 : noise.sigma;
+  constexpr double kMostlyShape = 0.4;  // of the development shapes, clean and with noise of 0.1 spacings
+  return noise.sigma < 2 * rfs_mesh::kNoNoise * spacing && noise.shape > kMostlyShape ? 0 : noise.sigma;
 }
 
 /// Noise of the size `sigma`, that varies over the cloud as `noise` does, times `strength`. Places of less
