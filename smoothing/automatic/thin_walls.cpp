@@ -1,7 +1,6 @@
 #include "smoothing/automatic/thin_walls.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <stdexcept>
 
@@ -21,9 +20,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::array<std::size_t, 3> kWider = {1, 2, 4};  // times the members of the patches that saw it
-constexpr double kLeastCovered = 10;                      // sum of weights, in points
-constexpr std::size_t kFirstLook = 512;                   // members that nine unknowns are well known from
+constexpr std::size_t kWidestLook = 4;   // times the members of the patches that saw it; from 1 on, doubling
+constexpr double kLeastCovered = 10;     // sum of weights, in points
+constexpr std::size_t kFirstLook = 512;  // members that nine unknowns are well known from
 
 /// What a patch says of a member.
 struct Move {
@@ -142,13 +141,13 @@ ThinWalls part_thin_walls(const HeightField& field, const Positions& data, const
   if (data.size() != field.size() || smooth.size() != field.size() || noise.local.size() != field.size())
     throw std::invalid_argument("part_thin_walls: the field and what belongs to its points differ in number");
   ThinWalls done;
-  const double most = double(seeds.size()) * double(kWider.back() * members);  // points they can reach
+  const double most = double(seeds.size()) * double(kWidestLook * members);  // points they can reach
   const bool enough = parted ? *parted : most >= kLeastSheetShare * double(field.size());
   if (!parted) parted = false;
   if (seeds.empty() || !enough) return done;
   const bool known = *parted;
   std::vector<Mean> means(field.size());
-  for (const std::size_t wider : kWider) {
+  for (std::size_t wider = 1; wider <= kWidestLook; wider *= 2) {
     std::vector<Index> sparse = seeds;
     while (sparse.size() > 1 && sparse.size() * wider >= seeds.size())
       sparse = rfs_mesh::thin(field.guide(), sparse, context);
