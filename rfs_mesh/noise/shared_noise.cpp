@@ -14,7 +14,8 @@ namespace {
 
 // Chosen on the laws of tests/bench/quality (six shapes, 10,000 points) and on the raw scans of
 // tests/bench/scans.
-constexpr std::size_t kMostOfCloud = 24;  // m is at most so small a part: else parts are shape
+constexpr std::size_t kMostOfCloud = 24;       // m is at most so small a part: else parts are shape
+constexpr std::size_t kPointsLooked = 500000;  // at each m: of wide places fewer say as much
 constexpr double kCalmWithin = 1.3;  // of the calm variance: as far as chance takes fits of a hundred points
 // Of the variance, from m to 2 m: second sheets and detail grow faster than noise, shape at least so.
 constexpr double kMostGrowthOfNoise = 1.8, kLeastGrowthOfShape = 2.83;
@@ -123,7 +124,8 @@ Calm look(const SpatialIndex& index, const Positions& places, const NoiseStart& 
   Calm calm;
   const std::size_t last = std::min(widest_scatter(index), index.points().size() / kMostOfCloud);
   for (std::size_t m = std::max(start.m, start.narrowest); m <= last; m *= 2) {
-    const std::vector<Scatter> all = fits(index, places, m, std::vector<double>(places.size(), 0), context);
+    const Positions some = pick(places, std::min(places.size(), kPointsLooked / m));
+    const std::vector<Scatter> all = fits(index, some, m, std::vector<double>(some.size(), 0), context);
     const std::vector<double> area = areas(all);
     std::vector<Weighed> variances = comparable(all, area, kCalmDeviate);
     if (variances.empty()) continue;
@@ -131,8 +133,8 @@ Calm look(const SpatialIndex& index, const Positions& places, const NoiseStart& 
     if (!(variance > start.least * start.least)) continue;
     if (calm.m.empty() && steps != nullptr) {
       std::vector<Weighed> of_steps;
-      for (std::size_t i = 0; i < places.size(); ++i)
-        of_steps.push_back({std::pow(steps->sigma(places[i], all[i].normal), 2), area[i]});
+      for (std::size_t i = 0; i < some.size(); ++i)
+        of_steps.push_back({std::pow(steps->sigma(some[i], all[i].normal), 2), area[i]});
       calm.steps = quantile(of_steps, kCalmPlaces);
     }
     calm.together.push_back(together(all, kCalmWithin * variance));
