@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "base/avx2.h"
-
 namespace rfsmooth::smoothing {
 
 namespace {
@@ -42,7 +40,6 @@ Network::Network() {
   unpack(learned::kLastWeight, learned::kLastUnit, last_);
 }
 
-RFSMOOTH_AVX2
 float Network::behind(const First& first) const {
   Second second;
   std::copy(learned::kSecondBias, learned::kSecondBias + kSecond, second.begin());
@@ -52,7 +49,6 @@ float Network::behind(const First& first) const {
   return y;
 }
 
-RFSMOOTH_AVX2
 float Network::offset(const Features::Row& row) const {
   First one, other, odd{};
   std::copy(learned::kFirstBias, learned::kFirstBias + kFirst, one.begin());
