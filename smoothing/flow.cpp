@@ -59,6 +59,16 @@ bool is_sequential(const Options&, ...) {
   return false;
 }
 
+/// Of one step; none of flows that do not say.
+template <class Options>
+auto rings_of(const Options& options, int) -> decltype(options.rings()) {
+  return options.rings();
+}
+template <class Options>
+std::optional<int> rings_of(const Options&, long) {
+  return std::nullopt;
+}
+
 /// The flow around which the invariant is kept, if one is asked for.
 std::unique_ptr<Flow> preserving(std::unique_ptr<Flow> flow, const Mesh& mesh, Preserve invariant,
                                  const Constraints& constraints, const Context& context) {
@@ -122,6 +132,14 @@ Result<Done> validate(const FlowOptions& options) {
     if (!p.on && p.set)
       return Error{ErrorCode::usage, fmt::format("`{}` has no effect without {}", p.option, p.partner)};
   return Done{};
+}
+
+std::optional<int> support_rings(const FlowOptions& options) {
+  Modifiers others = options.modifiers;
+  others.push_back = false;
+  const std::optional<int> rings = std::visit([](const auto& o) { return rings_of(o, 0); }, options.flow);
+  if (!rings || others.any()) return std::nullopt;
+  return iterations(options.flow) * (*rings + int(options.modifiers.push_back));
 }
 
 Result<std::unique_ptr<Flow>> make_flow(const FlowMaker& make, const Mesh& mesh, const FlowOptions& options,

@@ -26,7 +26,7 @@ def main():
     parser.add_argument("names", nargs="+", metavar="IN... JOB OUT")
     parser.add_argument("--scheduler")
     parser.add_argument("--workers", type=int, default=4)
-    parser.add_argument("--tile-points", type=int, default=5_000_000)
+    parser.add_argument("--tile-points", default="5M")
     options = parser.parse_args()
     *inputs, job, out = options.names
     # A worker that is lost takes its tasks with it through no fault of theirs: three would be too few.

@@ -6,7 +6,7 @@
 # JOB is a folder that all nodes see. A node that is lost has its tiles requeued: what is there complete is not made
 # again. RFSMOOTH names the command where it is not in the path; TILE_POINTS says how large tiles are at most.
 set -eu
-: "${RFSMOOTH:=rfsmooth}" "${TILE_POINTS:=5000000}"
+: "${RFSMOOTH:=rfsmooth}" "${TILE_POINTS:=5M}"
 job=$1 out=$2
 shift 2
 "$RFSMOOTH" tiles plan --tile-points "$TILE_POINTS" "$@" "$job"

@@ -108,6 +108,12 @@ Result<FlowOptions> as_printed(FlowOptions options);
 /// its default. The error (usage) names the option, and its range or the partner that it needs.
 Result<Done> validate(const FlowOptions& options);
 
+/// How many rings of neighbours around a vertex have a say in where it goes, all steps together: the others
+/// could be left out of the mesh. None if any vertex may have one: in flows that solve a system, that take a
+/// mean over the mesh or the vertices in an order, and under modifiers other than the push-back; also of the
+/// automatic flow, whose patches are wider than rings.
+std::optional<int> support_rings(const FlowOptions& options);
+
 /// Starts a flow on `mesh`, whose current positions are the original points. Validates the options.
 /// Errors: usage. \throw std::invalid_argument for constraints that do not fit the mesh.
 Result<std::unique_ptr<Flow>> make_flow(const Mesh& mesh, const FlowOptions& options, const Context& context,

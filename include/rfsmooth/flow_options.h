@@ -1,10 +1,11 @@
 /// The options of every flow, one plain struct each, and of the modifiers that go around any of them.
 ///
 /// A flow is one of these structs, its line in `AnyFlow` below, and the file flow_<name>.cpp that defines its
-/// `start`. An option that means something only beside another one says so; without it, it must be left at
-/// its default (`validate`). Defaults are the fields' initialisers; ranges stand in `describe`, which every
-/// help text, report and check is made from. Options of one name mean the same in every flow. Dimensionless
-/// unless a unit is given. Plain values: thread safe as those are.
+/// `start`. Where only so many rings of neighbours have a say in a vertex's step, the struct says how many by
+/// `rings`, and clouds can be smoothed by it in tiles. An option that means something only beside another one
+/// says so; without it, it must be left at its default (`validate`). Defaults are the fields' initialisers;
+/// ranges stand in `describe`, which every help text, report and check is made from. Options of one name mean
+/// the same in every flow. Dimensionless unless a unit is given. Plain values: thread safe as those are.
 #pragma once
 
 #include <memory>
@@ -127,6 +128,9 @@ struct LaplacianOptions {
   Update update = Update::simultaneous;
 
   std::unique_ptr<Flow> start(const Mesh&, const Constraints&, const Context&) const;
+  std::optional<int> rings() const {
+    return update == Update::simultaneous ? std::optional(1) : std::nullopt;
+  }
   template <class Self, class Visit>
   static void describe(Self& self, Visit&& visit) {
     visit(Shared::kIterations, self.iterations);
@@ -150,6 +154,9 @@ struct HcOptions {
   Update update = Update::simultaneous;
 
   std::unique_ptr<Flow> start(const Mesh&, const Constraints&, const Context&) const;
+  std::optional<int> rings() const {
+    return update == Update::simultaneous ? std::optional(2) : std::nullopt;
+  }
   template <class Self, class Visit>
   static void describe(Self& self, Visit&& visit) {
     visit(Shared::kIterations, self.iterations);
@@ -191,6 +198,7 @@ struct TaubinOptions {
   UmbrellaWeights weights = UmbrellaWeights::equal;
 
   std::unique_ptr<Flow> start(const Mesh&, const Constraints&, const Context&) const;
+  std::optional<int> rings() const { return 2; }
   template <class Self, class Visit>
   static void describe(Self& self, Visit&& visit) {
     visit(Shared::kIterations, self.iterations);
@@ -208,6 +216,7 @@ struct BilaplacianOptions {
   double lambda = 0.4;  ///< stable up to 0.5
 
   std::unique_ptr<Flow> start(const Mesh&, const Constraints&, const Context&) const;
+  std::optional<int> rings() const { return 2; }
   template <class Self, class Visit>
   static void describe(Self& self, Visit&& visit) {
     visit(Shared::kIterations, self.iterations);

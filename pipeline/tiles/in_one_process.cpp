@@ -91,6 +91,7 @@ Joined smooth_in_tiles(const std::string& input, const std::string& output, bool
                        const PlanOptions& how, const DenoiseOptions& options,
                        const std::optional<NormalsOptions>& normals, const Context& context) {
   constexpr double kPlan = 0.03, kSettled = 0.1, kJoin = 0.98;  // shares of the time, for the bar
+  check_for_tiles(options);
   io::check_target(output, force);
   if (normals) RowFile(input, context).need_normals();  // refused before the work
   const fs::path target(output);

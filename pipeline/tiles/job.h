@@ -73,6 +73,10 @@ struct PlanOptions {
   std::uint64_t sample_points = 1'000'000;  ///< of all tiles together
 };
 
+/// Refuses options by which points at any distance may have a say in where a point goes. \throw Failure
+/// (usage) naming what can be done.
+void check_for_tiles(const DenoiseOptions& options);
+
 /// Plans a job, unless the folder holds one of the same inputs and options. \throw Failure.
 Job plan_job(const std::vector<std::string>& inputs, const std::filesystem::path& folder,
              const PlanOptions& how, const nlohmann::ordered_json& options, const Context& context);

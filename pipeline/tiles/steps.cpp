@@ -16,6 +16,7 @@
 #include "pipeline/tiles/row_file.h"
 #include "pipeline/tiles/statistics_json.h"
 #include "pipeline/tiles/tile_normals.h"
+#include "rfs_mesh/connect/umbrella.h"
 #include "rfs_mesh/levels.h"
 #include "rfs_mesh/search/neighbors.h"
 
@@ -27,6 +28,8 @@ using Eigen::AlignedBox3d;
 using Eigen::Vector3d;
 using nlohmann::ordered_json;
 
+constexpr int kRingsOfSwaps = 2;  // a swap changes two faces, and needs their four neighbours to itself
+
 [[noreturn]] void refuse_step(const Job& job, const std::string& message) {
   throw Failure({ErrorCode::usage, fmt::format("{}: {}", job.folder.string(), message)});
 }
@@ -36,18 +39,13 @@ void check_tile(const Job& job, std::size_t tile) {
     refuse_step(job, fmt::format("there is no tile {}; they are 0 to {}", tile, job.tiles.size() - 1));
 }
 
-/// Refuses what another part of the cloud could have a say in from any distance.
-void refuse_for_tiles(const DenoiseOptions& options) {
-  const auto* automatic = std::get_if<AutomaticOptions>(&options.flow.flow);
-  if (automatic == nullptr)
-    throw Failure({ErrorCode::usage,
-                   fmt::format("the flow '{}' does not say how far a point has a say, so a cloud cannot be "
-                               "smoothed by it in tiles; 'auto' can",
-                               name_of(options.flow.flow))});
-  if (automatic->iterations != 1)
-    throw Failure({ErrorCode::usage, "in tiles the automatic flow takes one iteration"});
-  if (options.flow.modifiers.any())
-    throw Failure({ErrorCode::usage, "in tiles the automatic flow goes without modifiers"});
+/// The flows that clouds are smoothed by in tiles.
+std::vector<std::string_view> flows_in_tiles() {
+  std::vector<std::string_view> names;
+  for (const AnyFlow& flow : flows())
+    if (std::holds_alternative<AutomaticOptions>(flow) || support_rings({flow}))
+      names.push_back(name_of(flow));
+  return names;
 }
 
 std::vector<Record> read_records(const std::filesystem::path& path, const Context& context) {
@@ -191,6 +189,23 @@ io::RefinedScale refine_moved(const Job& job, RowFile& file, std::uint64_t befor
   return moved ? file.refine_scale(step, ends.low, ends.high) : io::RefinedScale();
 }
 
+/// How far away a point may be that has a say in where another goes, world units: through quadrics, the rough
+/// mesh's neighbourhoods and the patches (kHaloRadii), then along the mesh. \param found for the sample
+double halo_of(const DenoiseOptions& options, const Statistics& found, const std::vector<double>& sample,
+               const Context& context) {
+  std::size_t widest = std::size_t(options.connect.neighbours);
+  if (found.scale) widest = std::max(widest, found.scale->neighbours);
+  for (const auto& pass : found.passes)
+    for (const auto& scale : pass.scales) widest = std::max(widest, scale.members);
+  double halo = kHaloRadii * typical_radius(sample, widest, context);
+  if (const auto rings = support_rings(options.flow)) {
+    const int swaps = options.swap ? std::max(0, iterations(options.flow.flow) - 1) : 0;
+    const double longest_edge = typical_radius(sample, rfs_mesh::kMostRibs, context);
+    halo += (*rings + kRingsOfSwaps * swaps) * longest_edge;
+  }
+  return halo;
+}
+
 void check_inputs(const Job& job) {
   for (const JobInput& input : job.inputs) {
     std::error_code error;
@@ -201,6 +216,21 @@ void check_inputs(const Job& job) {
 }
 
 }  // namespace
+
+void check_for_tiles(const DenoiseOptions& options) {
+  const FlowOptions& flow = options.flow;
+  const auto* automatic = std::get_if<AutomaticOptions>(&flow.flow);
+  if (automatic != nullptr && automatic->iterations != 1)
+    throw Failure({ErrorCode::usage, "in tiles the automatic flow takes one iteration"});
+  if (automatic != nullptr && flow.modifiers.any())
+    throw Failure({ErrorCode::usage, "in tiles the automatic flow goes without modifiers"});
+  if (automatic == nullptr && !support_rings(flow))
+    throw Failure({ErrorCode::usage,
+                   fmt::format("any point of the cloud may have a say in where the flow '{}' moves another "
+                               "with these options, so they do not go in tiles; {} do, all vertices at once "
+                               "and without modifiers but `push-back`",
+                               name_of(flow.flow), fmt::join(flows_in_tiles(), ", "))});
+}
 
 void check_format(io::Format input, const std::string& output) {
   if (const auto format = io::format_of_extension(output).value_or(input); format != input)
@@ -246,7 +276,7 @@ void measure_tile(const Job& job, std::size_t tile, const Context& context) {
 
 void settle_job(const Job& job, const DenoiseOptions& options, const Context& context) {
   if (std::filesystem::exists(job.settled())) return;
-  refuse_for_tiles(options);
+  check_for_tiles(options);
   std::vector<double> xyz;
   for (std::size_t t = 0; t < job.tiles.size(); ++t) {
     if (!complete_records(job.sampled(t), context))
@@ -261,12 +291,8 @@ void settle_job(const Job& job, const DenoiseOptions& options, const Context& co
   std::vector<double> smooth = xyz;
   const DenoiseReport report = value_or_throw(denoise(smooth.data(), n, how, context));
   const Statistics& all = report.statistics;
-  std::size_t widest = 1;
-  if (all.scale) widest = std::max(widest, all.scale->neighbours);
-  for (const auto& pass : all.passes)
-    for (const auto& scale : pass.scales) widest = std::max(widest, scale.members);
   double halo = 0;
-  in_arena(context, [&] { halo = kHaloRadii * typical_radius(xyz, widest, context); });
+  in_arena(context, [&] { halo = halo_of(options, all, xyz, context); });
   const ordered_json json = {{"halo", halo},
                              {"noise", report.noise},
                              {"noise_left", report.noise_left},
@@ -277,7 +303,7 @@ void settle_job(const Job& job, const DenoiseOptions& options, const Context& co
 void run_tile(const Job& job, std::size_t tile, const DenoiseOptions& options,
               const std::optional<NormalsOptions>& normals, const Context& context) {
   check_tile(job, tile);
-  refuse_for_tiles(options);
+  check_for_tiles(options);
   const Settled settled = settled_of(job);
   const auto there = complete_records(job.done(tile), context);
   if (there && *there == job.tiles[tile].points && (!normals || complete_normals(job, tile, context))) return;

@@ -77,6 +77,54 @@ TEST_P(EveryFlow, SameBytesForAnyThreadCount) {
   EXPECT_EQ(first.positions, second.positions);
 }
 
+/// By vertex: how many edges it is away from `from`.
+std::vector<int> rings_around(const Mesh& mesh, Index from) {
+  std::vector<int> ring(mesh.positions.size(), -1);
+  std::vector<Index> reached = {from};
+  ring[from] = 0;
+  for (std::size_t k = 0; k < reached.size(); ++k)
+    for (const Index j : mesh.one_ring[reached[k]])
+      if (ring[j] < 0) {
+        ring[j] = ring[reached[k]] + 1;
+        reached.push_back(j);
+      }
+  return ring;
+}
+
+TEST_P(EveryFlow, HasNoVertexBeyondItsSupportInItsSay) {
+  constexpr Index kMoved = 100;
+  for (const bool push_back : {false, true}) {
+    FlowOptions o = options();
+    iterations(o.flow) = 2;
+    o.modifiers.push_back = push_back;
+    const auto support = support_rings(o);
+    if (!support) continue;
+    Mesh before = support::icosphere(4);
+    support::add_noise(before, 0.01, 1);
+    Mesh after = before;
+    after.positions[kMoved] *= 1.1;
+    ASSERT_TRUE(smooth(before, o, {}).ok());
+    ASSERT_TRUE(smooth(after, o, {}).ok());
+    const std::vector<int> ring = rings_around(before, kMoved);
+    int farthest = 0;
+    for (std::size_t i = 0; i < ring.size(); ++i)
+      if (before.positions[i] != after.positions[i]) farthest = std::max(farthest, ring[i]);
+    EXPECT_EQ(farthest, *support) << "push-back " << push_back;
+  }
+}
+
+TEST(SupportRings, AreNotSaidWhereAnyVertexMayHaveASay) {
+  EXPECT_EQ(support_rings({HcOptions()}), 20);
+  HcOptions in_order;
+  in_order.update = Update::sequential;
+  EXPECT_EQ(support_rings({in_order}), std::nullopt);
+  EXPECT_EQ(support_rings({AutomaticOptions()}), std::nullopt);
+  EXPECT_EQ(support_rings({ImplicitOptions()}), std::nullopt);
+  FlowOptions kept = {TaubinOptions()};
+  kept.modifiers.preserve = Preserve::area;
+  EXPECT_EQ(support_rings(kept), std::nullopt);
+}
+
 /// A lumpy closed mesh: nothing symmetric, every flow moves it.
 Mesh lumpy() {
   Mesh mesh = support::torus(24, 12, 0.4);

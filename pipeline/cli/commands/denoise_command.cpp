@@ -280,13 +280,9 @@ void check_denoise(const DenoiseCommandOptions& options, const Invocation& typed
   check_no_cloud_target(*options.html, options.job.files.force, "page");
 }
 
-/// Bytes: a number and K, M, G or T. \throw Failure (usage).
+/// \throw Failure (usage).
 std::uint64_t bytes_of(const std::string& text) {
-  constexpr std::string_view kUnits = "KMGT";
-  const auto unit = text.empty() ? kUnits.npos : kUnits.find(text.back());
-  const bool in_units = unit != kUnits.npos;
-  const auto number = read_number(in_units ? text.substr(0, text.size() - 1) : text);
-  const double bytes = number.value_or(0) * (in_units ? std::pow(1e3, double(unit + 1)) : 1);
+  const double bytes = read_amount(text).value_or(0);
   if (!(bytes >= 1e6) || !(bytes < 1e18))
     throw Failure({ErrorCode::usage, fmt::format("--memory takes bytes, 8G or 500M say, not '{}'", text)});
   return std::uint64_t(bytes);

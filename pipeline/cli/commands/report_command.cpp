@@ -47,7 +47,7 @@ struct ReportCommandOptions {
 /// \throw Failure (usage).
 std::size_t read_points(const std::string& text) {
   if (text == "all") return pipeline::kAllPoints;
-  const auto count = read_integer(text);
+  const auto count = read_count(text);
   if (!count || *count < 1)
     throw Failure(
         {ErrorCode::usage, fmt::format("--points is '{}'; it must be 'all' or a number from 1 on", text)});

@@ -43,8 +43,9 @@ T parse_as(const CommandOption& option, const OptionInfo& info, const std::strin
     if (text != "true" && text != "false") refuse_value(option, text, "true or false");
     return text == "true";
   } else if constexpr (std::is_same_v<T, int>) {
-    const auto value = read_integer(text);
-    if (!value) refuse_value(option, text, "a whole number");
+    const bool large = info.unit == "points";
+    const auto value = large ? read_count(text) : read_integer(text);
+    if (!value) refuse_value(option, text, large ? "a whole number such as 5000000 or 5M" : "a whole number");
     need(rfsmooth::detail::check_range(info, *value));
     return *value;
   } else if constexpr (std::is_same_v<T, double>) {

@@ -2,6 +2,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <regex>
 
 #include <fmt/format.h>
@@ -28,6 +29,22 @@ std::optional<double> read_number(std::string_view text) {
 
 std::optional<int> read_integer(std::string_view text) {
   return read_whole<int>(text);
+}
+
+std::optional<double> read_amount(std::string_view text) {
+  constexpr std::string_view kUnits = "KMGT";
+  const std::size_t unit = text.empty() ? kUnits.npos : kUnits.find(text.back());
+  if (unit == kUnits.npos) return read_number(text);
+  const auto value = read_number(text.substr(0, text.size() - 1));
+  if (!value) return std::nullopt;
+  return *value * std::pow(1e3, double(unit + 1));
+}
+
+std::optional<int> read_count(std::string_view text) {
+  const auto amount = read_amount(text);
+  if (!amount || *amount != std::floor(*amount)) return std::nullopt;
+  if (std::abs(*amount) > std::numeric_limits<int>::max()) return std::nullopt;
+  return int(*amount);
 }
 
 std::optional<Length> read_length(std::string_view text) {

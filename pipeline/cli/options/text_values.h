@@ -18,6 +18,12 @@ std::optional<double> read_number(std::string_view text);
 /// Parses a whole number in the range of int.
 std::optional<int> read_integer(std::string_view text);
 
+/// Parses a number that may end in K, M, G or T, as "8G" and "2.5M": times a thousand, a million, ...
+std::optional<double> read_amount(std::string_view text);
+
+/// Parses a count in the range of int, "5000000" or "5M".
+std::optional<int> read_count(std::string_view text);
+
 /// Parses "0.02" (world units) or "2x" (times the mean spacing).
 std::optional<Length> read_length(std::string_view text);
 

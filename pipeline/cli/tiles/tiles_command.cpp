@@ -96,6 +96,7 @@ void plan_tiles(TilesOptions& options, const std::vector<std::string>& arguments
   const Outliers outliers = options.planned.denoise.outliers;
   if (outliers == Outliers::mark || outliers == Outliers::remove)
     misused("in tiles outliers are kept or smoothed: every row stays, and no field is added");
+  pipeline::tiles::check_for_tiles(options.planned.denoise);
   const std::vector<std::string> inputs(arguments.begin(), arguments.end() - 1);
   NormalsFields& normals = options.planned.normals;
   check(normals);

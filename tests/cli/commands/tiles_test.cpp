@@ -308,6 +308,23 @@ TEST_F(Tiles, ManyTilesAreTheWholeCloudAndAsNearToTheTruth) {
 // A wall thinner than the noise at one end of a sheet, which is a tile: what the whole cloud says of it
 // holds in all tiles, with the learned step and without. Patches that reach the ridges do not fit there,
 // chance has a say in which of them is taken, and tiles differ from the whole cloud by up to 0.1 spacings.
+TEST_F(Tiles, FlowsOfFewRingsAreTheWholeCloudsAndOthersAreRefused) {
+  for (const char* flow : {"laplacian", "hc", "taubin", "bilaplacian"}) {
+    const Both both = expect_as_whole(strip(0.4), "6000", std::string("--flow=") + flow);
+    EXPECT_GT(tiles_of(both.job).size(), 2U);
+    EXPECT_FALSE(both.whole == take("in.ply")) << flow;
+  }
+  for (const std::vector<std::string>& solved :
+       {std::vector<std::string>{"--flow", "implicit"}, {"--flow", "hc", "--update", "sequential"}}) {
+    std::vector<std::string> plan = {"tiles", "plan", "in.ply", "none"};
+    plan.insert(plan.end(), solved.begin(), solved.end());
+    const Ran ran = run(plan);
+    EXPECT_EQ(ran.code, 2);
+    EXPECT_THAT(ran.err, HasSubstr("auto, laplacian, hc, taubin, bilaplacian"));
+    EXPECT_FALSE(std::filesystem::exists(at("none")));
+  }
+}
+
 TEST_F(Tiles, WallsHiddenInOneTileAreWhatTheyAreInTheWholeCloud) {
   const RichCloud cloud = sheet_with_wall();
   for (const char* learned : {"", "--no-learned"}) {
@@ -521,9 +538,10 @@ TEST_F(Tiles, WhatCannotBeDoneIsRefusedWithWhatToDo) {
   EXPECT_EQ(run({"tiles", "run", "nothing", "0"}).code, 3);
   EXPECT_EQ(run({"tiles", "plan", "in.ply", "job", "--tile-points", "3000"}).code, 0);
   const Ran other = run({"tiles", "plan", "in.ply", "job", "--tile-points", "3000", "--strength", "0.5"});
+  EXPECT_THAT(run({"tiles", "plan", "in.ply", "job", "--tile-points", "3.5"}).err, HasSubstr("or 5M"));
   EXPECT_EQ(other.code, 5);
   EXPECT_THAT(other.err, HasSubstr("other inputs or options"));
-  EXPECT_EQ(run({"tiles", "plan", "in.ply", "job", "--tile-points", "3000"}).code, 0) << "the same again";
+  EXPECT_EQ(run({"tiles", "plan", "in.ply", "job", "--tile-points", "3K"}).code, 0) << "the same again";
   const Ran early = run({"tiles", "settle", "job"});
   EXPECT_EQ(early.code, 2);
   EXPECT_THAT(early.err, HasSubstr("tile 0 is not measured"));
