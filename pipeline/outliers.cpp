@@ -6,8 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/Eigenvalues>
-
+#include "base/linear/symmetric_eigen.h"
 #include "base/median.h"
 #include "base/parallel.h"
 #include "rfs_mesh/fit/local_surface.h"
@@ -48,9 +47,10 @@ Plane fit_plane(const Positions& points, const std::vector<Neighbor>& near) {
     const Eigen::Vector3d d = points[q.index] - plane.centre;
     spread += d * d.transpose();
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(spread / double(near.size() - 3));
-  plane.normal = solver.eigenvectors().col(0);
-  plane.variances = solver.eigenvalues().cwiseMax(0);
+  spread /= double(near.size() - 3);
+  const SymmetricEigen<3> eigen = symmetric_eigen(spread);
+  plane.normal = eigen.vectors.col(0);
+  plane.variances = eigen.values.cwiseMax(0);
   return plane;
 }
 

@@ -3,9 +3,9 @@
 #include <array>
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
+#include "base/linear/symmetric_eigen.h"
 #include "base/parallel.h"
 #include "pipeline/io/table/text.h"
 
@@ -63,7 +63,7 @@ Vector3d broadside(const Positions& points) {
   for (const Vector3d& p : points) mean += p / double(points.size());
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
   for (const Vector3d& p : points) spread += (p - mean) * (p - mean).transpose() / double(points.size());
-  const Eigen::Matrix3d axes = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors();
+  const Eigen::Matrix3d axes = symmetric_eigen(spread).vectors;
   Vector3d thin = axes.col(0), middle = axes.col(1), wide = axes.col(2);
   // Eigenvectors have no sign: look from above and from the front (-y).
   const Vector3d preferred(0.2, -0.5, 1);

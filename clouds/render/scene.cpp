@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
+#include "base/linear/symmetric_eigen.h"
 #include "base/median.h"
 #include "base/parallel.h"
 #include "clouds/render/rasterizer.h"
@@ -80,9 +80,7 @@ void estimate_surfels(Scene& scene, int neighbors, const Context& context) {
     };
     Eigen::Matrix3d spread = product(scene.points[i]);
     for (const Index j : row) spread += product(scene.points[j]);
-    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
-    solver.computeDirect(spread);
-    scene.normals[i] = solver.eigenvectors().col(0);
+    scene.normals[i] = symmetric_eigen_closed(spread).vectors.col(0);
     scene.reach[i] = 0.8 * (scene.points[row[sixth]] - scene.points[i]).norm();
   });
   std::vector<double> sorted = scene.reach;

@@ -2,8 +2,9 @@
 
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
+
+#include "base/linear/symmetric_eigen.h"
 
 namespace rfsmooth::rfs_mesh {
 
@@ -78,7 +79,7 @@ Eigen::Vector3d plane_normal(const Positions& points, std::size_t i, Adjacency::
   }
   Eigen::Matrix3d matrix;
   matrix << s.xx, s.xy, s.xz, s.xy, s.yy, s.yz, s.xz, s.yz, s.zz;
-  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(matrix).eigenvectors().col(0);
+  return symmetric_eigen(matrix).vectors.col(0);
 }
 
 }  // namespace rfsmooth::rfs_mesh

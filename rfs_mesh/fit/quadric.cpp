@@ -5,10 +5,10 @@
 #include <cstring>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
 #include "base/avx2.h"
+#include "base/linear/symmetric_eigen.h"
 #include "base/median.h"
 #include "rfs_mesh/fit/quadric_moments.h"
 #include "rfs_mesh/levels.h"
@@ -79,18 +79,6 @@ void weigh(QuadricWorkspace& w, double radius, Matrix3d& covariance) {
   const Vector3d mean = Vector3d(s[1], s[2], s[3]) / s[0];
   covariance << s[4], s[5], s[6], s[5], s[7], s[8], s[6], s[8], s[9];
   covariance -= s[0] * mean * mean.transpose();
-}
-
-/// The eigenvectors of a symmetric matrix, smallest eigenvalue first.
-Matrix3d principal_axes(const Matrix3d& covariance) {
-  Eigen::SelfAdjointEigenSolver<Matrix3d> solver;
-  solver.computeDirect(covariance);
-  Matrix3d axes = solver.eigenvectors();
-  if (!axes.allFinite() || std::abs(std::abs(axes.determinant()) - 1) > 1e-6) {
-    solver.compute(covariance);  // the closed form loses accuracy where two eigenvalues nearly meet
-    axes = solver.eigenvectors();
-  }
-  return axes;
 }
 
 /// Offsets in the frame of `q`.
@@ -227,7 +215,7 @@ Quadric fit_quadric(const Positions& points, const Vector3d& p, const Index* nei
   const double r = kBeyond * std::sqrt(squared_reach);
   Matrix3d covariance;
   weigh(w, r, covariance);
-  const Matrix3d axes = principal_axes(covariance);
+  const Matrix3d axes = symmetric_eigen_closed(covariance).vectors;
   q.n = axes.col(0);
   q.t1 = axes.col(2);
   q.t2 = q.n.cross(q.t1);

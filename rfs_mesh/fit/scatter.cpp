@@ -5,9 +5,9 @@
 #include <limits>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 
 #include "base/avx2.h"
+#include "base/linear/symmetric_eigen.h"
 #include "rfs_mesh/levels.h"
 
 namespace rfsmooth::rfs_mesh {
@@ -37,10 +37,9 @@ Eigen::Matrix3d axes_of(const Positions& points, const std::vector<Neighbor>& ne
     weights += w;
   }
   spread -= sum * sum.transpose() / weights;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(spread);
-  const Eigen::Vector3d& variances = solver.eigenvalues();
-  breadth = variances[2] > 0 ? std::max(0.0, variances[1]) / variances[2] : 0;
-  return solver.eigenvectors();
+  const SymmetricEigen<3> eigen = symmetric_eigen(spread);
+  breadth = eigen.values[2] > 0 ? std::max(0.0, eigen.values[1]) / eigen.values[2] : 0;
+  return eigen.vectors;
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/avx2.h"
-#include "base/small_cholesky.h"
+#include "base/linear/small_cholesky.h"
 #include "rfs_mesh/levels.h"
 
 namespace rfsmooth::rfs_mesh {

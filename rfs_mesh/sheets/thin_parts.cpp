@@ -6,8 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include <Eigen/Eigenvalues>
-
+#include "base/linear/symmetric_eigen.h"
 #include "base/parallel.h"
 #include "rfs_mesh/levels.h"
 #include "rfs_mesh/normals/winding.h"
@@ -38,14 +37,13 @@ Vector3d out_of_middle(const Positions& points, std::size_t i, const std::vector
     const Vector3d d = points[q.index] - mean;
     covariance += d * d.transpose();
   }
-  const Eigen::SelfAdjointEigenSolver<Matrix3d> axes(covariance);
-  const double largest = axes.eigenvalues()[2];
+  const SymmetricEigen<3> axes = symmetric_eigen(covariance);
+  const double largest = axes.values[2];
   if (!(largest > 0)) return Vector3d::Zero();
-  Vector3d offset = axes.eigenvectors().transpose() * (points[i] - mean);
-  for (int axis = 0; axis < 3; ++axis)
-    offset[axis] /= std::max(axes.eigenvalues()[axis] / largest, kThinnest);
+  Vector3d offset = axes.vectors.transpose() * (points[i] - mean);
+  for (int axis = 0; axis < 3; ++axis) offset[axis] /= std::max(axes.values[axis] / largest, kThinnest);
   const double length = offset.norm();
-  return length > 0 ? Vector3d(axes.eigenvectors() * offset / length) : Vector3d(Vector3d::Zero());
+  return length > 0 ? Vector3d(axes.vectors * offset / length) : Vector3d(Vector3d::Zero());
 }
 
 class ThinParts {

@@ -4,8 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/Eigenvalues>
-
+#include "base/linear/symmetric_eigen.h"
 #include "base/parallel.h"
 
 namespace rfsmooth::rfs_mesh {
@@ -93,9 +92,9 @@ class Parter {
       heights_.push_back({0, q.index});
     }
     if (heights_.size() < 2 * kFewest) return false;
-    const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(spread);
-    if (solver.eigenvalues()[2] < options_.parallel * double(heights_.size())) return false;
-    axis_ = solver.eigenvectors().col(2);
+    const SymmetricEigen<3> eigen = symmetric_eigen(spread);
+    if (eigen.values[2] < options_.parallel * double(heights_.size())) return false;
+    axis_ = eigen.vectors.col(2);
     for (Height& h : heights_) h.height = axis_.dot(surfaces_[h.point].shadow - points_[i]);
     std::sort(heights_.begin(), heights_.end());
     split();

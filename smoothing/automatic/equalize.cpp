@@ -11,9 +11,9 @@
 #include <Eigen/Geometry>
 
 #include "base/avx2.h"
+#include "base/linear/small_cholesky.h"
 #include "base/parallel.h"
 #include "base/raw_array.h"
-#include "base/small_cholesky.h"
 #include "rfs_mesh/fit/plane_normal.h"
 #include "rfs_mesh/levels.h"
 #include "rfs_mesh/search/neighbors.h"

@@ -7,8 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include <Eigen/Eigenvalues>
-
+#include "base/linear/symmetric_eigen.h"
 #include "base/parallel.h"
 #include "rfs_mesh/levels.h"
 #include "rfs_mesh/search/neighbors.h"
@@ -149,7 +148,7 @@ Eigen::Vector3d project(const Positions& guide, const std::vector<Neighbor>& nea
     const Eigen::Vector3d d = guide[q.index] - centre;
     spread += (square > 0 ? 1 - q.squared_distance / square : 1) * d * d.transpose();
   }
-  const Eigen::Vector3d normal = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(0);
+  const Eigen::Vector3d normal = symmetric_eigen(spread).vectors.col(0);
   return p - normal * normal.dot(p - centre);
 }
 

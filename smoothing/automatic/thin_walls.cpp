@@ -4,9 +4,9 @@
 #include <cmath>
 #include <stdexcept>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
+#include "base/linear/symmetric_eigen.h"
 #include "base/parallel.h"
 #include "rfs_mesh/levels.h"
 #include "rfs_mesh/search/thinning.h"
@@ -69,7 +69,7 @@ class Walls {
         if (again > 0 && std::abs(normal.dot(axis)) < rfs_mesh::kSameSheet) continue;
         sum += std::pow(1 - double(near.squared()[k]) / square, 2) * normal * normal.transpose();
       }
-      axis = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(sum).eigenvectors().col(2);
+      axis = symmetric_eigen(sum).vectors.col(2);
     }
     return axis;
   }

@@ -3,9 +3,9 @@
 #include <cmath>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
+#include "base/linear/symmetric_eigen.h"
 #include "base/parallel.h"
 #include "rfs_mesh/measure.h"
 #include "smoothing/operators/operator.h"
@@ -52,12 +52,12 @@ PrincipalCurvatures principal_curvatures(const Mesh& mesh, const Context& contex
     if (!B.allFinite()) return;
     Eigen::Matrix2d tensor;
     tensor << B[0], B[1] * std::sqrt(0.5), B[1] * std::sqrt(0.5), B[2];
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(tensor);
+    const SymmetricEigen<2> eigen = symmetric_eigen(tensor);
     const auto lift = [&](const Eigen::Vector2d& t) { return Vector3d(t.x() * e1 + t.y() * e2); };
-    result.k1[i] = eigen.eigenvalues()[1];
-    result.k2[i] = eigen.eigenvalues()[0];
-    result.direction1[i] = lift(eigen.eigenvectors().col(1));
-    result.direction2[i] = lift(eigen.eigenvectors().col(0));
+    result.k1[i] = eigen.values[1];
+    result.k2[i] = eigen.values[0];
+    result.direction1[i] = lift(eigen.vectors.col(1));
+    result.direction2[i] = lift(eigen.vectors.col(0));
   });
   return result;
 }

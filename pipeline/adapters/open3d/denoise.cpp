@@ -1,4 +1,3 @@
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <open3d/geometry/KDTreeSearchParam.h>
 #include <open3d/geometry/PointCloud.h>
@@ -6,6 +5,7 @@
 #include <rfsmooth/normals.h>
 #include <rfsmooth/open3d/denoise.h>
 
+#include "base/linear/symmetric_eigen.h"
 #include "base/parallel.h"
 #include "pipeline/normal_sides.h"
 #include "rfs_mesh/points.h"
@@ -36,7 +36,7 @@ void turn(Matrices& covariances, const Positions& points, const Positions& norma
   for_each_index(context, covariances.size(), [&](std::size_t i) {
     Eigen::Matrix3d& c = covariances[i];
     if (!points[i].allFinite() || !c.allFinite()) return;
-    const Eigen::Vector3d least = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(c).eigenvectors().col(0);
+    const Eigen::Vector3d least = symmetric_eigen(c).vectors.col(0);
     const Eigen::Vector3d onto = least.dot(normals[i]) < 0 ? Eigen::Vector3d(-normals[i]) : normals[i];
     const Eigen::Matrix3d rotation = Eigen::Quaterniond::FromTwoVectors(least, onto).toRotationMatrix();
     c = rotation * c * rotation.transpose();

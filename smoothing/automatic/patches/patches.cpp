@@ -10,8 +10,8 @@
 #include <Eigen/Geometry>
 
 #include "base/collect.h"
+#include "base/linear/small_cholesky.h"
 #include "base/parallel.h"
-#include "base/small_cholesky.h"
 #include "rfs_mesh/search/thinning.h"
 #include "smoothing/automatic/patches/quadric_sums.h"
 #include "smoothing/automatic/patches/weighted_sum.h"

@@ -11,7 +11,7 @@
 #include <Eigen/Sparse>
 #include <benchmark/benchmark.h>
 
-#include "base/small_cholesky.h"
+#include "base/linear/small_cholesky.h"
 #include "rfs_mesh/fit/plane_normal.h"
 #include "smoothing/integrators/solver.h"
 #include "smoothing/operators/operator.h"

@@ -1,4 +1,4 @@
-#include "base/small_cholesky.h"
+#include "base/linear/small_cholesky.h"
 
 #include <cmath>
 
