@@ -204,10 +204,10 @@ std::vector<Edge> extend_leaves(const Rules& rules, std::size_t n, const Context
 /// Adds edges to the graph across gaps, in two rounds.
 void fill_gaps(const Rules& rules, Adjacency& graph, const Context& context) {
   const std::size_t n = graph.size();
-  constexpr int kRounds = 2;  // the second sees what the first has closed; a third adds under 1 %
+  constexpr int kFillings = 2;  // the second sees what the first has closed; a third adds under 1 %
   std::vector<Index> wish;
   std::vector<char> changed(n, 1);
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kFillings; ++round) {
     wish = wishes(n, context, [&](Index v) {
       return changed[v] != 0 ? rules.across_gap(v) : rules.across_gap_still(v, wish[v]);
     });
