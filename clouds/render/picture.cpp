@@ -116,8 +116,9 @@ Picture make_picture(const PictureOptions& options, const Context& context) {
     clouds.push_back(value_or_throw(io::read_cloud(path, {}, context)));
   const Vector3d origin = middle(clouds.front());
   std::vector<Scene> scenes;
-  for (const io::Cloud& cloud : clouds) {
-    scenes.push_back(make_scene(cloud, origin, context));
+  for (std::size_t i = 0; i < clouds.size(); ++i) {
+    const auto made = guarded([&] { return make_scene(clouds[i], origin, context); });
+    scenes.push_back(io::value_or_fail(made, options.inputs[i]));
     if (scenes.back().is_mesh()) continue;
     if (options.without_outliers) leave_out_outliers(scenes.back(), context);
     estimate_surfels(scenes.back(), options.neighbors, context);

@@ -89,11 +89,12 @@ void run_scan(const Files& files, const ScannerOptions& options, std::uint64_t s
 }
 
 Mesh read_surface(const std::string& path) {
-  const auto file = value_or_throw(io::read_mesh(path, {}, {}));
-  const std::vector<double> xyz = io::positions(file.cloud);
+  const io::Cloud file = value_or_throw(io::read_cloud(path, {}, {}));
+  const std::vector<double> xyz = io::positions(file);
   Mesh mesh;
   for (std::size_t i = 0; i < xyz.size(); i += 3) mesh.positions.emplace_back(xyz[i], xyz[i + 1], xyz[i + 2]);
-  mesh.faces = file.faces;
+  mesh.faces = io::value_or_fail(guarded([&] { return io::faces_of(file); }), path);
+  if (mesh.faces.empty()) throw Failure({ErrorCode::input_unreadable, path + ": expected faces, found none"});
   return mesh;
 }
 

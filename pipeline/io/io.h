@@ -51,8 +51,15 @@ Result<Done> write_bytes(std::string_view bytes, const std::filesystem::path& pa
 /// The format a path's extension stands for (.ply; .pcd; .xyz .txt .asc .csv .pts; .off; .las), if any.
 std::optional<Format> format_of_extension(const std::filesystem::path& path);
 
-/// The format of that name ("ply", "pcd", "xyz", "off", "las"), if any; likewise encodings ("binary" is
-/// little-endian).
+/// The value of what was made of a file. \throw Failure with its error, which then begins with the file's
+/// name.
+template <class T>
+T value_or_fail(Result<T> result, const std::string& file) {
+  if (!result.ok()) throw Failure({result.error().code, file + ": " + result.error().message});
+  return std::move(result).value();
+}
+
+/// The format of that name ("ply", "pcd", "xyz", "off", "las"), if any.
 std::optional<Format> format_by_name(std::string_view name);
 /// The encoding of that name, if any; "binary" is little-endian.
 std::optional<Encoding> encoding_by_name(std::string_view name);

@@ -1,7 +1,6 @@
 #include "pipeline/io/mesh_file.h"
 
 #include <algorithm>
-#include <new>
 
 #include <fmt/format.h>
 
@@ -23,21 +22,6 @@ Index point(double value, const Cloud& cloud, const char* what, std::size_t row)
   return Index(value);
 }
 
-Result<MeshFile> with_faces(Result<Cloud> cloud, const std::string& name, const Context& context) {
-  if (!cloud.ok()) return cloud.error();
-  MeshFile mesh;
-  mesh.cloud = std::move(cloud).value();
-  try {
-    mesh.faces = faces_of(mesh.cloud, context);
-    if (mesh.faces.empty()) return Error{ErrorCode::input_unreadable, name + ": expected faces, found none"};
-  } catch (const Failure& failure) {
-    return Error{failure.error.code, name + ": " + failure.error.message};
-  } catch (const std::bad_alloc&) {
-    return Error{ErrorCode::out_of_memory, name + ": not enough memory for its faces"};
-  }
-  return mesh;
-}
-
 // Replaces the element of that name, or appends it.
 void put(Cloud& cloud, Table table) {
   for (Table& present : cloud.elements)
@@ -54,16 +38,6 @@ void append(Bytes& data, std::int32_t value) {
 }
 
 }  // namespace
-
-Result<MeshFile> read_mesh(const std::filesystem::path& path, const ReadOptions& options,
-                           const Context& context) {
-  return with_faces(read_cloud(path, options, context), path.string(), context);
-}
-
-Result<MeshFile> parse_mesh(std::string_view bytes, const std::string& name, const ReadOptions& options,
-                            const Context& context) {
-  return with_faces(parse_cloud(bytes, name, options, context), name, context);
-}
 
 std::vector<Face> faces_of(const Cloud& cloud, const Context& context) {
   std::vector<Face> faces;

@@ -1,33 +1,19 @@
 /// Meshes in files: a Cloud whose PLY or OFF file also has faces (or edges). The polygons stay in the cloud
 /// unchanged. Here they are read as triangles to work on, and triangles and edges are put into a cloud to
-/// write.
+/// write. Thread safe on distinct clouds; O(what is read or written).
 #pragma once
 
 #include <rfsmooth/mesh.h>
 
-#include "pipeline/io/io.h"
+#include "pipeline/io/table/cloud.h"
 
 namespace rfsmooth::pipeline::io {
 
-/// A mesh and the file it came from.
-struct MeshFile {
-  Cloud cloud;              ///< the file; write it with write_cloud after set_positions
-  std::vector<Face> faces;  ///< m x 3: its polygons split into fans; no repeated corners
-};
-
-/// Reads a mesh. Errors: as read_cloud; input_unreadable if it has no faces or one names a vertex that does
-/// not exist. Polygons with fewer than three corners and triangles with a repeated corner are left out of
-/// `faces`; a warning says how many, and the file keeps them. A fan covers a convex polygon; of others, only
-/// the connectivity is right.
-Result<MeshFile> read_mesh(const std::filesystem::path& path, const ReadOptions& options,
-                           const Context& context);
-/// The same from bytes; `name` is for messages.
-Result<MeshFile> parse_mesh(std::string_view bytes, const std::string& name, const ReadOptions& options,
-                            const Context& context);
-
-/// The triangles of a PLY or OFF file, corners as rows of the points; polygons and degenerate faces as above.
-/// Empty if the file has no faces. \throw Failure (input_unreadable) naming a face with a point that does not
-/// exist.
+/// The triangles of a PLY or OFF file (m x 3), corners as rows of the points; empty if the file has no faces.
+/// Polygons are split into fans: a fan covers a convex polygon; of others, only the connectivity is right.
+/// Polygons with fewer than three corners and triangles with a repeated corner are left out; a warning says
+/// how many, and the file keeps them. \throw Failure (input_unreadable) naming a face with a point that does
+/// not exist.
 std::vector<Face> faces_of(const Cloud& cloud, const Context& context = {});
 
 /// The edges of a PLY file (element edge with vertex1 and vertex2), lower index first, without edges from a

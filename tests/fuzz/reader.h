@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstdlib>
 
+#include "pipeline/io/io.h"
 #include "pipeline/io/mesh_file.h"
 
 namespace rfsmooth::fuzz {

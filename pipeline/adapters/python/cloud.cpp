@@ -19,6 +19,7 @@
 #include "pipeline/adapters/python/released.h"
 #include "pipeline/cli/files/cloud_files.h"
 #include "pipeline/io/formats/las/las_scale.h"
+#include "pipeline/io/io.h"
 #include "pipeline/io/mesh_file.h"
 
 namespace rfsmooth::python {

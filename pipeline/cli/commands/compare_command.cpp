@@ -10,6 +10,7 @@
 #include "pipeline/cli/console/figures.h"
 #include "pipeline/cli/deviation.h"
 #include "pipeline/cli/files/cloud_files.h"
+#include "pipeline/io/io.h"
 #include "pipeline/io/mesh_file.h"
 #include "pipeline/io/point_fields.h"
 
@@ -71,7 +72,7 @@ struct TruthFile {
     std::vector<StageTime> unused;
     const auto file = load_cloud(path, context, unused);
     xyz = pipeline::io::positions(file, context);
-    faces = pipeline::io::faces_of(file, context);
+    faces = pipeline::io::value_or_fail(guarded([&] { return pipeline::io::faces_of(file, context); }), path);
     if (faces.empty())
       view.cloud = CloudView{xyz.data(), file.size(), nullptr};
     else

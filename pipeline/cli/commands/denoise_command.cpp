@@ -366,7 +366,6 @@ Command denoise_command() {
   command.usage = {"[options] IN OUT", "[options] IN... -o FOLDER"};
   command.description =
       "Reads a cloud (PLY, PCD, XYZ, LAS; the format is found by content), connects its points to a rough "
-      ""
       "mesh (EMST, SDG, RFS-mesh), smooths the mesh, and writes the same cloud with x, y, z replaced: every "
       "other field, the order and the number of points stay. Points that are not finite stay as they are. "
       "Fields that are asked for (--write-displacement, --mark-outliers, --normals) come behind the "

@@ -28,12 +28,7 @@ struct JobOptions {
 int run_cloud_jobs(const std::string& command, const JobOptions& options, const Invocation& typed,
                    const OnCloud& on_cloud);
 
-/// The value of a result. \throw Failure with its error, prefixed with `name`, the file's name.
-template <class T>
-T value_or_fail(Result<T> result, const std::string& name) {
-  if (!result.ok()) throw Failure({result.error().code, name + ": " + result.error().message});
-  return std::move(result).value();
-}
+using pipeline::io::value_or_fail;
 
 /// The options that were used, as the report shows them; --config takes them back.
 template <class Options>

@@ -1,5 +1,6 @@
 #include "pipeline/cli/files/file_mesh.h"
 
+#include "pipeline/io/io.h"
 #include "pipeline/io/mesh_file.h"
 
 namespace rfsmooth::cli {
@@ -9,7 +10,8 @@ using Eigen::Vector3d;
 
 FileMesh file_mesh(const io::Cloud& cloud, const std::string& name, const Context& context,
                    bool own_heights) {
-  const std::vector<Face> faces = io::faces_of(cloud, context);
+  const std::vector<Face> faces =
+      io::value_or_fail(guarded([&] { return io::faces_of(cloud, context); }), name);
   if (faces.empty())
     throw Failure({ErrorCode::input_unreadable,
                    name + ": has no faces; expected a mesh (for clouds use: rfsmooth denoise)"});

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "pipeline/io/io.h"
 #include "pipeline/io/mesh_file.h"
 #include "pipeline/surface/topology.h"
 #include "tests/cli/support/folder.h"
@@ -53,10 +54,10 @@ TEST_P(ReconstructMethods, ASurfaceWithTheColoursOfItsPoints) {
   const Ran ran = run({"reconstruct", "--method", method, "in.ply", "out.ply"});
   ASSERT_EQ(ran.code, 0) << ran.err;
   EXPECT_EQ(ran.out, "");
-  const auto read = io::read_mesh(at("out.ply"), {}, {});
+  const auto read = io::read_cloud(at("out.ply"), {}, {});
   ASSERT_TRUE(read.ok());
-  const io::Cloud& cloud = read.value().cloud;
-  const Topology found = pipeline::topology(cloud.size(), read.value().faces);
+  const io::Cloud& cloud = read.value();
+  const Topology found = pipeline::topology(cloud.size(), io::faces_of(read.value()));
   EXPECT_EQ(found.components, 1u);
   if (method != "ball-pivoting") {
     EXPECT_TRUE(found.closed_manifold());
@@ -132,9 +133,9 @@ TEST_F(Reconstruct, PackedColoursAreUnpackedAndOtherFieldsStay) {
     io::set_field(pcd, normal, io::Scalar::float32, std::vector<double>(600, 0.5));
   ASSERT_TRUE(io::write_cloud(pcd, at("in.pcd"), {}, {}).ok());
   ASSERT_EQ(run({"reconstruct", "--method", "advancing-front", "in.pcd", "out.ply"}).code, 0);
-  const auto read = io::read_mesh(at("out.ply"), {}, {});
+  const auto read = io::read_cloud(at("out.ply"), {}, {});
   ASSERT_TRUE(read.ok());
-  const io::Cloud& made = read.value().cloud;
+  const io::Cloud& made = read.value();
   const auto field = [&](const char* name) {
     return io::field_values(made, io::find_field(made, name).value());
   };

@@ -200,6 +200,18 @@ TEST_F(SmoothMesh, AnOptionWithoutItsPartnerIsAnErrorThatNamesThePartner) {
   }
 }
 
+TEST_F(SmoothMesh, AFaceOfAMissingPointIsToldWithItsFile) {
+  put("bad.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n");
+  put("in.ply", bumpy_grid(""));
+  for (const std::vector<std::string>& words : {std::vector<std::string>{"smooth-mesh", "bad.off", "out.off"},
+                                                {"compare", "in.ply", "bad.off"},
+                                                {"render", "bad.off", "-o", "out.png"}}) {
+    const Ran ran = run(words);
+    EXPECT_EQ(ran.code, 3) << words[0];
+    EXPECT_THAT(ran.err, HasSubstr("bad.off: face 0: expected points below 3, found 3"));
+  }
+}
+
 TEST_F(SmoothMesh, WhatNeedsASurfaceWithoutHolesIsRefusedForClouds) {
   put("in.ply", bumpy_grid(""));
   for (const std::vector<std::string>& rule : {std::vector<std::string>{"--boundary", "fixed"},

@@ -6,7 +6,9 @@
 
 #include <gtest/gtest.h>
 
-#include "pipeline/io/mesh_file.h"
+#include <rfsmooth/cloud_file.h>
+
+#include "pipeline/io/io.h"
 #include "tests/pipeline/io/random_cloud.h"
 
 using namespace rfsmooth;                // NOLINT(google-build-using-namespace)
@@ -158,10 +160,12 @@ TEST(Truncated, AtEveryByte) {
 }
 
 TEST(Mesh, FaceOutsideThePointsIsRefused) {
-  const auto mesh = parse_mesh("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n", "in", {}, {});
-  ASSERT_FALSE(mesh.ok());
-  EXPECT_NE(mesh.error().message.find("face 0"), std::string::npos) << mesh.error().message;
-  EXPECT_FALSE(parse_mesh("OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n", "in", {}, {}).ok());
+  const auto file = CloudFile::parse("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n", "in");
+  ASSERT_TRUE(file.ok());
+  const auto faces = file.value().faces();
+  ASSERT_FALSE(faces.ok());
+  EXPECT_EQ(faces.error().code, ErrorCode::input_unreadable);
+  EXPECT_NE(faces.error().message.find("face 0"), std::string::npos) << faces.error().message;
 }
 
 // What the fuzzers found, and small files of every kind: no input may crash, and what is read is written.

@@ -153,14 +153,15 @@ TEST(Off, VariantsComeBackAndMeshesAreRead) {
         "NOFF\n4 1 0\n0 0 0 0 0 1\n1 0 0 0 0 1\n1 1 0 0 0 1\n0 1 0 0 0 1\n4 0 1 2 3\n",
         "STCNOFF\n4 1 0\n0 0 0 0 0 1 9 9 9 0 0\n1 0 0 0 0 1 9 9 9 0 0\n1 1 0 0 0 1 9 9 9 0 0\n0 1 0 0 0 1 9 "
         "9 9 0 0\n4 0 1 2 3\n"}) {
-    const MeshFile mesh = parse_mesh(text, "in", {}, {}).value();
-    EXPECT_EQ(mesh.faces, (std::vector<Face>{{0, 1, 2}, {0, 2, 3}}));
-    EXPECT_EQ(as(mesh.cloud, Format::off), text);
-    const std::string ply = as(mesh.cloud, Format::ply, true);
-    EXPECT_EQ(parse_mesh(ply, "ply", {}, {}).value().faces, mesh.faces) << ply;
+    const Cloud mesh = parsed_text(text);
+    const std::vector<Face> two = {{0, 1, 2}, {0, 2, 3}};
+    EXPECT_EQ(faces_of(mesh), two);
+    EXPECT_EQ(as(mesh, Format::off), text);
+    const std::string ply = as(mesh, Format::ply, true);
+    EXPECT_EQ(faces_of(parsed_text(ply)), two) << ply;
     const Cloud back = parsed_text(as(parsed_text(ply), Format::off));
-    EXPECT_EQ(positions(back), positions(mesh.cloud));
-    EXPECT_EQ(back.points().fields.size(), mesh.cloud.points().fields.size());
+    EXPECT_EQ(positions(back), positions(mesh));
+    EXPECT_EQ(back.points().fields.size(), mesh.points().fields.size());
   }
   EXPECT_NE(as(parsed_text("OFF\n3 1 0\n0 0 0\n1 0 0\n1 1 0\n3 0 1 2 255 0 0\n"), Format::ply)
                 .find("colours of the faces"),
