@@ -10,6 +10,7 @@
 #include "base/parallel.h"
 #include "rfs_mesh/fit/quadric.h"
 #include "rfs_mesh/levels.h"
+#include "rfs_mesh/sample.h"
 
 namespace rfsmooth::rfs_mesh {
 
@@ -71,13 +72,14 @@ double mean_spacing(const Positions& points, const NeighborTable& near, const Co
 }
 
 double mean_spacing(const SpatialIndex& index, const Context& context) {
-  const std::size_t n = index.points().size(), count = std::min(n, kSampleOfCloud);
-  if (n < 2) return 0;
+  if (index.points().size() < 2) return 0;
+  const std::vector<Index> rows = sample_rows(index.points().size());
+  const std::size_t count = rows.size();
   std::vector<double> nearest(count);
   for_blocks(context, count, 256, [&](std::size_t begin, std::size_t end) {
     NearestOthers others;
     for (std::size_t s = begin; s < end; ++s) {
-      const std::size_t i = s * n / count;
+      const Index i = rows[s];
       nearest[s] = (index.points()[others.find(index, i, 1).front()] - index.points()[i]).norm();
     }
   });
@@ -99,14 +101,15 @@ struct Deviation {
 /// The flat places' residual and the median radius of neighbourhoods of m.
 Deviation deviation_at(const SpatialIndex& index, std::size_t m, const Context& context) {
   constexpr double kEffective = 5.0 / 9;  // (mean w)^2 / mean w^2 of w = (1 - t^2)^2 over a disk
-  const std::size_t n = index.points().size(), samples = std::min(n, kPlacesOfCloud);
+  const Positions& points = index.points();
+  const std::vector<Index> rows = sample_rows(points.size(), kPlacesOfCloud);
+  const std::size_t samples = rows.size();
   std::vector<double> residuals(samples), radii(samples);
   for_blocks(context, samples, 16, [&](std::size_t begin, std::size_t end) {
     QuadricWorkspace workspace;
     NearestOthers nearest;
     for (std::size_t s = begin; s < end; ++s) {
-      const std::size_t i = s * n / samples;
-      const Positions& points = index.points();
+      const Index i = rows[s];
       const auto& row = nearest.find(index, i, m);
       residuals[s] = fit_surface(points, points[i], row.data(), row.size(), workspace, 0).residual;
       radii[s] = row.empty() ? 0 : (points[row.back()] - points[i]).norm();

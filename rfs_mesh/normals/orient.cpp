@@ -13,6 +13,7 @@
 #include "rfs_mesh/normals/sides.h"
 #include "rfs_mesh/normals/visible.h"
 #include "rfs_mesh/normals/winding.h"
+#include "rfs_mesh/sample.h"
 
 namespace rfsmooth::rfs_mesh {
 
@@ -88,16 +89,15 @@ class Orienter {
  private:
   /// Points spread evenly over the rows, each standing for several.
   struct Samples {
-    Samples(const Positions& points, const std::vector<double>& areas_of_points) {
-      const std::size_t n = points.size(), m = std::min(n, kSampleOfCloud);
-      for (std::size_t s = 0; s < m; ++s) row.push_back(Index(s * n / m));
+    Samples(const Positions& points, const std::vector<double>& areas_of_points)
+        : row(sample_rows(points.size())) {
       for (const Index i : row) {
         at.push_back(points[i]);
-        areas.push_back(areas_of_points[i] * double(n) / double(m));
+        areas.push_back(areas_of_points[i] * double(points.size()) / double(row.size()));
         area += areas.back();
       }
     }
-    double softening() const { return 0.8 * std::sqrt(area / double(at.size())); }
+    double softening() const { return softening_of(area, at.size()); }
     std::vector<Index> row;
     Positions at;
     std::vector<double> areas;

@@ -10,11 +10,15 @@ namespace rfsmooth::rfs_mesh {
 namespace {
 
 using Eigen::Vector3d;
-constexpr double kFourPi = 12.566370614359172;
+constexpr double kFourPi = 4 * M_PI;
 constexpr double kOpening = 0.25;  // squared ratio of radius to distance below which a box is a point
 constexpr std::size_t kGrain = 256;
 
 }  // namespace
+
+double softening_of(double area, std::size_t count) {
+  return 0.8 * std::sqrt(area / double(count));
+}
 
 Winding::Winding(const Positions& points, double softening, const Context& context)
     : points_(points), softening_square_(softening * softening), tree_(points, context) {
@@ -40,7 +44,7 @@ void Winding::enclose(KdTree::Cursor at) {
   }
   ball.centre /= ball.count;
   const KdTree::Node& box = tree_.node(at.node);
-  ball.square = (box.high - ball.centre).cwiseMax(ball.centre - box.low).squaredNorm();
+  ball.radius_square = (box.high - ball.centre).cwiseMax(ball.centre - box.low).squaredNorm();
 }
 
 template <class Moment, class Of>
@@ -62,15 +66,15 @@ std::vector<Moment> Winding::moments(Moment zero, Of&& of) const {
 }
 
 template <class Far, class Near>
-void Winding::visit(const Vector3d& q, std::vector<KdTree::Cursor>& open, Far&& far, Near&& near) const {
-  open.assign(1, tree_.root());
-  while (!open.empty()) {
-    const KdTree::Cursor at = open.back();
-    open.pop_back();
+void Winding::visit(const Vector3d& q, std::vector<KdTree::Cursor>& pending, Far&& far, Near&& near) const {
+  pending.assign(1, tree_.root());
+  while (!pending.empty()) {
+    const KdTree::Cursor at = pending.back();
+    pending.pop_back();
     const Ball& ball = balls_[at.node];
     const Vector3d r = ball.centre - q;
     const double square = r.squaredNorm();
-    if (ball.square < kOpening * square) {
+    if (ball.radius_square < kOpening * square) {
       const double soft = square + softening_square_;
       far(at.node, r, 1 / (soft * std::sqrt(soft)));
     } else if (at.is_leaf()) {
@@ -81,8 +85,8 @@ void Winding::visit(const Vector3d& q, std::vector<KdTree::Cursor>& open, Far&& 
         near(id, d, 1 / (soft * std::sqrt(soft)));
       }
     } else {
-      open.push_back(at.right());
-      open.push_back(at.left());
+      pending.push_back(at.right());
+      pending.push_back(at.left());
     }
   }
 }
@@ -92,11 +96,11 @@ std::vector<double> Winding::numbers(const Positions& area_vectors, const Contex
       moments(Vector3d(Vector3d::Zero()), [&](Index id) { return area_vectors[id]; });
   std::vector<double> w(points_.size());
   for_blocks(context, w.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    std::vector<KdTree::Cursor> open;
+    std::vector<KdTree::Cursor> pending;
     for (std::size_t i = begin; i < end; ++i) {
       double sum = 0;
       visit(
-          points_[i], open,
+          points_[i], pending,
           [&](std::uint32_t node, const Vector3d& r, double weight) { sum += weight * r.dot(sums[node]); },
           [&](Index id, const Vector3d& r, double weight) { sum += weight * r.dot(area_vectors[id]); });
       w[i] = sum / kFourPi;
@@ -109,11 +113,11 @@ Positions Winding::field(const std::vector<double>& charges, const Context& cont
   const std::vector<double> sums = moments(0.0, [&](Index id) { return charges[id]; });
   Positions field(points_.size());
   for_blocks(context, field.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    std::vector<KdTree::Cursor> open;
+    std::vector<KdTree::Cursor> pending;
     for (std::size_t i = begin; i < end; ++i) {
       Vector3d sum = Vector3d::Zero();
       visit(
-          points_[i], open,
+          points_[i], pending,
           [&](std::uint32_t node, const Vector3d& r, double weight) { sum -= (weight * sums[node]) * r; },
           [&](Index id, const Vector3d& r, double weight) { sum -= (weight * charges[id]) * r; });
       field[i] = sum / kFourPi;
@@ -127,6 +131,8 @@ Positions Winding::gauss(int steps, const Context& context) const {
   const auto square = [&](const std::vector<double>& v) {
     return sum_over(context, n, 0.0, [&](std::size_t i) { return v[i] * v[i]; });
   };
+  // With A m = numbers(m) and A^T c = field(c): conjugate gradients for A A^T c = 1/2, with m = A^T c beside
+  // them (Craig's method). `direction` is one of c, `along` and `change` are its A^T and its A A^T.
   Positions area_vectors(n, Vector3d(Vector3d::Zero()));
   std::vector<double> residual(n, 0.5), direction = residual;
   double before = square(residual);

@@ -11,48 +11,62 @@
 /// conjugate gradients towards the smallest such m give the side of nearly all points, also between thin
 /// sheets that noise has mixed.
 ///
-/// Far points are summed as one (Barnes and Hut 1986): a box of the kd-tree whose radius is under half its
-/// distance counts as a point at its centroid. e is about a spacing. Const functions are thread safe.
+/// Far points are summed as one (Barnes and Hut 1986): the points of a box of the kd-tree count as one at
+/// their centroid where they lie within half of its distance around it. e is about a spacing. A point itself
+/// adds nothing to its own sum. Const functions are thread safe.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include <rfsmooth/context.h>
+#include <rfsmooth/mesh.h>
 
-#include "rfs_mesh/points.h"
 #include "rfs_mesh/search/kd_tree.h"
 
 namespace rfsmooth::rfs_mesh {
 
-/// By so much the winding numbers at the points of a closed surface are off 1/2, their mean and root mean
-/// square.
+/// As far as this the winding numbers at the points of a closed surface are from 1/2, in the mean and in root
+/// mean square, with normals and areas that are estimates; beyond, the surface is open or has wrong normals.
 constexpr double kClosed = 0.15;
+
+/// e for so many points of a surface: 0.8 of the side of the square that each has of its area. Length.
+double softening_of(double area, std::size_t count);
 
 /// Evaluates w, its adjoint and its inverse over fixed points.
 class Winding {
  public:
-  /// \param points n x 3, kept by reference; \param softening e, world units, > 0. O(n log n).
+  /// \param points n x 3, kept by reference; \param softening e, world units. \throw std::invalid_argument
+  /// unless e > 0. O(n log n).
   Winding(const Positions& points, double softening, const Context& context);
 
-  /// w at every point, for area vectors m (n). O(n log n), parallel, the same bits for any number of threads.
+  /// w at every point, for the area vectors m of all (n x 3). O(n log n), parallel, the same bits for any
+  /// number of threads; so are the two below.
   std::vector<double> numbers(const Positions& area_vectors, const Context& context) const;
 
-  /// The adjoint: sum over j of c_j (p_i - p_j) / (4 pi (|p_i - p_j|^2 + e^2)^(3/2)) at every point p_i.
+  /// The adjoint, for a charge c of each (n): sum over j of c_j (p_i - p_j) / (4 pi (|p_i - p_j|^2 +
+  /// e^2)^(3/2)) at every point p_i.
   Positions field(const std::vector<double>& charges, const Context& context) const;
 
   /// The smallest area vectors with w = 1/2 everywhere, after `steps` of conjugate gradients from zero.
   Positions gauss(int steps, const Context& context) const;
 
  private:
+  /// The points below a node of the tree.
   struct Ball {
-    Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-    double count = 0, square = 0;  ///< points in it, squared radius
+    Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< their centroid
+    double count = 0;                                  ///< how many
+    double radius_square = 0;                          ///< of a ball around the centroid that holds their box
   };
+  /// Fills in the balls of a node and of all below it.
   void enclose(KdTree::Cursor at);
+  /// By node: the sum of `of(point)` over the points below it.
   template <class Moment, class Of>
   std::vector<Moment> moments(Moment zero, Of&& of) const;
+  /// Calls `far(node, r, 1 / (|r|^2 + e^2)^(3/2))` for what counts as one point at r from q, and
+  /// `near(point, r, ...)` for the other points. `pending` is room for nodes yet to be looked at.
   template <class Far, class Near>
-  void visit(const Eigen::Vector3d& q, std::vector<KdTree::Cursor>& open, Far&& far, Near&& near) const;
+  void visit(const Eigen::Vector3d& q, std::vector<KdTree::Cursor>& pending, Far&& far, Near&& near) const;
 
   const Positions& points_;
   double softening_square_;

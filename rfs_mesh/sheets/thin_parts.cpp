@@ -10,6 +10,7 @@
 #include "base/parallel.h"
 #include "rfs_mesh/levels.h"
 #include "rfs_mesh/normals/winding.h"
+#include "rfs_mesh/sample.h"
 
 namespace rfsmooth::rfs_mesh {
 
@@ -49,14 +50,12 @@ Vector3d out_of_middle(const Positions& points, std::size_t i, const std::vector
 class ThinParts {
  public:
   ThinParts(const SpatialIndex& index, const Context& context)
-      : index_(index), points_(index.points()), context_(context) {
-    const std::size_t n = points_.size(), m = std::min(n, kSampleOfCloud);
-    for (std::size_t s = 0; s < m; ++s) row_.push_back(Index(s * n / m));
+      : index_(index), points_(index.points()), context_(context), row_(sample_rows(points_.size())) {
     for (const Index i : row_) at_.push_back(points_[i]);
     around_ = SpatialIndex(at_, context).nearest(int(kNeighbourhood), context);
     if (around_.k == 0) return;
-    area_.resize(m);
-    for_each_index(context, m, [&](std::size_t s) {
+    area_.resize(row_.size());
+    for_each_index(context, row_.size(), [&](std::size_t s) {
       const Adjacency::Row row = around_[s];
       const std::size_t count = std::min(kRing, row.size());
       area_[s] = M_PI * (at_[row[count - 1]] - at_[s]).squaredNorm() / double(count);
@@ -66,7 +65,7 @@ class ThinParts {
   std::size_t turn(Positions& normals) {
     const double area = std::accumulate(area_.begin(), area_.end(), 0.0);
     if (!(area > 0)) return 0;
-    const Winding winding(at_, 0.8 * std::sqrt(area / double(at_.size())), context_);
+    const Winding winding(at_, softening_of(area, at_.size()), context_);
     Positions now(at_.size());
     for (std::size_t s = 0; s < now.size(); ++s) now[s] = normals[row_[s]];
     const std::vector<double> w = numbers(winding, now);
@@ -108,8 +107,8 @@ class ThinParts {
     return winding.numbers(area_vectors, context_);
   }
 
-  /// Whether w is that of a closed surface but for thin parts, where it is low: its median and its ninth
-  /// tenth.
+  /// Whether w is that of a closed surface but for thin parts, where it is low: what nine tenths of the
+  /// samples do not exceed, and the median.
   static bool closes(std::vector<double> w) {
     const auto at = [&](double share) {
       const auto it = w.begin() + std::ptrdiff_t(share * double(w.size() - 1));

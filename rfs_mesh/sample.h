@@ -1,0 +1,22 @@
+/// Points that stand for all of a cloud, where looking at each costs too much. Thread safe: no state is kept.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+#include <rfsmooth/mesh.h>
+
+#include "rfs_mesh/levels.h"
+
+namespace rfsmooth::rfs_mesh {
+
+/// Those of n points, ascending: `most` of them at even steps, or all if there are no more. In Morton order
+/// (points.h) they are spread evenly over the cloud.
+inline std::vector<Index> sample_rows(std::size_t n, std::size_t most = kSampleOfCloud) {
+  std::vector<Index> rows(std::min(n, most));
+  for (std::size_t s = 0; s < rows.size(); ++s) rows[s] = Index(s * n / rows.size());
+  return rows;
+}
+
+}  // namespace rfsmooth::rfs_mesh
