@@ -22,7 +22,9 @@ namespace rfsmooth::cgal {
 /// consistently within each piece. `normals`: n x 3, on one side: pieces are turned to agree with them, and a
 /// front that all but bounds a solid is closed; empty: neither. Faces with an edge longer than `longest_edge`
 /// (world units; 0 = no limit), which lie across gaps, are dropped. Errors: no_usable_points if there is no
-/// surface. O(n log n), one thread, deterministic; not interruptible.
+/// surface, out_of_memory; cancelled only before CGAL begins and behind it. \throw std::invalid_argument if
+/// the normals are neither none nor one per point. O(n log n), mostly one thread, the same bytes every time.
+/// Thread safe: no state is kept.
 Result<Mesh> advancing_front(const Positions& points, const Positions& normals, double longest_edge,
                              const Context& context);
 

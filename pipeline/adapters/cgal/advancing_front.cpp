@@ -142,14 +142,11 @@ std::vector<Face> closed(const Delaunay& tetrahedra, const Positions& points, co
   return std::move(solid.faces);
 }
 
-}  // namespace
-
-Result<Mesh> advancing_front(const Positions& points, const Positions& normals, double longest_edge,
-                             const Context& context) {
-  if (!normals.empty() && normals.size() != points.size())
-    throw std::invalid_argument("one normal per point is needed, or none");
-  const Error none{ErrorCode::no_usable_points, "the advancing front finds no surface in these points"};
-  if (points.size() < 3) return none;
+/// The surface, its faces in order. \throw Failure if there is none.
+Mesh surface_of(const Positions& points, const Positions& normals, double longest_edge,
+                const Context& context) {
+  const Failure none({ErrorCode::no_usable_points, "the advancing front finds no surface in these points"});
+  if (points.size() < 3) throw none;
   context.report("advancing front", 0);
   Delaunay tetrahedra = tetrahedra_of(points, scale_of(points));
   const bool in_space = tetrahedra.dimension() == 3;  // CGAL adds a point of its own to points in a plane
@@ -157,7 +154,7 @@ Result<Mesh> advancing_front(const Positions& points, const Positions& normals, 
   run.run();
   std::vector<FrontFace> front = faces_of(run);
   if (longest_edge > 0) drop_long(front, points, longest_edge);
-  if (front.empty()) return none;
+  if (front.empty()) throw none;
 
   Mesh mesh;
   mesh.positions = points;
@@ -172,6 +169,15 @@ Result<Mesh> advancing_front(const Positions& points, const Positions& normals, 
   rebuild_adjacency(mesh, context);
   pipeline::part_pinches(mesh, context);
   return mesh;
+}
+
+}  // namespace
+
+Result<Mesh> advancing_front(const Positions& points, const Positions& normals, double longest_edge,
+                             const Context& context) {
+  if (!normals.empty() && normals.size() != points.size())
+    throw std::invalid_argument("one normal per point is needed, or none");
+  return guarded([&] { return surface_of(points, normals, longest_edge, context); });
 }
 
 SurfaceMethod advancing_front_method() {

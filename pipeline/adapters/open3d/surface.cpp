@@ -22,9 +22,10 @@ PointCloud to_open3d(const Positions& points, const Positions& normals, double s
   return cloud;
 }
 
-Result<Mesh> from_open3d(const TriangleMesh& surface, const char* method, const Context& context) {
+/// \throw Failure if the method found no surface.
+Mesh from_open3d(const TriangleMesh& surface, const char* method, const Context& context) {
   if (surface.triangles_.empty())
-    return Error{ErrorCode::no_usable_points, std::string(method) + " finds no surface in these points"};
+    throw Failure({ErrorCode::no_usable_points, std::string(method) + " finds no surface in these points"});
   Mesh mesh;
   mesh.positions = surface.vertices_;
   mesh.faces.reserve(surface.triangles_.size());
@@ -48,20 +49,24 @@ std::size_t depth_for(const PointCloud& cloud, double spacing) {
 Result<Mesh> poisson(const Positions& points, const Positions& normals, double spacing,
                      const Context& context) {
   const PointCloud cloud = to_open3d(points, normals, spacing);
-  context.report("Poisson", 0);
-  constexpr int kThreads = 1;  // with more its sums, and so the bytes, depend on who comes first
-  const auto surface = std::get<0>(TriangleMesh::CreateFromPointCloudPoisson(cloud, depth_for(cloud, spacing),
-                                                                             0.0F, 1.1F, false, kThreads));
-  return from_open3d(*surface, "Poisson reconstruction", context);
+  return guarded([&] {
+    context.report("Poisson", 0);
+    constexpr int kThreads = 1;  // with more its sums, and so the bytes, depend on who comes first
+    const auto surface = std::get<0>(TriangleMesh::CreateFromPointCloudPoisson(
+        cloud, depth_for(cloud, spacing), 0.0F, 1.1F, false, kThreads));
+    return from_open3d(*surface, "Poisson reconstruction", context);
+  });
 }
 
 Result<Mesh> ball_pivoting(const Positions& points, const Positions& normals, double spacing,
                            const Context& context) {
   const PointCloud cloud = to_open3d(points, normals, spacing);
-  context.report("ball pivoting", 0);
-  const auto surface =
-      TriangleMesh::CreateFromPointCloudBallPivoting(cloud, {spacing, 2 * spacing, 4 * spacing});
-  return from_open3d(*surface, "ball pivoting", context);
+  return guarded([&] {
+    context.report("ball pivoting", 0);
+    const auto surface =
+        TriangleMesh::CreateFromPointCloudBallPivoting(cloud, {spacing, 2 * spacing, 4 * spacing});
+    return from_open3d(*surface, "ball pivoting", context);
+  });
 }
 
 std::vector<SurfaceMethod> surface_methods() {

@@ -53,6 +53,14 @@ TEST(AdvancingFront, PointsOnALineHaveNoSurface) {
   EXPECT_EQ(made.error().code, ErrorCode::no_usable_points);
 }
 
+TEST(AdvancingFront, CancellingIsAnErrorNotAnException) {
+  Context context;
+  context.progress = [](std::string_view, double) { return false; };
+  const auto made = cgal::advancing_front(sheet(12, 4, 8), {}, 0, context);
+  ASSERT_FALSE(made.ok());
+  EXPECT_EQ(made.error().code, ErrorCode::cancelled);
+}
+
 TEST(AdvancingFront, AFrontThatAllButBoundsASolidIsClosed) {
   const auto torus = clouds::make_torus();
   Positions points = clouds::sample(torus->mesh(0.05), 3000, 3);

@@ -111,6 +111,18 @@ TEST(SurfaceMethods, WrongArgumentsAreTheCallersMistake) {
                std::invalid_argument);
 }
 
+TEST(SurfaceMethods, CancellingIsAnErrorNotAnException) {
+  const Positions points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
+  const Positions normals(points.size(), {0, 0, 1});
+  Context context;
+  context.progress = [](std::string_view, double) { return false; };
+  for (const auto& method : {open3d::poisson, open3d::ball_pivoting}) {
+    const auto made = method(points, normals, 1, context);
+    ASSERT_FALSE(made.ok());
+    EXPECT_EQ(made.error().code, ErrorCode::cancelled);
+  }
+}
+
 TEST(SurfaceMethods, AreCalledAsTheCommandCallsThem) {
   std::vector<std::string> names;
   for (const auto& method : open3d::surface_methods()) names.push_back(method.name);
