@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
-#include "base/parallel.h"
 #include "rfs_mesh/edge_faces.h"
 #include "rfs_mesh/measure.h"
 #include "smoothing/operators/operator.h"
@@ -31,12 +31,13 @@ double roughness(const Mesh& mesh) {
   return edges > 0 ? 180 / M_PI * std::sqrt(sum / double(edges)) : 0;
 }
 
-/// The enclosed volume, if the mesh encloses one.
+/// The enclosed volume, if the mesh encloses one: every edge has two faces, and it has two sides. One thread.
 std::optional<double> volume(const Mesh& mesh, const Context& context) {
+  if (mesh.faces.empty()) return std::nullopt;
   Unclosed missing;
   Mesh outward;
   outward.faces = oriented_as_far_as_possible(mesh, &missing);
-  if (mesh.faces.empty() || missing.rim + missing.crowded > 0 || missing.one_sided) return std::nullopt;
+  if (missing.rim + missing.crowded > 0 || missing.one_sided) return std::nullopt;
   outward.positions = mesh.positions;
   return rfs_mesh::signed_volume(outward, context);
 }

@@ -35,7 +35,7 @@ class HcLimit : public SolvedFlow {
     const Vector3d centre =
         sum_over(context, n, Vector3d(Vector3d::Zero()), [&](std::size_t i) { return original_[i]; }) /
         double(std::max<std::size_t>(1, n));
-    /// sum of x over the movable neighbours: (W x)_i
+    // Sum of x over the movable neighbours: (W x)_i.
     const auto movable_sum = [&](const Positions& x, std::size_t i) {
       Vector3d sum = Vector3d::Zero();
       for (const Index j : rows[i])
@@ -54,9 +54,10 @@ class HcLimit : public SolvedFlow {
         return x[i].dot(y[i]);
       });
     };
-    Positions x(n), b(n), share(n);
+    Positions x(n), b(n), original(n), share(n);  // share: of the fixed neighbours in the mean of all, known
     std::vector<double> diagonal(n), mass(n);
     for_each_index(context, n, [&](std::size_t i) {
+      original[i] = original_[i] - centre;
       x[i] = still(i) ? Vector3d(Vector3d::Zero()) : Vector3d(mesh.positions[i] - centre);
       share[i].setZero();
       double second = degree(i);
@@ -73,10 +74,7 @@ class HcLimit : public SolvedFlow {
     for_each_index(context, n, [&](std::size_t i) {
       b[i].setZero();
       if (still(i)) return;
-      Vector3d w = Vector3d::Zero();
-      for (const Index j : rows[i])
-        if (!fixed_[j]) w += original_[j] - centre;
-      b[i] = beta_ * degree(i) * (original_[i] - centre) + (1 - beta_) * w +
+      b[i] = beta_ * degree(i) * original[i] + (1 - beta_) * movable_sum(original, i) +
              c_ * (degree(i) * share[i] - movable_sum(share, i));
     });
     count(conjugate_gradients(product, diagonal, mass, b, x, {}, solver_, context));

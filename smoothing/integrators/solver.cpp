@@ -64,31 +64,7 @@ class FairingSolve {
       : s_(system), o_(o), x_(x), allowed_(allowed), options_(options), context_(context), n_(o.size()) {}
 
   SolverReport run() {
-    struct Sums {
-      Vector3d x = Vector3d::Zero();
-      double mass = 0;
-      std::size_t other_mass = 0;  ///< vertices whose mass is not their degree
-      Sums& operator+=(const Sums& other) {
-        x += other.x;
-        mass += other.mass;
-        other_mass += other.other_mass;
-        return *this;
-      }
-    };
-    const Sums sums = sum_over(context_, n_, Sums{}, [&](std::size_t i) {
-      const double degree = double(std::max<std::size_t>(1, s_.rows.degree(i)));
-      return Sums{o_[i], s_.op.mass[i], s_.op.mass[i] != degree};
-    });
-    umbrella_ = s_.op.weight.empty() && sums.other_mass == 0;
-    mean_mass_ = sums.mass / double(n_);
-    const Vector3d centre = sums.x / double(n_);
-    const double size = norm_of([&](std::size_t i) { return Vector3d(data(i) * (o_[i] - centre)); });
-    goal_ = options_.tolerance * size;
-    // Single precision sees lengths in this unit and the norm in that one.
-    length_ = options_.linf ? size : size / std::sqrt(mean_mass_ * double(n_));
-    if (!(length_ > 0)) length_ = 1;
-    norm_unit_ = options_.linf ? length_ : length_ * std::sqrt(mean_mass_);
-
+    measure();
     SolverReport report;
     Vectors<Vector4f> r(n_);
     const double per_unit = 1 / (mean_mass_ * length_);
@@ -123,6 +99,34 @@ class FairingSolve {
   }
 
  private:
+  /// The kind of the operator, its masses, the goal, and the units of single precision.
+  void measure() {
+    struct Sums {
+      Vector3d x = Vector3d::Zero();
+      double mass = 0;
+      std::size_t other_mass = 0;  ///< vertices whose mass is not their degree
+      Sums& operator+=(const Sums& other) {
+        x += other.x;
+        mass += other.mass;
+        other_mass += other.other_mass;
+        return *this;
+      }
+    };
+    const Sums sums = sum_over(context_, n_, Sums{}, [&](std::size_t i) {
+      const double degree = double(std::max<std::size_t>(1, s_.rows.degree(i)));
+      return Sums{o_[i], s_.op.mass[i], s_.op.mass[i] != degree};
+    });
+    umbrella_ = s_.op.weight.empty() && sums.other_mass == 0;
+    mean_mass_ = sums.mass / double(n_);
+    const Vector3d centre = sums.x / double(n_);
+    const double size = norm_of([&](std::size_t i) { return Vector3d(data(i) * (o_[i] - centre)); });
+    goal_ = options_.tolerance * size;
+    // Single precision sees lengths in this unit and the norm in that one.
+    length_ = options_.linf ? size : size / std::sqrt(mean_mass_ * double(n_));
+    if (!(length_ > 0)) length_ = 1;
+    norm_unit_ = options_.linf ? length_ : length_ * std::sqrt(mean_mass_);
+  }
+
   /// A correction that leaves more than this of the residual met the limits of single precision.
   static constexpr double kWorthwhile = 0.5;
   /// Single precision has seven digits; a correction is asked for at most four of them.

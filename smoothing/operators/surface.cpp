@@ -149,64 +149,93 @@ namespace {
 /// What is wrong at a place of a mesh that is not closed, manifold at its edges and orientable.
 enum class Flaw { rim, crowded, one_sided };
 
-/// Turns the faces so that neighbours across edges of two faces agree: closed parts outward, open ones to the
-/// side that most of their faces have. `refuse(flaw, why)` is called for every flaw; if it returns, that
-/// place is left as it is.
-template <class Refuse>
-std::vector<Face> oriented_faces(const Mesh& mesh, Refuse&& refuse) {
-  std::vector<Face> faces = mesh.faces;
+/// The faces across those edges of a face that have exactly two.
+struct Links {
   struct Link {
     Index face;
     bool same;  ///< both run along the edge the same way, so one must turn
   };
-  std::vector<std::array<Link, 3>> links(faces.size());
-  std::vector<int> count(faces.size(), 0);
+  std::array<Link, 3> at;
+  std::size_t count = 0;
+
+  void add(const Link& link) { at[count++] = link; }
+};
+
+/// Of every face. `refuse(flaw, why)` is called for every edge with another number of faces.
+template <class Refuse>
+std::vector<Links> links_of(const std::vector<Face>& faces, Refuse&& refuse) {
+  std::vector<Links> links(faces.size());
   using rfs_mesh::EdgeFace;
   rfs_mesh::for_each_edge(rfs_mesh::edge_faces(faces), [&](const EdgeFace* first, const EdgeFace* last) {
     const EdgeFace &one = first[0], &two = last[-1];
     if (last - first == 2) {
       const bool same = one.forward == two.forward;
-      links[one.face][count[one.face]++] = {two.face, same};
-      links[two.face][count[two.face]++] = {one.face, same};
+      links[one.face].add({two.face, same});
+      links[two.face].add({one.face, same});
     } else if (last - first > 2) {
       refuse(Flaw::crowded, fmt::format("the edge {}-{} has more than two faces", one.a, one.b));
     } else {
       refuse(Flaw::rim, fmt::format("the edge {}-{} has only one face", one.a, one.b));
     }
   });
-  std::vector<signed char> turn(faces.size(), -1);  // -1 unseen, 0 as it is, 1 turned
-  std::vector<Index> part;
-  for (Index seed = 0; seed < faces.size(); ++seed) {
-    if (turn[seed] >= 0) continue;
-    part.assign(1, seed);
-    turn[seed] = 0;
-    bool closed = true;
-    std::size_t turned = 0;
-    Vector3d centre = Vector3d::Zero();
-    for (std::size_t at = 0; at < part.size(); ++at) {
-      const Index f = part[at];
-      for (const Index v : faces[f]) centre += mesh.positions[v] / 3;
-      turned += turn[f] != 0 ? 1 : 0;
-      closed = closed && count[f] == 3;
-      for (int k = 0; k < count[f]; ++k) {
-        const Link& link = links[f][std::size_t(k)];
-        const auto wanted = static_cast<signed char>(turn[f] ^ (link.same ? 1 : 0));
-        if (turn[link.face] < 0) {
-          turn[link.face] = wanted;
-          part.push_back(link.face);
-        } else if (turn[link.face] != wanted) {
-          refuse(Flaw::one_sided, "it has only one side");
-        }
+  return links;
+}
+
+/// The faces that links connect to `seed`, and in `turn` (per face: -1 unseen, 0 as it is, 1 turned) which of
+/// them turn so that they agree with it. `refuse` is called where they cannot.
+template <class Refuse>
+std::vector<Index> agreeing_part(Index seed, const std::vector<Links>& links, std::vector<signed char>& turn,
+                                 Refuse&& refuse) {
+  std::vector<Index> part = {seed};
+  turn[seed] = 0;
+  for (std::size_t at = 0; at < part.size(); ++at) {
+    const Index f = part[at];
+    for (std::size_t k = 0; k < links[f].count; ++k) {
+      const Links::Link& link = links[f].at[k];
+      const auto wanted = static_cast<signed char>(turn[f] ^ (link.same ? 1 : 0));
+      if (turn[link.face] < 0) {
+        turn[link.face] = wanted;
+        part.push_back(link.face);
+      } else if (turn[link.face] != wanted) {
+        refuse(Flaw::one_sided, "it has only one side");
       }
     }
-    centre /= double(part.size());
-    double volume = 0;
-    for (const Index f : part) {
-      const Vector3d a = mesh.positions[faces[f][0]] - centre, b = mesh.positions[faces[f][1]] - centre,
-                     c = mesh.positions[faces[f][2]] - centre;
-      volume += (turn[f] != 0 ? -1 : 1) * a.dot(b.cross(c));
-    }
-    const bool others = closed ? volume < 0 : 2 * turned > part.size();
+  }
+  return part;
+}
+
+/// Whether the part is to be on the other side than `turn` says: a closed one is not outward then, of an open
+/// one most faces turn.
+bool is_inside_out(const Mesh& mesh, const std::vector<Links>& links, const std::vector<Index>& part,
+                   const std::vector<signed char>& turn) {
+  if (std::any_of(part.begin(), part.end(), [&](Index f) { return links[f].count < 3; })) {
+    const auto turned = std::count_if(part.begin(), part.end(), [&](Index f) { return turn[f] != 0; });
+    return 2 * std::size_t(turned) > part.size();
+  }
+  Vector3d centre = Vector3d::Zero();
+  for (const Index f : part)
+    for (const Index v : mesh.faces[f]) centre += mesh.positions[v] / 3;
+  centre /= double(part.size());
+  double volume = 0;
+  for (const Index f : part) {
+    const auto corner = [&](std::size_t k) { return Vector3d(mesh.positions[mesh.faces[f][k]] - centre); };
+    volume += (turn[f] != 0 ? -1 : 1) * corner(0).dot(corner(1).cross(corner(2)));
+  }
+  return volume < 0;
+}
+
+/// Turns the faces so that neighbours across edges of two faces agree: closed parts outward, open ones to the
+/// side that most of their faces have. `refuse(flaw, why)` is called for every flaw; if it returns, that
+/// place is left as it is.
+template <class Refuse>
+std::vector<Face> oriented_faces(const Mesh& mesh, Refuse&& refuse) {
+  std::vector<Face> faces = mesh.faces;
+  const std::vector<Links> links = links_of(faces, refuse);
+  std::vector<signed char> turn(faces.size(), -1);
+  for (Index seed = 0; seed < faces.size(); ++seed) {
+    if (turn[seed] >= 0) continue;
+    const std::vector<Index> part = agreeing_part(seed, links, turn, refuse);
+    const bool others = is_inside_out(mesh, links, part, turn);
     for (const Index f : part)
       if ((turn[f] != 0) != others) std::swap(faces[f][1], faces[f][2]);
   }

@@ -85,6 +85,27 @@ void count_text_rows(Table& table, const TextCursor& cursor) {
   }
 }
 
+namespace {
+
+/// Fails at the first row whose values are not those of its fields.
+void check_rows(const Table& table, const Source& source, std::size_t lines_before, const Context& context) {
+  const auto bad = reduce_blocks(
+      context, table.count, table.count,
+      [&](std::size_t begin, std::size_t stop) {
+        for (std::size_t i = begin; i < stop; ++i)
+          if (!problem(table, table.row(i)).empty()) return i;
+        return table.count;
+      },
+      [](std::size_t a, std::size_t b) { return std::min(a, b); }, kTextRowsPerBlock);
+  if (bad == table.count) return;
+  std::size_t line = lines_before + bad + 1;
+  for (const Interlude& note : table.interludes)
+    if (note.row <= bad) line += std::size_t(std::count(note.text.begin(), note.text.end(), '\n'));
+  source.fail(fmt::format("line {}: {}", line, problem(table, table.row(bad))));
+}
+
+}  // namespace
+
 void read_text_rows(Table& table, TextCursor& cursor, const Context& context) {
   table.text = true;
   if (table.count == 0) return;
@@ -130,20 +151,7 @@ void read_text_rows(Table& table, TextCursor& cursor, const Context& context) {
   table.data.insert(table.data.end(), run, p);
   cursor.at = std::size_t(p - base);
   cursor.lines = lines_before + std::size_t(std::count(base + first, p, '\n'));
-
-  const auto bad = reduce_blocks(
-      context, table.count, table.count,
-      [&](std::size_t begin, std::size_t stop) {
-        for (std::size_t i = begin; i < stop; ++i)
-          if (!problem(table, table.row(i)).empty()) return i;
-        return table.count;
-      },
-      [](std::size_t a, std::size_t b) { return std::min(a, b); }, kTextRowsPerBlock);
-  if (bad == table.count) return;
-  std::size_t line = lines_before + bad + 1;
-  for (const Interlude& note : table.interludes)
-    if (note.row <= bad) line += std::size_t(std::count(note.text.begin(), note.text.end(), '\n'));
-  cursor.source.fail(fmt::format("line {}: {}", line, problem(table, table.row(bad))));
+  check_rows(table, cursor.source, lines_before, context);
 }
 
 void write_text_rows(const Table& table, Sink& sink, const Context& context) {
