@@ -264,6 +264,8 @@ TEST(LasScale, RefiningKeepsEveryPointToTheLastDigit) {
   EXPECT_EQ(done.after, (std::array<double, 3>{0.0001, 0.0001, 0.0001}));
   EXPECT_EQ(cloud.points().fields[1].offset, 4649000);
   const std::vector<double> after = positions(cloud);
+  ASSERT_EQ(before.size(), 60u);
+  ASSERT_EQ(after.size(), before.size());
   for (std::size_t k = 0; k < before.size(); ++k)
     EXPECT_NEAR(after[k], before[k], std::abs(before[k]) * 1e-15) << k;  // rounding of the product only
 }
@@ -423,6 +425,8 @@ TEST(LasConversion, LargeCoordinatesKeepAMillionthOfTheExtent) {
   const Cloud cloud = las_cloud(text);
   const Cloud las = las_cloud(las_text(cloud, Format::las));
   const std::vector<double> a = positions(cloud), b = positions(las);
+  ASSERT_EQ(a.size(), 150u);
+  ASSERT_EQ(b.size(), a.size());
   for (std::size_t k = 0; k < a.size(); ++k) EXPECT_NEAR(a[k], b[k], 2e-9) << k;
 }
 

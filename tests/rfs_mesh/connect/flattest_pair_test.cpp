@@ -130,6 +130,7 @@ TEST_P(FacesOfShape, AreThoseThatUmbrellasSpanWithTheirVotes) {
     for (int k = 0; k < umbrellas_[v].count; ++k)
       if (umbrellas_[v].spans(k))
         ++expected[unordered({v, umbrellas_[v].ribs[std::size_t(k)], umbrellas_[v].next(k)})];
+  ASSERT_GT(expected.size(), umbrellas_.size());
   ASSERT_EQ(proposed_.faces.size(), expected.size());
   ASSERT_EQ(proposed_.votes.size(), expected.size());
   for (std::size_t f = 0; f < proposed_.faces.size(); ++f)

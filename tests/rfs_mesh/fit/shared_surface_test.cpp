@@ -44,6 +44,7 @@ TEST(SharedSurface, AQuadricIsReproduced) {
   Positions points = test::random_points(test::plane(), 3000, 1);
   for (auto& p : points) p[2] = p[0] * p[0] - p[0] * p[1];
   const auto surfaces = shared(points, 48, 1e-4);
+  ASSERT_EQ(surfaces.size(), points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     const auto& p = points[i];
     const Eigen::Vector3d truth = Eigen::Vector3d(-2 * p[0] + p[1], p[0], 1).normalized();
@@ -54,7 +55,9 @@ TEST(SharedSurface, AQuadricIsReproduced) {
 
 TEST(SharedSurface, APlaneIsReproducedExactly) {
   const Positions points = test::random_points(test::plane(), 1000, 2);
-  for (const LocalSurface& s : shared(points, 48, 1e-3)) {
+  const std::vector<LocalSurface> surfaces = shared(points, 48, 1e-3);
+  ASSERT_EQ(surfaces.size(), points.size());
+  for (const LocalSurface& s : surfaces) {
     EXPECT_NEAR(std::abs(s.normal[2]), 1, 1e-12);
     EXPECT_NEAR(s.shadow[2], 0, 1e-12);
     EXPECT_NEAR(s.curvature, 0, 1e-8);

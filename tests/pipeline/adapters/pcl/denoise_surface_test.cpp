@@ -30,6 +30,7 @@ template <typename In, typename Out>
   ::pcl::PointCloud<Out> out;
   denoise.process(out);
   EXPECT_EQ(denoise.getStatus(), "");
+  EXPECT_EQ(out.size(), cloud->size());
   return out;
 }
 
@@ -238,6 +239,7 @@ TEST(PclDenoiseSurfaceThreads, SameBytesForAnyNumber) {
     denoise.setInputCloud(cloud);
     ::pcl::PointCloud<::pcl::PointNormal> out;
     denoise.process(out);
+    ASSERT_EQ(out.size(), cloud->size());
     if (threads == 1) first = out;
     for (std::size_t i = 0; i < out.size(); ++i)
       ASSERT_EQ(std::memcmp(&out[i], &first[i], sizeof out[i]), 0) << threads << " threads, point " << i;

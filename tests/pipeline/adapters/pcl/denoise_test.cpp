@@ -205,6 +205,7 @@ TEST(PclDenoiseThreads, SameBytesForAnyNumber) {
     denoise.setInputCloud(cloud);
     ::pcl::PointCloud<::pcl::PointXYZ> out;
     denoise.filter(out);
+    ASSERT_EQ(out.size(), cloud->size());
     if (threads == 1) first = out;
     for (std::size_t i = 0; i < out.size(); ++i)
       ASSERT_EQ(std::memcmp(&out[i], &first[i], 12), 0) << threads << " threads, point " << i;
