@@ -53,11 +53,12 @@ struct WriteOptions {
 /// A file in memory: n points and all that stands beside them.
 class CloudFile {
  public:
-  /// Reads a file; pipes and devices are read to their end. Errors: input_unreadable; the message says the
-  /// line or byte, what was expected and what was found. Needs memory for one copy of the file.
+  /// Reads a file; pipes and devices are read to their end. Errors: input_unreadable, and the message says
+  /// the line or byte, what was expected and what was found; out_of_memory; cancelled. Needs memory for one
+  /// copy of the file. O(bytes), as all below.
   static Result<CloudFile> read(const std::filesystem::path& path, const ReadOptions& options = {},
                                 const Context& context = {});
-  /// Reads a buffer; error messages call it `name`.
+  /// Reads a buffer; error messages call it `name`. Errors: as `read`.
   static Result<CloudFile> parse(std::string_view bytes, const std::string& name,
                                  const ReadOptions& options = {}, const Context& context = {});
   /// n x 3 row-major coordinates as float64, and nothing else.
@@ -74,7 +75,7 @@ class CloudFile {
   /// cloud has.
   Result<Done> write(const std::filesystem::path& path, const WriteOptions& options = {},
                      const Context& context = {}) const;
-  /// Writes to a buffer.
+  /// Writes to a buffer. Errors: usage as for `write`, out_of_memory, cancelled.
   Result<std::string> serialize(const WriteOptions& options = {}, const Context& context = {}) const;
 
   Format format() const;
@@ -107,7 +108,8 @@ class CloudFile {
   /// The file's polygons, split into triangles; empty without faces. Errors: input_unreadable if one names a
   /// vertex that does not exist.
   Result<std::vector<Face>> faces(const Context& context = {}) const;
-  /// Replaces the faces by triangles; only PLY and OFF can carry them.
+  /// Replaces the faces by triangles (m x 3), corners below n. Only PLY and OFF can carry them: writing
+  /// another format is an error then, unless `drop_unsupported`.
   void set_faces(const std::vector<Face>& faces);
 
  private:

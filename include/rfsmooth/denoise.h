@@ -8,10 +8,10 @@
 ///
 /// That is how flows run; the default, the automatic smoother, takes one step of its own.
 ///
-/// Differs from the paper: points that no face reaches stay where they are, as do outliers (outliers.h),
-/// which are not connected at all; and a point moves only so far: four times the noise around it (of the
-/// noisiest points where noise has heavy tails; more with
-/// a strength above 1), or under a flow, which knows of no noise, the median length of its edges.
+/// Differs from the paper: points that no face reaches stay where they are, as do outliers
+/// (pipeline/outliers.h), which are not connected at all. And a point moves only so far: four times the noise
+/// around it (of the noisiest points where noise has heavy tails; more with a strength above 1), or under a
+/// flow, which knows of no noise, the median length of its edges.
 #pragma once
 
 #include <cstddef>
@@ -68,21 +68,24 @@ struct DenoiseReport {
   std::vector<char> outlier;  ///< n: which; empty if there are none
   double spacing = 0;  ///< mean distance to the nearest neighbour, world units; 0 with fewer than 2 points
   double noise = 0;    ///< standard deviation along the normal, as measured before; world units
-  NoiseSummary
-      measured;  ///< what the cloud shows of its noise, by the automatic smoother, whatever is stated
+  /// What the cloud shows of its noise, as the automatic smoother measures it, whatever noise is stated.
+  NoiseSummary measured;
   double noise_left = 0;     ///< estimate of what is left of it; as before under flows, which cannot tell
   double equalized_rms = 0;  ///< how far points went along the surface to lie evenly, root mean square, world
                              ///< units; 0 for flows that do not even them out
   double equalized_largest = 0;  ///< the farthest
   double guide_strength = 0;     ///< of the automatic smoother's guide, dimensionless; 0 for flows
   double tail_times = 1;  ///< noise of the noisiest points (heavy tails) over that of the others; 1: no tails
-  std::size_t stranded = 0;     ///< points that its fairing had left beside the surface
-  double largest_move = 0;      ///< world units
-  double rms_move = 0;          ///< over the finite rows, world units
-  Statistics statistics;        ///< measured, or taken from the options
-  std::vector<TraceRow> trace;  ///< of the rough mesh, if asked for (FlowOptions::trace); steps + 1 rows
-  std::size_t faces = 0, edges = 0, sdg_edges = 0, bridges = 0, faceless = 0, swaps = 0;
-  std::vector<StageTime> seconds;  ///< in the order first done
+  std::size_t stranded = 0;          ///< points that the guide's fairing had left beside the surface
+  double largest_move = 0;           ///< world units
+  double rms_move = 0;               ///< over the finite rows, world units
+  Statistics statistics;             ///< measured, or taken from the options
+  std::vector<TraceRow> trace;       ///< of the rough mesh, if asked for (FlowOptions::trace); steps + 1 rows
+  std::size_t faces = 0, edges = 0;  ///< of the rough mesh, before any swap
+  std::size_t sdg_edges = 0, bridges = 0;  ///< edges of the surface description graph; tree edges left out
+  std::size_t faceless = 0;                ///< distinct points that no face reaches
+  std::size_t swaps = 0;                   ///< edges swapped, all steps together
+  std::vector<StageTime> seconds;          ///< in the order first done
 };
 
 /// Smooths n points in place: `xyz` is n x 3, row-major, world units. Rows with a NaN or infinite coordinate
@@ -95,8 +98,8 @@ struct DenoiseReport {
 Result<DenoiseReport> denoise(double* xyz, std::size_t n, const DenoiseOptions& options,
                               const Context& context, const std::vector<double>& strength = {});
 
-/// Bytes that `denoise` takes at its peak for n points, the caller's array not counted (an upper bound for
-/// scans; measured, see denoise.cpp).
+/// Bytes that `denoise` takes at its peak for n points, the caller's array not counted: measured on even
+/// clouds, with half as much to spare. Scans full of clutter may take a quarter more. Thread safe.
 std::size_t denoise_memory(std::size_t n);
 
 }  // namespace rfsmooth

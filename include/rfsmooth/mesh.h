@@ -1,7 +1,8 @@
 /// The one mesh type: positions, faces, and the one-ring adjacency of every vertex. It holds the RFS-mesh
 /// (which may cross and overlap itself, may be open, non-orientable and non-manifold at vertices) as well as
-/// a mesh read from a file.
-/// Functions that take a const mesh are thread safe; a mesh is changed by one caller at a time.
+/// a mesh read from a file. Functions that take a const mesh are thread safe; a mesh is changed by one caller
+/// at a time. They are parallel, with the same result for any number of threads, and O(n + m) for n vertices
+/// and m faces or edges unless they say otherwise. \throw Failure (cancelled) if `context.stop` is set.
 #pragma once
 
 #include <array>
@@ -59,22 +60,22 @@ struct Mesh {
   Adjacency one_ring;             ///< n rows; call rebuild_adjacency after changing faces or loose_edges
 
   Index closing = kNone;  ///< vertices from this one on only close holes for a flow and are no part of the
-                          ///< surface: their edges do not count for lengths (smoothing/boundary.h)
+                          ///< surface: their edges do not count for lengths (smoothing/modifiers/boundary.h)
 
   std::size_t edge_count() const { return one_ring.items.size() / 2; }
 };
 
-/// Symmetric adjacency of n vertices from edges in any order (duplicates and a == b are dropped). O(E log
-/// degree).
+/// Symmetric adjacency of n vertices from edges in any order (duplicates and a == b are dropped). Their ends
+/// are below n. O(E log degree).
 Adjacency make_adjacency(std::size_t n, const std::vector<Edge>& edges, const Context& context);
 
-/// The edges of two graphs over the same vertices that have none in common.
+/// The edges of two graphs over the same n vertices that have no edge in common.
 Adjacency joined(const Adjacency& one, const Adjacency& other, const Context& context);
 
 /// Every edge once, ascending.
 std::vector<Edge> edges_of(const Adjacency& graph, const Context& context);
 
-/// Recomputes mesh.one_ring from faces and loose_edges.
+/// Recomputes mesh.one_ring from faces and loose_edges, whose indices are below n.
 void rebuild_adjacency(Mesh& mesh, const Context& context);
 
 /// The faces around each vertex: rows of face indices, ascending.
@@ -88,7 +89,7 @@ Adjacency vertex_faces(std::size_t n, const std::vector<Face>& faces, const Cont
 Adjacency one_ring(const Adjacency& around, const std::vector<Face>& faces, const std::vector<char>& kept,
                    const Context& context);
 
-/// What is wrong with the mesh's invariants, one line each; empty if nothing is.
+/// What is wrong with the mesh's invariants, one line each; empty if nothing is. All cores.
 std::vector<std::string> check(const Mesh& mesh);
 
 }  // namespace rfsmooth

@@ -22,7 +22,7 @@ namespace rfsmooth {
 /// Which side the normals are on.
 struct NormalsOptions {
   /// Where the scanner stood, world units: the points that it can see face it, and what they are connected to
-  /// follows. Empty: closed shapes face outward, open ones away from their centre.
+  /// follows. Finite. Empty: closed shapes face outward, open ones away from their centre.
   std::optional<Eigen::Vector3d> viewpoint;
 };
 

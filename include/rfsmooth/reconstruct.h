@@ -20,8 +20,8 @@ namespace rfsmooth {
 
 /// How to reconstruct.
 struct ReconstructOptions {
-  std::string method = "poisson";
-  bool denoise = true;
+  std::string method = "poisson";  ///< for callers who look methods up; `reconstruct` runs what it is given
+  bool denoise = true;             ///< take the noise out first
   /// Poisson: faces with a corner farther than this from every point go. On the development shapes with 2 %
   /// noise the holes that it leaves can be filled from 2.5 spacings on; more leaves more of the flaps that
   /// Poisson invents where normals disagree.
@@ -88,16 +88,16 @@ struct ReconstructReport {
 
 /// The surface, and what was done.
 struct Reconstruction {
-  Mesh mesh;  ///< world units; every vertex has a face
-  std::vector<std::size_t>
-      row;  ///< of each vertex: the row of the cloud nearest to it, whose colour it takes
+  Mesh mesh;                     ///< world units; every vertex has a face
+  std::vector<std::size_t> row;  ///< of each vertex: the row of the cloud nearest to it, for its colour
   ReconstructReport report;
 };
 
 /// Makes a surface from n x 3 row-major coordinates (world units; rows that are not finite, and outliers that
 /// denoising found, are left out). Pieces of fewer than 200 faces (100 of a method that closes all) are
 /// dropped as specks unless all are so small. Errors: as `denoise`, and what the method says;
-/// no_usable_points if there is no surface. The same bytes for any number of threads if the method's are.
+/// no_usable_points if there is no surface, or fewer than four distinct points are left. The same bytes for
+/// any number of threads if the method's are. O(n log n) beside the method. Thread safe if the method is.
 Result<Reconstruction> reconstruct(std::vector<double> xyz, const ReconstructOptions& options,
                                    const SurfaceMethod& method, const Context& context);
 

@@ -1,6 +1,7 @@
 /// What `denoise` measures on a cloud as a whole, as a value. Each part that is there is used; each that is
 /// not is measured and entered. So the statistics that a run fills in give the same bytes when used again,
-/// and parts of a cloud that are smoothed one by one with the statistics of the whole fit together.
+/// and parts of a cloud that are smoothed one by one with the statistics of the whole fit together. Plain
+/// values: thread safe as those are.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,5 @@
-/// The RFS-mesh, and any mesh of ours, as Open3D's `TriangleMesh`: to look at, or to go on with.
+/// The RFS-mesh, and any mesh of ours, as Open3D's `TriangleMesh`: to look at, or to go on with. Thread safe:
+/// no state is kept.
 #pragma once
 
 #include <memory>

@@ -14,8 +14,10 @@
 /// or, with `setKeepOrganized(true)`, the removed ones stay as NaN (`setUserFilterValue`) and is_dense
 /// becomes false. A filter made with `true` tells which: `getRemovedIndices()`.
 ///
-/// Nothing throws through `filter` and nothing aborts: an unusable input (none set, no finite point, an index
-/// out of range, an option out of range) gives a PCL_ERROR, an empty output and a line in `getStatus()`.
+/// What is wrong with an input (none set, no finite point, an index out of range) or an option is not thrown:
+/// `filter` gives a PCL_ERROR, an empty output and a line in `getStatus()`. Setters only remember: a value
+/// out of range, a flow that there is not, or an option that the flow has not is told by every `filter` until
+/// it is mended.
 ///
 /// Compiled for the XYZ types of PCL; for your own registered point type include
 /// "rfsmooth/pcl/impl/denoise.hpp". Thread safety: one object per thread, as for every PCL filter. Cost and
@@ -43,10 +45,12 @@ class DenoiseSettings {
   void setFlow(const std::string& name);
   std::string getFlow() const { return std::string(name_of(options_.flow.flow)); }
 
-  /// Flow "auto": times the strength that the measured noise asks for (default 1; 0 = nothing moves).
+  /// Flow "auto": times the strength that the measured noise asks for, 0 to 10 (default 1; 0 = nothing
+  /// moves).
   void setStrength(double strength);
 
-  /// Flow "auto": the standard deviation of the noise along the normal, world units, instead of measuring it.
+  /// Flow "auto": the standard deviation of the noise along the normal, world units, at least 0, instead of
+  /// measuring it.
   void setNoise(double sigma);
 
   /// What becomes of points with no surface near (default: left in place, pulling nobody).
@@ -69,16 +73,17 @@ class DenoiseSettings {
   const std::string& getStatus() const { return status_; }
 
  protected:
-  /// Denoises n x 3 coordinates in place; false, with the status set and PCL_ERROR printed, if it cannot be
-  /// done.
+  /// Denoises n x 3 coordinates in place, row-major, world units; false, after `fail`, if it cannot be done.
   bool run(double* xyz, std::size_t n);
 
   /// Writes unit normals of n x 3 coordinates (rfsmooth/normals.h); false as for `run`.
   bool run_normals(const double* xyz, std::size_t n, const std::optional<Eigen::Vector3d>& viewpoint,
                    double* normals);
 
-  /// Whether an organised cloud looks as it would from the origin (n = width x height rows).
+  /// Whether an organised cloud, width x height rows of 3, looks as it would from the origin.
   bool seen_from_origin(const double* xyz, std::size_t width, std::size_t height) const;
+
+  /// Sets the status and prints it by PCL_ERROR; false.
   bool fail(const std::string& why);
 
   /// The options of the flow "auto"; null, and a mistake, if another is set.

@@ -14,8 +14,9 @@
 /// finite, or outside the indices and without one in the input) have NaN there, and `is_dense` is then false,
 /// as after PCL's NormalEstimation.
 ///
-/// Nothing throws and nothing aborts: see denoise.h. `output` may be the input cloud if In = Out. Compiled
-/// for the pairs below; for others, your own types too, include "rfsmooth/pcl/impl/denoise_surface.hpp".
+/// Errors are told as denoise.h says, and so are threads. `output` may be the input cloud if In = Out.
+/// Compiled for the pairs below; for others, your own types too, include
+/// "rfsmooth/pcl/impl/denoise_surface.hpp".
 #pragma once
 
 #include <optional>
@@ -36,8 +37,8 @@ class DenoiseSurface : public ::pcl::CloudSurfaceProcessing<PointInT, PointOutT>
   using PointCloudOut = ::pcl::PointCloud<PointOutT>;
 
   /// Where the scanner stood, world units: the points that it can see face it, and what they are connected to
-  /// follows. Not set: the cloud's sensor origin, if somebody seems to have said it (pipeline/viewpoint.h: it
-  /// or the orientation is not the default, or the cloud is organised and looks as it would from there).
+  /// follows. Not set: the cloud's sensor origin, if somebody seems to have said it: it or the orientation is
+  /// not the default, or the cloud is organised and looks as it would from there.
   void setViewPoint(float x, float y, float z) { viewpoint_ = Eigen::Vector3d(x, y, z); }
 
   /// Back to how it was before `setViewPoint`.
