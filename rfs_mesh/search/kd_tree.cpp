@@ -162,32 +162,21 @@ void KdTree::enclose_children(const Cursor& c) {
 }
 
 /// The nodes of a subtree, from its leaves up.
-void KdTree::enclose(const Positions& points, const Cursor& c) {
-  if (!c.is_leaf()) {
-    enclose(points, c.left());
-    enclose(points, c.right());
-    return enclose_children(c);
-  }
-  Leaf& leaf = leaves_[c.first];
-  Node& box = nodes_[c.node];
-  box.low = box.high = points[leaf.id[0]];
-  for (std::size_t i = 0; i < kLeaf && leaf.id[i] != kNone; ++i) {
-    const Eigen::Vector3d& p = points[leaf.id[i]];
-    if (!(p.array().abs() < kLargest).all())
-      throw std::invalid_argument("KdTree: a coordinate is not finite");
-    leaf.x[i] = p[0];
-    leaf.y[i] = p[1];
-    leaf.z[i] = p[2];
-    box.low = box.low.cwiseMin(p);
-    box.high = box.high.cwiseMax(p);
-  }
+template <class Enclose>
+void KdTree::enclose(const Cursor& c, const Enclose& enclose_leaf) {
+  if (c.is_leaf()) return enclose_leaf(leaves_[c.first], nodes_[c.node]);
+  enclose(c.left(), enclose_leaf);
+  enclose(c.right(), enclose_leaf);
+  enclose_children(c);
 }
 
-void KdTree::follow(const Positions& points, const Context& context) {
+/// All nodes. `enclose_leaf(leaf, node)` changes a leaf and makes its box.
+template <class Enclose>
+void KdTree::enclose_all(const Context& context, const Enclose& enclose_leaf) {
   if (empty()) return;
   const std::vector<Cursor> small = subtrees(kSerialLeaves);
   for_each_index(
-      context, small.size(), [&](std::size_t i) { enclose(points, small[i]); }, 1);
+      context, small.size(), [&](std::size_t i) { enclose(small[i], enclose_leaf); }, 1);
   // The nodes above them: in preorder a node comes before what is below it.
   std::vector<Cursor> above, stack = {root()};
   while (!stack.empty()) {
@@ -199,6 +188,45 @@ void KdTree::follow(const Positions& points, const Context& context) {
     stack.push_back(c.right());
   }
   for (std::size_t i = above.size(); i-- > 0;) enclose_children(above[i]);
+}
+
+void KdTree::follow(const Positions& points, const Context& context) {
+  enclose_all(context, [&](Leaf& leaf, Node& box) {
+    box.low = box.high = points[leaf.id[0]];
+    for (std::size_t i = 0; i < kLeaf && leaf.id[i] != kNone; ++i) {
+      const Eigen::Vector3d& p = points[leaf.id[i]];
+      if (!(p.array().abs() < kLargest).all())
+        throw std::invalid_argument("KdTree: a coordinate is not finite");
+      leaf.x[i] = p[0];
+      leaf.y[i] = p[1];
+      leaf.z[i] = p[2];
+      box.low = box.low.cwiseMin(p);
+      box.high = box.high.cwiseMax(p);
+    }
+  });
+}
+
+void KdTree::leave_out(const std::vector<char>& gone, const Context& context) {
+  constexpr double kFar = std::numeric_limits<double>::infinity();
+  enclose_all(context, [&](Leaf& leaf, Node& box) {
+    box.low.setConstant(kFar);  // of a leaf without points: infinitely far from everything
+    box.high.setConstant(-kFar);
+    std::size_t to = 0;
+    for (std::size_t i = 0; i < kLeaf && leaf.id[i] != kNone; ++i) {
+      if (gone[leaf.id[i]] != 0) continue;
+      const Eigen::Vector3d p(leaf.x[i], leaf.y[i], leaf.z[i]);
+      box.low = box.low.cwiseMin(p);
+      box.high = box.high.cwiseMax(p);
+      leaf.x[to] = p[0];
+      leaf.y[to] = p[1];
+      leaf.z[to] = p[2];
+      leaf.id[to++] = leaf.id[i];
+    }
+    for (; to < kLeaf; ++to) {
+      leaf.x[to] = leaf.y[to] = leaf.z[to] = kFar;
+      leaf.id[to] = kNone;
+    }
+  });
 }
 
 std::vector<KdTree::Cursor> KdTree::subtrees(std::uint32_t leaves) const {

@@ -29,7 +29,7 @@ std::size_t longest_list(std::size_t k) {
   return 256 + 4 * k;
 }
 
-/// Above this many kept points the k nearest are selected before they are ranked (ranking is quadratic).
+/// Above this many kept points the farther ones are dropped before they are ranked (ranking is quadratic).
 std::size_t most_ranked(std::size_t k) {
   return 64 + 2 * k;
 }
@@ -185,15 +185,29 @@ Index LeafNeighbors::id_at(std::uint32_t place) const {
   return tree_.leaf(list_[place / kLeaf]).id[place % kLeaf];
 }
 
+/// Leaves of the kept points those that may be among the k nearest and the point itself.
+void LeafNeighbors::drop_farther() {
+  sorted_.assign(kept_key_.begin(), kept_key_.begin() + std::ptrdiff_t(kept_count_));
+  std::nth_element(sorted_.begin(), sorted_.begin() + std::ptrdiff_t(k_), sorted_.end());
+  const float most = sorted_[k_] + 2 * uncertain_;
+  std::size_t to = 0;
+  for (std::size_t i = 0; i < kept_count_; ++i) {
+    kept_[to] = kept_[i];
+    kept_key_[to] = kept_key_[i];
+    to += std::size_t(kept_key_[to] <= most);
+  }
+  kept_count_ = to;
+}
+
 /// Places (place_, sorted_) every kept point by the number of nearer ones. False if among the k nearest or
 /// behind them two are not told apart.
 bool LeafNeighbors::rank() {
   const std::size_t room = padded(kept_count_);
-  if (place_.size() < room) {
-    place_.resize(2 * room);
-    sorted_.resize(2 * room);
-    nearer_.resize(2 * room);
-  }
+  for (auto* all : {&place_, &nearer_})
+    if (all->size() < room) all->resize(2 * room);
+  if (sorted_.size() < room) sorted_.resize(2 * room);
+  std::fill(kept_key_.begin() + std::ptrdiff_t(kept_count_), kept_key_.begin() + std::ptrdiff_t(room),
+            std::numeric_limits<float>::infinity());
   count_nearer(kept_key_.data(), room, nearer_.data());
   std::size_t sum = 0;
   for (std::size_t i = 0; i < kept_count_; ++i) {
@@ -201,24 +215,40 @@ bool LeafNeighbors::rank() {
     place_[nearer_[i]] = kept_[i];
     sorted_[nearer_[i]] = kept_key_[i];
   }
-  if (2 * sum != kept_count_ * (kept_count_ - 1)) return false;
+  if (2 * sum != kept_count_ * (kept_count_ - 1)) {
+    rank_equal();
+    return false;
+  }
   const std::size_t last = std::min(k_ + 1, kept_count_ - 1);
   int close = 0;
   for (std::size_t r = 0; r < last; ++r) close |= int(sorted_[r + 1] - sorted_[r] <= 2 * uncertain_);
   return close == 0;
 }
 
-/// The same in double precision, ties by index; the point itself is put before all others.
-void LeafNeighbors::rank_exactly(std::uint32_t slot) {
-  exact_.clear();
+/// The same where keys are equal: one of them behind the other.
+void LeafNeighbors::rank_equal() {
+  taken_.assign(kept_count_, 0);
   for (std::size_t i = 0; i < kept_count_; ++i) {
-    const Index id = id_at(kept_[i]);
-    const double d2 = id == leaf_->id[slot] ? -1 : squared_distance_to(slot, kept_[i]);
-    exact_.push_back({d2, id, kept_[i]});
+    const std::size_t r = nearer_[i] + taken_[nearer_[i]]++;
+    place_[r] = kept_[i];
+    sorted_[r] = kept_key_[i];
   }
-  std::partial_sort(exact_.begin(), exact_.begin() + std::ptrdiff_t(k_ + 1), exact_.end());
-  place_.resize(std::max(place_.size(), k_ + 1));
-  for (std::size_t r = 0; r <= k_; ++r) place_[r] = exact_[r].place;
+}
+
+/// Places the ranked points that are not told apart in double precision, ties by index; the point itself is
+/// put before all others. Points of keys that are farther apart are in their order.
+void LeafNeighbors::tell_apart(std::uint32_t slot) {
+  for (std::size_t first = 0, end = 1; first <= k_; first = end++) {
+    while (end < kept_count_ && sorted_[end] - sorted_[end - 1] <= 2 * uncertain_) ++end;
+    if (end == first + 1) continue;
+    exact_.clear();
+    for (std::size_t r = first; r < end; ++r) {
+      const Index id = id_at(place_[r]);
+      exact_.push_back({id == leaf_->id[slot] ? -1 : squared_distance_to(slot, place_[r]), id, place_[r]});
+    }
+    std::sort(exact_.begin(), exact_.end());
+    for (std::size_t r = first; r < end; ++r) place_[r] = exact_[r - first].place;
+  }
 }
 
 /// Looks as far as `share` of the (squared) bound. False if less than k points are there.
@@ -229,8 +259,14 @@ bool LeafNeighbors::find_within(std::uint32_t slot, double share) {
   const std::size_t room = padded(kept_count_);
   if (kept_key_.size() < room) kept_key_.resize(2 * room);
   for (std::size_t i = 0; i < kept_count_; ++i) kept_key_[i] = key_[kept_[i]];
-  for (std::size_t i = kept_count_; i < room; ++i) kept_key_[i] = std::numeric_limits<float>::infinity();
-  if (kept_count_ > most_ranked(k_) || !rank()) rank_exactly(slot);
+  if (kept_count_ > most_ranked(k_)) drop_farther();
+  if (kept_count_ > most_ranked(k_)) {  // equally far
+    place_.assign(kept_.begin(), kept_.begin() + std::ptrdiff_t(kept_count_));
+    sorted_.assign(kept_count_, 0);
+    tell_apart(slot);
+  } else if (!rank()) {
+    tell_apart(slot);
+  }
   guess_ = squared_distance_to(slot, place_[k_]);
   return guess_ <= share * list_bound_;
 }

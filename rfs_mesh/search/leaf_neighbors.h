@@ -38,8 +38,10 @@ class LeafNeighbors {
  private:
   void list_leaves(const KdTree::Node& box, double squared_bound);
   bool find_within(std::uint32_t slot, double share);
+  void drop_farther();
   bool rank();
-  void rank_exactly(std::uint32_t slot);
+  void rank_equal();
+  void tell_apart(std::uint32_t slot);
   void load_listed(const KdTree::Node& box);
   double squared_distance_to(std::uint32_t slot, std::uint32_t place) const;
   Index id_at(std::uint32_t place) const;
@@ -63,6 +65,7 @@ class LeafNeighbors {
   std::vector<std::uint32_t> place_;  // of rank 0, 1, ... (0 is the point itself): its place in x_
   std::vector<float> sorted_;         // keys by rank
   std::vector<std::uint32_t> nearer_;
+  std::vector<std::uint32_t> taken_;  // of each rank: how many have it
   struct Exact {
     double squared_distance;
     Index id;

@@ -28,13 +28,15 @@ class Nearest {
   }
   const Neighbor& worst() const { return list_.back(); }
   void offer(const Neighbor& candidate) {
-    std::size_t i = list_.size() - 1;
+    if (found_ < list_.size()) ++found_;
+    std::size_t i = found_ - 1;
     for (; i > 0 && candidate < list_[i - 1]; --i) list_[i] = list_[i - 1];
     list_[i] = candidate;
   }
 
  private:
   std::vector<Neighbor>& list_;
+  std::size_t found_ = 0;  ///< behind them are none yet
 };
 
 /// The same for lists so long that keeping them sorted would cost more than the search: candidates pile up to
@@ -135,16 +137,6 @@ void find_nearest_but(const KdTree& tree, const Vector3d& q, Skip&& skip, double
 
 constexpr double kNoBound = std::numeric_limits<double>::infinity();
 
-/// The same of n points, and only those that there are.
-template <class Skip>
-void find_up_to(const KdTree& tree, std::size_t n, const Vector3d& q, Skip&& skip, double bound, int k,
-                std::vector<Neighbor>& out) {
-  out.clear();
-  if (k < 1 || n == 0) return;
-  find_nearest_but(tree, q, skip, bound, std::min(std::size_t(k), n), out);
-  while (!out.empty() && out.back().index == kNone) out.pop_back();
-}
-
 /// The k nearest of q except the point `self`.
 void find_nearest(const KdTree& tree, const Vector3d& q, Index self, std::size_t k,
                   std::vector<Neighbor>& out) {
@@ -231,16 +223,19 @@ void SpatialIndex::nearest(const Vector3d& query, int k, std::vector<Neighbor>& 
   find_nearest(tree_, query, kNone, std::min(std::size_t(k), points_.size()), out);
 }
 
-void SpatialIndex::nearest_staying(const Vector3d& query, int k, const std::vector<char>& gone, double bound,
-                                   std::vector<Neighbor>& out) const {
-  find_up_to(
-      tree_, points_.size(), query, [&](Index i) { return gone[i] != 0; }, bound, k, out);
+SpatialIndex SpatialIndex::without(const std::vector<char>& gone, const Context& context) const {
+  KdTree left = tree_;
+  left.leave_out(gone, context);
+  return {points_, std::move(left)};
 }
 
 void SpatialIndex::nearest_within(const Vector3d& query, int k, double bound,
                                   std::vector<Neighbor>& out) const {
-  find_up_to(
-      tree_, points_.size(), query, [](Index) { return false; }, bound, k, out);
+  out.clear();
+  if (k < 1 || points_.empty()) return;
+  find_nearest_but(
+      tree_, query, [](Index) { return false; }, bound, std::min(std::size_t(k), points_.size()), out);
+  while (!out.empty() && out.back().index == kNone) out.pop_back();
 }
 
 namespace {

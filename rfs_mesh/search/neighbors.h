@@ -74,12 +74,7 @@ class SpatialIndex {
   /// the cloud at the query is included. Replaces `out`.
   void nearest(const Eigen::Vector3d& query, int k, std::vector<Neighbor>& out) const;
 
-  /// The same of the points not flagged in `gone` (n) with |point - query|^2 <= bound; all if there are
-  /// fewer.
-  void nearest_staying(const Eigen::Vector3d& query, int k, const std::vector<char>& gone, double bound,
-                       std::vector<Neighbor>& out) const;
-
-  /// The same of all points with |point - query|^2 <= bound.
+  /// The same of the points with |point - query|^2 <= bound.
   void nearest_within(const Eigen::Vector3d& query, int k, double bound, std::vector<Neighbor>& out) const;
 
   /// All points with |point - query| <= radius, ascending by (distance, index). Replaces `out`.
@@ -91,10 +86,15 @@ class SpatialIndex {
   /// Whether a point is within `radius`. O(log n), fastest if there is none.
   bool any_within(const Eigen::Vector3d& query, double radius) const;
 
+  /// The same index without the points flagged in `gone` (n): they are not found any more. Of its searches,
+  /// nearest_within(), within() and any_within() are for use. O(n), parallel.
+  SpatialIndex without(const std::vector<char>& gone, const Context& context) const;
+
   /// Gives up the tree, for an index of the same points elsewhere. The index cannot be searched afterwards.
   KdTree release_tree() { return std::move(tree_); }
 
  private:
+  SpatialIndex(const Positions& points, KdTree tree) : points_(points), tree_(std::move(tree)) {}
   void fill(NeighborTable& table, const std::vector<char>* wanted, const Context& context) const;
 
   const Positions& points_;

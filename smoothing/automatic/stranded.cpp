@@ -25,7 +25,8 @@ using rfs_mesh::kNeighbourhood;
 using rfs_mesh::Neighbor;
 using rfs_mesh::NeighborTable;
 
-/// The guide while points of it are moved: an index of where it was, and a small one of the moved points.
+/// The guide while points of it are moved: an index of where it was, one of those that are still there, and a
+/// small one of the moved points.
 class MovingGuide {
  public:
   MovingGuide(const Positions& guide, const Context& context)
@@ -39,8 +40,11 @@ class MovingGuide {
   /// Takes a point out, or puts it back where it was.
   void set_gone(Index i, bool gone) { gone_[i] = char(gone); }
 
-  /// The points that are gone and have a place again.
+  /// The points that are gone and have a place again. To be called before points are searched for, since
+  /// others were taken out or put back.
   void set_moved(std::vector<Index> moved, const Positions& guide, const Context& context) {
+    staying_.reset();  // its memory is used again
+    staying_.emplace(index_.without(gone_, context));
     moved_ = std::move(moved);
     places_.clear();
     for (const Index i : moved_) places_.push_back(guide[i]);
@@ -57,7 +61,7 @@ class MovingGuide {
   /// The k nearest of `at`, ascending. \param bound squared distance that at least k are surely within
   const std::vector<Neighbor>& nearest(const Eigen::Vector3d& at, std::size_t k, Search& search,
                                        double bound = std::numeric_limits<double>::infinity()) const {
-    index_.nearest_staying(at, int(k), gone_, bound, search.found);
+    staying_->nearest_within(at, int(k), bound, search.found);
     return with_moved(at, k, search, bound);
   }
 
@@ -102,6 +106,7 @@ class MovingGuide {
   const Positions before_;
   rfs_mesh::SpatialIndex index_;
   std::vector<char> gone_;
+  std::optional<rfs_mesh::SpatialIndex> staying_;
   std::vector<Index> moved_;
   Positions places_;
   std::optional<rfs_mesh::SpatialIndex> moved_index_;
