@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "base/avx2.h"
+
 namespace rfsmooth::smoothing {
 
 namespace {
@@ -11,12 +13,12 @@ using learned::kSecond;
 
 constexpr float kFarInput = 6, kLeak = 0.1F;
 
-float leaky(float t) {
+inline float leaky(float t) {
   return std::max(t, kLeak * t);
 }
 
 template <std::size_t N>
-void add_times(float x, const std::array<float, N>& row, std::array<float, N>& sum) {
+inline void add_times(float x, const std::array<float, N>& row, std::array<float, N>& sum) {
   for (std::size_t k = 0; k < N; ++k) sum[k] += x * row[k];
 }
 
@@ -26,7 +28,7 @@ void unpack(const std::int16_t* from, float unit, std::array<float, N>& row) {
   for (std::size_t k = 0; k < N; ++k) row[k] = unit * float(from[k]);
 }
 
-float scaled_input(std::size_t k, float x) {
+inline float scaled_input(std::size_t k, float x) {
   return std::clamp((x - learned::kCentre[k]) * learned::kScale[k], -kFarInput, kFarInput);
 }
 
@@ -40,6 +42,7 @@ Network::Network() {
   unpack(learned::kLastWeight, learned::kLastUnit, last_);
 }
 
+RFSMOOTH_AVX2
 float Network::behind(const First& first) const {
   Second second;
   std::copy(learned::kSecondBias, learned::kSecondBias + kSecond, second.begin());
@@ -49,6 +52,7 @@ float Network::behind(const First& first) const {
   return y;
 }
 
+RFSMOOTH_AVX2
 float Network::offset(const Features::Row& row) const {
   First one, other, odd{};
   std::copy(learned::kFirstBias, learned::kFirstBias + kFirst, one.begin());
