@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rfs_mesh/search/sort_neighbors.h"
+
 namespace rfsmooth::rfs_mesh {
 
 void KeptNeighbors::nearest(const SpatialIndex& index, const Eigen::Vector3d& place, std::size_t m,
@@ -30,7 +32,7 @@ bool KeptNeighbors::find(const SpatialIndex& index, const Eigen::Vector3d& place
   std::nth_element(out.begin(), out.begin() + last, out.end());
   if (!(std::sqrt(out[std::size_t(last)].squared_distance) < sure)) return false;
   out.resize(m);
-  std::sort(out.begin(), out.end());
+  sort_neighbors(out);
   return true;
 }
 

@@ -6,6 +6,7 @@
 
 #include "base/parallel.h"
 #include "rfs_mesh/search/leaf_neighbors.h"
+#include "rfs_mesh/search/sort_neighbors.h"
 
 namespace rfsmooth::rfs_mesh {
 
@@ -55,7 +56,7 @@ class NearestMany {
   }
   void finish() {
     if (list_.size() > k_) drop_farther();
-    std::sort(list_.begin(), list_.end());
+    sort_neighbors(list_);
   }
 
  private:

@@ -15,29 +15,32 @@ namespace {
 /// sqrt(k).
 constexpr double kWiden = 1;
 constexpr double kLeastGrowth = 1.3;  // of the squared distance after too few were found
-constexpr int kBins = 128;
+constexpr std::int32_t kBins = 128;
 
-/// Appends the points of a leaf within the bound, in its units; returns how many there are then.
+/// Offsets of the points of a leaf and their squares, in units of the bound. Returns how many are within it.
 RFSMOOTH_AVX2
-std::size_t keep(const KdTree::Leaf& leaf, const Eigen::Vector3d& place, double scale, std::size_t kept,
-                 float* squared, float* x, float* y, float* z, Index* id) {
+std::size_t look(const KdTree::Leaf& leaf, const Eigen::Vector3d& place, double scale, float* squared,
+                 float* x, float* y, float* z) {
   const double x0 = place[0], y0 = place[1], z0 = place[2];
-  float dx[KdTree::kLeaf], dy[KdTree::kLeaf], dz[KdTree::kLeaf], square[KdTree::kLeaf];
+  std::int32_t within = 0;
   for (std::size_t i = 0; i < KdTree::kLeaf; ++i) {
-    dx[i] = float((leaf.x[i] - x0) * scale);
-    dy[i] = float((leaf.y[i] - y0) * scale);
-    dz[i] = float((leaf.z[i] - z0) * scale);
-    square[i] = (dx[i] * dx[i] + dy[i] * dy[i]) + dz[i] * dz[i];
+    x[i] = float((leaf.x[i] - x0) * scale);
+    y[i] = float((leaf.y[i] - y0) * scale);
+    z[i] = float((leaf.z[i] - z0) * scale);
+    squared[i] = (x[i] * x[i] + y[i] * y[i]) + z[i] * z[i];
   }
-  for (std::size_t i = 0; i < KdTree::kLeaf; ++i) {
-    squared[kept] = square[i];
-    x[kept] = dx[i];
-    y[kept] = dy[i];
-    z[kept] = dz[i];
-    id[kept] = leaf.id[i];
-    kept += std::size_t(square[i] <= 1);
+  for (std::size_t i = 0; i < KdTree::kLeaf; ++i) within += std::int32_t(squared[i] <= 1);
+  return std::size_t(within);
+}
+
+/// The bins of squared distances up to 1; kBins beyond.
+RFSMOOTH_AVX2
+void bins_of(const float* squared, std::size_t count, std::uint8_t* bin) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const float in_bins = std::min(squared[i], 1.0F) * kBins;
+    const auto at = std::min(std::int32_t(in_bins), kBins - 1);
+    bin[i] = std::uint8_t(squared[i] <= 1 ? at : kBins);
   }
-  return kept;
 }
 
 }  // namespace
@@ -54,7 +57,6 @@ void WideNeighbors::make_room(std::size_t size) {
   z_.resize(size);
   id_.resize(size);
   bin_.resize(size);
-  last_bin_.resize(size);
 }
 
 void WideNeighbors::find(const Eigen::Vector3d& place) {
@@ -67,18 +69,19 @@ void WideNeighbors::find(const Eigen::Vector3d& place) {
   double bound = guess_ * std::pow(1 + kWiden / std::sqrt(double(k_)), 2);
   bound = std::max(bound, std::numeric_limits<double>::min());
   for (;;) {
-    gather(place, bound);
-    if (kept_ >= k_) break;
-    bound *= std::max(kLeastGrowth, 1.1 * double(k_) / double(kept_ + 1));
+    const std::size_t within = gather(place, bound);
+    if (within >= k_) break;
+    bound *= std::max(kLeastGrowth, 1.1 * double(k_) / double(within + 1));
   }
   select();
   guess_ = double(farthest_) * bound;
 }
 
-/// Keeps the points within the bound, in its units.
-void WideNeighbors::gather(const Eigen::Vector3d& place, double squared_bound) {
+/// Keeps the points of all leaves within the bound, in its units; returns how many of them are, too.
+std::size_t WideNeighbors::gather(const Eigen::Vector3d& place, double squared_bound) {
   unit_ = std::sqrt(squared_bound);
   kept_ = 0;
+  std::size_t within = 0;
   const KdTree& tree = index_.tree();
   const double scale = 1 / unit_;
   KdTree::Cursor stack[64];
@@ -94,22 +97,25 @@ void WideNeighbors::gather(const Eigen::Vector3d& place, double squared_bound) {
       }
       const KdTree::Leaf& leaf = tree.leaf(at.first);
       if (kept_ + KdTree::kLeaf > x_.size()) make_room(2 * x_.size());
-      kept_ = keep(leaf, place, scale, kept_, squared_.data(), x_.data(), y_.data(), z_.data(), id_.data());
+      within += look(leaf, place, scale, squared_.data() + kept_, x_.data() + kept_, y_.data() + kept_,
+                     z_.data() + kept_);
+      std::copy(leaf.id, leaf.id + KdTree::kLeaf, id_.data() + kept_);
+      kept_ += KdTree::kLeaf;
       break;
     }
   }
+  return within;
 }
 
 /// Leaves the k nearest.
 void WideNeighbors::select() {
-  std::array<std::size_t, kBins> count = {};
-  for (std::size_t i = 0; i < kept_; ++i) {
-    bin_[i] = std::uint8_t(std::min(int(squared_[i] * kBins), kBins - 1));
-    ++count[bin_[i]];
-  }
+  bins_of(squared_.data(), kept_, bin_.data());
+  std::array<std::size_t, kBins + 1> count = {};
+  for (std::size_t i = 0; i < kept_; ++i) ++count[bin_[i]];
   std::uint8_t last = 0;
   std::size_t below = 0;
   while (below + count[last] < k_) below += count[last++];
+  if (last_bin_.size() <= count[last]) last_bin_.resize(2 * count[last] + 1);
   std::size_t kept = 0, in_last = 0;
   for (std::size_t i = 0; i < kept_; ++i) {
     const Item item = {squared_[i], x_[i], y_[i], z_[i], id_[i]};

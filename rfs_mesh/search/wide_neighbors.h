@@ -37,7 +37,7 @@ class WideNeighbors {
     float squared, x, y, z;
     Index id;
   };
-  void gather(const Eigen::Vector3d& place, double squared_bound);
+  std::size_t gather(const Eigen::Vector3d& place, double squared_bound);
   void select();
   void make_room(std::size_t size);
 
