@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/avx2.h"
 #include "base/parallel.h"
 #include "rfs_mesh/search/leaf_neighbors.h"
 #include "rfs_mesh/search/sort_neighbors.h"
@@ -99,7 +100,7 @@ void search(const KdTree& tree, const Vector3d& q, Worst&& worst, Scan&& scan) {
   }
 }
 
-void squared_distances(const KdTree::Leaf& leaf, const Vector3d& q, double* d2) {
+inline void squared_distances(const KdTree::Leaf& leaf, const Vector3d& q, double* d2) {
   for (std::uint32_t i = 0; i < KdTree::kLeaf; ++i) {
     const double x = leaf.x[i] - q[0], y = leaf.y[i] - q[1], z = leaf.z[i] - q[2];
     d2[i] = (x * x + y * y) + z * z;
@@ -256,10 +257,34 @@ void for_each_within(const KdTree& tree, const Vector3d& query, const Neighbor& 
 
 }  // namespace
 
+namespace {
+
+/// Writes the points of a leaf that are within the bound to `out`, which has room for all; returns how many.
+RFSMOOTH_AVX2
+std::size_t write_within(const KdTree::Leaf& leaf, const Vector3d& q, double bound, Neighbor* out) {
+  double d2[KdTree::kLeaf];
+  squared_distances(leaf, q, d2);
+  std::size_t count = 0;
+  for (std::uint32_t i = 0; i < KdTree::kLeaf; ++i) {
+    out[count] = {leaf.id[i], d2[i]};
+    count += std::size_t((d2[i] <= bound) & (leaf.id[i] != kNone));
+  }
+  return count;
+}
+
+}  // namespace
+
 void SpatialIndex::within_unsorted(const Vector3d& query, double radius, std::vector<Neighbor>& out) const {
-  out.clear();
-  if (!(radius >= 0)) return;
-  for_each_within(tree_, query, {kNone, radius * radius}, [&](const Neighbor& q) { out.push_back(q); });
+  if (!(radius >= 0)) return out.clear();
+  const Neighbor limit = {kNone, radius * radius};
+  std::size_t found = 0;
+  search(
+      tree_, query, [&]() -> const Neighbor& { return limit; },
+      [&](const KdTree::Leaf& leaf) {
+        if (out.size() < found + KdTree::kLeaf) out.resize(2 * found + KdTree::kLeaf);
+        found += write_within(leaf, query, limit.squared_distance, out.data() + found);
+      });
+  out.resize(found);
 }
 
 void SpatialIndex::within(const Vector3d& query, double radius, std::vector<Neighbor>& out) const {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "base/avx2.h"
@@ -33,13 +34,22 @@ std::size_t look(const KdTree::Leaf& leaf, const Eigen::Vector3d& place, double 
   return std::size_t(within);
 }
 
-/// The bins of squared distances up to 1; kBins beyond.
+typedef float LeafFloats __attribute__((vector_size(KdTree::kLeaf * sizeof(float))));
+typedef std::int32_t LeafWholes __attribute__((vector_size(KdTree::kLeaf * sizeof(std::int32_t))));
+typedef std::uint8_t LeafBytes __attribute__((vector_size(KdTree::kLeaf)));
+
+/// The bins of squared distances up to 1; kBins beyond. `count`: a multiple of kLeaf.
 RFSMOOTH_AVX2
 void bins_of(const float* squared, std::size_t count, std::uint8_t* bin) {
-  for (std::size_t i = 0; i < count; ++i) {
-    const float in_bins = std::min(squared[i], 1.0F) * kBins;
-    const auto at = std::min(std::int32_t(in_bins), kBins - 1);
-    bin[i] = std::uint8_t(squared[i] <= 1 ? at : kBins);
+  for (std::size_t first = 0; first < count; first += KdTree::kLeaf) {
+    LeafFloats square;
+    std::memcpy(&square, squared + first, sizeof square);
+    const LeafWholes beyond = square > 1;
+    const LeafFloats inside = square > 1 ? LeafFloats{} : square * float(kBins);
+    const LeafWholes at = __builtin_convertvector(inside, LeafWholes);
+    const LeafWholes found = beyond ? LeafWholes{} + kBins : at < kBins ? at : LeafWholes{} + (kBins - 1);
+    const LeafBytes bytes = __builtin_convertvector(found, LeafBytes);
+    std::memcpy(bin + first, &bytes, sizeof bytes);
   }
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 
 #include "base/avx2.h"
 #include "rfs_mesh/levels.h"
@@ -28,6 +29,9 @@ struct At {
 using Lanes = float[kLanes];
 using Whole = std::int32_t[kLanes];
 
+/// All lanes, where a loop over them does not compile to vector instructions by itself.
+typedef float AllLanes __attribute__((vector_size(sizeof(Lanes))));
+
 /// A number of the inner and of the outer disc side by side. Added to a bin in one go, and never to a part of
 /// what was written just before: a processor waits for that.
 typedef float Both __attribute__((vector_size(2 * sizeof(float))));
@@ -36,17 +40,18 @@ typedef float Both __attribute__((vector_size(2 * sizeof(float))));
 /// the two bins that share a height, `upper` the part of the upper one.
 inline void add_heights(const Lanes& inner, const Lanes& outer, const Lanes& counts, const Whole& low,
                         const Lanes& upper, Both* bins) {
-  float first[kLanes][2], second[kLanes][2];
+  AllLanes in, out, counted, share;
+  std::memcpy(&in, inner, sizeof in);
+  std::memcpy(&out, outer, sizeof out);
+  std::memcpy(&counted, counts, sizeof counted);
+  std::memcpy(&share, upper, sizeof share);
+  in *= counted;
+  out *= counted;
+  const AllLanes in_second = in * share, out_second = out * share, in_first = in - in_second,
+                 out_first = out - out_second;
   for (std::size_t l = 0; l < kLanes; ++l) {
-    const float in = counts[l] * inner[l], out = counts[l] * outer[l];
-    second[l][0] = in * upper[l];
-    second[l][1] = out * upper[l];
-    first[l][0] = in - second[l][0];
-    first[l][1] = out - second[l][1];
-  }
-  for (std::size_t l = 0; l < kLanes; ++l) {
-    bins[low[l]] += Both{first[l][0], first[l][1]};
-    bins[low[l] + 1] += Both{second[l][0], second[l][1]};
+    bins[low[l]] += Both{in_first[l], out_first[l]};
+    bins[low[l] + 1] += Both{in_second[l], out_second[l]};
   }
 }
 
@@ -85,15 +90,23 @@ inline void add_moments(const Lanes& weight, const Lanes& dx, const Lanes& dy, c
   }
 }
 
+inline void add(const AllLanes& values, Lanes& to) {
+  AllLanes sum;
+  std::memcpy(&sum, to, sizeof sum);
+  sum += values;
+  std::memcpy(to, &sum, sizeof sum);
+}
+
 inline void add_residuals(const Lanes& weight, const float* residual, Sums<4>& s) {
-  for (std::size_t l = 0; l < kLanes; ++l) {
-    const float w = weight[l], r = residual[l], square = r * r;
-    s.all[l] += w;
-    s.sum[0][l] += w * r;
-    s.sum[1][l] += w * square;
-    s.sum[2][l] += w * square * r;
-    s.sum[3][l] += w * square * square;
-  }
+  AllLanes w, r;
+  std::memcpy(&w, weight, sizeof w);
+  std::memcpy(&r, residual, sizeof r);
+  const AllLanes square = r * r;
+  add(w, s.all);
+  add(w * r, s.sum[0]);
+  add(w * square, s.sum[1]);
+  add(w * square * r, s.sum[2]);
+  add(w * square * square, s.sum[3]);
 }
 
 }  // namespace
