@@ -229,8 +229,11 @@ Connection connected(rfs_mesh::WorkingCloud& cloud, const DenoiseOptions& option
     near = index->nearest(connect.neighbours, context);
   }
   if (options.outliers != Outliers::smooth) {
-    const Stopwatch watch(report.seconds, "outliers");
-    const std::vector<char> outlier = find_outliers(*index, near, context, &whole.outlying);
+    context.report("noise", 0);
+    Stopwatch watch(report.seconds, "noise");
+    find_noise(*index, near, whole, context);
+    watch.next("outliers");
+    const std::vector<char> outlier = find_outliers(*index, near, whole, context);
     if (std::find(outlier.begin(), outlier.end(), 1) != outlier.end()) {
       set_aside(outlier, cloud, report);
       index.emplace(cloud.points, context);
@@ -243,7 +246,14 @@ Connection connected(rfs_mesh::WorkingCloud& cloud, const DenoiseOptions& option
 
 /// What the connection says of the cloud. Of the rest only the mesh is needed while smoothing.
 Mesh told_of(Connection connection, DenoiseReport& report) {
-  report.seconds.insert(report.seconds.end(), connection.seconds.begin(), connection.seconds.end());
+  for (const StageTime& stage : connection.seconds) {
+    const auto same = std::find_if(report.seconds.begin(), report.seconds.end(),
+                                   [&](const StageTime& known) { return known.name == stage.name; });
+    if (same == report.seconds.end())
+      report.seconds.push_back(stage);
+    else
+      same->seconds += stage.seconds;
+  }
   report.spacing = connection.noise.spacing;
   report.noise = report.noise_left = connection.noise.sigma;
   report.sdg_edges = connection.sdg.size();

@@ -5,12 +5,13 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "base/linear/symmetric_eigen.h"
 #include "base/median.h"
 #include "base/parallel.h"
-#include "rfs_mesh/fit/local_surface.h"
 #include "rfs_mesh/levels.h"
+#include "rfs_mesh/noise/noise.h"
 #include "rfs_mesh/search/neighbors.h"
 
 namespace rfsmooth::pipeline {
@@ -23,13 +24,14 @@ using rfs_mesh::Neighbor;
 
 // Chosen on the development shapes (tests/bench/quality), clean and with noise of up to 4 spacings, with and
 // without 1 % strays: none of theirs is called an outlier but one in a million.
-constexpr double kIsolated = 2;     // times the usual reach
-constexpr int kKnownBy = 1;         // points that may have an outlier as a neighbour
-constexpr std::size_t kPlane = 48;  // points of the plane
-constexpr double kOff = 1.2;        // usual reaches off the surface: what a clean surface may curve by
-constexpr double kFarOff = 6;       // usual reaches: an outlier wherever the plane is
+constexpr double kIsolated = 2;                     // times the usual reach
+constexpr int kKnownBy = 1;                         // points that may have an outlier as a neighbour
+constexpr std::size_t kPlane = 2 * kNeighbourhood;  // points of the plane
+constexpr double kOff = 1.2;   // usual reaches off the surface: what a clean surface may curve by
+constexpr double kFarOff = 6;  // usual reaches: an outlier wherever the plane is
 
-constexpr double kThin = 4;          // times the reach of the surface beside floating points
+// Times the reach of the surface beside floating points: isolated even from isolated ones.
+constexpr double kThin = kIsolated * kIsolated;
 constexpr std::size_t kRegion = 64;  // points among which that surface has a ring; in fewer, nothing is usual
 constexpr double kFlat = 0.08;       // least variance over the sum; 1/3 = a ball
 
@@ -56,9 +58,9 @@ Plane fit_plane(const Positions& points, const std::vector<Neighbor>& near) {
 
 class Search {
  public:
-  /// \param near rows of kRing
-  Search(const rfs_mesh::SpatialIndex& index, rfs_mesh::NeighborTable near,
-         std::optional<Statistics::Outlying>& usual, const Context& context)
+  /// \param near rows of kRing \param sigma of the noise; 0: as little as the points about a place scatter
+  Search(const rfs_mesh::SpatialIndex& index, rfs_mesh::NeighborTable near, double sigma,
+         std::optional<double>& reach, const Context& context)
       : index_(index),
         points_(index.points()),
         context_(context),
@@ -67,14 +69,14 @@ class Search {
         reach_(points_.size()),
         usual_(points_.size()),
         isolated_(points_.size()),
-        near_(std::move(near)) {
+        near_(std::move(near)),
+        sigma_(sigma) {
     for_each_index(context, points_.size(), [&](std::size_t i) { measure_reach(i); });
-    if (!usual) {
+    if (!reach) {
       std::vector<double> all = reach_;
-      usual = {rfs_mesh::noise_scale(index_, context), rfsmooth::median(all)};
+      reach = rfsmooth::median(all);
     }
-    noise_ = usual->scale;
-    median_reach_ = usual->reach;
+    median_reach_ = *reach;
   }
 
   std::vector<char> run() {
@@ -181,15 +183,23 @@ class Search {
     return any;
   }
 
+  /// The plane of a surface through kPlane points, or as many as a ball has that holds the slab of noise.
+  Plane plane_at(const Eigen::Vector3d& at, std::vector<Neighbor>& around) const {
+    const double holds = sigma_ / rfs_mesh::kFlatSlab;
+    for (std::size_t k = kPlane;; k *= 2) {
+      nearest_on_surface(at, k, around);
+      if (around.size() < k || around.back().squared_distance >= holds * holds) break;
+    }
+    return fit_plane(points_, around);
+  }
+
   bool has_no_surface(std::size_t i, std::vector<Neighbor>& around) const {
     if (reach_[i] > kFarOff * usual_[i]) return true;
     nearest_on_surface(points_[i], 1, around);
     if (around.empty()) return false;
-    nearest_on_surface(points_[around.front().index], std::max(kPlane, noise_.neighbours), around);
-    const Plane plane = fit_plane(points_, around);
+    const Plane plane = plane_at(points_[around.front().index], around);
     const double off = std::abs(plane.normal.dot(points_[i] - plane.centre));
-    return off > kOff * usual_[i] &&
-           off > rfs_mesh::kStray * std::max(std::sqrt(plane.variances[0]), noise_.sigma);
+    return off > kOff * usual_[i] && off > rfs_mesh::kStray * std::max(std::sqrt(plane.variances[0]), sigma_);
   }
 
   bool floats(std::size_t i, std::vector<Neighbor>& around) const {
@@ -202,8 +212,7 @@ class Search {
     if (!(reach_[i] > kThin * reaches[kRing])) return false;
     around.resize(kNeighbourhood);
     const Eigen::Vector3d variances = fit_plane(points_, around).variances;
-    return variances[0] > kFlat * variances.sum() &&
-           std::sqrt(variances[0]) > rfs_mesh::kStray * noise_.sigma;
+    return variances[0] > kFlat * variances.sum() && std::sqrt(variances[0]) > rfs_mesh::kStray * sigma_;
   }
 
   const rfs_mesh::SpatialIndex& index_;
@@ -214,12 +223,14 @@ class Search {
   std::vector<double> usual_;  ///< the lower quartile of the neighbours' reaches
   std::vector<char> isolated_;
   rfs_mesh::NeighborTable near_;
-  NoiseScale noise_;
+  double sigma_;
   double median_reach_ = 0;
 };
 
-/// The first kRing of every row.
-rfs_mesh::NeighborTable nearest_few(const rfs_mesh::NeighborTable& near, const Context& context) {
+/// The first kRing of every row, or of rows of their own where these are shorter.
+rfs_mesh::NeighborTable nearest_few(const rfs_mesh::SpatialIndex& index, const rfs_mesh::NeighborTable& near,
+                                    const Context& context) {
+  if (near.k < int(kRing)) return index.nearest(int(kRing), context);
   rfs_mesh::NeighborTable few;
   few.k = int(kRing);
   few.items.resize(near.size() * kRing);
@@ -231,19 +242,36 @@ rfs_mesh::NeighborTable nearest_few(const rfs_mesh::NeighborTable& near, const C
 
 }  // namespace
 
+void find_noise(const rfs_mesh::SpatialIndex& index, const rfs_mesh::NeighborTable& near, Statistics& whole,
+                const Context& context) {
+  if (whole.noise) return;
+  Positions left = index.points();
+  if (left.size() >= kRegion) {
+    const std::vector<char> apart =
+        Search(index, nearest_few(index, near, context), 0, whole.reach, context).run();
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < apart.size(); ++i)
+      if (apart[i] == 0) left[next++] = left[i];
+    left.resize(next);
+  }
+  if (left.size() == index.points().size())
+    rfs_mesh::known_noise(index, whole, context);
+  else
+    rfs_mesh::known_noise(rfs_mesh::SpatialIndex(left, context), whole, context);
+}
+
 std::vector<char> find_outliers(const rfs_mesh::SpatialIndex& index, const rfs_mesh::NeighborTable& near,
-                                const Context& context, std::optional<Statistics::Outlying>* usual) {
-  std::optional<Statistics::Outlying> measured;
+                                Statistics& whole, const Context& context) {
   if (index.points().size() < kRegion) return std::vector<char>(index.points().size(), 0);
-  return Search(index, near.k < int(kRing) ? index.nearest(int(kRing), context) : nearest_few(near, context),
-                usual != nullptr ? *usual : measured, context)
-      .run();
+  find_noise(index, near, whole, context);
+  return Search(index, nearest_few(index, near, context), whole.noise->sigma, whole.reach, context).run();
 }
 
 std::vector<char> find_outliers(const Positions& points, const Context& context) {
   if (points.size() < kRegion) return std::vector<char>(points.size(), 0);
   const rfs_mesh::SpatialIndex index(points, context);
-  return find_outliers(index, index.nearest(int(kRing), context), context);
+  Statistics whole;
+  return find_outliers(index, index.nearest(int(kRing), context), whole, context);
 }
 
 bool land(const rfs_mesh::SpatialIndex& surface, double most, Eigen::Vector3d& point) {

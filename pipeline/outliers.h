@@ -1,18 +1,22 @@
 /// Outliers: strays and mixed pixels, points with no surface near them.
 ///
-/// They are found on the raw cloud, before anything is connected. r_i is the distance from point i to its 8th
-/// nearest neighbour. A point is an outlier if three tests agree:
+/// They are found on the raw cloud, before anything is connected. r_i is the distance from
+/// point i to its 8th nearest neighbour. A point is an outlier if three tests agree:
 ///
 /// 1. Isolated: r_i is more than twice the lower quartile of r over its 8 neighbours, the usual r there.
 /// 2. Unknown: at most one point that is not isolated has it among its own 8 nearest. (Points of a sparse
 ///    region beside a dense one, at rims and at the ends of thin parts have each other as neighbours.)
-/// 3. No surface near: take the plane through the 48 points (or as many as the noise needs) around the
-///    nearest point that is not isolated. The point is off this plane by more than 5 standard deviations of
-///    the points about it, 5 of the cloud's noise, and 1.2 times the usual r. Or r_i is more than six times
-///    the usual r, wherever the plane is (beyond a rim it goes on).
+/// 3. No surface near: take the plane through the 48 points around the nearest point that is not isolated,
+///    or twice as many again until their ball holds the slab of noise (a radius of 5.5 sigma). The point is
+///    off this plane by more than 5 standard deviations of the points about it, 5 sigma, and 1.2 times the
+///    usual r. Or r_i is more than six times the usual r, wherever the plane is (beyond a rim it goes on).
 ///
 /// Where strays are many, they are neighbours of strays. So the outliers found are taken out and the points
 /// that had them as neighbours are tested again, until no more are found.
+///
+/// The noise, sigma, is the one that connecting and smoothing go by, too (noise.h). Before it is known, sigma
+/// is zero in these tests: what the points about a place scatter by is all that stands for noise then. It is
+/// measured on the points that are no outliers so far, and the tests are made anew.
 ///
 /// A point is also an outlier, whatever has it as a neighbour, if it floats: r_i is more than four times both
 /// the median of the cloud and what nine of the 64 nearest have (a ring of a surface), and the 24 nearest
@@ -24,7 +28,6 @@
 /// variation: Pauly et al. 2002; their conjunction is ours.
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include <rfsmooth/context.h>
@@ -35,13 +38,18 @@
 namespace rfsmooth::pipeline {
 
 /// n flags: 1 = outlier. None in clouds of fewer than 64 points. `points`: n x 3, finite, distinct; fastest
-/// along a Morton curve. O(n log n), about 120 bytes a point; parallel, the same for any number of threads.
+/// along a Morton curve. O(n log n), about 150 bytes a point; parallel, the same for any number of threads.
 std::vector<char> find_outliers(const Positions& points, const Context& context);
 
-/// The same with an index over the points and rows of nearest neighbours (of any width). `usual`: taken if it
-/// is there, else entered.
+/// Enters the noise of a cloud, if `whole` does not have it: of the points that are not far off for what
+/// those about them scatter by. Enters the reach, too. `near`: rows of nearest neighbours, of any width.
+void find_noise(const rfs_mesh::SpatialIndex& index, const rfs_mesh::NeighborTable& near, Statistics& whole,
+                const Context& context);
+
+/// The same with an index over the points and rows of nearest neighbours (of any width). The noise and the
+/// reach of `whole` are taken if they are there, else measured and entered.
 std::vector<char> find_outliers(const rfs_mesh::SpatialIndex& index, const rfs_mesh::NeighborTable& near,
-                                const Context& context, std::optional<Statistics::Outlying>* usual = nullptr);
+                                Statistics& whole, const Context& context);
 
 /// Moves a point onto the surface that the indexed points lie on, smooth ones: onto the plane through 16 of
 /// them around the one nearest to it. False, and the point stays, if it is farther off than `most` (world

@@ -12,14 +12,16 @@
 
 namespace rfsmooth {
 
-/// How large the noise of a cloud is, and how many neighbours show it.
+/// How wide the quadrics are that connecting stands on, and what they show of the noise: at most what
+/// NoiseModel says of it.
 struct NoiseScale {
-  double sigma = 0;            ///< of the whole cloud, along the normal, world units
+  double sigma = 0;            ///< along the normal, world units
   std::size_t neighbours = 0;  ///< m: what a quadric needs
   double radius = 0;           ///< median distance to the m-th neighbour, world units
 };
 
-/// The noise of a cloud: one figure, and what differs from it from place to place.
+/// The noise of a cloud: one figure, and what differs from it from place to place. Measured once, it tells
+/// outliers from others, and connecting and smoothing go by it.
 struct NoiseModel {
   double sigma = 0;    ///< standard deviation along the normal, world units: typical of the cloud
   double shape = 0;    ///< part of the scatter taken off as shape, 0 to 0.6; above half little is sure
@@ -36,11 +38,6 @@ struct Statistics {
   /// The box of the finite points. Its middle is the origin of all that is computed.
   struct Box {
     Eigen::Vector3d low = Eigen::Vector3d::Zero(), high = Eigen::Vector3d::Zero();
-  };
-  /// What tells outliers from others.
-  struct Outlying {
-    NoiseScale scale;
-    double reach = 0;  ///< median distance to the eighth neighbour
   };
   /// Points several times noisier than their neighbours.
   struct Tails {
@@ -67,7 +64,7 @@ struct Statistics {
 
   std::optional<Box> box;
   std::optional<std::size_t> points;  ///< of the whole cloud: finite, distinct, without outliers
-  std::optional<Outlying> outlying;
+  std::optional<double> reach;        ///< median distance to the eighth neighbour, with outliers
   std::optional<NoiseScale> scale;  ///< of the quadrics that connecting stands on, for the louder parts, too
   std::optional<double> spacing;    ///< mean distance to the nearest neighbour, of all points
   std::optional<NoiseModel> noise;

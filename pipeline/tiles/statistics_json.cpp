@@ -86,8 +86,7 @@ ordered_json json_of(const Statistics& all) {
   ordered_json json = ordered_json::object();
   if (all.box) json["box"] = json_of(*all.box);
   if (all.points) json["points"] = *all.points;
-  if (all.outlying)
-    json["outlying"] = {{"scale", json_of_scale(all.outlying->scale)}, {"reach", all.outlying->reach}};
+  if (all.reach) json["reach"] = *all.reach;
   if (all.scale) json["scale"] = json_of_scale(*all.scale);
   if (all.spacing) json["spacing"] = *all.spacing;
   if (all.noise) json["noise"] = json_of_noise(*all.noise);
@@ -104,8 +103,7 @@ Statistics statistics_of(const ordered_json& json) {
   Statistics all;
   if (json.contains("box")) all.box = box_of(json.at("box"));
   if (json.contains("points")) all.points = json.at("points").get<std::size_t>();
-  if (json.contains("outlying"))
-    all.outlying = {scale_of(json.at("outlying").at("scale")), json.at("outlying").at("reach").get<double>()};
+  if (json.contains("reach")) all.reach = json.at("reach").get<double>();
   if (json.contains("scale")) all.scale = scale_of(json.at("scale"));
   if (json.contains("spacing")) all.spacing = json.at("spacing").get<double>();
   if (json.contains("noise")) all.noise = noise_of(json.at("noise"));

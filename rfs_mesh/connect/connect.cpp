@@ -146,9 +146,7 @@ NoiseScale scale_for(const SpatialIndex& index, const NoiseModel& noise, const C
 /// What `whole` says of the noise; what it does not say is measured and entered.
 NoiseLevel measure(const SpatialIndex& index, const NeighborTable& near, const Context& context,
                    Statistics& whole) {
-  NoiseField field =
-      whole.noise ? spread_noise(*whole.noise, index.points(), context) : measure_noise(index, context);
-  if (!whole.noise) whole.noise = field;
+  NoiseField field = spread_noise(known_noise(index, whole, context), index.points(), context);
   if (!whole.spacing) whole.spacing = mean_spacing(index.points(), near, context);
   if (!whole.scale) whole.scale = scale_for(index, field, context);
   const double loud = loudness(field), least = kNoNoise * field.spacing;

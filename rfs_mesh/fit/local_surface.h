@@ -56,18 +56,22 @@ double mean_spacing(const Positions& points, const NeighborTable& near, const Co
 /// The same, over up to 50,000 points spread over the indices. O(log n).
 double mean_spacing(const SpatialIndex& index, const Context& context);
 
-/// How much the points scatter, and how many neighbours a quadric takes for it. Quadrics are fitted to m =
-/// 24, 48, ... 384 neighbours at up to 1,000 points spread over the cloud; sigma is the lower quartile of
-/// their residuals (the flat places), corrected for being a quartile, times `louder`, or `known` if that is
-/// more. A neighbourhood narrower than a few sigma is a ball inside a thick slab: it shows too little noise
-/// and no normal. One that is too wide takes shape for noise: sigma then grows faster than the cube root of
-/// m, which noise never does, and the search stops. m is the first at which sigma is at most 0.18 of the
-/// radius, else the one at which that share is least. O(1) in n after the index. Within 15 % for Gaussian
-/// noise of 0.1 to 3 spacings on a sphere of 10,000 points; noise that is not the same everywhere, not
-/// Gaussian or not each point's own is measured by noise.h.
+/// How wide the first quadrics are: those that connecting stands on, its only caller. It is no second measure
+/// of the noise. What is noise, where and how much, says the one model of the cloud (noise.h); this only says
+/// at which width quadrics show that much of it that their normals are good, on the cloud as they will see
+/// it.
 ///
-/// \param known world units; narrow neighbourhoods show less of noise that neighbours share, of depths in
-/// steps nothing. \param louder of the cloud over its calm quarter, 1 or more
+/// Quadrics are fitted to m = 24, 48, ... 384 neighbours at up to 1,000 points spread over the cloud; sigma
+/// is the lower quartile of their residuals (the flat places), corrected for being a quartile, times
+/// `louder`, or `known` if that is more. A neighbourhood narrower than a few sigma is a ball inside a thick
+/// slab: it shows too little noise and no normal. One that is too wide takes shape for noise: sigma then
+/// grows faster than the cube root of m, which noise never does, and the search stops. m is the first at
+/// which sigma is at most 0.18 of the radius, else the one at which that share is least. O(1) in n after the
+/// index.
+///
+/// \param known world units, of the model, where narrow neighbourhoods cannot show it: of noise that
+/// neighbours share they show less, of depths in steps nothing; 0: they can. \param louder the model's noise
+/// of the cloud over its calm quarter, 1 or more
 NoiseScale noise_scale(const SpatialIndex& index, const Context& context, double known = 0,
                        double louder = 1);
 

@@ -164,15 +164,19 @@ void measure(const SpatialIndex& index, const DepthSteps* steps, NoiseModel& noi
 
 }  // namespace
 
-NoiseField measure_noise(const SpatialIndex& index, const Context& context) {
-  const std::size_t n = index.points().size();
+NoiseModel measure_noise(const SpatialIndex& index, const Context& context) {
   NoiseModel noise;
   noise.spacing = mean_spacing(index, context);
-  if (n <= kNeighbourhood) return spread_noise(noise, index.points(), context);
+  if (index.points().size() <= kNeighbourhood) return noise;
   const std::optional<DepthSteps> steps = find_depth_steps(index.points());
   if (steps) noise.step = steps->typical;
   measure(index, steps ? &*steps : nullptr, noise, context);
-  return spread_noise(std::move(noise), index.points(), context);
+  return noise;
+}
+
+const NoiseModel& known_noise(const SpatialIndex& index, Statistics& whole, const Context& context) {
+  if (!whole.noise) whole.noise = measure_noise(index, context);
+  return *whole.noise;
 }
 
 NoiseField spread_noise(NoiseModel model, const Positions& points, const Context& context) {

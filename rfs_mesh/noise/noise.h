@@ -44,11 +44,15 @@ struct NoiseField : NoiseModel {
   std::vector<double> local;  ///< n: sigma near each point, world units
 };
 
-/// O(n log n) for the field, O(log n) for the figure. Parallel, deterministic. Zero for fewer than 25 points.
-NoiseField measure_noise(const SpatialIndex& index, const Context& context);
+/// O(log n) after the index. Parallel, deterministic. Zero for fewer than 25 points.
+NoiseModel measure_noise(const SpatialIndex& index, const Context& context);
 
-/// The field of a noise that was measured already, on these points or on a cloud that they are of: at every
-/// point the mean of the sites nearest to it. O(n log n), parallel, deterministic.
+/// The noise that `whole` has, or else that of these points, measured and entered: so whoever asks first has
+/// it measured, and all others hear the same.
+const NoiseModel& known_noise(const SpatialIndex& index, Statistics& whole, const Context& context);
+
+/// The field of a noise that was measured on these points or on a cloud that they are of: at every point the
+/// mean of the sites nearest to it. O(n log n), parallel, deterministic.
 NoiseField spread_noise(NoiseModel model, const Positions& points, const Context& context);
 
 /// n: the mean distance from a point to its nearest other one around each point, world units. Zero for fewer

@@ -116,7 +116,6 @@ Positions search_places(const Positions& places) {
 NoiseStart search_noise(const SpatialIndex& index, Positions places, const Context& context) {
   constexpr double kTooNarrow = 1.35;  // a window this much smaller than what it shows shows too little
   constexpr double kSettled = 1.03;
-  constexpr double kAboveBound = 1.15;
   const std::size_t widest = widest_scatter(index);
   NoiseStart start;
   std::vector<Scatter> all = fits(index, places, start.m, std::vector<double>(places.size(), 0), context);
@@ -126,7 +125,7 @@ NoiseStart search_noise(const SpatialIndex& index, Positions places, const Conte
   start.sigma = std::sqrt(mean_variance(all, kCalmPlaces, kCalmDeviate));
   // Lines are no sheets, and a window narrow enough finds some that are exact.
   if (start.narrowest == start.m) start.sigma = lowest(index, places, start.m, start.sigma, context);
-  start.most = kAboveBound * bound(index, places, context);
+  start.most = kSameNoise * bound(index, places, context);
   double said = 0;
   while (start.sigma > start.least) {  // ever wider windows, up to the bound
     const double reach = scatter_reach(start.sigma, narrow);

@@ -83,13 +83,8 @@ std::optional<AutomaticReport> smooth_automatically(Mesh& mesh, const AutomaticO
   if (connectivity == Connectivity::used_up) std::vector<Face>().swap(mesh.faces);
   if (mesh.positions.size() < 2) return {};
   Statistics own, &whole = statistics != nullptr ? *statistics : own;
-  rfs_mesh::NoiseField noise;
-  if (whole.noise) {
-    noise = rfs_mesh::spread_noise(*whole.noise, mesh.positions, context);
-  } else {
-    noise = rfs_mesh::measure_noise(rfs_mesh::SpatialIndex(mesh.positions, context), context);
-    whole.noise = noise;
-  }
+  if (!whole.noise) rfs_mesh::known_noise(rfs_mesh::SpatialIndex(mesh.positions, context), whole, context);
+  rfs_mesh::NoiseField noise = rfs_mesh::spread_noise(*whole.noise, mesh.positions, context);
   const double spacing = noise.spacing;
   const NoiseSummary summary = summary_of(noise);
   const double sigma = options.noise ? options.noise->resolve(spacing) : measured(noise, spacing);

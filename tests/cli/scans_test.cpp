@@ -125,7 +125,7 @@ class Scans : public InFolder {
 std::vector<double> local_noise(const std::vector<double>& xyz) {
   const auto cloud = rfs_mesh::make_working_cloud(xyz.data(), xyz.size() / 3, {}).value();
   const rfs_mesh::SpatialIndex index(cloud.points, {});
-  const auto noise = rfs_mesh::measure_noise(index, {});
+  const auto noise = rfs_mesh::spread_noise(rfs_mesh::measure_noise(index, {}), cloud.points, {});
   std::vector<double> by_row(xyz.size() / 3, 0);
   for (std::size_t i = 0; i < by_row.size(); ++i)
     if (cloud.of_input[i] != kNone) by_row[i] = noise.local[cloud.of_input[i]];

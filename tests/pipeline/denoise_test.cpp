@@ -340,5 +340,30 @@ TEST(Denoise, StatisticsOfARunGiveItsBytesAgainAndThoseOfAnotherCloudOthers) {
   EXPECT_EQ(refused.error().code, ErrorCode::usage);
 }
 
+TEST(Denoise, TheNoiseThatIsReportedIsTheOneThatTellsOutliers) {
+  constexpr double kOff = 0.2, kTimes = 6;  // off the sphere: 20 sigma, and 3.3 of a noise six times as large
+  Flat before = sphere();
+  for (const double side : {-1.0, 1.0})
+    for (int axis = 0; axis < 3; ++axis)
+      for (int k = 0; k < 3; ++k) before.push_back(k == axis ? side * (1 + kOff) : 0);
+  Flat xyz = before;
+  const DenoiseReport report = run(xyz, {});
+  ASSERT_TRUE(report.statistics.noise.has_value());
+  EXPECT_EQ(report.noise, report.statistics.noise->sigma);
+  EXPECT_LT(5 * report.noise, kOff);
+  EXPECT_GT(5 * kTimes * report.noise, kOff);
+  EXPECT_EQ(report.outliers, 6u);
+  DenoiseOptions louder;
+  louder.statistics.emplace();
+  louder.statistics->box = report.statistics.box;
+  louder.statistics->noise = report.statistics.noise;
+  louder.statistics->noise->sigma *= kTimes;
+  for (double& sigma : louder.statistics->noise->at_sites) sigma *= kTimes;
+  xyz = before;
+  const DenoiseReport other = run(xyz, louder);
+  EXPECT_EQ(other.noise, kTimes * report.noise);
+  EXPECT_EQ(other.outliers, 0u) << "within five sigma of what is reported";
+}
+
 }  // namespace
 }  // namespace rfsmooth::pipeline

@@ -45,13 +45,13 @@ ordered_json tenths(std::vector<double> field) {
 }
 
 /// As `denoise` measures it: outliers, which it leaves where they are, have no part in it.
-rfs_mesh::NoiseField noise_without_outliers(const rfs_mesh::SpatialIndex& index, const Context& context) {
-  const std::vector<char> outlier = pipeline::find_outliers(index, {}, context);
+rfs_mesh::NoiseField noise_of_surface(const rfs_mesh::SpatialIndex& index, const Context& context) {
+  Statistics whole;
+  const std::vector<char> outlier = pipeline::find_outliers(index, {}, whole, context);
   Positions kept;
   for (std::size_t i = 0; i < outlier.size(); ++i)
     if (outlier[i] == 0) kept.push_back(index.points()[i]);
-  if (kept.size() == outlier.size()) return rfs_mesh::measure_noise(index, context);
-  return rfs_mesh::measure_noise(rfs_mesh::SpatialIndex(kept, context), context);
+  return rfs_mesh::spread_noise(rfs_mesh::known_noise(index, whole, context), kept, context);
 }
 
 /// Finite and distinct points, bounding box, mean distance to the nearest other point.
@@ -84,7 +84,7 @@ ordered_json measure(const pipeline::io::Cloud& cloud, const Context& context) {
     const rfs_mesh::SpatialIndex index(points, context);
     json["spacing"] = rfs_mesh::mean_spacing(points, index.nearest(1, context), context);
     json["spacing_field"] = tenths(rfs_mesh::measure_spacing(index, context));
-    rfs_mesh::NoiseField noise = noise_without_outliers(index, context);
+    rfs_mesh::NoiseField noise = noise_of_surface(index, context);
     json["noise"] = noise.sigma;
     json["noise_measured"] = json_of(smoothing::summary_of(noise));
     json["noise_field"] = tenths(std::move(noise.local));

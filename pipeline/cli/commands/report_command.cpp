@@ -14,7 +14,6 @@
 #include "pipeline/outliers.h"
 #include "pipeline/page/page.h"
 #include "rfs_mesh/fit/local_surface.h"
-#include "rfs_mesh/noise/noise.h"
 #include "rfs_mesh/points.h"
 
 namespace rfsmooth::cli {
@@ -67,9 +66,11 @@ Measured measure_cloud(const std::vector<double>& xyz, bool outliers, const Cont
     const rfs_mesh::SpatialIndex index(cloud.points, context);
     const rfs_mesh::NeighborTable near = index.nearest(16, context);
     if (cloud.points.size() > 1) measured.spacing = rfs_mesh::mean_spacing(cloud.points, near, context);
-    measured.noise = rfs_mesh::measure_noise(index, context).sigma;
+    Statistics whole;
+    pipeline::find_noise(index, near, whole, context);
+    measured.noise = whole.noise->sigma;
     if (!outliers) return;
-    const std::vector<char> found = pipeline::find_outliers(index, near, context);
+    const std::vector<char> found = pipeline::find_outliers(index, near, whole, context);
     measured.outlier.assign(xyz.size() / 3, 0);
     for (std::size_t row = 0; row < measured.outlier.size(); ++row)
       if (const Index p = cloud.of_input[row]; p != kNone) measured.outlier[row] = found[p];

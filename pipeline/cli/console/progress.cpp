@@ -5,9 +5,9 @@
 namespace rfsmooth::cli {
 
 std::vector<StageShare> connecting_stages() {
-  return {{"read", 1},     {"prepare", 1}, {"index", 1},     {"neighbours", 5},
-          {"outliers", 4}, {"noise", 1},   {"emst", 3},      {"local surfaces", 8},
-          {"shadow", 12},  {"sdg", 6},     {"umbrellas", 7}, {"rfs-mesh", 8}};
+  return {{"read", 1},    {"prepare", 1},  {"index", 1},     {"neighbours", 5},
+          {"noise", 3},   {"outliers", 2}, {"emst", 3},      {"local surfaces", 8},
+          {"shadow", 12}, {"sdg", 6},      {"umbrellas", 7}, {"rfs-mesh", 8}};
 }
 
 std::vector<StageShare> denoising_stages(bool normals) {

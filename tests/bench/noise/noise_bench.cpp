@@ -84,7 +84,8 @@ struct Row {
 Row measure(const Case& one, const Places& places, const Context& context, double& seconds) {
   const rfs_mesh::SpatialIndex index(one.noisy, context);
   const auto start = std::chrono::steady_clock::now();
-  const rfs_mesh::NoiseField noise = rfs_mesh::measure_noise(index, context);
+  const rfs_mesh::NoiseField noise =
+      rfs_mesh::spread_noise(rfs_mesh::measure_noise(index, context), one.noisy, context);
   seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   Row row;
   std::vector<double> errors, locals, truths;

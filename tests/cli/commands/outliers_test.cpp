@@ -2,6 +2,7 @@
 #include <cmath>
 #include <random>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -132,6 +133,17 @@ TEST_F(OutliersOption, SmoothLooksForNone) {
   const Ran ran = run({"denoise", "--outliers", "smooth", "--mark-outliers", "in.ply", "never.ply"});
   EXPECT_EQ(ran.code, 2);
   EXPECT_THAT(ran.err, HasSubstr("--mark-outliers"));
+}
+
+TEST_F(OutliersOption, EveryCommandSaysTheSameNoise) {
+  clean({});
+  const auto info = nlohmann::json::parse(run({"info", "--json", "in.ply"}).out);
+  EXPECT_GT(info["noise"], 0);
+  EXPECT_EQ(info["noise"], report()["noise"]);
+  EXPECT_EQ(info["noise_measured"], report()["noise_measured"]);
+  ASSERT_EQ(run({"report", "in.ply", "out.ply", "-o", "page.html"}).code, 0);
+  EXPECT_THAT(take("page.html"),
+              HasSubstr(fmt::format("<th>noise before</th><td>{:.3g}</td>", info["noise"].get<double>())));
 }
 
 TEST_F(OutliersOption, StraysDoNotPullTheOthers) {

@@ -222,7 +222,7 @@ TEST(Connection, StandsOnTheOneMeasureOfNoise) {
   Positions points = test::random_points(test::plane(), 10000, 3);
   for (auto& p : points) p[2] = kStep * std::round((0.4 * p[0] + 0.1 * p[1]) / kStep);
   const SpatialIndex index(points, {});
-  const NoiseField noise = rfs_mesh::measure_noise(index, {});
+  const NoiseField noise = rfs_mesh::spread_noise(rfs_mesh::measure_noise(index, {}), points, {});
   ASSERT_GT(noise.sigma, 0.5 * kStep / std::sqrt(12.0));
   const Connection c = connected(points);
   EXPECT_EQ(c.noise.sigma, noise.sigma);

@@ -14,6 +14,7 @@ using namespace rfsmooth;
 using rfs_mesh::measure_noise;
 using rfs_mesh::NoiseField;
 using rfs_mesh::SpatialIndex;
+using rfs_mesh::spread_noise;
 
 namespace {
 
@@ -35,7 +36,7 @@ NoiseField measured(const Positions& points, int threads = 0) {
   Context context;
   context.threads = threads;
   const SpatialIndex index(points, context);
-  return measure_noise(index, context);
+  return spread_noise(measure_noise(index, context), points, context);
 }
 
 TEST(Noise, IsMeasuredOnASphereFromATenthToTwoSpacings) {

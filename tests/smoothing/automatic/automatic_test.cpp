@@ -119,7 +119,8 @@ TEST(Automatic, NoPointMovesFartherThanItsShareOfTheNoiseAroundIt) {
     mesh.positions[i] += (loud ? 4 : 1) * (noise.positions[i] - mesh.positions[i]);
     if (!loud && i % 40 == 0) mesh.positions[i] *= 1 + 7 * quiet;
   }
-  const rfs_mesh::NoiseField field = rfs_mesh::measure_noise(rfs_mesh::SpatialIndex(mesh.positions, {}), {});
+  const rfs_mesh::NoiseField field = rfs_mesh::spread_noise(
+      rfs_mesh::measure_noise(rfs_mesh::SpatialIndex(mesh.positions, {}), {}), mesh.positions, {});
   for (const double strength : {0.5, 1.0, 2.0}) {
     AutomaticOptions options;
     options.strength = strength;
