@@ -118,6 +118,61 @@ TEST(Patches, WiderOnesTakeMoreOfWhiteNoiseAwayAndSayHowMuch) {
   }
 }
 
+/// Heights of a flat field: white noise of one, and as much as `moved` says, along z.
+HeightField noisy_field(const std::vector<double>& moved) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise;
+  std::size_t at = 0;
+  return flat_field(100, [&](double, double) { return noise(random) + moved[at++]; });
+}
+
+TEST(Patches, OwnIsInTheMeanTheDerivativeAlsoOfTheWeights) {
+  // By Ramani et al. 2008: the mean of b_i (f_i(z + t b) - f_i(z)) / t, b of random signs. The weights of
+  // patches follow the points, too, and more so where the noise is taken for less than it is.
+  constexpr std::size_t kPoints = 100 * 100;
+  constexpr double kStep = 0.05;
+  std::mt19937 random(7);
+  std::vector<double> signs(kPoints);
+  for (double& b : signs) b = (random() & 1) != 0 ? kStep : -kStep;
+  const HeightField still = noisy_field(std::vector<double>(kPoints, 0)), moved = noisy_field(signs);
+  for (const double stated : {1.0, 0.83})
+    for (const std::size_t m : {24, 96}) {
+      const auto predict = [&](const HeightField& field) {
+        Patches::Memory memory;
+        return Patches(field, m, seeds_of(field.guide()), std::vector<double>(kPoints, stated), memory, {})
+            .predict({});
+      };
+      const Prediction before = predict(still), after = predict(moved);
+      double derivative = 0, own = 0;
+      for (std::size_t i = 0; i < kPoints; ++i) {
+        derivative += still.normal(i).z() * signs[i] / (kStep * kStep) *
+                      double(after.height[i] - before.height[i]) / double(kPoints);
+        own += double(before.own[i]) / double(kPoints);
+      }
+      EXPECT_NEAR(derivative, own, 0.1 * own) << m << " points, noise of " << stated;
+    }
+}
+
+TEST(Patches, SeeWhatTheNoiseIsBeyondWhatIsStated) {
+  const HeightField field = noisy_field(std::vector<double>(100 * 100, 0));
+  for (const std::size_t m : {48, 192}) {
+    const auto mean_excess = [&](double stated) {
+      Patches::Memory memory;
+      const Prediction p =
+          Patches(field, m, seeds_of(field.guide()), std::vector<double>(field.size(), stated), memory, {})
+              .predict({});
+      double sum = 0;
+      for (const float x : p.excess) sum += double(x) / double(field.size());
+      return sum;
+    };
+    EXPECT_LT(mean_excess(1), 0.03) << m;
+    EXPECT_EQ(mean_excess(2), 0) << m;
+    const double beyond = mean_excess(std::sqrt(1 / 1.4));
+    EXPECT_GT(beyond, 0.05) << m;
+    EXPECT_LT(beyond, 0.4) << m;
+  }
+}
+
 TEST(Patches, DoNotBridgeAStepFarAboveTheNoise) {
   const HeightField field = flat_field(40, [](double x, double) { return x < 20 ? 0.0 : 50.0; });
   Patches::Memory memory;
