@@ -58,6 +58,8 @@ NormalsReport run(const double* xyz, std::size_t n, const NormalsOptions& option
                   double* normals, std::vector<Index>* part) {
   NormalsReport report;
   report.points = n;
+  if (options.viewpoint && !options.viewpoint->allFinite())
+    throw Failure({ErrorCode::usage, "the viewpoint is not finite"});
   const rfs_mesh::WorkingCloud cloud = value_or_throw(rfs_mesh::make_working_cloud(xyz, n, context));
   report.finite = cloud.finite();
   const Connection connection = value_or_throw(rfsmooth::connect(cloud.points, {}, context));

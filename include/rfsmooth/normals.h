@@ -37,7 +37,8 @@ struct NormalsReport {
 /// row-major). Rows with a NaN or infinite coordinate get NaN; rows that share a position share a normal.
 /// Fewer than three distinct points, or points in a line, get some unit vector across the line.
 /// Same bytes for any number of threads and any order of the rows. On an error `normals` is untouched.
-/// Errors: no_usable_points, out_of_memory, cancelled. O(n log n). Thread-safe on distinct arrays.
+/// Errors: usage (a viewpoint that is not finite), no_usable_points, out_of_memory, cancelled. O(n log n).
+/// Thread-safe on distinct arrays.
 Result<NormalsReport> estimate_normals(const double* xyz, std::size_t n, const NormalsOptions& options,
                                        const Context& context, double* normals);
 

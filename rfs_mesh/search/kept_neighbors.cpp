@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "rfs_mesh/search/sort_neighbors.h"
-
 namespace rfsmooth::rfs_mesh {
 
 void KeptNeighbors::nearest(const SpatialIndex& index, const Eigen::Vector3d& place, std::size_t m,

@@ -38,6 +38,10 @@ struct Neighbor {
   }
 };
 
+/// Sorts by (distance, index). Squared distances of points on a surface are spread evenly, so most points
+/// find their place by their distance alone. O(n) for these, O(n log n) for all others.
+void sort_neighbors(std::vector<Neighbor>& list);
+
 /// The k nearest of every point: n x k.
 struct NeighborTable {
   int k = 0;                                  ///< as asked for, but at most n - 1: every row is full

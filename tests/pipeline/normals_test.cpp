@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <numeric>
 #include <string_view>
 
@@ -266,6 +267,16 @@ TEST(Normals, AreTheSameBytesForAnyNumberOfThreads) {
   NormalsOptions seen;
   seen.viewpoint = Vector3d(0, 0, 4);
   EXPECT_EQ(normals_of(xyz, seen, one), normals_of(xyz, seen, four));
+}
+
+TEST(Normals, AViewpointThatIsNotFiniteIsRefused) {
+  const Flat xyz = row_major(test::poisson_points(test::unit_sphere(), 200, 1));
+  Flat normals(xyz.size(), 7);
+  const NormalsOptions nowhere = {Eigen::Vector3d(0, std::numeric_limits<double>::infinity(), 0)};
+  const auto result = estimate_normals(xyz.data(), xyz.size() / 3, nowhere, {}, normals.data());
+  ASSERT_FALSE(result.ok());
+  EXPECT_EQ(result.error().code, ErrorCode::usage);
+  EXPECT_EQ(normals, Flat(xyz.size(), 7));
 }
 
 TEST(Normals, CancellingLeavesTheArrayAlone) {
