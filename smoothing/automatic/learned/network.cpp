@@ -53,8 +53,8 @@ float Network::behind(const First& first) const {
 }
 
 RFSMOOTH_AVX2
-float Network::offset(const Features::Row& row) const {
-  First one, other, odd{};
+void Network::through_first(const Features::Row& row, First& one, First& other) const {
+  First odd{};
   std::copy(learned::kFirstBias, learned::kFirstBias + kFirst, one.begin());
   for (std::size_t k = 0; k < Features::kEven; ++k) add_times(scaled_input(k, row.even[k]), first_[k], one);
   for (std::size_t k = 0; k < Features::kOdd; ++k)
@@ -63,6 +63,11 @@ float Network::offset(const Features::Row& row) const {
     other[k] = one[k] - odd[k];
     one[k] += odd[k];
   }
+}
+
+float Network::offset(const Features::Row& row) const {
+  First one, other;
+  through_first(row, one, other);
   return 0.5F * (behind(one) - behind(other));
 }
 

@@ -29,7 +29,8 @@ class Network {
   using First = std::array<float, learned::kFirst>;
   using Second = std::array<float, learned::kSecond>;
 
-  float behind(const First& first) const;
+  void through_first(const Features::Row& row, First& one, First& other) const;  ///< a+ and a-
+  float behind(const First& first) const;                                        ///< y of one of them
 
   std::array<First, kInputs> first_;            ///< by input
   std::array<Second, learned::kFirst> second_;  ///< by unit of the first layer
