@@ -19,6 +19,7 @@ struct SymmetricEigen {
 /// By iteration: accurate up to rounding. Reads the lower triangle of `a`; what is not finite comes out not
 /// finite.
 SymmetricEigen<2> symmetric_eigen(const Eigen::Matrix2d& a);
+/// The same of a 3 x 3 matrix.
 SymmetricEigen<3> symmetric_eigen(const Eigen::Matrix3d& a);
 
 /// In closed form, which is faster: for frames and normals that need no last digit. It loses accuracy where
