@@ -96,11 +96,10 @@ struct Scale {
   std::vector<Index> several;  ///< places that see more than one sheet
 };
 
-/// `before` holds the risk of the scale before it, `narrower` what that said; null: there is none.
+/// `before` holds the risk of the scale before it.
 Scale try_scale(const HeightField& field, std::size_t members, const std::vector<Index>& seeds,
                 const rfs_mesh::NoiseField& noise, const std::vector<float>& precision,
-                std::vector<float>& before, const Prediction* narrower, Patches::Memory& memory,
-                const Context& context) {
+                std::vector<float>& before, Patches::Memory& memory, const Context& context) {
   const std::vector<double>& sigma = noise.local;
   const auto shared = float(noise.shared);
   const Patches patches(field, members, seeds, sigma, memory, context);
@@ -111,10 +110,7 @@ Scale try_scale(const HeightField& field, std::size_t members, const std::vector
     const float e = (field.local()[i].height - prediction.height[i]) / float(sigma[i]);
     const float of_all = own_of_all(prediction.own[i], shared);
     const float risk = prediction.covered[i] != 0 ? e * e + 2 * of_all - 1 : before[i];
-    float worse = risk - before[i];
-    if (narrower != nullptr && prediction.covered[i] != 0 && narrower->covered[i] != 0)
-      worse += 2 * (of_all - own_of_all(narrower->own[i], shared)) * narrower->excess[i];
-    scale.worse[i] = precision.empty() || precision[i] > 0 ? worse : 0;
+    scale.worse[i] = precision.empty() || precision[i] > 0 ? risk - before[i] : 0;
     before[i] = risk;
   });
   if (double(members) >= double(kOwnMean) * noise.shared) {
@@ -272,10 +268,7 @@ class Ladder {
 
   void add(const Statistics::Scale& how, const Context& context) {
     const std::size_t members = make_way(how, context);
-    Prediction* const narrower = scales.empty() ? nullptr : &scales.back().prediction;
-    Scale scale = try_scale(field_, members, seeds_, noise_, precision_, risk_, narrower, memory_, context);
-    if (narrower != nullptr) narrower->excess = {};
-    scales.push_back(std::move(scale));
+    scales.push_back(try_scale(field_, members, seeds_, noise_, precision_, risk_, memory_, context));
   }
 
   /// The heights as the narrowest patches see them; the data where there are none. Before any scale.

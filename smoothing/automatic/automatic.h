@@ -16,13 +16,6 @@
 ///    points can judge), and the scales are mixed with weights exp(-size of the evidence) (Leung and Barron
 ///    2006) times how well each serves the cloud as a whole (mixture.h): smooth places take wide patches,
 ///    edges and thin parts narrow ones, and where every patch is worse than the data the data stay.
-///    Wide patches leave more of the noise in their residuals, for which 2 df/dz allows: noise that was
-///    measured too small would make them look worse than narrow ones. So what the narrower patches see
-///    beyond the noise (excess, patches.h) is taken for noise when the next wider ones are compared with
-///    them:
-///        rho_2m - rho_m = (z - f_2m)^2 / sigma^2 - (z - f_m)^2 / sigma^2
-///                         + 2 (1 + excess_m) (df_2m/dz - df_m/dz).
-///    If it is shape, the wider patches miss it by more than that.
 ///    Where the noise differs from place to place, the risks that a mean is of count by 1 / sigma^2, and
 ///    those of points that stay, having none, do not: in units of their noise any patch would be far off.
 /// 4. Walls thinner than the noise, which look like one sheet with more of it, are taken apart where the

@@ -24,8 +24,7 @@ constexpr std::size_t kAxis = 12;                      // nearest points whose n
 constexpr float kWeightUnit = 65535, kRounded = 0.5F;  // of the weights kept
 constexpr float kCovered = 0.2F * kWeightUnit;         // least weight of the best patch over a point
 constexpr std::size_t kPowers[6][2] = {{0, 0}, {1, 0}, {0, 1}, {2, 0}, {1, 1}, {0, 2}};  // of u and v
-constexpr float kRough = 0.1F;       // variance beyond the noise's, sigma^2: there is more than one sheet
-constexpr float kMostExcess = 0.5F;  // sigma^2: at 1 shape counts as noise, hand is 24 % worse
+constexpr double kRough = 0.1;  // variance beyond the noise's, sigma^2: there is more than one sheet
 constexpr std::size_t kMostForMissing = 8;  // times the patches given: 4 cost rotor 3 % of p2s
 constexpr std::size_t kTogether = 64;       // patches fitted in a row: each tells the next how far to look
 constexpr std::size_t kWave = 1 << 20;      // members fitted before they are put behind those before, ...
@@ -199,7 +198,7 @@ std::size_t Patches::fit_one(std::size_t s, double sigma, Workspace& work, Index
   Patch& patch = memory_.patches_[s];
   patch.centre = field_.guide()[seeds_[s]];
   patch.weight = 0;
-  patch.excess = 0;
+  patch.several = false;
   patch.quadric.fill(0);
   patch.spread.fill(0);
   patch.spread_u4 = 0;
@@ -230,8 +229,8 @@ std::size_t Patches::fit_one(std::size_t s, double sigma, Workspace& work, Index
   const double leverage = inverse.cwiseProduct(squared).sum();
   const double points = all.sum * all.sum / all.squares, variance = 6 / points;
   const double excess = (residuals - (all.sum - leverage)) / all.sum - std::sqrt(2 / points);
-  patch.excess = float(std::max(0.0, excess));
-  patch.weight = float(variance / (variance + double(patch.excess)));
+  patch.several = excess > kRough;
+  patch.weight = float(variance / (variance + std::max(0.0, excess)));
   return all.kept;
 }
 
@@ -304,11 +303,10 @@ void Patches::transpose(const Covering& covering, const Context& context) {
 
 Prediction Patches::predict(const Context& context) const {
   const std::size_t n = field_.size();
-  Prediction p{std::vector<float>(n, 0), std::vector<float>(n, 0), std::vector<float>(n, 0),
-               std::vector<char>(n, 0)};
+  Prediction p{std::vector<float>(n, 0), std::vector<float>(n, 0), std::vector<char>(n, 0)};
   for_each_index(context, n, [&](std::size_t i) {
     const Eigen::Vector3f& normal = field_.local()[i].normal;
-    float height = 0, own = 0, excess = 0, weights = 0;
+    float height = 0, own = 0, weights = 0;
     for (Index k = memory_.over_start_[i]; k < memory_.over_start_[i + 1]; ++k) {
       const Patch& patch = memory_.patches_[memory_.over_[k]];
       const float e = float(memory_.over_weight_[k]) / kWeightUnit, w = e * patch.weight;
@@ -324,13 +322,11 @@ Prediction Patches::predict(const Context& context) const {
           four(s) + v * (four(s + 4) + v * (four(s + 8) + v * (four(s + 12) + v * four(s + 16))));
       height += w * (value * patch.radius - parts[2]) * cosine;
       own += w * e * (total(powers * in_v) + patch.spread_u4 * uu * uu);
-      excess += w * std::min(patch.excess, kMostExcess);
       weights += w;
     }
     if (!(weights > 0)) return;
     p.height[i] = height / weights;
     p.own[i] = own / weights;
-    p.excess[i] = excess / weights;
     p.covered[i] = 1;
   });
   return p;
@@ -339,7 +335,7 @@ Prediction Patches::predict(const Context& context) const {
 std::vector<Index> Patches::with_several_sheets() const {
   std::vector<Index> found;
   for (std::size_t s = 0; s < seeds_.size(); ++s)
-    if (memory_.patches_[s].excess > kRough) found.push_back(seeds_[s]);
+    if (memory_.patches_[s].several) found.push_back(seeds_[s]);
   std::sort(found.begin(), found.end());
   return found;
 }

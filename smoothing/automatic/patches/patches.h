@@ -28,7 +28,6 @@ namespace rfsmooth::smoothing {
 struct Prediction {
   std::vector<float> height;  ///< n, along the point's own normal over the guide
   std::vector<float> own;     ///< n: d height_i / d z_i, the share of the point's own height
-  std::vector<float> excess;  ///< n: mean of what the patches see beyond the noise, sigma^2, each 0 to 0.5
   std::vector<char> covered;  ///< n: whether any patch reaches the point
 };
 
@@ -40,7 +39,7 @@ class Patches {
   struct Patch {
     Eigen::Vector3d centre;
     float radius, weight;
-    float excess;                   ///< max(0, excess), as above, less what chance has
+    bool several;                   ///< whether its points seem to lie on several sheets
     std::array<float, 12> frame;    ///< of x, y, z each: its parts along u, v (in radii) and the axis
     std::array<float, 12> quadric;  ///< the height, in radii
     std::array<float, 20> spread;   ///< f^T A^-1 f, A the normal equations, but for

@@ -153,26 +153,6 @@ TEST(Patches, OwnIsInTheMeanTheDerivativeAlsoOfTheWeights) {
     }
 }
 
-TEST(Patches, SeeWhatTheNoiseIsBeyondWhatIsStated) {
-  const HeightField field = noisy_field(std::vector<double>(100 * 100, 0));
-  for (const std::size_t m : {48, 192}) {
-    const auto mean_excess = [&](double stated) {
-      Patches::Memory memory;
-      const Prediction p =
-          Patches(field, m, seeds_of(field.guide()), std::vector<double>(field.size(), stated), memory, {})
-              .predict({});
-      double sum = 0;
-      for (const float x : p.excess) sum += double(x) / double(field.size());
-      return sum;
-    };
-    EXPECT_LT(mean_excess(1), 0.03) << m;
-    EXPECT_EQ(mean_excess(2), 0) << m;
-    const double beyond = mean_excess(std::sqrt(1 / 1.4));
-    EXPECT_GT(beyond, 0.05) << m;
-    EXPECT_LT(beyond, 0.4) << m;
-  }
-}
-
 TEST(Patches, DoNotBridgeAStepFarAboveTheNoise) {
   const HeightField field = flat_field(40, [](double x, double) { return x < 20 ? 0.0 : 50.0; });
   Patches::Memory memory;
