@@ -12,6 +12,9 @@ namespace {
 constexpr std::size_t kLookedAt = 20000;
 constexpr std::size_t kPointsOfStep = 10;  // in the mean: free coordinates hardly ever meet
 constexpr std::size_t kFewestSteps = 4;    // fewer are the sides of a box
+// Of a distance from the scanner: how far two that are the same lie apart where files keep seven digits of
+// each coordinate.
+constexpr double kSevenDigits = 2e-6;
 
 }  // namespace
 
@@ -28,25 +31,52 @@ double DepthSteps::gap(double depth) const {
 }
 
 double DepthSteps::sigma(const Eigen::Vector3d& at, const Eigen::Vector3d& normal) const {
-  return rounding_noise(std::abs(normal[axis]) * gap(at[axis]));
+  if (!scanner) return rounding_noise(std::abs(normal[axis]) * gap(at[axis]));
+  const Eigen::Vector3d ray = at - *scanner;
+  return rounding_noise(std::abs(normal.dot(ray.normalized())) * gap(ray.norm()));
 }
 
-std::optional<DepthSteps> find_depth_steps(const Positions& points) {
+namespace {
+
+/// The steps that points have in `steps`, which knows of what; false if they have none. \param depths of up
+/// to kLookedAt points. \param rounding depths that differ by no more than this share of themselves are one.
+bool fill_steps(std::vector<double> depths, double rounding, DepthSteps& steps) {
+  const std::vector<double> all = depths;
+  std::sort(depths.begin(), depths.end());
+  std::size_t count = 0;
+  for (const double depth : depths)
+    if (count == 0 || depth - depths[count - 1] > rounding * depth) depths[count++] = depth;
+  depths.resize(count);
+  if (count < kFewestSteps || count * kPointsOfStep >= all.size()) return false;
+  steps.depths = std::move(depths);
+  std::vector<double> gaps;
+  for (const double depth : all) gaps.push_back(steps.gap(depth));
+  steps.typical = quantile(gaps, 0.5);
+  // Free depths that rounding runs together are hardly farther apart than that.
+  return steps.typical > 2 * rounding * steps.depths.back();
+}
+
+}  // namespace
+
+std::optional<DepthSteps> find_depth_steps(const Positions& points,
+                                           const std::optional<Eigen::Vector3d>& scanner) {
   const Positions some = pick(points, std::min(points.size(), kLookedAt));
+  std::vector<double> depths(some.size());
   std::optional<DepthSteps> found;
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    std::vector<double> depths, gaps;
-    for (const Eigen::Vector3d& p : some) depths.push_back(p[axis]);
-    std::sort(depths.begin(), depths.end());
-    depths.erase(std::unique(depths.begin(), depths.end()), depths.end());
-    if (depths.size() < kFewestSteps || depths.size() * kPointsOfStep >= some.size()) continue;
+    std::transform(some.begin(), some.end(), depths.begin(), [&](const auto& p) { return p[axis]; });
+    DepthSteps steps;
+    steps.axis = axis;
+    if (!fill_steps(depths, 0, steps)) continue;
     if (found) return {};
-    found.emplace();
-    found->axis = axis;
-    found->depths = std::move(depths);
-    for (const Eigen::Vector3d& p : some) gaps.push_back(found->gap(p[axis]));
-    found->typical = quantile(gaps, 0.5);
+    found = std::move(steps);
   }
+  if (found || !scanner) return found;
+  std::transform(some.begin(), some.end(), depths.begin(),
+                 [&](const auto& p) { return (p - *scanner).norm(); });
+  DepthSteps steps;
+  steps.scanner = scanner;
+  if (fill_steps(depths, kSevenDigits, steps)) found = std::move(steps);
   return found;
 }
 

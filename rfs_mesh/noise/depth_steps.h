@@ -1,9 +1,9 @@
 /// Depths in steps: a camera that measures by disparity or by time knows few depths, and its points lie on
-/// terraces.
+/// terraces; a laser scanner that tells whole centimetres puts them on shells around itself.
 ///
-/// Found where one coordinate, and only one, has a tenth as many values as there are points; where two have,
-/// the points are on a grid of their own. Between two steps every depth is as likely, so a surface of normal
-/// n has noise of at least |n . axis| gap / sqrt(12) from them.
+/// Found where one coordinate, and only one, has a tenth as many values as there are points (where two have,
+/// the points are on a grid of their own), or else the distance from the scanner has. Between two steps every
+/// depth is as likely, so a surface of normal n has noise of at least |n . ray| gap / sqrt(12) from them.
 #pragma once
 
 #include <optional>
@@ -16,10 +16,11 @@ namespace rfsmooth::rfs_mesh {
 /// Standard deviation of what rounding to steps of one size adds.
 double rounding_noise(double step);
 
-/// The steps of one coordinate.
+/// The steps of one coordinate, or of the distance from the scanner.
 struct DepthSteps {
   Eigen::Index axis = 2;
-  std::vector<double> depths;  ///< ascending, at least two
+  std::optional<Eigen::Vector3d> scanner;  ///< if there, depth is the distance from it
+  std::vector<double> depths;              ///< ascending, at least two
 
   /// Mean distance of the steps on both sides of the one nearest to a depth. O(log n).
   double gap(double depth) const;
@@ -31,7 +32,8 @@ struct DepthSteps {
   double typical = 0;
 };
 
-/// Looks at up to 20,000 points. Nothing where there are no steps.
-std::optional<DepthSteps> find_depth_steps(const Positions& points);
+/// Looks at up to 20,000 points. Nothing where there are no steps. \param scanner where it may have stood.
+std::optional<DepthSteps> find_depth_steps(const Positions& points,
+                                           const std::optional<Eigen::Vector3d>& scanner);
 
 }  // namespace rfsmooth::rfs_mesh

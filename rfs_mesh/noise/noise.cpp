@@ -136,7 +136,7 @@ void sum_up(const NoiseSites& sites, const NoiseStart& start, NoiseModel& noise)
 /// Fills the model's figures and sites.
 void measure(const SpatialIndex& index, const DepthSteps* steps, NoiseModel& noise, const Context& context) {
   const Positions places = search_places(index.points());
-  NoiseStart start = search_noise(index, places, context);
+  NoiseStart start = search_noise(index, places, steps, context);
   noise.shared = double(start.narrowest) / double(kNarrowestPatch);
   if (!(start.least > 0)) return;
   const SharedNoise shared = find_shared_noise(index, places, start, steps, context);
@@ -164,18 +164,22 @@ void measure(const SpatialIndex& index, const DepthSteps* steps, NoiseModel& noi
 
 }  // namespace
 
-NoiseModel measure_noise(const SpatialIndex& index, const Context& context) {
+NoiseModel measure_noise(const SpatialIndex& index, const Context& context,
+                         const std::optional<Eigen::Vector3d>& scanner) {
   NoiseModel noise;
   noise.spacing = mean_spacing(index, context);
   if (index.points().size() <= kNeighbourhood) return noise;
-  const std::optional<DepthSteps> steps = find_depth_steps(index.points());
+  const std::optional<DepthSteps> steps = find_depth_steps(index.points(), scanner);
   if (steps) noise.step = steps->typical;
   measure(index, steps ? &*steps : nullptr, noise, context);
   return noise;
 }
 
 const NoiseModel& known_noise(const SpatialIndex& index, Statistics& whole, const Context& context) {
-  if (!whole.noise) whole.noise = measure_noise(index, context);
+  if (whole.noise) return *whole.noise;
+  std::optional<Eigen::Vector3d> origin;
+  if (whole.box) origin = -(0.5 * whole.box->low + 0.5 * whole.box->high);
+  whole.noise = measure_noise(index, context, origin);
   return *whole.noise;
 }
 

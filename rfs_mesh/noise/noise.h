@@ -19,6 +19,7 @@
 /// within a factor of 1.7.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include <rfsmooth/statistics.h>
@@ -44,11 +45,14 @@ struct NoiseField : NoiseModel {
   std::vector<double> local;  ///< n: sigma near each point, world units
 };
 
-/// O(log n) after the index. Parallel, deterministic. Zero for fewer than 25 points.
-NoiseModel measure_noise(const SpatialIndex& index, const Context& context);
+/// O(log n) after the index. Parallel, deterministic. Zero for fewer than 25 points. \param scanner where it
+/// may have stood: ranges in steps are looked for from there.
+NoiseModel measure_noise(const SpatialIndex& index, const Context& context,
+                         const std::optional<Eigen::Vector3d>& scanner = std::nullopt);
 
 /// The noise that `whole` has, or else that of these points, measured and entered: so whoever asks first has
-/// it measured, and all others hear the same.
+/// it measured, and all others hear the same. Scanners write coordinates of their own, so where `whole` knows
+/// the cloud's box, the file's origin is where one may have stood.
 const NoiseModel& known_noise(const SpatialIndex& index, Statistics& whole, const Context& context);
 
 /// The field of a noise that was measured on these points or on a cloud that they are of: at every point the

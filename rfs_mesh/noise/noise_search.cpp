@@ -59,12 +59,12 @@ double bound(const SpatialIndex& index, const Positions& places, const Context& 
 }
 
 /// Where second sheets are as near as the neighbours nearly everywhere, fits without a window tell their
-/// distance. So windows from an eighth of that on are tried: the first that calm places fill no wider than it
-/// is, if no fewer places say anything.
-double lowest(const SpatialIndex& index, const Positions& places, std::size_t m, double sigma,
+/// distance. So windows from an eighth of that on are tried: the first that a calm quarter of the cloud fills
+/// no wider than it is. \param sure no narrower ones.
+double lowest(const SpatialIndex& index, const Positions& places, std::size_t m, double sigma, double sure,
               const Context& context) {
   constexpr double kStep = 1.3;
-  for (double window = kNarrowestWindow * sigma; window < 0.8 * sigma; window *= kStep) {
+  for (double window = std::max(sure, kNarrowestWindow * sigma); window < 0.8 * sigma; window *= kStep) {
     const std::vector<Scatter> all =
         fits(index, places, m, std::vector<double>(places.size(), window), context);
     const std::vector<double> area = areas(all);
@@ -73,8 +73,10 @@ double lowest(const SpatialIndex& index, const Positions& places, std::size_t m,
       whole += area[i];
       if (says(all[i])) saying += area[i];
     }
-    const double seen = std::sqrt(mean_variance(all, kCalmPlaces, kCalmDeviate));
-    if (saying >= kCalmPlaces * whole && seen <= kSameNoise * window) return seen;
+    const double share = kCalmPlaces * whole;
+    if (saying < share) continue;
+    const double seen = std::sqrt(mean_variance(all, share / saying, kCalmDeviate));
+    if (seen <= kSameNoise * window) return seen;
   }
   return sigma;
 }
@@ -105,6 +107,14 @@ std::size_t widest_scatter(const SpatialIndex& index) {
   return std::clamp(index.points().size() / kShareOfCloud, kNarrowestPatch, kWidest);
 }
 
+double variance_of_steps(const DepthSteps& steps, const Positions& places, const std::vector<Scatter>& all) {
+  const std::vector<double> area = areas(all);
+  std::vector<Weighed> variances;
+  for (std::size_t i = 0; i < places.size(); ++i)
+    variances.push_back({std::pow(steps.sigma(places[i], all[i].normal), 2), area[i]});
+  return quantile(variances, kCalmPlaces);
+}
+
 double scatter_reach(double sigma, double narrow) {
   return std::hypot(kScatterWindow * sigma, std::max(0.9 * narrow, kFlat * sigma));
 }
@@ -113,7 +123,8 @@ Positions search_places(const Positions& places) {
   return pick(places, std::min(places.size(), kSearchSites));
 }
 
-NoiseStart search_noise(const SpatialIndex& index, Positions places, const Context& context) {
+NoiseStart search_noise(const SpatialIndex& index, Positions places, const DepthSteps* steps,
+                        const Context& context) {
   constexpr double kTooNarrow = 1.35;  // a window this much smaller than what it shows shows too little
   constexpr double kSettled = 1.03;
   const std::size_t widest = widest_scatter(index);
@@ -123,8 +134,10 @@ NoiseStart search_noise(const SpatialIndex& index, Positions places, const Conte
   const double narrow = median_radius(index, places, start.m);
   start.least = 1e-9 * narrow;
   start.sigma = std::sqrt(mean_variance(all, kCalmPlaces, kCalmDeviate));
+  const double sure =
+      steps == nullptr ? 0 : std::min(start.sigma, std::sqrt(variance_of_steps(*steps, places, all)));
   // Lines are no sheets, and a window narrow enough finds some that are exact.
-  if (start.narrowest == start.m) start.sigma = lowest(index, places, start.m, start.sigma, context);
+  if (start.narrowest == start.m) start.sigma = lowest(index, places, start.m, start.sigma, sure, context);
   start.most = kSameNoise * bound(index, places, context);
   double said = 0;
   while (start.sigma > start.least) {  // ever wider windows, up to the bound

@@ -8,6 +8,7 @@
 #pragma once
 
 #include "rfs_mesh/levels.h"
+#include "rfs_mesh/noise/depth_steps.h"
 #include "rfs_mesh/noise/scatter_statistics.h"
 
 namespace rfsmooth::rfs_mesh {
@@ -37,6 +38,9 @@ struct NoiseStart {
 /// Most neighbours of a fit in a cloud.
 std::size_t widest_scatter(const SpatialIndex& index);
 
+/// Variance that steps make sure of at calm places. \param all fits at the places.
+double variance_of_steps(const DepthSteps& steps, const Positions& places, const std::vector<Scatter>& all);
+
 /// How far the ball of a fit must reach for noise sigma: to a patch of 2 sigma with all of the window above
 /// and below it. \param narrow radius of the ball of the least m.
 double scatter_reach(double sigma, double narrow);
@@ -45,7 +49,8 @@ double scatter_reach(double sigma, double narrow);
 Positions search_places(const Positions& places);
 
 /// O(log n). Parallel, deterministic. \param index at least 25 points. \param places where it looks, at least
-/// one.
-NoiseStart search_noise(const SpatialIndex& index, Positions places, const Context& context);
+/// one. \param steps null: depths are not in steps.
+NoiseStart search_noise(const SpatialIndex& index, Positions places, const DepthSteps* steps,
+                        const Context& context);
 
 }  // namespace rfsmooth::rfs_mesh

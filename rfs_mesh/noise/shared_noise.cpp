@@ -131,12 +131,7 @@ Calm look(const SpatialIndex& index, const Positions& places, const NoiseStart& 
     if (variances.empty()) continue;
     const double variance = quantile(variances, kCalmPlaces);
     if (!(variance > start.least * start.least)) continue;
-    if (calm.m.empty() && steps != nullptr) {
-      std::vector<Weighed> of_steps;
-      for (std::size_t i = 0; i < some.size(); ++i)
-        of_steps.push_back({std::pow(steps->sigma(some[i], all[i].normal), 2), area[i]});
-      calm.steps = quantile(of_steps, kCalmPlaces);
-    }
+    if (calm.m.empty() && steps != nullptr) calm.steps = variance_of_steps(*steps, some, all);
     calm.together.push_back(together(all, kCalmWithin * variance));
     calm.m.push_back(double(m));
     calm.seen.push_back(variance);
@@ -162,8 +157,11 @@ SharedNoise find_shared_noise(const SpatialIndex& index, const Positions& places
   SharedNoise found;
   const Calm calm = look(index, places, start, steps, context);
   if (calm.m.empty()) return found;  // nothing scatters, or too few points to tell
+  // A neighbourhood within one terrace sees nothing of the steps, so the noise may grow steeply. The shells
+  // of a laser scanner are finer than its noise.
+  const bool terraces = steps != nullptr && !steps->scanner;
   // What a window from below saw much less of at the same m is the distance of two sheets.
-  if (steps == nullptr && kLouder * kLouder * start.sigma * start.sigma < calm.seen.front()) return found;
+  if (!terraces && kLouder * kLouder * start.sigma * start.sigma < calm.seen.front()) return found;
   double sill = 0, surely = 0;
   std::size_t at = 0;
   const auto make_sure = [&](std::size_t i, double sure) {
@@ -174,8 +172,8 @@ SharedNoise find_shared_noise(const SpatialIndex& index, const Positions& places
   for (std::size_t i = 0; i + 1 < calm.m.size(); ++i) {
     make_sure(i, std::min(calm.steps, calm.seen[i]));
     if (calm.m[i + 1] != 2 * calm.m[i] || calm.m[i] < 2 * double(start.m)) continue;
-    if (steps == nullptr && calm.seen[i + 1] > kMostGrowthOfNoise * calm.seen[i]) break;
-    if (steps == nullptr && !err_together(calm, i + 1)) continue;
+    if (!terraces && calm.seen[i + 1] > kMostGrowthOfNoise * calm.seen[i]) break;
+    if (!terraces && !err_together(calm, i + 1)) continue;
     surely = std::max(surely, without_shape(calm, i, kLeastGrowthOfShape));
     make_sure(i, without_shape(calm, i, kGrowthOfSmoothShape));
   }

@@ -107,6 +107,41 @@ TEST(NoiseLaws, PointsThatAreNoisierThanTheirNeighboursComeToTheSurface) {
   }
 }
 
+/// What a laser at the origin sees of a room, in whole centimetres of range.
+Positions laser_room() {
+  std::mt19937_64 engine(6);
+  std::normal_distribution<double> normal;
+  Positions points;
+  for (int i = 0; i < 20000; ++i) {
+    const Eigen::Vector3d ray = Eigen::Vector3d(normal(engine), normal(engine), normal(engine)).normalized();
+    const double range = Eigen::Array3d(3, 2, 1.3).cwiseQuotient(ray.array().abs()).minCoeff();
+    points.push_back(0.01 * std::round(100 * (range + 0.006 * normal(engine))) * ray);
+  }
+  return points;
+}
+
+double rms_off_walls(const Positions& points) {
+  double sum = 0;
+  for (const Eigen::Vector3d& p : points)
+    sum += std::pow((p.array().abs() - Eigen::Array3d(3, 2, 1.3)).abs().minCoeff(), 2);
+  return std::sqrt(sum / double(points.size()));
+}
+
+TEST(NoiseLaws, RangesInStepsAreSeenFromTheFilesOrigin) {
+  const Positions room = laser_room();
+  Positions smooth = room, moved = room;
+  const auto report = rfsmooth::denoise(smooth.front().data(), smooth.size(), {}, {});
+  ASSERT_TRUE(report);
+  EXPECT_NEAR(report.value().measured.step, 0.01, 1e-6);
+  EXPECT_NEAR(report.value().noise / rms_off_walls(room), 1, 0.25);
+  EXPECT_LT(rms_off_walls(smooth), 0.4 * rms_off_walls(room));
+  // Elsewhere in the file's coordinates nothing tells where the laser stood.
+  for (Eigen::Vector3d& p : moved) p += Eigen::Vector3d(0.4, -0.3, 0.2);
+  const auto blind = rfsmooth::denoise(moved.front().data(), moved.size(), {}, {});
+  ASSERT_TRUE(blind);
+  EXPECT_EQ(blind.value().measured.step, 0);
+}
+
 TEST(NoiseLaws, NoiseThatNeighboursShareIsSmoothedOverMoreOfThem) {
   // The mean of independent noise over the seven nearest of each point.
   std::mt19937_64 engine(5);

@@ -45,8 +45,10 @@ ordered_json tenths(std::vector<double> field) {
 }
 
 /// As `denoise` measures it: outliers, which it leaves where they are, have no part in it.
-rfs_mesh::NoiseField noise_of_surface(const rfs_mesh::SpatialIndex& index, const Context& context) {
+rfs_mesh::NoiseField noise_of_surface(const rfs_mesh::SpatialIndex& index, const Statistics::Box& box,
+                                      const Context& context) {
   Statistics whole;
+  whole.box = box;
   const std::vector<char> outlier = pipeline::find_outliers(index, {}, whole, context);
   Positions kept;
   for (std::size_t i = 0; i < outlier.size(); ++i)
@@ -84,7 +86,7 @@ ordered_json measure(const pipeline::io::Cloud& cloud, const Context& context) {
     const rfs_mesh::SpatialIndex index(points, context);
     json["spacing"] = rfs_mesh::mean_spacing(points, index.nearest(1, context), context);
     json["spacing_field"] = tenths(rfs_mesh::measure_spacing(index, context));
-    rfs_mesh::NoiseField noise = noise_of_surface(index, context);
+    rfs_mesh::NoiseField noise = noise_of_surface(index, working.value().box, context);
     json["noise"] = noise.sigma;
     json["noise_measured"] = json_of(smoothing::summary_of(noise));
     json["noise_field"] = tenths(std::move(noise.local));

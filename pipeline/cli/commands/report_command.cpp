@@ -67,6 +67,7 @@ Measured measure_cloud(const std::vector<double>& xyz, bool outliers, const Cont
     const rfs_mesh::NeighborTable near = index.nearest(16, context);
     if (cloud.points.size() > 1) measured.spacing = rfs_mesh::mean_spacing(cloud.points, near, context);
     Statistics whole;
+    whole.box = cloud.box;
     pipeline::find_noise(index, near, whole, context);
     measured.noise = whole.noise->sigma;
     if (!outliers) return;

@@ -15,10 +15,10 @@ namespace {
 namespace io = pipeline::io;
 using Eigen::Vector3d;
 
-/// The finite rows of a file around their first, each place once.
-Positions distinct_points(const std::vector<double>& xyz) {
+/// The finite rows of a file around their first, each place once. Sets that origin.
+Positions distinct_points(const std::vector<double>& xyz, Vector3d& origin) {
   Positions points;
-  Vector3d origin = Vector3d::Zero();
+  origin.setZero();
   std::set<std::tuple<double, double, double>> seen;
   for (std::size_t i = 0; i + 2 < xyz.size(); i += 3) {
     const Vector3d p(xyz[i], xyz[i + 1], xyz[i + 2]);
@@ -67,10 +67,18 @@ Scan read_scan(const std::filesystem::path& file, std::size_t most) {
   const auto cloud = value_or_throw(io::read_cloud(file, {}, {}));
   Scan scan;
   scan.name = file.stem().string();
-  scan.points = distinct_points(io::positions(cloud));
+  scan.points = distinct_points(io::positions(cloud), scan.origin);
   crop(most, scan.points);
   if (scan.points.size() > 1) scan.spacing = median_spacing(scan.points);
   return scan;
+}
+
+OurResult run_ours(const Scan& scan, const Variant& variant, int threads) {
+  Positions points = scan.points;
+  for (Vector3d& p : points) p += scan.origin;
+  OurResult ours = run_ours(points, variant, threads);
+  for (Vector3d& p : ours.points) p -= scan.origin;
+  return ours;
 }
 
 Cleaned run_peer(const Scan& scan, const std::string& setting, const std::filesystem::path& cache,

@@ -14,12 +14,16 @@ namespace rfsmooth::bench {
 struct Scan {
   std::string name;
   Positions points;
-  double spacing = 0;  ///< median distance to the nearest neighbour
+  Eigen::Vector3d origin;  ///< the local one, in the file's coordinates
+  double spacing = 0;      ///< median distance to the nearest neighbour
 };
 
 /// At most `most` points: those nearest to the median of the coordinates. \throw Failure if it cannot be
 /// read.
 Scan read_scan(const std::filesystem::path& file, std::size_t most);
+
+/// rfsmooth, in the file's coordinates: their origin is where the scanner may have stood.
+OurResult run_ours(const Scan& scan, const Variant& variant, int threads);
 
 /// One of the peers, from the store if it is there.
 Cleaned run_peer(const Scan& scan, const std::string& setting, const std::filesystem::path& cache,

@@ -78,7 +78,7 @@ Judged judge(const Settings& settings, const Scan& scan) {
   judged.planes = flats.planes;
   judged.patches = flats.patches.size();
   judged.creases = flats.creases.size();
-  const auto ours = run_ours(scan.points, settings.ours, settings.threads);
+  const auto ours = run_ours(scan, settings.ours, settings.threads);
   judged.noise = ours.report.noise / scan.spacing;
   judged.left = ours.report.noise_left / scan.spacing;
   judged.moved = moves(scan.points, ours.points).rms / scan.spacing;

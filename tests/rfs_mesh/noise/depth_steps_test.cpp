@@ -6,9 +6,14 @@
 #include <gtest/gtest.h>
 
 using namespace rfsmooth;
-using rfs_mesh::find_depth_steps;
+using rfs_mesh::DepthSteps;
 
 namespace {
+
+std::optional<DepthSteps> find_depth_steps(const Positions& points,
+                                           const std::optional<Eigen::Vector3d>& scanner = std::nullopt) {
+  return rfs_mesh::find_depth_steps(points, scanner);
+}
 
 /// Random points; the coordinates of `axes` are whole multiples of `step`.
 Positions stepped(double step, const std::vector<Eigen::Index>& axes) {
@@ -41,6 +46,45 @@ TEST(DepthSteps, AreNoneInFreePointsAndOnAGrid) {
   EXPECT_FALSE(find_depth_steps(stepped(1, {2})));     // two planes
 }
 
+/// Points all around a scanner at `scanner`, at ranges of 1 to 3 in whole multiples of `step`, as a file of
+/// single precision keeps them.
+Positions shells(double step, const Eigen::Vector3d& scanner) {
+  std::mt19937_64 engine(3);
+  std::uniform_real_distribution<double> uniform(1, 3);
+  std::normal_distribution<double> normal;
+  Positions points;
+  for (int i = 0; i < 5000; ++i) {
+    const Eigen::Vector3d ray = Eigen::Vector3d(normal(engine), normal(engine), normal(engine)).normalized();
+    const double range = uniform(engine);
+    const Eigen::Vector3f stored = (ray * (step > 0 ? step * std::round(range / step) : range)).cast<float>();
+    points.push_back(stored.cast<double>() + scanner);
+  }
+  return points;
+}
+
+TEST(DepthSteps, AreFoundInTheDistanceFromTheScanner) {
+  const Eigen::Vector3d scanner(-2, 7, 0.3);
+  const auto steps = find_depth_steps(shells(0.01, scanner), scanner);
+  ASSERT_TRUE(steps);
+  EXPECT_EQ(steps->depths.size(), 201);
+  EXPECT_NEAR(steps->typical, 0.01, 1e-6);
+  const Eigen::Vector3d ahead = scanner + Eigen::Vector3d(0, 2, 0);
+  EXPECT_NEAR(steps->sigma(ahead, {0, 1, 0}), 0.01 / std::sqrt(12.0), 1e-6);
+  EXPECT_NEAR(steps->sigma(ahead, Eigen::Vector3d(0, 1, 1).normalized()), 0.01 / std::sqrt(24.0), 1e-6);
+  EXPECT_NEAR(steps->sigma(ahead, {1, 0, 0}), 0, 1e-12);
+}
+
+TEST(DepthSteps, AreNoneFromElsewhereNorInFreeRanges) {
+  const Eigen::Vector3d scanner(-2, 7, 0.3), elsewhere(-2, 7, 0.5);
+  EXPECT_FALSE(find_depth_steps(shells(0.01, scanner)));
+  EXPECT_FALSE(find_depth_steps(shells(0.01, scanner), elsewhere));
+  EXPECT_FALSE(find_depth_steps(shells(0, scanner), scanner));
+  EXPECT_FALSE(find_depth_steps(shells(1e-4, scanner), scanner));  // as many as points
+  Positions far = shells(0, scanner);  // of seven digits only those are left that all share
+  for (auto& p : far) p += Eigen::Vector3d(1e6, 1e6, 0);
+  EXPECT_FALSE(find_depth_steps(far, Eigen::Vector3d(0, 0, 0)));
+}
+
 TEST(DepthSteps, TheirNoiseIsThatOfRoundingAlongTheNormal) {
   const auto steps = find_depth_steps(stepped(0.05, {2}));
   ASSERT_TRUE(steps);
@@ -51,7 +95,7 @@ TEST(DepthSteps, TheirNoiseIsThatOfRoundingAlongTheNormal) {
 }
 
 TEST(DepthSteps, TheGapIsThatOfTheDepth) {
-  rfs_mesh::DepthSteps steps;
+  DepthSteps steps;
   steps.depths = {0, 1, 2, 4, 8};
   EXPECT_EQ(steps.gap(1), 1);
   EXPECT_EQ(steps.gap(2), 1.5);

@@ -30,7 +30,7 @@ Positions rough_square(Sigma&& sigma, double step = 0) {
 
 NoiseSites sites_of(const Positions& points) {
   const SpatialIndex index(points, {});
-  const NoiseStart start = search_noise(index, search_places(points), {});
+  const NoiseStart start = search_noise(index, search_places(points), nullptr, {});
   return listen(index, listening_places(points, start.m), start, nullptr, {});
 }
 
