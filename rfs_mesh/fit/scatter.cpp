@@ -64,6 +64,19 @@ double ScatterFit::err_together(const Vector6& c) {
   return double(sum * sum) / double(kRing);
 }
 
+double ScatterFit::flatness(const Vector6& c) const {
+  double weights = 0, square = 0, fourth = 0;
+  for (std::size_t i = 0; i < local_.size(); ++i) {
+    const double u = local_[i].x(), v = local_[i].y();
+    const Vector6 f = (Vector6() << 1, u, v, u * u, u * v, v * v).finished();
+    const double e = local_[i].z() - f.dot(c), w = weight_[i];
+    weights += w;
+    square += w * e * e;
+    fourth += w * e * e * e * e;
+  }
+  return square > 0 ? fourth * weights / (square * square) : 3;
+}
+
 double ScatterFit::gather(const Positions& points, const Eigen::Vector3d& place, const Eigen::Matrix3d& axes,
                           double r, double flat, bool line) {
   local_.clear();
@@ -155,7 +168,10 @@ Scatter ScatterFit::operator()(const SpatialIndex& index, const Eigen::Vector3d&
     const double left = sums.kept - solver.solve(full).trace();
     const double residual = sums.heights - sums.right.dot(c);
     if (!(left > 0.02 * sums.kept) || !std::isfinite(residual)) return s;
-    if (!(sigma > 0) && local_.size() > kRing) s.together = err_together(c);
+    if (!(sigma > 0) && local_.size() > kRing) {
+      s.together = err_together(c);
+      s.flatness = flatness(c);
+    }
     s.variance = r * r * std::max(0.0, residual) / left / (round > 0 ? kInside : 1);
     s.freedom = left * left / sums.squares;
     s.foot = place + r * c[0] * axes.col(0);

@@ -19,6 +19,8 @@ constexpr std::size_t kPointsLooked = 500000;  // at each m: of wide places fewe
 constexpr double kCalmWithin = 1.3;  // of the calm variance: as far as chance takes fits of a hundred points
 // Of the variance, from m to 2 m: second sheets and detail grow faster than noise, shape at least so.
 constexpr double kMostGrowthOfNoise = 1.8, kLeastGrowthOfShape = 2.83;
+constexpr double kGrowthAcrossEdges = 2;  // 2^p of shape
+constexpr double kFlatnessOfEven = 1.8;   // Scatter::flatness of an even distribution
 constexpr double kTogether = 1.4;         // times that of points on their own; they scatter by a fifth
 constexpr double kFollows = 3;            // patches follow noise of their own by kRing kFollows / m of it
 constexpr std::size_t kDiskPoints = 300;  // of the disk on which g is computed
@@ -102,21 +104,24 @@ double points_sharing(const std::vector<double>& m, const std::vector<double>& l
 
 /// What calm places show, by the number of neighbours, ascending.
 struct Calm {
-  std::vector<double> m, seen;   ///< points, variance about a quadric
-  std::vector<double> together;  ///< as in Scatter
-  double steps = 0;              ///< variance that depths in steps make sure of
+  std::vector<double> m, seen;  ///< points, variance about a quadric
+  /// Means of those of Scatter: together is 1, less what patches follow of it, of noise that points have of
+  /// their own, up to kRing where they share it.
+  std::vector<double> together, flatness;
+  double steps = 0;  ///< variance that depths in steps make sure of
 };
 
-/// The mean of Scatter::together of the fits of at most this variance: 1, less what patches follow of it, of
-/// noise that points have of their own, up to kRing where they share it.
-double together(const std::vector<Scatter>& all, double variance) {
-  double sum = 0, count = 0;
+/// Enters what the fits of at most this variance show of how points err.
+void enter(const std::vector<Scatter>& all, double variance, Calm& calm) {
+  double together = 0, flatness = 0, count = 0;
   for (const Scatter& s : all) {
     if (!says(s) || s.variance > variance) continue;
-    sum += s.together;
+    together += s.together;
+    flatness += s.flatness;
     ++count;
   }
-  return count > 0 ? sum / count : 0;
+  calm.together.push_back(count > 0 ? together / count : 0);
+  calm.flatness.push_back(count > 0 ? flatness / count : 0);
 }
 
 Calm look(const SpatialIndex& index, const Positions& places, const NoiseStart& start,
@@ -132,7 +137,7 @@ Calm look(const SpatialIndex& index, const Positions& places, const NoiseStart& 
     const double variance = quantile(variances, kCalmPlaces);
     if (!(variance > start.least * start.least)) continue;
     if (calm.m.empty() && steps != nullptr) calm.steps = variance_of_steps(*steps, some, all);
-    calm.together.push_back(together(all, kCalmWithin * variance));
+    enter(all, kCalmWithin * variance, calm);
     calm.m.push_back(double(m));
     calm.seen.push_back(variance);
   }
@@ -169,10 +174,15 @@ SharedNoise find_shared_noise(const SpatialIndex& index, const Positions& places
     sill = sure;
     at = i;
   };
+  bool wide = !terraces;
   for (std::size_t i = 0; i + 1 < calm.m.size(); ++i) {
     make_sure(i, std::min(calm.steps, calm.seen[i]));
     if (calm.m[i + 1] != 2 * calm.m[i] || calm.m[i] < 2 * double(start.m)) continue;
-    if (!terraces && calm.seen[i + 1] > kMostGrowthOfNoise * calm.seen[i]) break;
+    const double growth = calm.seen[i + 1] / calm.seen[i];
+    if (wide && growth > (terraces ? kGrowthAcrossEdges : kMostGrowthOfNoise)) break;
+    wide = wide || growth < kGrowthAcrossEdges;
+    if (!wide) continue;
+    if (calm.flatness[i + 1] < kFlatnessOfEven) continue;  // two sheets
     if (!terraces && !err_together(calm, i + 1)) continue;
     surely = std::max(surely, without_shape(calm, i, kLeastGrowthOfShape));
     make_sure(i, without_shape(calm, i, kGrowthOfSmoothShape));

@@ -142,6 +142,28 @@ TEST(NoiseLaws, RangesInStepsAreSeenFromTheFilesOrigin) {
   EXPECT_EQ(blind.value().measured.step, 0);
 }
 
+TEST(NoiseLaws, AThinPlateInDepthsOfStepsStaysAPlate) {
+  std::mt19937_64 engine(7);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  const auto height = [](const Eigen::Vector3d& p) { return 0.03 + 0.005 * std::sin(3 * p.x()); };
+  const auto rms = [&](const Positions& points) {
+    double sum = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const double side = i % 2 == 0 ? 0 : -0.06;
+      sum += std::pow(points[i].z() - side - height(points[i]), 2);
+    }
+    return std::sqrt(sum / double(points.size()));
+  };
+  Positions plate;
+  for (int i = 0; i < 20000; ++i) {
+    Eigen::Vector3d p(uniform(engine), 0.8 * uniform(engine), 0);
+    constexpr double kStep = 0.0074;
+    p.z() = kStep * std::round((height(p) - (i % 2 == 0 ? 0 : 0.06)) / kStep);
+    plate.push_back(p);
+  }
+  EXPECT_LE(rms(denoised(plate)), 1.01 * rms(plate));
+}
+
 TEST(NoiseLaws, NoiseThatNeighboursShareIsSmoothedOverMoreOfThem) {
   // The mean of independent noise over the seven nearest of each point.
   std::mt19937_64 engine(5);

@@ -1,0 +1,60 @@
+#include "rfs_mesh/fit/scatter.h"
+
+#include <cmath>
+#include <functional>
+#include <random>
+
+#include <gtest/gtest.h>
+
+using namespace rfsmooth;
+using rfs_mesh::Scatter;
+
+namespace {
+
+/// The fit to the m points nearest to the middle of a square of 3,000, of which `height` says how far they
+/// lie off a quadric.
+Scatter middle_fit(std::size_t m, const std::function<double(const Eigen::Vector3d&)>& height) {
+  std::mt19937_64 engine(4);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  Positions points;
+  for (int i = 0; i < 3000; ++i) {
+    Eigen::Vector3d p(uniform(engine), uniform(engine), 0);
+    p.z() = 0.2 * p.x() * p.x() - 0.1 * p.x() * p.y() + height(p);
+    points.push_back(p);
+  }
+  const rfs_mesh::SpatialIndex index(points, {});
+  return rfs_mesh::ScatterFit()(index, Eigen::Vector3d::Zero(), m, 0);
+}
+
+TEST(Scatter, FlatnessTellsNormalEvenAndTwoSheetsApart) {
+  std::mt19937_64 engine(5);
+  std::normal_distribution<double> normal(0, 0.01);
+  std::uniform_real_distribution<double> even(-0.01, 0.01);
+  std::bernoulli_distribution above;
+  EXPECT_NEAR(middle_fit(1000, [&](const auto&) { return normal(engine); }).flatness, 3, 0.3);
+  EXPECT_NEAR(middle_fit(1000, [&](const auto&) { return even(engine); }).flatness, 1.8, 0.1);
+  EXPECT_NEAR(middle_fit(1000, [&](const auto&) { return above(engine) ? 0.01 : -0.01; }).flatness, 1, 0.05);
+}
+
+TEST(Scatter, NearestPointsErrTogetherWhereTheyShareTheNoise) {
+  std::mt19937_64 engine(6);
+  std::normal_distribution<double> normal(0, 0.01);
+  double alone = 0, shared = 0;
+  for (int round = 0; round < 200; ++round) {
+    alone += middle_fit(400, [&](const auto&) { return normal(engine); }).together / 200;
+    const double turn = 100 * normal(engine);
+    shared +=
+        middle_fit(400, [&](const auto& p) { return 0.01 * std::sin(20 * p.x() + turn); }).together / 200;
+  }
+  EXPECT_NEAR(alone, 1, 0.3);
+  EXPECT_GT(shared, 2 * alone);
+}
+
+TEST(Scatter, VarianceIsThatOffAQuadric) {
+  std::mt19937_64 engine(7);
+  std::normal_distribution<double> normal(0, 0.01);
+  EXPECT_NEAR(std::sqrt(middle_fit(1000, [&](const auto&) { return normal(engine); }).variance), 0.01, 6e-4);
+  EXPECT_NEAR(std::sqrt(middle_fit(100, [](const auto&) { return 0; }).variance), 0, 2e-3);
+}
+
+}  // namespace
