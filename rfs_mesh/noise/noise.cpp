@@ -96,13 +96,14 @@ std::vector<double> blend(const SpatialIndex& sites, const std::vector<double>& 
 }
 
 /// The windows let a second sheet in nearly everywhere: then the calmer fifth, too, hears more than it shows
-/// without, and all hear so much less.
+/// without, and all hear so much less, but no less than they make sure of.
 void bound_sites(double most, NoiseSites& sites) {
   std::vector<Weighed> all;
   for (std::size_t s = 0; s < sites.at.size(); ++s) all.push_back({sites.sigma[s], sites.area[s]});
   const double calm = quantile(all, kCalmFifth);
   if (!(calm > most)) return;
-  for (double& sigma : sites.sigma) sigma *= most / calm;
+  for (std::size_t s = 0; s < sites.at.size(); ++s)
+    sites.sigma[s] = std::max(sites.floor[s], most / calm * sites.sigma[s]);
 }
 
 /// The figure, and how much of it shape had, from what the sites say. Of places that have noise, where these

@@ -142,6 +142,29 @@ TEST(NoiseLaws, RangesInStepsAreSeenFromTheFilesOrigin) {
   EXPECT_EQ(blind.value().measured.step, 0);
 }
 
+TEST(NoiseLaws, ASlopeInDepthsOfStepsIsSmoothedBesideAnExactFloor) {
+  for (const double slope : {0.5, 1.0}) {
+    std::mt19937_64 engine(9);
+    std::uniform_real_distribution<double> uniform(0, 1);
+    Positions stepped;
+    for (int i = 0; i < 20000; ++i) {
+      const double x = 2 * uniform(engine) - 1;
+      stepped.emplace_back(x, uniform(engine), 0.04 * std::round(std::max(0.0, slope * x) / 0.04));
+    }
+    const Positions smooth = denoised(stepped);
+    double before = 0, after = 0, floor = 0;
+    for (std::size_t i = 0; i < stepped.size(); ++i) {
+      const double x = stepped[i].x();
+      if (x < -0.1) floor = std::max(floor, std::abs(smooth[i].z()));
+      if (x < 0.1) continue;
+      before += std::pow(stepped[i].z() - slope * x, 2);
+      after += std::pow(smooth[i].z() - slope * smooth[i].x(), 2);
+    }
+    EXPECT_LT(after, 0.6 * before) << slope;
+    EXPECT_LT(floor, 0.002) << slope;  // a fifth of a spacing
+  }
+}
+
 TEST(NoiseLaws, AThinPlateInDepthsOfStepsStaysAPlate) {
   std::mt19937_64 engine(7);
   std::uniform_real_distribution<double> uniform(-1, 1);
