@@ -42,6 +42,13 @@ Eigen::Matrix3d axes_of(const Positions& points, const std::vector<Neighbor>& ne
   return eigen.vectors;
 }
 
+/// How far u, v, z lies above the quadric c.
+double residual(const Eigen::Vector3d& x, const Eigen::Matrix<double, 6, 1>& c) {
+  const double u = x.x(), v = x.y();
+  const Eigen::Matrix<double, 6, 1> f(1, u, v, u * u, u * v, v * v);
+  return x.z() - f.dot(c);
+}
+
 }  // namespace
 
 double variance_inside(double c) {
@@ -57,9 +64,7 @@ double ScatterFit::err_together(const Vector6& c) {
                    });
   int sum = 0;
   for (std::size_t i = 0; i < kRing; ++i) {
-    const double u = nearest_[i].x(), v = nearest_[i].y();
-    const Vector6 f = (Vector6() << 1, u, v, u * u, u * v, v * v).finished();
-    sum += nearest_[i].z() > f.dot(c) ? 1 : -1;
+    sum += residual(nearest_[i], c) > 0 ? 1 : -1;
   }
   return double(sum * sum) / double(kRing);
 }
@@ -67,9 +72,7 @@ double ScatterFit::err_together(const Vector6& c) {
 double ScatterFit::flatness(const Vector6& c) const {
   double weights = 0, square = 0, fourth = 0;
   for (std::size_t i = 0; i < local_.size(); ++i) {
-    const double u = local_[i].x(), v = local_[i].y();
-    const Vector6 f = (Vector6() << 1, u, v, u * u, u * v, v * v).finished();
-    const double e = local_[i].z() - f.dot(c), w = weight_[i];
+    const double e = residual(local_[i], c), w = weight_[i];
     weights += w;
     square += w * e * e;
     fourth += w * e * e * e * e;
@@ -166,13 +169,13 @@ Scatter ScatterFit::operator()(const SpatialIndex& index, const Eigen::Vector3d&
     c = solver.solve(sums.right);
     const Matrix6 full = sums.b.selfadjointView<Eigen::Lower>();
     const double left = sums.kept - solver.solve(full).trace();
-    const double residual = sums.heights - sums.right.dot(c);
-    if (!(left > 0.02 * sums.kept) || !std::isfinite(residual)) return s;
+    const double squares = sums.heights - sums.right.dot(c);
+    if (!(left > 0.02 * sums.kept) || !std::isfinite(squares)) return s;
     if (!(sigma > 0) && local_.size() > kRing) {
       s.together = err_together(c);
       s.flatness = flatness(c);
     }
-    s.variance = r * r * std::max(0.0, residual) / left / (round > 0 ? kInside : 1);
+    s.variance = r * r * std::max(0.0, squares) / left / (round > 0 ? kInside : 1);
     s.freedom = left * left / sums.squares;
     s.foot = place + r * c[0] * axes.col(0);
     s.normal = (axes.col(0) - c[1] / flat * axes.col(2) - c[2] / flat * axes.col(1)).normalized();

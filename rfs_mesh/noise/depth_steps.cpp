@@ -16,28 +16,6 @@ constexpr std::size_t kFewestSteps = 4;    // fewer are the sides of a box
 // each coordinate.
 constexpr double kSevenDigits = 2e-6;
 
-}  // namespace
-
-double rounding_noise(double step) {
-  return step / std::sqrt(12.0);
-}
-
-double DepthSteps::gap(double depth) const {
-  const auto above = std::lower_bound(depths.begin(), depths.end(), depth);
-  const std::ptrdiff_t last = std::ptrdiff_t(depths.size()) - 1,
-                       nearest = std::min(last, above - depths.begin()),
-                       low = std::max<std::ptrdiff_t>(0, nearest - 1), high = std::min(last, nearest + 1);
-  return (depths[std::size_t(high)] - depths[std::size_t(low)]) / double(high - low);
-}
-
-double DepthSteps::sigma(const Eigen::Vector3d& at, const Eigen::Vector3d& normal) const {
-  if (!scanner) return rounding_noise(std::abs(normal[axis]) * gap(at[axis]));
-  const Eigen::Vector3d ray = at - *scanner;
-  return rounding_noise(std::abs(normal.dot(ray.normalized())) * gap(ray.norm()));
-}
-
-namespace {
-
 /// The steps that points have in `steps`, which knows of what; false if they have none. \param depths of up
 /// to kLookedAt points. \param rounding depths that differ by no more than this share of themselves are one.
 bool fill_steps(std::vector<double> depths, double rounding, DepthSteps& steps) {
@@ -57,6 +35,24 @@ bool fill_steps(std::vector<double> depths, double rounding, DepthSteps& steps) 
 }
 
 }  // namespace
+
+double rounding_noise(double step) {
+  return step / std::sqrt(12.0);
+}
+
+double DepthSteps::gap(double depth) const {
+  const auto above = std::lower_bound(depths.begin(), depths.end(), depth);
+  const std::ptrdiff_t last = std::ptrdiff_t(depths.size()) - 1,
+                       nearest = std::min(last, above - depths.begin()),
+                       low = std::max<std::ptrdiff_t>(0, nearest - 1), high = std::min(last, nearest + 1);
+  return (depths[std::size_t(high)] - depths[std::size_t(low)]) / double(high - low);
+}
+
+double DepthSteps::sigma(const Eigen::Vector3d& at, const Eigen::Vector3d& normal) const {
+  if (!scanner) return rounding_noise(std::abs(normal[axis]) * gap(at[axis]));
+  const Eigen::Vector3d ray = at - *scanner;
+  return rounding_noise(std::abs(normal.dot(ray.normalized())) * gap(ray.norm()));
+}
 
 std::optional<DepthSteps> find_depth_steps(const Positions& points,
                                            const std::optional<Eigen::Vector3d>& scanner) {

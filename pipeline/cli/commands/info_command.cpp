@@ -1,7 +1,6 @@
 /// rfsmooth info: what a file holds.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <memory>
 
 #include <fmt/format.h>
@@ -69,16 +68,10 @@ ordered_json measure(const pipeline::io::Cloud& cloud, const Context& context) {
     if (working.error().code == ErrorCode::no_usable_points) return json;
     throw Failure(working.error());
   }
-  Eigen::Array3d low = Eigen::Array3d::Constant(std::numeric_limits<double>::infinity()), high = -low;
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const Eigen::Map<const Eigen::Array3d> p(&xyz[3 * i]);
-    if (!p.allFinite()) continue;
-    low = low.min(p);
-    high = high.max(p);
-  }
   const Positions& points = working.value().points;
   json["finite"] = working.value().finite();
   json["distinct"] = points.size();
+  const auto& [low, high] = working.value().box;
   json["low"] = {low[0], low[1], low[2]};
   json["high"] = {high[0], high[1], high[2]};
   if (points.size() < 2) return json;
