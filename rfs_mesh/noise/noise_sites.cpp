@@ -58,6 +58,7 @@ class Listener {
         kept_(at.size(), KeptNeighbors(std::min(cloud.points().size(), 2 * start.m))),
         narrow_(at.size(), 0),
         open_(at.size(), 0),
+        sheet_(at.size(), std::numeric_limits<double>::infinity()),
         widest_(widest_scatter(cloud)),
         louder_(kLouder * start.sigma),
         m(at.size(), start.m),
@@ -71,7 +72,7 @@ class Listener {
         context, at.size(), [&](std::size_t s) { index.nearest(at_[s], group, group_[s]); }, 64);
   }
 
-  /// Looks without windows: sets `open_`, `most` and `floor`; no window is narrower than that.
+  /// Looks without windows: sets `open_`, `sheet_`, `most` and `floor`; no window is narrower than that.
   void look(const DepthSteps* steps) {
     const std::size_t n = cloud_.points().size();
     const std::vector<double> open(at_.size(), 0);
@@ -89,7 +90,10 @@ class Listener {
           for (const Neighbor& q : group_[s]) around.push_back(few[q.index]);
           open_[s] = std::sqrt(mean_variance(around, kTypical, kTypicalDeviate));
           bound(s, all);
-          if (n >= 2 * kPlateauTo) find_floor(s, few, many, steps);
+          if (steps == nullptr) part_sheets(s, few);
+          if (n < 2 * kPlateauTo) return;
+          if (steps == nullptr) part_sheets(s, many);
+          find_floor(s, few, many, steps);
         },
         64);
   }
@@ -112,9 +116,10 @@ class Listener {
           }
           if (!hear_at(s, all)) {
             const double typical = full.empty() ? kEven : quantile(full, 0.5);
-            opened[s] = char(typical > kFilled);
-            if (opened[s] != 0)
-              sigma[s] = std::max(kNarrowestWindow * open_[s], std::sqrt(typical) * before[s]);
+            if (typical > kFilled)
+              sigma[s] =
+                  std::min(sheet_[s], std::max(kNarrowestWindow * open_[s], std::sqrt(typical) * before[s]));
+            opened[s] = char(sigma[s] > before[s]);
           }
           if (sigma[s] > louder_ && widen(s, quantile(radius, 0.5))) opened[s] = 1;
         },
@@ -150,7 +155,7 @@ class Listener {
     double variance = mean_variance(around, kTypical, kTypicalDeviate);
     speaks[s] = char(variance > 0 && double(saying) >= kMostSpeak * double(around.size()));
     if (near > kDiffers * variance) variance = near;
-    if (speaks[s] != 0) sigma[s] = std::sqrt(variance);
+    if (speaks[s] != 0) sigma[s] = std::min(sheet_[s], std::sqrt(variance));
     return speaks[s] != 0;
   }
 
@@ -165,6 +170,21 @@ class Listener {
     }
     const double seen = std::sqrt(quantile(variance, kNearlyAll));
     if (seen < kFlatSlab * quantile(radius, 0.5)) most[s] = seen;
+  }
+
+  /// Lowers `sheet_` where fits without windows show two sheets around. Depths in steps look like sheets.
+  void part_sheets(std::size_t s, const std::vector<Scatter>& open) {
+    std::vector<Scatter> around;
+    double flatness = 0, saying = 0;
+    for (std::size_t k = 0; k < std::min(kNeighbourhood, group_[s].size()); ++k) {
+      around.push_back(open[group_[s][k].index]);
+      if (!says(around.back())) continue;
+      flatness += around.back().flatness;
+      ++saying;
+    }
+    if (!(flatness < kFlatnessOfSheets * saying)) return;
+    const double variance = mean_variance(around, kTypical, kTypicalDeviate);
+    sheet_[s] = std::min(sheet_[s], std::sqrt(variance * share_of_sheet(flatness / saying)));
   }
 
   /// Sets `floor` from what is seen without windows.
@@ -203,6 +223,7 @@ class Listener {
   std::vector<KeptNeighbors> kept_;
   std::vector<double> narrow_;  ///< radius of the ball of the fewest neighbours; 0: not asked for yet
   std::vector<double> open_;    ///< what the fits around show without windows, world units
+  std::vector<double> sheet_;   ///< what each of two sheets shows at most; infinite: there is one
   std::size_t widest_;
   double louder_;
 

@@ -9,6 +9,11 @@
 /// fills it evenly, at three times that variance. Windows that are filled open to what they show, in up to
 /// eight rounds, and at more than twice the start their fits take more points, as many as such noise needs.
 ///
+/// Where both sheets of a wall are within the narrowest windows, what opens ends at their distance. But the
+/// residuals of fits without windows, whose places hold both, are then flatter than a normal distribution,
+/// and their fourth moment tells the variance of one sheet (share_of_sheet): no window there shows more. Two
+/// dozen sites decide that together, of 24 points each, and of 192.
+///
 /// Without a window the scatter is more than the noise, so that of nearly all of the dozen nearest sites is a
 /// bound, where their balls hold the slab.
 ///

@@ -20,7 +20,6 @@ constexpr double kCalmWithin = 1.3;  // of the calm variance: as far as chance t
 // Of the variance, from m to 2 m: second sheets and detail grow faster than noise, shape at least so.
 constexpr double kMostGrowthOfNoise = 1.8, kLeastGrowthOfShape = 2.83;
 constexpr double kGrowthAcrossEdges = 2;  // 2^p of shape
-constexpr double kFlatnessOfEven = 1.8;   // Scatter::flatness of an even distribution
 constexpr double kTogether = 1.4;         // times that of points on their own; they scatter by a fifth
 constexpr double kFollows = 3;            // patches follow noise of their own by kRing kFollows / m of it
 constexpr std::size_t kDiskPoints = 300;  // of the disk on which g is computed
@@ -182,7 +181,7 @@ SharedNoise find_shared_noise(const SpatialIndex& index, const Positions& places
     if (wide && growth > (terraces ? kGrowthAcrossEdges : kMostGrowthOfNoise)) break;
     wide = wide || growth < kGrowthAcrossEdges;
     if (!wide) continue;
-    if (calm.flatness[i + 1] < kFlatnessOfEven) continue;  // two sheets
+    if (calm.flatness[i + 1] < kFlatnessOfSheets) continue;
     if (!terraces && !err_together(calm, i + 1)) continue;
     surely = std::max(surely, without_shape(calm, i, kLeastGrowthOfShape));
     make_sure(i, without_shape(calm, i, kGrowthOfSmoothShape));

@@ -151,6 +151,24 @@ TEST(Noise, BesideASecondSheetIsThatOfOneSheet) {
   EXPECT_NEAR(measured(points).sigma / 0.002, 1, 0.2);
 }
 
+TEST(Noise, OfTheLoudHalfOfAThinWallIsNotItsThickness) {
+  // Sheets as near as neighbours, exact in one half: windows open from zero in the other, and must stop
+  // before they hold both sheets.
+  constexpr double kLoud = 0.003;
+  const auto sigma = [](double x) { return x < 0.5 ? 0 : kLoud; };
+  Positions points = noisy_plane(sigma);
+  for (auto& p : noisy_plane(sigma)) points.emplace_back(p.x(), 1 - p.y(), 0.015 + p.z());
+  const NoiseField noise = measured(points);
+  ASSERT_EQ(noise.local.size(), points.size());
+  double sum = 0, loud = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (points[i].x() < 0.6) continue;
+    sum += noise.local[i] / kLoud;
+    ++loud;
+  }
+  EXPECT_NEAR(sum / loud, 1, 0.3);
+}
+
 TEST(Noise, DoesNotDependOnTheOrderOfThePointsButForTheSites) {
   Positions points = noisy_plane([](double) { return 0.004; });
   const double here = measured(points).sigma;
