@@ -69,15 +69,21 @@ double ScatterFit::err_together(const Vector6& c) {
   return double(sum * sum) / double(kRing);
 }
 
-double ScatterFit::flatness(const Vector6& c) const {
-  double weights = 0, square = 0, fourth = 0;
+void ScatterFit::look_at(const Vector6& c, Scatter& s) const {
+  double weights = 0, second = 0, fourth = 0, middle = 0;
   for (std::size_t i = 0; i < local_.size(); ++i) {
     const double e = residual(local_[i], c), w = weight_[i];
     weights += w;
-    square += w * e * e;
+    second += w * e * e;
     fourth += w * e * e * e * e;
   }
-  return square > 0 ? fourth * weights / (square * square) : 3;
+  if (!(second > 0)) return;
+  for (std::size_t i = 0; i < local_.size(); ++i) {
+    const double e = 2 * residual(local_[i], c);
+    if (e * e * weights < second) middle += weight_[i];
+  }
+  s.flatness = fourth * weights / (second * second);
+  s.middle = middle / weights;
 }
 
 double ScatterFit::gather(const Positions& points, const Eigen::Vector3d& place, const Eigen::Matrix3d& axes,
@@ -173,7 +179,7 @@ Scatter ScatterFit::operator()(const SpatialIndex& index, const Eigen::Vector3d&
     if (!(left > 0.02 * sums.kept) || !std::isfinite(squares)) return s;
     if (!(sigma > 0) && local_.size() > kRing) {
       s.together = err_together(c);
-      s.flatness = flatness(c);
+      look_at(c, s);
     }
     s.variance = r * r * std::max(0.0, squares) / left / (round > 0 ? kInside : 1);
     s.freedom = left * left / sums.squares;

@@ -36,9 +36,11 @@ struct Scatter {
                         ///< many; in the mean 1 of points on their own, whatever their noise. Without window
   double flatness = 3;  ///< fourth moment of the residuals over the square of the second: 3 of a normal
                         ///< distribution, 1.8 of an even one, 1 of two sheets. Without window
-  double within = 0;    ///< s^2 also where the window cuts off so much that the place says nothing; 0: too
-                        ///< few points are left within it to tell
-  double breadth = 0;   ///< variance of the neighbours across their longest axis over that along it, 0 to 1
+  double middle = 0.383;  ///< share of the weight within half a deviation of the quadric: 0.383 of a normal
+                          ///< distribution, 0.289 of an even one, 0 of two sheets. Without window
+  double within = 0;      ///< s^2 also where the window cuts off so much that the place says nothing; 0: too
+                          ///< few points are left within it to tell
+  double breadth = 0;     ///< variance of the neighbours across their longest axis over that along it, 0 to 1
   Eigen::Vector3d foot = Eigen::Vector3d::Zero();    ///< the surface at the place
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< there; zero if the points coincide
 };
@@ -67,8 +69,8 @@ class ScatterFit {
     double heights = 0, kept = 0, squares = 0;
   };
 
-  double err_together(const Vector6& c);    ///< Scatter::together of a quadric
-  double flatness(const Vector6& c) const;  ///< Scatter::flatness of a quadric
+  double err_together(const Vector6& c);             ///< Scatter::together of a quadric
+  void look_at(const Vector6& c, Scatter& s) const;  ///< Scatter::flatness and middle of a quadric
   /// Fills `local_` and `weight_` with the points of `near_` about the place: u and v over r flat, z over r
   /// along the axes from most to least spread (no v on a line). Returns the sum of the weights.
   double gather(const Positions& points, const Eigen::Vector3d& place, const Eigen::Matrix3d& axes, double r,

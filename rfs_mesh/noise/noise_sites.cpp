@@ -59,6 +59,7 @@ class Listener {
         narrow_(at.size(), 0),
         open_(at.size(), 0),
         sheet_(at.size(), std::numeric_limits<double>::infinity()),
+        middle_(at.size(), 1),
         widest_(widest_scatter(cloud)),
         louder_(kLouder * start.sigma),
         m(at.size(), start.m),
@@ -96,6 +97,7 @@ class Listener {
           find_floor(s, few, many, steps);
         },
         64);
+    believe_sheets();
   }
 
   /// One round that opens windows which are too narrow for their places; false if there are none. A place
@@ -175,16 +177,30 @@ class Listener {
   /// Lowers `sheet_` where fits without windows show two sheets around. Depths in steps look like sheets.
   void part_sheets(std::size_t s, const std::vector<Scatter>& open) {
     std::vector<Scatter> around;
-    double flatness = 0, saying = 0;
+    double flatness = 0, middle = 0, saying = 0;
     for (std::size_t k = 0; k < std::min(kNeighbourhood, group_[s].size()); ++k) {
       around.push_back(open[group_[s][k].index]);
       if (!says(around.back())) continue;
       flatness += around.back().flatness;
+      middle += around.back().middle;
       ++saying;
     }
     if (!(flatness < kFlatnessOfSheets * saying)) return;
     const double variance = mean_variance(around, kTypical, kTypicalDeviate);
     sheet_[s] = std::min(sheet_[s], std::sqrt(variance * share_of_sheet(flatness / saying)));
+    middle_[s] = std::min(middle_[s], middle / saying);
+  }
+
+  /// Forgets `sheet_` if the noise itself is flat, and not empty in its middle.
+  void believe_sheets() {
+    double middle = 0, parted = 0;
+    for (std::size_t s = 0; s < sheet_.size(); ++s) {
+      if (!std::isfinite(sheet_[s])) continue;
+      middle += middle_[s];
+      ++parted;
+    }
+    if (middle > kMiddleOfSheets * parted)
+      std::fill(sheet_.begin(), sheet_.end(), std::numeric_limits<double>::infinity());
   }
 
   /// Sets `floor` from what is seen without windows.
@@ -224,6 +240,7 @@ class Listener {
   std::vector<double> narrow_;  ///< radius of the ball of the fewest neighbours; 0: not asked for yet
   std::vector<double> open_;    ///< what the fits around show without windows, world units
   std::vector<double> sheet_;   ///< what each of two sheets shows at most; infinite: there is one
+  std::vector<double> middle_;  ///< Scatter::middle where there are two
   std::size_t widest_;
   double louder_;
 

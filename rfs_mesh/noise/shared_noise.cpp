@@ -18,7 +18,7 @@ constexpr std::size_t kMostOfCloud = 24;       // m is at most so small a part: 
 constexpr std::size_t kPointsLooked = 500000;  // at each m: of wide places fewer say as much
 constexpr double kCalmWithin = 1.3;  // of the calm variance: as far as chance takes fits of a hundred points
 // Of the variance, from m to 2 m: second sheets and detail grow faster than noise, shape at least so.
-constexpr double kMostGrowthOfNoise = 1.8, kLeastGrowthOfShape = 2.83;
+constexpr double kMostGrowthOfNoise = 1.8, kLeastGrowthOfShape = 2.38;
 constexpr double kGrowthAcrossEdges = 2;  // 2^p of shape
 constexpr double kTogether = 1.4;         // times that of points on their own; they scatter by a fifth
 constexpr double kFollows = 3;            // patches follow noise of their own by kRing kFollows / m of it
@@ -183,10 +183,11 @@ SharedNoise find_shared_noise(const SpatialIndex& index, const Positions& places
     if (!wide) continue;
     if (calm.flatness[i + 1] < kFlatnessOfSheets) continue;
     if (!terraces && !err_together(calm, i + 1)) continue;
-    surely = std::max(surely, without_shape(calm, i, kLeastGrowthOfShape));
+    if (terraces || err_together(calm, i))
+      surely = std::max(surely, without_shape(calm, i, kLeastGrowthOfShape));
     make_sure(i, without_shape(calm, i, kGrowthOfSmoothShape));
   }
-  if (!(std::max(surely, calm.steps) > kSameNoise * kSameNoise * start.sigma * start.sigma)) return found;
+  if (!(std::max(surely, calm.steps) > kSameNoise * start.sigma * start.sigma)) return found;
   found.sigma = std::sqrt(sill);
   found.m = std::size_t(calm.m[at]);
   std::vector<double> left;

@@ -11,15 +11,15 @@
 ///
 /// is at most the noise's variance if shape grows at least so. Such noise is there if
 ///
-/// - the largest S with p = 1.5 is above the square of what search_noise found by more than that is unsure
-/// of;
-/// - nearest points lie off the same way: Scatter::together above that of points on their own. (Loud points
-///   among calm ones make s(m) grow, too.)
+/// - the largest S with p = 1.25 is above the square of what search_noise found by more than that is unsure
+///   of: bumps and folds of a statue grow hardly faster, and are no noise;
+/// - nearest points lie off the same way there: Scatter::together above that of points on their own, about m
+///   as about 2 m. (Loud points among calm ones make s(m) grow, too.)
 ///
 /// or if depths in steps (depth_steps.h) make sure of it. Its variance is then the largest S with p = 3, or
 /// that of the steps as far as it is seen. An m beyond which s^2 grows faster than noise does is the last; on
 /// terraces, which it grows fast within, the first such after one from which it does not. Neighbourhoods
-/// whose residuals are flatter than an even distribution are of two sheets, and tell nothing. k is the number
+/// whose residuals are flatter than kFlatnessOfSheets are of two sheets, and tell nothing. k is the number
 /// for which
 ///
 ///     s^2(m) = sigma^2 g(k / m)

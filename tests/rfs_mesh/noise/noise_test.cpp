@@ -169,6 +169,15 @@ TEST(Noise, OfTheLoudHalfOfAThinWallIsNotItsThickness) {
   EXPECT_NEAR(sum / loud, 1, 0.3);
 }
 
+TEST(Noise, OfAnEvenDistributionIsItsDeviation) {
+  // Its residuals are as flat as those of two sheets, but everywhere.
+  std::mt19937_64 engine(8);
+  std::uniform_real_distribution<double> even(-0.004, 0.004);
+  Positions points = noisy_plane([](double) { return 0; });
+  for (auto& p : points) p.z() = even(engine);
+  EXPECT_NEAR(measured(points).sigma * std::sqrt(3.0) / 0.004, 1, 0.15);
+}
+
 TEST(Noise, DoesNotDependOnTheOrderOfThePointsButForTheSites) {
   Positions points = noisy_plane([](double) { return 0.004; });
   const double here = measured(points).sigma;
