@@ -16,7 +16,6 @@ namespace {
 // tests/bench/scans.
 constexpr std::size_t kMostOfCloud = 24;       // m is at most so small a part: else parts are shape
 constexpr std::size_t kPointsLooked = 500000;  // at each m: of wide places fewer say as much
-constexpr double kCalmWithin = 1.3;  // of the calm variance: as far as chance takes fits of a hundred points
 // Of the variance, from m to 2 m: second sheets and detail grow faster than noise, shape at least so.
 constexpr double kMostGrowthOfNoise = 1.8, kLeastGrowthOfShape = 2.38;
 constexpr double kGrowthAcrossEdges = 2;  // 2^p of shape
@@ -136,7 +135,7 @@ Calm look(const SpatialIndex& index, const Positions& places, const NoiseStart& 
     const double variance = quantile(variances, kCalmPlaces);
     if (!(variance > start.least * start.least)) continue;
     if (calm.m.empty() && steps != nullptr) calm.steps = variance_of_steps(*steps, some, all);
-    enter(all, kCalmWithin * variance, calm);
+    enter(all, kSameNoise * kSameNoise * variance, calm);
     calm.m.push_back(double(m));
     calm.seen.push_back(variance);
   }
