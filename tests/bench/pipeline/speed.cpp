@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -157,27 +158,51 @@ void beside_mls(const Positions& points, const Variant& variant, const std::vect
               static_cast<unsigned long long>(mine[threads.front()].front().hash));
 }
 
-/// A cloud without noise of ours.
+/// A cloud without noise of ours, and the mean distance to the nearest neighbour in it.
 struct Subject {
   std::string name;
   Positions points;
+  double spacing = 0;
 };
+
+/// Made in a process of its own: this one must not start threads.
+Subject subject(const std::string& name, const std::function<Positions()>& make) {
+  const Apart made = run_apart([&](const Measure&) {
+    const Positions points = make();
+    const double spacing = clouds::mean_spacing(points);
+    std::string bytes(sizeof spacing + points.size() * sizeof(Eigen::Vector3d), 0);
+    std::memcpy(bytes.data(), &spacing, sizeof spacing);
+    std::memcpy(bytes.data() + sizeof spacing, points.data(), bytes.size() - sizeof spacing);
+    return bytes;
+  });
+  Subject all{name, Positions((made.said.size() - sizeof(double)) / sizeof(Eigen::Vector3d))};
+  std::memcpy(&all.spacing, made.said.data(), sizeof all.spacing);
+  std::memcpy(static_cast<void*>(all.points.data()), made.said.data() + sizeof all.spacing,
+              made.said.size() - sizeof all.spacing);
+  return all;
+}
+
+/// The finite points of a file.
+Positions read_points(const std::string& file) {
+  const auto cloud = value_or_throw(pipeline::io::read_cloud(file, {}, {}));
+  const std::vector<double> xyz = pipeline::io::positions(cloud);
+  Positions points;
+  for (std::size_t i = 0; i < xyz.size(); i += 3)
+    if (const Eigen::Vector3d p = Eigen::Map<const Eigen::Vector3d>(xyz.data() + i); p.allFinite())
+      points.push_back(p);
+  return points;
+}
 
 std::vector<Subject> subjects(std::size_t n, const std::string& scan) {
   std::vector<Subject> all;
-  all.push_back({"bumpy sphere", noisy_cloud(n, 0)});
-  all.push_back({"CAD part", clouds::sample(load_shape("anchor_dense"), n, 7, clouds::Sampling::uniform)});
-  if (scan.empty()) {
+  all.push_back(subject("bumpy sphere", [&] { return noisy_cloud(n, 0); }));
+  all.push_back(subject("CAD part", [&] {
+    return clouds::sample(load_shape("anchor_dense"), n, 7, clouds::Sampling::uniform);
+  }));
+  if (scan.empty())
     std::printf("  a real scan: not measured, --scan names none\n");
-    return all;
-  }
-  const auto cloud = value_or_throw(pipeline::io::read_cloud(scan, {}, {}));
-  const std::vector<double> xyz = pipeline::io::positions(cloud);
-  Subject real{scan, {}};
-  for (std::size_t i = 0; i < xyz.size(); i += 3)
-    if (const Eigen::Vector3d p = Eigen::Map<const Eigen::Vector3d>(xyz.data() + i); p.allFinite())
-      real.points.push_back(p);
-  all.push_back(std::move(real));
+  else
+    all.push_back(subject(scan, [&] { return read_points(scan); }));
   return all;
 }
 
@@ -192,10 +217,9 @@ void nine(std::size_t n, const std::string& scan, const std::vector<double>& noi
       "bytes/pt");
   double worst = 0;
   for (const Subject& subject : subjects(n, scan)) {
-    const double spacing = clouds::mean_spacing(subject.points);
     for (const double noise : noises) {
       Positions points = subject.points;
-      clouds::add_noise(points, noise * spacing, 7);
+      clouds::add_noise(points, noise * subject.spacing, 7);
       std::vector<Run> mine, least_squares, jets;
       std::vector<double> cpu[2], wall[2];
       for (int round = 0; round < rounds; ++round) {

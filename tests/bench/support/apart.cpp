@@ -15,11 +15,16 @@ namespace rfsmooth::bench {
 
 namespace {
 
-double resident(const char* key) {  // kB -> bytes
+/// What the system says of this process.
+double status_of(const char* key) {
   std::ifstream status("/proc/self/status");
   for (std::string line; std::getline(status, line);)
-    if (line.rfind(key, 0) == 0) return 1024 * std::stod(line.substr(std::strlen(key) + 1));
+    if (line.rfind(key, 0) == 0) return std::stod(line.substr(std::strlen(key)));
   return 0;
+}
+
+double resident(const char* key) {
+  return 1024 * status_of(key);  // kB
 }
 
 double cpu_seconds() {
@@ -63,6 +68,8 @@ int run_child(const std::function<std::string(const Measure&)>& job, int to) {
 }  // namespace
 
 Apart run_apart(const std::function<std::string(const Measure&)>& job) {
+  // A pool of threads that was started before would look there in the child, and would do nothing.
+  if (status_of("Threads:") > 1) throw std::logic_error("run_apart: this process has started threads");
   int ends[2];
   if (pipe(ends) != 0) throw std::runtime_error("no pipe");
   std::fflush(stdout);

@@ -21,8 +21,8 @@ struct Apart {
 using Measure = std::function<void(const std::function<void()>& work)>;
 
 /// Forks, runs the job in the child and brings back what it cost and said. Call it from a process that has
-/// never started a thread: threads do not survive a fork. \throw std::runtime_error if the child does not
-/// end well (what it threw is on standard error).
+/// never started a thread: threads do not survive a fork. \throw std::logic_error if it has some;
+/// std::runtime_error if the child does not end well (what it threw is on standard error).
 Apart run_apart(const std::function<std::string(const Measure&)>& job);
 
 }  // namespace rfsmooth::bench
