@@ -59,7 +59,6 @@ class Listener {
         narrow_(at.size(), 0),
         open_(at.size(), 0),
         sheet_(at.size(), std::numeric_limits<double>::infinity()),
-        middle_(at.size(), 1),
         widest_(widest_scatter(cloud)),
         louder_(kLouder * start.sigma),
         m(at.size(), start.m),
@@ -77,6 +76,7 @@ class Listener {
   void look(const DepthSteps* steps) {
     const std::size_t n = cloud_.points().size();
     const std::vector<double> open(at_.size(), 0);
+    std::vector<double> middle(at_.size(), 1);
     const std::size_t few_points = std::min(n, kNeighbourhood),
                       wide = std::min(n, std::max(kNeighbourhood, m.front()));
     const std::vector<Scatter> many =
@@ -87,17 +87,16 @@ class Listener {
     for_each_index(
         context_, at_.size(),
         [&](std::size_t s) {
-          std::vector<Scatter> around;
-          for (const Neighbor& q : group_[s]) around.push_back(few[q.index]);
-          open_[s] = std::sqrt(mean_variance(around, kTypical, kTypicalDeviate));
+          open_[s] =
+              std::sqrt(mean_variance(fits_around(s, few, group_[s].size()), kTypical, kTypicalDeviate));
           bound(s, all);
-          if (steps == nullptr) part_sheets(s, few);
+          if (steps == nullptr) part_sheets(s, few, middle[s]);
           if (n < 2 * kPlateauTo) return;
-          if (steps == nullptr) part_sheets(s, many);
+          if (steps == nullptr) part_sheets(s, many, middle[s]);
           find_floor(s, few, many, steps);
         },
         64);
-    believe_sheets();
+    believe_sheets(middle);
   }
 
   /// One round that opens windows which are too narrow for their places; false if there are none. A place
@@ -174,32 +173,40 @@ class Listener {
     if (seen < kFlatSlab * quantile(radius, 0.5)) most[s] = seen;
   }
 
-  /// Lowers `sheet_` where fits without windows show two sheets around. Depths in steps look like sheets.
-  void part_sheets(std::size_t s, const std::vector<Scatter>& open) {
-    std::vector<Scatter> around;
-    double flatness = 0, middle = 0, saying = 0;
-    for (std::size_t k = 0; k < std::min(kNeighbourhood, group_[s].size()); ++k) {
-      around.push_back(open[group_[s][k].index]);
-      if (!says(around.back())) continue;
-      flatness += around.back().flatness;
-      middle += around.back().middle;
+  /// The fits of the site's nearest, `count` of them at most.
+  std::vector<Scatter> fits_around(std::size_t s, const std::vector<Scatter>& all, std::size_t count) const {
+    std::vector<Scatter> near;
+    for (std::size_t k = 0; k < std::min(count, group_[s].size()); ++k)
+      near.push_back(all[group_[s][k].index]);
+    return near;
+  }
+
+  /// Lowers `sheet_`, and `middle` to their Scatter::middle, where fits without windows show two sheets
+  /// around. Depths in steps look like sheets.
+  void part_sheets(std::size_t s, const std::vector<Scatter>& open, double& middle) {
+    const std::vector<Scatter> near = fits_around(s, open, kNeighbourhood);
+    double flatness = 0, full = 0, saying = 0;
+    for (const Scatter& fit : near) {
+      if (!says(fit)) continue;
+      flatness += fit.flatness;
+      full += fit.middle;
       ++saying;
     }
     if (!(flatness < kFlatnessOfSheets * saying)) return;
-    const double variance = mean_variance(around, kTypical, kTypicalDeviate);
+    const double variance = mean_variance(near, kTypical, kTypicalDeviate);
     sheet_[s] = std::min(sheet_[s], std::sqrt(variance * share_of_sheet(flatness / saying)));
-    middle_[s] = std::min(middle_[s], middle / saying);
+    middle = std::min(middle, full / saying);
   }
 
-  /// Forgets `sheet_` if the noise itself is flat, and not empty in its middle.
-  void believe_sheets() {
-    double middle = 0, parted = 0;
+  /// Forgets `sheet_` if the noise itself is flat, and not empty in its middle. \param middle of each site
+  void believe_sheets(const std::vector<double>& middle) {
+    double sum = 0, parted = 0;
     for (std::size_t s = 0; s < sheet_.size(); ++s) {
       if (!std::isfinite(sheet_[s])) continue;
-      middle += middle_[s];
+      sum += middle[s];
       ++parted;
     }
-    if (middle > kMiddleOfSheets * parted)
+    if (sum > kMiddleOfSheets * parted)
       std::fill(sheet_.begin(), sheet_.end(), std::numeric_limits<double>::infinity());
   }
 
@@ -240,7 +247,6 @@ class Listener {
   std::vector<double> narrow_;  ///< radius of the ball of the fewest neighbours; 0: not asked for yet
   std::vector<double> open_;    ///< what the fits around show without windows, world units
   std::vector<double> sheet_;   ///< what each of two sheets shows at most; infinite: there is one
-  std::vector<double> middle_;  ///< Scatter::middle where there are two
   std::size_t widest_;
   double louder_;
 

@@ -170,7 +170,7 @@ TEST(Noise, OfTheLoudHalfOfAThinWallIsNotItsThickness) {
 }
 
 TEST(Noise, OfAnEvenDistributionIsItsDeviation) {
-  // Its residuals are as flat as those of two sheets, but everywhere.
+  // Its residuals are nearly as flat as those of two sheets, but fill their middle.
   std::mt19937_64 engine(8);
   std::uniform_real_distribution<double> even(-0.004, 0.004);
   Positions points = noisy_plane([](double) { return 0; });
