@@ -452,7 +452,7 @@ Tails tame(const HeightField& field, const Pass& pass, const Mesh& mesh, Positio
   if (noise.shared > 1 && together > kGroups) return {};
   if (together > kByChance) relate_to_neighbours(field, relative, least, context);
   if (!whole) whole = find_tails(relative, least);
-  const Tails tails{*whole};
+  const Tails tails(*whole);
   if (!(tails.share > 0)) return tails;
   for_each_index(context, off.size(), [&](std::size_t i) {
     if (!std::isnan(relative[i]))
@@ -460,9 +460,22 @@ Tails tame(const HeightField& field, const Pass& pass, const Mesh& mesh, Positio
   });
   land_hovering(field, pass, mesh, tails, noise, data, context);
   if (noise.shared > 1) return tails;  // what points share is not of their tails
-  noise.sigma *= tails.narrow;
-  for (double& local : noise.local) local *= tails.narrow;
+  noise.sigma *= tails.noise();
+  for (double& local : noise.local) local *= tails.noise();
   return tails;
+}
+
+/// What is left between the data and the surface. With tails of the data as they came, for
+/// pseudo-observations of one sheet are flatter than a normal distribution, as if of two.
+Residuals residuals_of(const HeightField& field, const std::vector<float>& height, const Positions& data,
+                       double sigma, const Tails& tails, const Context& context) {
+  Residuals left{std::vector<float>(field.size()), tails.unit() * sigma, tails.share > 0};
+  for_each_index(context, field.size(), [&](std::size_t i) {
+    const double at = left.with_tails ? (data[i] - field.guide()[i]).dot(field.normal(i)) : field.height(i),
+                 score = tails.normal_score((at - double(height[i])) / sigma);
+    left.scores[i] = float(std::clamp(score, -rfs_mesh::kNoiseReach, rfs_mesh::kNoiseReach));
+  });
+  return left;
 }
 
 }  // namespace
@@ -487,7 +500,9 @@ Positions automatic_smoothing(Mesh& mesh, bool keep_rings, rfs_mesh::NoiseField 
   Positions data = mesh.positions;  // as tamed
   std::vector<double> most = noise.local;
   for (double& limit : most) limit = kStray * std::max(limit, noise.sigma);
-  if (const Tails tails = tame(*field, pass, mesh, data, noise, whole.tails, context); tails.share > 0) {
+  const double measured = noise.sigma;
+  const Tails tails = tame(*field, pass, mesh, data, noise, whole.tails, context);
+  if (tails.share > 0) {
     report.tail_times = tails.times;
     for (double& limit : most) limit *= tails.times;
     report.guide_strength = guide_strength();
@@ -500,8 +515,10 @@ Positions automatic_smoothing(Mesh& mesh, bool keep_rings, rfs_mesh::NoiseField 
   if (!keep_rings) mesh.one_ring = {};
   const double of_whole = whole.points ? double(*whole.points) / double(n) : 1;
   const std::vector<float> mixed = learned ? pass.height : std::vector<float>();
+  const Tails law = noise.shared > 1 ? Tails() : tails;  // as told: else it counts as noise of all
   const HiddenSheets hidden =
-      split_hidden_sheets(*field, noise.sigma, pass.height, pass.own, of_whole, whole.sheets, context);
+      split_hidden_sheets(*field, residuals_of(*field, pass.height, mesh.positions, measured, law, context),
+                          pass.height, pass.own, of_whole, whole.sheets, context);
   const auto allowed = [&](std::size_t i, const Eigen::Vector3d& move) {
     return move.allFinite() && move.norm() <= most[i];
   };

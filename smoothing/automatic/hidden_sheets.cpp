@@ -12,8 +12,6 @@ namespace rfsmooth::smoothing {
 
 namespace {
 
-using rfs_mesh::kNoiseReach;  // residuals beyond belong to strays
-
 // kNatsOfTwo: on the development shapes at 10,000 and 50,000 points, noise of 1 to 3 %, turned in several
 // ways, where walls are hidden the evidence is 1.2 to 100 (rotor) and 3.2 to 7.5 (armadillo), elsewhere at
 // most 0.9.
@@ -50,9 +48,9 @@ struct Sum {
   }
 };
 
-/// Over all c; `v` are the residuals' local means.
-HiddenSheets best_evidence(const std::vector<float>& residual, const std::vector<float>& own,
-                           const std::vector<float>& v, double whole, const Context& context) {
+/// Over all c; `v` are the squares' local means.
+HiddenSheets best_evidence(const Residuals& left, const std::vector<float>& own, const std::vector<float>& v,
+                           double whole, const Context& context) {
   const std::size_t n = v.size();
   HiddenSheets best;
   std::size_t points = 0;  // at the best c
@@ -72,7 +70,8 @@ HiddenSheets best_evidence(const std::vector<float>& residual, const std::vector
             const auto counts = share <= kMostOwn && mean >= kLouder * float(c) && mean <= kLoudest;
             const auto counted = std::size_t(counts.count());
             if (counted == 0) continue;
-            const Lanes evidence = for_sheets(lanes(residual), mean - float(c), float(c) * (1 - 2 * share));
+            const Lanes evidence =
+                for_sheets(lanes(left.scores), mean - float(c), float(c) * (1 - 2 * share));
             part.evidence += double(counts.select(evidence, 0).sum());
             part.points += counted;
           }
@@ -85,7 +84,7 @@ HiddenSheets best_evidence(const std::vector<float>& residual, const std::vector
     best.variance = c;
     points = sum.points;
   }
-  if (double(points) > kMostSheetShare * double(n)) best.evidence = 0;
+  if (!left.with_tails && double(points) > kMostSheetShare * double(n)) best.evidence = 0;
   return best;
 }
 
@@ -95,30 +94,28 @@ bool HiddenSheets::there() const {
   return evidence >= rfs_mesh::kNatsOfTwo;
 }
 
-HiddenSheets split_hidden_sheets(const HeightField& field, double sigma, std::vector<float>& height,
+HiddenSheets split_hidden_sheets(const HeightField& field, const Residuals& left, std::vector<float>& height,
                                  const std::vector<float>& own, double whole,
                                  std::optional<Statistics::Sheets>& known, const Context& context) {
   HiddenSheets found;
   if (known) found = {*known, 0};
   if (known && !found.there()) return found;
   const std::size_t n = field.size();
-  std::vector<float> residual(n), v(n);
+  std::vector<float> v(n);
+  const std::vector<float>& residual = left.scores;
   const auto square = [&](std::size_t i) { return residual[i] * residual[i] + 2 * own[i]; };
-  for_each_index(context, n, [&](std::size_t i) {
-    residual[i] = float(std::clamp((field.height(i) - double(height[i])) / sigma, -kNoiseReach, kNoiseReach));
-    v[i] = square(i);
-  });
+  for_each_index(context, n, [&](std::size_t i) { v[i] = square(i); });
   // A mean that follows its own points makes any noise look like two sheets, the more so the fewer they are:
   // where it does not even then, one over more would not either.
   for (int round = 0; round < kSheetRounds; ++round) {
     for (int again = 0; again < kSheetRounds; ++again) v = field.local_mean(v, context);
     if (known) continue;
-    found = best_evidence(residual, own, v, whole, context);
+    found = best_evidence(left, own, v, whole, context);
     if (!found.there()) break;
   }
   if (found.there()) {  // of the other points
     for_each_index(context, n, [&](std::size_t i) { v[i] = (v[i] - kItself * square(i)) / (1 - kItself); });
-    if (!known) found = best_evidence(residual, own, v, whole, context);
+    if (!known) found = best_evidence(left, own, v, whole, context);
   }
   known = found;
   if (!found.there()) return found;
@@ -128,7 +125,7 @@ HiddenSheets split_hidden_sheets(const HeightField& field, double sigma, std::ve
     if (mean < double(kLouder) * c) return std::size_t(0);
     const double d = std::sqrt(mean - c);
     const double sharper = d * d > kSharpFrom * c ? kSharper : 1;
-    height[i] += float(sigma * d * std::tanh(sharper * d * double(residual[i]) / c));
+    height[i] += float(left.unit * d * std::tanh(sharper * d * double(residual[i]) / c));
     return std::size_t(1);
   });
   return found;

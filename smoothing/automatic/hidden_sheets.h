@@ -34,7 +34,8 @@
 /// Source: a likelihood ratio of two simple hypotheses.
 /// Residuals in steps (depths of a sensor) look a little like two sheets in some places, so walls are
 /// believed only if they take at least a twentieth of the cloud. Uniform noise looks like two sheets
-/// everywhere, so they are not believed if they take more than three quarters of it.
+/// everywhere, so they are not believed if they take more than three quarters of it, unless the noise is
+/// known to have tails.
 #pragma once
 
 #include <optional>
@@ -57,13 +58,20 @@ struct HiddenSheets : Statistics::Sheets {
   bool there() const;
 };
 
-/// Moves `height` (n: the smoothed heights over the field, world units) of points on hidden double sheets to
+/// What smoothing left of the data.
+struct Residuals {
+  std::vector<float> scores;  ///< n: standard normal where there is one sheet
+  double unit = 0;            ///< what a score of 1 is near 0, world units
+  bool with_tails = false;    ///< whether the law that they are the scores of has tails (tails.h)
+};
+
+/// Moves `height` (n: the smoothed heights, world units) of points on hidden double sheets to
 /// the nearer one, or almost. `own` (n): each point's share of its own height in its smoothed height
-/// (patches.h). It is not changed here, so for the points that were moved it is too small afterwards. \param
-/// sigma the noise, world units, > 0. O(n); parallel, the same bits for any number of threads. Thread safe.
-/// \param whole points of the cloud that the field is of, over its own: so many times its evidence counts.
-/// \param known evidence and c, taken if they are there, else entered.
-HiddenSheets split_hidden_sheets(const HeightField& field, double sigma, std::vector<float>& height,
+/// (patches.h). It is not changed here, so for the points that were moved it is too small afterwards. O(n);
+/// parallel, the same bits for any number of threads. Thread safe. \param whole points of the cloud that the
+/// field is of, over its own: so many times its evidence counts. \param known evidence and c, taken if they
+/// are there, else entered.
+HiddenSheets split_hidden_sheets(const HeightField& field, const Residuals& left, std::vector<float>& height,
                                  const std::vector<float>& own, double whole,
                                  std::optional<Statistics::Sheets>& known, const Context& context);
 

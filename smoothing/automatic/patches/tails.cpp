@@ -58,19 +58,67 @@ struct Squares {
   }
 };
 
+double narrow_density(const Statistics::Tails& tails, double t) {
+  return (1 - tails.share) * std::exp(-t * t / 2);
+}
+
+double wide_density(const Statistics::Tails& tails, double t) {
+  return tails.share / tails.times * std::exp(-t * t / (2 * tails.times * tails.times));
+}
+
 }  // namespace
 
-double Tails::weight(double r) const {
-  if (!(share > 0)) return 1;
-  const double t = r / narrow;
-  const double wide = share / times * std::exp(-t * t / (2 * times * times));
-  const double close = (1 - share) * std::exp(-t * t / 2);
+Tails::Tails(const Statistics::Tails& known) : Statistics::Tails(known) {
+  if (!(share > 0)) return;
+  // The mean over the mixture, by steps that are narrow against its narrower part.
+  constexpr double kStep = 0.05, kEnd = 5;
+  double sum = 0, all = 0;
+  for (double t = kStep / 2; t < kEnd * times; t += kStep) {
+    const double density = narrow_density(*this, t) + wide_density(*this, t), psi = t * of_score(t);
+    sum += density * psi * psi;
+    all += density;
+  }
+  information_ = sum / all;
+}
+
+double Tails::of_score(double t) const {
+  const double wide = wide_density(*this, t), close = narrow_density(*this, t);
   const double least = 1 / (times * times);
   return close + wide > 0 ? (close + least * wide) / (close + wide) : least;
 }
 
-Tails find_tails(const std::vector<float>& residuals, const std::vector<float>& least) {
-  Tails tails;
+double Tails::weight(double r) const {
+  return share > 0 ? of_score(r / narrow) / information_ : 1;
+}
+
+double Tails::noise() const {
+  return narrow / std::sqrt(information_);
+}
+
+double Tails::normal_score(double r) const {
+  if (!(share > 0)) return r;
+  // Newton's method on the logarithm of the probability beyond.
+  const double t = std::abs(r) / narrow,
+               beyond = (1 - share) * std::erfc(t / M_SQRT2) + share * std::erfc(t / (times * M_SQRT2));
+  constexpr double kFarthest = 8;
+  if (!(beyond > std::erfc(kFarthest / M_SQRT2))) return std::copysign(kFarthest, r);
+  double score = std::min(t, kFarthest);
+  for (int round = 0; round < 20; ++round) {
+    const double here = std::erfc(score / M_SQRT2),
+                 slope = std::sqrt(2 / M_PI) * std::exp(-score * score / 2) / here,
+                 step = std::log(here / beyond) / slope;
+    score += step;
+    if (std::abs(step) < 1e-6) break;
+  }
+  return std::copysign(score, r);
+}
+
+double Tails::unit() const {
+  return narrow / (1 - share + share / times);
+}
+
+Statistics::Tails find_tails(const std::vector<float>& residuals, const std::vector<float>& least) {
+  Statistics::Tails tails;
   if (residuals.empty() || !(share_of_far(least, scale(least)) > kLeastFar)) return tails;
   const double unit = scale(residuals);
   if (!(unit > 0)) return tails;

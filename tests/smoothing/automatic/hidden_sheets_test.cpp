@@ -1,5 +1,6 @@
 #include "smoothing/automatic/hidden_sheets.h"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <random>
@@ -18,10 +19,11 @@ constexpr int kSide = 120;
 /// partly_uniform: Gaussian, and uniform what louder places have on top.
 enum class Noise { gaussian, uniform, partly_uniform };
 
-/// Noisy heights over a flat guide, smoothed to zero, where points of the left third truly are at +-`wall`
-/// and those of the right third have `louder` times the noise of 1. `truth`: where they are without noise.
+/// Noisy heights over a flat guide, smoothed to zero, where points of the left third (or of all) truly are at
+/// +-`wall` and those of the right third have `louder` times the noise of 1. `truth`: where they are without
+/// noise.
 struct Sheet {
-  Sheet(double wall, double louder, Noise kind = Noise::gaussian, int side = kSide) {
+  Sheet(double wall, double louder, Noise kind = Noise::gaussian, int side = kSide, bool everywhere = false) {
     std::mt19937 random(7);
     std::normal_distribution<double> gauss;
     std::uniform_real_distribution<double> even(-std::sqrt(3.0), std::sqrt(3.0));
@@ -33,7 +35,7 @@ struct Sheet {
     for (int i = 0; i < side; ++i)
       for (int j = 0; j < side; ++j) {
         guide.emplace_back(i + 0.3 * std::sin(5.0 * j), j + 0.3 * std::cos(3.0 * i), 0);
-        const bool left = i < side / 3, right = i >= 2 * side / 3;
+        const bool left = everywhere || i < side / 3, right = i >= 2 * side / 3;
         truth.push_back(left ? (random() % 2 != 0 ? wall : -wall) : 0);
         data.push_back(guide.back());
         if (kind == Noise::partly_uniform)
@@ -55,6 +57,15 @@ struct Sheet {
     return sum / double(height.size());
   }
 
+  /// From a measured noise of `sigma`.
+  HiddenSheets split(double sigma, bool with_tails = false) {
+    Residuals left{std::vector<float>(height.size()), sigma, with_tails};
+    for (std::size_t i = 0; i < height.size(); ++i)
+      left.scores[i] = float(std::clamp((field->height(i) - double(height[i])) / sigma, -5.0, 5.0));
+    std::optional<Statistics::Sheets> known;
+    return split_hidden_sheets(*field, left, height, own, 1, known, {});
+  }
+
   std::unique_ptr<HeightField> field;
   std::vector<double> truth;
   std::vector<float> height, own;
@@ -64,9 +75,7 @@ TEST(HiddenSheets, PointsOfAWallThinnerThanTheNoiseGoToItsTwoSheets) {
   for (const double measured : {1.0, 1.1}) {  // walls raise the measured noise
     Sheet sheet(1, 1);
     const double film = sheet.error();
-    std::optional<Statistics::Sheets> known;
-    const HiddenSheets found =
-        split_hidden_sheets(*sheet.field, measured, sheet.height, sheet.own, 1, known, {});
+    const HiddenSheets found = sheet.split(measured);
     EXPECT_GT(found.evidence, 7);
     EXPECT_NEAR(found.variance * measured * measured, 1, 0.15);
     EXPECT_NEAR(double(found.split), kSide * kSide / 3.0, kSide * kSide / 20.0);
@@ -78,8 +87,7 @@ TEST(HiddenSheets, LouderNoiseIsNotTakenForThem) {
   for (const double louder : {1.2, 1.4, 1.8}) {
     Sheet sheet(0, louder);
     const std::vector<float> before = sheet.height;
-    std::optional<Statistics::Sheets> known;
-    const HiddenSheets found = split_hidden_sheets(*sheet.field, 1, sheet.height, sheet.own, 1, known, {});
+    const HiddenSheets found = sheet.split(1);
     EXPECT_FALSE(found.there()) << louder;
     EXPECT_EQ(found.split, 0u);
     EXPECT_EQ(sheet.height, before);
@@ -92,8 +100,7 @@ TEST(HiddenSheets, LittleThatLooksLikeThemInManyPointsIsNotTakenForThem) {
   for (const int side : {kSide, 2 * kSide, 3 * kSide}) {
     Sheet sheet(0, 1.2, Noise::partly_uniform, side);
     const std::vector<float> before = sheet.height;
-    std::optional<Statistics::Sheets> known;
-    EXPECT_EQ(split_hidden_sheets(*sheet.field, 1, sheet.height, sheet.own, 1, known, {}).split, 0u) << side;
+    EXPECT_EQ(sheet.split(1).split, 0u) << side;
     EXPECT_EQ(sheet.height, before);
   }
 }
@@ -102,9 +109,17 @@ TEST(HiddenSheets, LittleThatLooksLikeThemInManyPointsIsNotTakenForThem) {
 TEST(HiddenSheets, UniformNoiseIsNotTakenForThem) {
   Sheet sheet(0, 1, Noise::uniform);
   const std::vector<float> before = sheet.height;
-  std::optional<Statistics::Sheets> known;
-  EXPECT_EQ(split_hidden_sheets(*sheet.field, 1, sheet.height, sheet.own, 1, known, {}).split, 0u);
+  EXPECT_EQ(sheet.split(1).split, 0u);
   EXPECT_EQ(sheet.height, before);
+}
+
+// Walls everywhere: the noise itself could be so flat, unless it is known to have tails.
+TEST(HiddenSheets, OfNoiseWithTailsAllOfACloudMayBeWalls) {
+  Sheet sheet(1, 1, Noise::gaussian, kSide, true);
+  const double film = sheet.error();
+  EXPECT_EQ(sheet.split(1.1).split, 0u);
+  EXPECT_GT(double(sheet.split(1.1, true).split), 0.8 * kSide * kSide);
+  EXPECT_LT(sheet.error(), 0.3 * film);
 }
 
 }  // namespace
