@@ -23,9 +23,10 @@
 ///    fitted together (thin_walls.h). Where patches contradict each other, a learned step goes on from there
 ///    towards the surface (learned/last_step.h).
 /// 5. What is left: the mean risk of the mixture, at least the variance that the data's own weight passes on,
-///    sum sigma^2 df/dz, both with the variance that the residuals tell where the surface is smooth: next to
-///    what little is left there, a few percent in sigma would be much. Points farther than 5 sigma from the
-///    result stay where they are and do not count: strays are no noise.
+///    sum sigma^2 df/dz, both with the variance that the residuals tell where the surface is smooth, of
+///    places as loud as each other together: next to what little is left there, a few percent in sigma would
+///    be much. Points farther than 5 sigma from the result stay where they are and do not count: strays are
+///    no noise.
 ///
 /// Noise that k neighbours share (rfs_mesh/shared_noise.h) is that of n / k points, each seen k times: scales
 /// begin at k times as many points, c is k times as large, evidence counts a k-th, and of a prediction that

@@ -31,6 +31,12 @@ struct Prediction {
   std::vector<char> covered;  ///< n: whether any patch reaches the point
 };
 
+/// The share of a point's noise that stays in a prediction which has the share `own` of its height: that of
+/// all who share the noise (automatic.h).
+inline float own_of_all(float own, float shared) {
+  return own * shared / (1 + own * (shared - 1));
+}
+
 /// Overlapping quadrics over one number of points.
 class Patches {
   // What Memory holds.

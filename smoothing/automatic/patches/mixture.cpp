@@ -1,4 +1,4 @@
-#include "smoothing/automatic/mixture.h"
+#include "smoothing/automatic/patches/mixture.h"
 
 #include <algorithm>
 #include <cmath>

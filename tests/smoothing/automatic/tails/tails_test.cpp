@@ -1,4 +1,4 @@
-#include "smoothing/automatic/patches/tails.h"
+#include "smoothing/automatic/tails/tails.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,264 @@
+#include "smoothing/automatic/patches/scales.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "base/parallel.h"
+#include "rfs_mesh/levels.h"
+#include "rfs_mesh/noise/depth_steps.h"
+#include "rfs_mesh/search/thinning.h"
+#include "smoothing/automatic/patches/mixture.h"
+#include "smoothing/automatic/patches/patches.h"
+
+namespace rfsmooth::smoothing {
+
+namespace {
+
+using rfs_mesh::kNarrowestPatch;
+
+// Chosen on the development shapes (tests/bench/quality) at 10,000 and 50,000 points, noise of 1 to 3 %.
+constexpr std::size_t kMostOverlap = 14;  // patches over a point; a thinning leaves 0.4 of them
+constexpr double kNarrowest = 52.6;  // m_0 = kNarrowest (sigma/h)^2 if that is more: a radius of 4.5 sigma
+constexpr double kWidest = 1600;     // the widest patches, unless those that look for walls are wider
+constexpr int kSeeing = 2;           // the scale that looks for walls, of 9 sigma: from 0
+
+constexpr std::size_t kDense = 4;     // a subset with a point in so many has its own among the nearest
+constexpr std::size_t kOwnMean = 60;  // from this many members on, patches average; below, near neighbours do
+constexpr float kNearEvidence = 10;   // nats per sigma^2 of a near mean
+constexpr float kPatchEvidence = 0.25F;  // the same of a patch mean, per member (Leung and Barron's 1/4)
+constexpr float kTolerated = 0.15F;      // sigma^2: what a near mean scatters by without meaning anything
+
+std::vector<float> heights(const HeightField& field, const Context& context) {
+  std::vector<float> all(field.size());
+  for_each_index(context, field.size(), [&](std::size_t i) { all[i] = field.local()[i].height; });
+  return all;
+}
+
+/// (sigma / sigma_i)^2, 0 of points that stay; empty if the noise is the same everywhere.
+std::vector<float> precisions(const rfs_mesh::NoiseField& noise, const Context& context) {
+  const std::vector<double>& local = noise.local;
+  if (std::all_of(local.begin(), local.end(), [&](double s) { return s == local.front(); })) return {};
+  std::vector<float> precision(local.size());
+  for_each_index(context, local.size(), [&](std::size_t i) {
+    const double share = noise.sigma / local[i];
+    precision[i] = rfs_mesh::stays(local[i], noise.sigma) ? 0 : float(share * share);
+  });
+  return precision;
+}
+
+/// From means of risks in units of each point's own noise those of each point: what neighbours tell of the
+/// error counts by how well they know it. `around`: the same means of the precisions.
+void in_own_units(const std::vector<float>& precision, const std::vector<float>& around,
+                  std::vector<float>& mean, const Context& context) {
+  for_each_index(context, mean.size(),
+                 [&](std::size_t i) { mean[i] *= around[i] > 0 ? precision[i] / around[i] : 0; });
+}
+
+/// What the patches of one scale say.
+struct Scale {
+  std::size_t members;
+  Prediction prediction;
+  std::vector<float> worse;    ///< n: the risk's difference to the scale before
+  std::vector<float> mean;     ///< n: of that, as the patches see it; empty if they are narrow
+  std::vector<Index> several;  ///< places that see more than one sheet
+};
+
+/// `before` holds the risk of the scale before it.
+Scale try_scale(const HeightField& field, std::size_t members, const std::vector<Index>& seeds,
+                const rfs_mesh::NoiseField& noise, const std::vector<float>& precision,
+                std::vector<float>& before, Patches::Memory& memory, const Context& context) {
+  const std::vector<double>& sigma = noise.local;
+  const auto shared = float(noise.shared);
+  const Patches patches(field, members, seeds, sigma, memory, context);
+  Scale scale{
+      members, patches.predict(context), std::vector<float>(field.size()), {}, patches.with_several_sheets()};
+  const Prediction& prediction = scale.prediction;
+  for_each_index(context, field.size(), [&](std::size_t i) {
+    const float e = (field.local()[i].height - prediction.height[i]) / float(sigma[i]);
+    const float of_all = own_of_all(prediction.own[i], shared);
+    const float risk = prediction.covered[i] != 0 ? e * e + 2 * of_all - 1 : before[i];
+    scale.worse[i] = precision.empty() || precision[i] > 0 ? risk - before[i] : 0;
+    before[i] = risk;
+  });
+  if (double(members) >= double(kOwnMean) * noise.shared) {
+    scale.mean = patches.mean(patches.mean(scale.worse, context), context);
+    if (!precision.empty()) {
+      const std::vector<float> around = patches.mean(patches.mean(precision, context), context);
+      in_own_units(precision, around, scale.mean, context);
+    }
+  }
+  return scale;
+}
+
+/// Means over near neighbours for all scales, each in place of `worse`.
+void average_near(const HeightField& field, std::vector<Scale>& scales, const Context& context) {
+  constexpr std::size_t kTogether = HeightField::Columns::SizeAtCompileTime;
+  for (std::size_t first = 0; first < scales.size(); first += kTogether) {
+    const std::size_t count = std::min(kTogether, scales.size() - first);
+    std::vector<HeightField::Columns> near(field.size());
+    for_each_index(context, field.size(), [&](std::size_t i) {
+      near[i].setZero();
+      for (std::size_t s = 0; s < count; ++s) near[i][Eigen::Index(s)] = scales[first + s].worse[i];
+    });
+    near = field.local_mean(field.local_mean(near, context), context);
+    for_each_index(context, field.size(), [&](std::size_t i) {
+      for (std::size_t s = 0; s < count; ++s) scales[first + s].worse[i] = near[i][Eigen::Index(s)];
+    });
+  }
+}
+
+/// What the learned step is told of the scales.
+std::vector<ScalesSay> tell(const std::vector<Scale>& scales, std::size_t n, const Context& context) {
+  std::vector<ScalesSay> told(n);
+  for (std::size_t t = 0; t < kTold; ++t) {
+    const Scale& scale = scales[told_scale(t, scales.size())];
+    for_each_index(context, n, [&](std::size_t i) {
+      const bool covered = scale.prediction.covered[i] != 0;
+      const float near = scale.worse[i];
+      told[i][t] = {covered ? scale.prediction.height[i] : std::numeric_limits<float>::quiet_NaN(),
+                    covered ? scale.prediction.own[i] : 1, near, scale.mean.empty() ? near : scale.mean[i]};
+    });
+  }
+  return told;
+}
+
+/// The mixture of all scales by their evidence, and of `first`, the data or what stands for them. `told`: for
+/// the learned step; null: not taken.
+void mix(const HeightField& field, std::vector<float> first, std::vector<Scale> scales, double shared,
+         const std::vector<float>& precision, std::vector<float>& height, std::vector<float>& own,
+         std::vector<ScalesSay>* told, std::vector<double>& shares, const Context& context) {
+  const auto alone = float(1 / shared);
+  Mixture mixture(std::move(first));
+  average_near(field, scales, context);
+  if (!precision.empty()) {
+    const std::vector<float> around = field.local_mean(field.local_mean(precision, context), context);
+    for (Scale& scale : scales) in_own_units(precision, around, scale.worse, context);
+  }
+  if (told != nullptr) *told = tell(scales, field.size(), context);
+  for (Scale& scale : scales) {
+    // A wide patch is judged over its own width, but must not be far off anywhere near the point either: the
+    // few points that it misses by sigmas would be outvoted.
+    std::vector<float>& gain = scale.worse;
+    for_each_index(context, field.size(), [&](std::size_t i) {
+      const float near = gain[i];
+      const float against = scale.mean.empty() ? kNearEvidence * near
+                                               : kPatchEvidence * float(scale.members) * scale.mean[i] +
+                                                     kNearEvidence * std::max(0.0F, near - kTolerated);
+      gain[i] = scale.prediction.covered[i] != 0 ? -alone * against : std::numeric_limits<float>::quiet_NaN();
+    });
+    mixture.add(std::move(scale.prediction.height), std::move(scale.prediction.own), std::move(gain),
+                context);
+    scale = {};
+  }
+  std::vector<float> say(field.size(), 1);
+  // A point counts by its variance: it has that much to lose.
+  for_each_index(context, precision.size(),
+                 [&](std::size_t i) { say[i] = precision[i] > 0 ? std::min(1.0F, 1 / precision[i]) : 0; });
+  mixture.average(height, own, shares, say, context);
+}
+
+/// The ladder of scales.
+class Ladder {
+ public:
+  Ladder(const HeightField& field, const rfs_mesh::NoiseField& noise, const std::vector<float>& precision)
+      : field_(field), noise_(noise), precision_(precision) {
+    risk_.assign(field.size(), 1);  // of the data themselves: no error, all their own
+  }
+
+  /// How patches of about m points are made here: with seeds thinned as far as these allow.
+  Statistics::Scale scale_of(double m, const Context& context) {
+    const std::size_t n = field_.size(), members = std::min(std::size_t(m), n / 2);
+    thin_to(1, context);
+    while (seeds_.size() * members > kMostOverlap * n) thin_to(thinnings_ + 1, context);
+    return {members, thinnings_};
+  }
+
+  void add(const Statistics::Scale& how, const Context& context) {
+    const std::size_t members = make_way(how, context);
+    scales.push_back(try_scale(field_, members, seeds_, noise_, precision_, risk_, memory_, context));
+  }
+
+  /// The heights as the narrowest patches see them; the data where there are none. Before any scale.
+  std::vector<float> narrow(const Statistics::Scale& how, const Context& context) {
+    std::vector<float> smooth = heights(field_, context);
+    const std::size_t members = make_way(how, context);
+    const Prediction said = Patches(field_, members, seeds_, noise_.local, memory_, context).predict(context);
+    for_each_index(context, smooth.size(), [&](std::size_t i) {
+      if (said.covered[i] != 0) smooth[i] = said.height[i];
+    });
+    return smooth;
+  }
+
+  std::vector<Scale> scales;
+
+ private:
+  /// Thins the seeds for a scale; returns its number of points.
+  std::size_t make_way(const Statistics::Scale& how, const Context& context) {
+    thin_to(how.thinnings, context);
+    return std::min(how.members, field_.size());
+  }
+
+  void thin_to(std::size_t thinnings, const Context& context) {
+    for (; thinnings_ < thinnings; ++thinnings_)
+      if (thinnings_ == 0)
+        seeds_ = rfs_mesh::thin_all(field_.guide(), field_.neighbors(), context);
+      else if (seeds_.size() > field_.size() / kDense)
+        seeds_ = rfs_mesh::thin_dense(field_.index(), field_.neighbors(), seeds_, context);
+      else
+        seeds_ = rfs_mesh::thin(field_.guide(), seeds_, context);
+  }
+
+  const HeightField& field_;
+  const rfs_mesh::NoiseField& noise_;
+  const std::vector<float>& precision_;
+  std::vector<float> risk_;
+  Patches::Memory memory_;
+  std::vector<Index> seeds_;
+  std::size_t thinnings_ = 0;  ///< 0: the seeds are all points
+};
+
+/// All scales of a field, and in `first` the heights that stand for the data. `whole`: how those of the whole
+/// cloud are made; what is not there is entered.
+std::vector<Scale> try_scales(const HeightField& field, const rfs_mesh::NoiseField& noise,
+                              const std::vector<float>& precision, double spacing, Statistics::Pass& whole,
+                              std::vector<float>& first, const Context& context) {
+  Ladder ladder(field, noise, precision);
+  const double share = noise.sigma / spacing;
+  const double narrowest = std::max(double(kNarrowestPatch) * noise.shared, kNarrowest * share * share);
+  const double widest = std::max(kWidest, std::ldexp(narrowest, kSeeing));
+  if (noise.shared > 1 && !whole.narrow) whole.narrow = ladder.scale_of(double(kNarrowestPatch), context);
+  first = whole.narrow ? ladder.narrow(*whole.narrow, context) : heights(field, context);
+  const bool known = !whole.scales.empty();
+  double m = narrowest;
+  for (std::size_t s = 0; known ? s < whole.scales.size() : m <= widest; ++s, m *= 2) {
+    context.report("smooth", 0.1 + 0.9 * std::log(m / narrowest) / std::log(2 * widest / narrowest));
+    if (!known) whole.scales.push_back(ladder.scale_of(m, context));
+    ladder.add(whole.scales[s], context);
+    if (!known && m >= double(field.size()) / 2) break;
+  }
+  return std::move(ladder.scales);
+}
+
+}  // namespace
+
+MixedScales smooth_heights(const HeightField& field, const rfs_mesh::NoiseField& noise, double spacing,
+                           bool learned, Statistics::Pass& whole, const Context& context) {
+  std::vector<float> first;
+  const std::vector<float> precision = precisions(noise, context);
+  std::vector<Scale> scales = try_scales(field, noise, precision, spacing, whole, first, context);
+  MixedScales pass;
+  const Scale& seeing = scales[std::min(std::size_t(kSeeing), scales.size() - 1)];
+  pass.members_seeing = seeing.members;
+  pass.several = seeing.several;
+  for (const Scale& scale : scales) {
+    pass.wide = scale.prediction.height;
+    if (scale.members >= kOwnMean && &scale != &scales.front()) break;
+  }
+  mix(field, std::move(first), std::move(scales), noise.shared, precision, pass.height, pass.own,
+      learned ? &pass.told : nullptr, whole.shares, context);
+  return pass;
+}
+
+}  // namespace rfsmooth::smoothing

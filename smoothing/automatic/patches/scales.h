@@ -1,0 +1,32 @@
+/// Patches of many sizes over one field, and their mixture: steps 2 and 3 of automatic.h. Thread safe: no
+/// state is kept.
+#pragma once
+
+#include <vector>
+
+#include <rfsmooth/context.h>
+#include <rfsmooth/statistics.h>
+
+#include "rfs_mesh/noise/noise.h"
+#include "smoothing/automatic/learned/features.h"
+#include "smoothing/automatic/patches/height_field.h"
+
+namespace rfsmooth::smoothing {
+
+/// The heights that all scales together give, and what single scales say.
+struct MixedScales {
+  std::vector<float> height, own;  ///< n: of the mixture, as in Prediction
+  std::vector<float> wide;         ///< n: of the scale that looks for tails
+  std::vector<ScalesSay> told;     ///< n, or empty without the learned step
+  std::vector<Index> several;      ///< places where the scale that looks for walls sees several sheets
+  std::size_t members_seeing = 0;  ///< of that scale
+};
+
+/// Of scales that begin at a radius of 4.5 sigma and go on doubling their points. `spacing`: world units.
+/// \param learned whether the learned step will be taken. \param whole how those of the whole cloud are made;
+/// what is not there is entered. O(n) times the number of scales, about eight; parallel, the same bits for
+/// any number of threads.
+MixedScales smooth_heights(const HeightField& field, const rfs_mesh::NoiseField& noise, double spacing,
+                           bool learned, Statistics::Pass& whole, const Context& context);
+
+}  // namespace rfsmooth::smoothing

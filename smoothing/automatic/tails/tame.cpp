@@ -1,0 +1,128 @@
+#include "smoothing/automatic/tails/tame.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "base/parallel.h"
+#include "rfs_mesh/levels.h"
+#include "rfs_mesh/noise/depth_steps.h"
+#include "smoothing/automatic/stranded.h"
+
+namespace rfsmooth::smoothing {
+
+namespace {
+
+using rfs_mesh::kStray;
+
+constexpr double kCalm = 0.1;    // of the figure: so much calmer places have no part in the tails
+constexpr float kMostOfOne = 2;  // sigma: what one neighbour's distance counts as in a mean over them
+
+/// How far each point lies off a patch that is wide enough not to follow it, beyond what its neighbours do,
+/// too: they all lie off it beside an edge.
+std::vector<float> off_neighbours(const HeightField& field, const MixedScales& pass,
+                                  const rfs_mesh::NoiseField& noise, const Context& context) {
+  std::vector<float> off(field.size()), at_most(field.size());
+  for_each_index(context, off.size(), [&](std::size_t i) {
+    off[i] = field.local()[i].height - pass.wide[i];
+    const float most = kMostOfOne * float(noise.local[i]);
+    at_most[i] = std::clamp(off[i], -most, most);
+  });
+  at_most = field.local_mean(at_most, context);
+  for_each_index(context, off.size(), [&](std::size_t i) { off[i] -= at_most[i]; });
+  return off;
+}
+
+/// How many times more of the neighbours of points that lie far off do so, too, than of all points. 1 for
+/// tails, which are each point's own; beside shape, and where the noise is louder than was measured, far
+/// points stand together.
+double far_together(const HeightField& field, const std::vector<float>& off, const Context& context) {
+  const auto far = [&](std::size_t i) {  // not if unknown
+    return double(std::abs(off[i])) > rfs_mesh::kScatterWindow;
+  };
+  // Points, far ones, their neighbours, and far ones of these.
+  const Eigen::Vector4d sums =
+      sum_over(context, field.size(), Eigen::Vector4d(0, 0, 0, 0), [&](std::size_t i) {
+        Eigen::Vector4d one(1, 0, 0, 0);
+        if (!far(i)) return one;
+        one[1] = 1;
+        for (const Index j : field.neighbors()[i]) one += Eigen::Vector4d(0, 0, 1, far(j) ? 1 : 0);
+        return one;
+      });
+  return sums[2] > 0 ? sums[3] * sums[0] / (sums[1] * sums[2]) : 0;
+}
+
+/// Divides by what the neighbours' tell where they are farther off, too, than the noise has it.
+void relate_to_neighbours(const HeightField& field, std::vector<float>& relative, std::vector<float>& least,
+                          const Context& context) {
+  constexpr float kMeanOfNormal = 0.766F;  // the mean of min(|x|, kMostOfOne), x normal
+  std::vector<float> typical(field.size());
+  for_each_index(context, typical.size(), [&](std::size_t i) {
+    typical[i] = std::isnan(relative[i]) ? kMeanOfNormal : std::min(kMostOfOne, std::abs(relative[i]));
+  });
+  typical = field.local_mean(typical, context);
+  for_each_index(context, typical.size(), [&](std::size_t i) {
+    const float times = std::max(1.0F, typical[i] / kMeanOfNormal);
+    relative[i] /= times;
+    least[i] /= times;
+  });
+}
+
+/// Points of the tails that a first smoothing left beside the surface, since their neighbours are each other,
+/// are seen from the surface instead.
+void land_hovering(const HeightField& field, const MixedScales& pass, const Mesh& mesh, const Tails& tails,
+                   const rfs_mesh::NoiseField& noise, Positions& data, const Context& context) {
+  Positions smooth(field.size());
+  for_each_index(context, smooth.size(), [&](std::size_t i) {
+    smooth[i] = field.guide()[i] + double(pass.height[i]) * field.normal(i);
+  });
+  Positions landed = smooth;
+  land_stranded_only(mesh, kStray * tails.times * noise.sigma, landed, context);
+  for_each_index(context, smooth.size(), [&](std::size_t i) {
+    if (landed[i] == smooth[i] || noise.local[i] < kCalm * noise.sigma) return;
+    const Eigen::Vector3d off = mesh.positions[i] - landed[i];
+    data[i] = landed[i] + tails.weight(off.norm() / noise.local[i]) * off;
+  });
+}
+
+}  // namespace
+
+Tails tame(const HeightField& field, const MixedScales& pass, const Mesh& mesh, Positions& data,
+           rfs_mesh::NoiseField& noise, std::optional<Statistics::Tails>& whole, const Context& context) {
+  if (rfs_mesh::rounding_noise(noise.step) > noise.sigma) return {};  // terraces stand out as tails do
+  constexpr float kMostItsOwn = 0.8F;
+  constexpr double kByChance = 1.6;  // far points together: tails have 0.7 to 1.1 in ten thousand points
+  constexpr double kGroups = 5;      // the same: groups of points that share what they are off by
+  const std::vector<float> off = off_neighbours(field, pass, noise, context);
+  constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
+  std::vector<float> relative(off.size(), kUnknown), least(off.size(), kUnknown);
+  for_each_index(context, off.size(), [&](std::size_t i) {
+    if (noise.local[i] < kCalm * noise.sigma) return;
+    const auto sigma = float(noise.local[i]);
+    const float e = field.local()[i].height - pass.height[i],
+                without = e / (1 - std::clamp(pass.own[i], 0.0F, kMostItsOwn));
+    relative[i] = off[i] / sigma;
+    // Where the mixture had to be narrow, a wide patch says little.
+    least[i] = std::min(std::abs(relative[i]), std::abs(without) / sigma);
+  });
+  const double together = far_together(field, least, context);
+  if (noise.shared > 1 && together > kGroups) return {};
+  if (together > kByChance) relate_to_neighbours(field, relative, least, context);
+  if (!whole) whole = find_tails(relative, least);
+  const Tails tails(*whole);
+  if (!(tails.share > 0)) return tails;
+  for_each_index(context, off.size(), [&](std::size_t i) {
+    if (!std::isnan(relative[i]))
+      data[i] -= (1 - tails.weight(double(relative[i]))) * double(off[i]) * field.normal(i);
+  });
+  land_hovering(field, pass, mesh, tails, noise, data, context);
+  if (noise.shared > 1) return tails;  // what points share is not of their tails
+  noise.sigma *= tails.noise();
+  for (double& local : noise.local) local *= tails.noise();
+  return tails;
+}
+
+}  // namespace rfsmooth::smoothing

@@ -1,0 +1,25 @@
+/// Points of the tails (tails.h), drawn towards the surface that a first smoothing shows. Thread safe: no
+/// state is kept.
+#pragma once
+
+#include <optional>
+
+#include <rfsmooth/context.h>
+#include <rfsmooth/mesh.h>
+#include <rfsmooth/statistics.h>
+
+#include "rfs_mesh/noise/noise.h"
+#include "smoothing/automatic/patches/height_field.h"
+#include "smoothing/automatic/patches/scales.h"
+#include "smoothing/automatic/tails/tails.h"
+
+namespace rfsmooth::smoothing {
+
+/// Makes pseudo-observations of `data` (n x 3), and of `noise` what they have. Returns the tails; where there
+/// are none, nothing is changed. \param pass of the first smoothing. \param mesh as connected, with the
+/// positions as they came. \param whole taken if it is there, else entered. O(n), parallel, the same bits for
+/// any number of threads.
+Tails tame(const HeightField& field, const MixedScales& pass, const Mesh& mesh, Positions& data,
+           rfs_mesh::NoiseField& noise, std::optional<Statistics::Tails>& whole, const Context& context);
+
+}  // namespace rfsmooth::smoothing
