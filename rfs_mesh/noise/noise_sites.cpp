@@ -37,12 +37,12 @@ constexpr int kOpeningRounds = 8;  // windows widen by up to 1.7 in each
 /// the ball of the few.
 double plateau(double few, double many, double radius) {
   constexpr double kStops = 1.6, kNeverStops = 1.9, kSure = 0.65;
-  constexpr double kFlat = 0.14, kThick = 0.2;
+  constexpr double kThin = 0.14, kThick = 0.2;
   if (!(few > 0)) return 0;
   const double growth = many / few, share = few / radius;
   const double trust = std::clamp((growth - 1) / (kSameNoise - 1), 0.0, 1.0) *
                        std::clamp((kNeverStops - growth) / (kNeverStops - kStops), 0.0, 1.0) *
-                       std::clamp((kThick - share) / (kThick - kFlat), 0.0, 1.0);
+                       std::clamp((kThick - share) / (kThick - kThin), 0.0, 1.0);
   return trust * std::max(few, kSure * many);
 }
 

@@ -1,4 +1,4 @@
-#include "rfs_mesh/sheets/two_sheets.h"
+#include "rfs_mesh/connect/part_sheets.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "rfs_mesh/sheets/two_sheets.h"
+#include "rfs_mesh/connect/part_sheets.h"
 
 #include <algorithm>
 #include <cmath>
@@ -68,7 +68,7 @@ Positions inner_places(double height) {
   return places;
 }
 
-TEST(TwoSheets, NothingChangesOnASingleSheet) {
+TEST(PartSheets, NothingChangesOnASingleSheet) {
   Scene scene;
   scene.add_sheet(0, 1);
   for (const Vector3d& p : inner_places(4 * kSigma)) scene.add(p, {p[0], p[1], 0});  // far off, yet only one
@@ -78,14 +78,14 @@ TEST(TwoSheets, NothingChangesOnASingleSheet) {
     ASSERT_TRUE(before[i].shadow == scene.surfaces[i].shadow && before[i].normal == scene.surfaces[i].normal);
 }
 
-TEST(TwoSheets, NothingChangesForPointsNearTheirSheets) {
+TEST(PartSheets, NothingChangesForPointsNearTheirSheets) {
   Scene scene = plate();
   const auto before = scene.surfaces;
   EXPECT_TRUE(scene.part().empty());
   for (std::size_t i = 0; i < before.size(); ++i) ASSERT_TRUE(before[i].shadow == scene.surfaces[i].shadow);
 }
 
-TEST(TwoSheets, PointsInTheMiddleAreBetween) {
+TEST(PartSheets, PointsInTheMiddleAreBetween) {
   // Wherever their shadows are: on either sheet or left in the middle.
   for (const double shadow : {0.0, 0.5, 1.0})
     for (const double place : {0.44, 0.5, 0.56}) {
@@ -101,7 +101,7 @@ TEST(TwoSheets, PointsInTheMiddleAreBetween) {
     }
 }
 
-TEST(TwoSheets, ShadowsLeftInTheMiddleGoToTheNearerSheet) {
+TEST(PartSheets, ShadowsLeftInTheMiddleGoToTheNearerSheet) {
   for (const bool upper : {false, true}) {
     Scene scene = plate();
     const std::size_t sheets = scene.points.size();
@@ -120,7 +120,7 @@ TEST(TwoSheets, ShadowsLeftInTheMiddleGoToTheNearerSheet) {
   }
 }
 
-TEST(TwoSheets, AStepIsNotTwoSheets) {
+TEST(PartSheets, AStepIsNotTwoSheets) {
   // Two half planes side by side at different heights: points over the step look at both, from beside.
   Scene scene;
   scene.add_sheet(0, 1, 0, 0.5);
@@ -129,7 +129,7 @@ TEST(TwoSheets, AStepIsNotTwoSheets) {
   EXPECT_TRUE(scene.part().empty());
 }
 
-TEST(TwoSheets, SameForAnyNumberOfThreads) {
+TEST(PartSheets, SameForAnyNumberOfThreads) {
   Scene scene = plate();
   for (const double place : {0.35, 0.5})
     for (Vector3d p : inner_places(place * kGap)) {
@@ -147,7 +147,7 @@ TEST(TwoSheets, SameForAnyNumberOfThreads) {
   }
 }
 
-TEST(TwoSheets, FewPointsAreLeftAlone) {
+TEST(PartSheets, FewPointsAreLeftAlone) {
   for (const int n : {0, 1, 2, 3, 9}) {
     Scene scene;
     for (int i = 0; i < n; ++i) scene.add({0.01 * i, 0, 0}, {0.01 * i, 0, i % 2 == 0 ? kGap : 0});
