@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "base/linear/symmetric_eigen.h"
 #include "base/parallel.h"
+#include "rfs_mesh/sheets/two_sheets.h"
 
 namespace rfsmooth::rfs_mesh {
 
@@ -45,16 +45,17 @@ class Parter {
   /// For Place::off_its_sheet, `surface` gets its shadow and normal from the nearer sheet.
   Place place(Index i, LocalSurface& surface) {
     if (!doubtful(i) || !find_sheets(i)) return Place::on_its_sheet;
-    const double low = height_of(0, middle_), high = height_of(middle_, heights_.size());
+    const double low = height_of(0, upper_from_), high = height_of(upper_from_, heights_.size());
     if (high - low < std::max(options_.apart * scatter_, 2 * options_.far * sigma_))
       return Place::on_its_sheet;
-    if (!surrounds(i, 0, middle_) || !surrounds(i, middle_, heights_.size())) return Place::on_its_sheet;
+    if (!surrounds(i, 0, upper_from_) || !surrounds(i, upper_from_, heights_.size()))
+      return Place::on_its_sheet;
     if (low < 0 && high > 0 && std::min(-low, high) > options_.between * (high - low)) return Place::between;
     const bool lower = std::abs(low) < std::abs(high);
     const Vector3d shadow = points_[i] + (lower ? low : high) * axis_;
     if ((shadow - surfaces_[i].shadow).norm() <= options_.off * sigma_) return Place::on_its_sheet;
     surface.shadow = shadow;
-    surface.normal = lower ? normal_of(0, middle_) : normal_of(middle_, heights_.size());
+    surface.normal = lower ? normal_of(0, upper_from_) : normal_of(upper_from_, heights_.size());
     return Place::off_its_sheet;
   }
 
@@ -97,29 +98,12 @@ class Parter {
     axis_ = eigen.vectors.col(2);
     for (Height& h : heights_) h.height = axis_.dot(surfaces_[h.point].shadow - points_[i]);
     std::sort(heights_.begin(), heights_.end());
-    split();
+    ascending_.clear();
+    for (const Height& h : heights_) ascending_.push_back(h.height);
+    const SplitHeights split = split_heights(ascending_, kFewest);
+    upper_from_ = split.lower;
+    scatter_ = std::sqrt(split.variance);
     return true;
-  }
-
-  /// Where the variance within the two parts is least.
-  void split() {
-    const std::size_t n = heights_.size();
-    double sum = 0, squares = 0, below = 0, least = std::numeric_limits<double>::infinity();
-    for (const Height& h : heights_) {
-      sum += h.height;
-      squares += h.height * h.height;
-    }
-    for (std::size_t k = 1; k + kFewest <= n; ++k) {
-      below += heights_[k - 1].height;
-      if (k < kFewest) continue;
-      const double within =
-          squares - below * below / double(k) - (sum - below) * (sum - below) / double(n - k);
-      if (within < least) {
-        least = within;
-        middle_ = k;
-      }
-    }
-    scatter_ = std::sqrt(std::max(0.0, least) / double(n));
   }
 
   /// The median.
@@ -157,9 +141,10 @@ class Parter {
   const std::vector<LocalSurface>& surfaces_;
 
   std::vector<Neighbor> found_;
-  std::vector<Height> heights_;  // ascending; the lower sheet ends at middle_
-  std::size_t middle_ = 0;
-  double scatter_ = 0;  // root mean square within the sheets
+  std::vector<Height> heights_;    // ascending
+  std::vector<double> ascending_;  // the same without their points
+  std::size_t upper_from_ = 0;     // where those of the upper sheet begin
+  double scatter_ = 0;             // root mean square within the sheets
   Vector3d axis_ = Vector3d::UnitZ();
 };
 

@@ -7,8 +7,8 @@
 ///
 ///     h_j = a . (shadow_j - p)
 ///
-/// are split into the two groups with the least variance inside. If the sheets are well apart, parallel, and
-/// both extend around the point's foot, then
+/// are split into two sheets, with the least variance inside (two_sheets.h). If the sheets are well apart,
+/// parallel, and both extend around the point's foot, then
 /// - a point clearly nearer to one of them takes its shadow and normal from that one;
 /// - a point about as far from both is *between*: nothing tells which sheet it came from, and any neighbours
 ///   would be wrong half of the time. It gets none, and its tree edges are bridges (sdg.h).

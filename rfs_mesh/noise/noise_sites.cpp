@@ -7,6 +7,7 @@
 
 #include "base/parallel.h"
 #include "rfs_mesh/levels.h"
+#include "rfs_mesh/sheets/two_sheets.h"
 
 namespace rfsmooth::rfs_mesh {
 
@@ -31,6 +32,8 @@ constexpr std::size_t kPlateauTo = 8 * kNeighbourhood;
 // The residuals within a window show its own variance if they are of a normal distribution that it was made
 // for, three times that if they fill it evenly, as those of a far louder one do: the mean of the two factors.
 constexpr double kEven = 3, kFilled = 1.73;
+// Scatter::middle above which noise so flat is that of no two sheets: nearly that of an even distribution.
+constexpr double kMiddleOfSheets = 0.25;
 constexpr int kOpeningRounds = 8;  // windows widen by up to 1.7 in each
 
 /// What scatter at kNeighbourhood points, `few`, and at kPlateauTo, `many`, makes sure of. \param radius of

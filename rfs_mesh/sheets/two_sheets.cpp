@@ -1,12 +1,14 @@
-#include "rfs_mesh/sheets/sheet_pair.h"
+#include "rfs_mesh/sheets/two_sheets.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+
+#include <Eigen/Cholesky>
 
 #include "base/avx2.h"
 #include "base/linear/small_cholesky.h"
-#include "rfs_mesh/levels.h"
 
 namespace rfsmooth::rfs_mesh {
 
@@ -23,7 +25,7 @@ constexpr int kPairRounds = 12;
 constexpr double kRidgeOfPair = 1e-6;    // of the normal equations, beside the weights
 constexpr double kLeastWeights = 30;     // nine unknowns, and
 constexpr double kUnknowns = 9;          // of the two sheets
-constexpr double kLeastVariance = 0.35;  // s^2
+constexpr double kLeastVariance = 0.35;  // c
 // Chosen on rotor, armadillo, anchor_dense and plate at 10,000 and 50,000 points, noise of 1 to 3 %, and so
 // that the depths of real sensors, which come in steps, say nothing: patches on rotor's walls at 1 % have
 // nats of 3 to 40, known of 0.65 to 1, and 1.3 to 2 between a sheet and the middle; those that did harm
@@ -36,26 +38,38 @@ constexpr double kLeastInCell = 0.3;  // sum of squared weights
 // By so much all points may be below what some of them show: four deviations of the variance of a hundred.
 constexpr double kByChance = 1.6;
 
-double side(const SheetPoint& p) {
+constexpr double kMostCertain = 50;        // logarithm of the odds of a label
+constexpr double kRidgeOfLabelled = 1e-9;  // as kRidgeOfPair, of labels given
+constexpr double kSharper = 4;             // than the expected label, where
+constexpr double kSharpFrom = 0.5;         // d^2 / c is above this
+
+/// E[s | e] of a point whose P is known.
+double label(const SheetPoint& p) {
   return 2 * p.upper - 1;
 }
 
-constexpr double kMostCertain = 50;  // logarithm of the odds of a side
-
+/// P in noise of variance 1.
 double probability(double above, double apart) {
   return 1 / (1 + std::exp(std::clamp(-2 * above * apart, -kMostCertain, kMostCertain)));
 }
 
+/// Of both sheets, without the constant of the normal distribution.
+double log_likelihood_of_two(double above, double apart, double variance) {
+  return std::log(0.5 * std::exp(-0.5 * std::pow(above - apart, 2) / variance) +
+                  0.5 * std::exp(-0.5 * std::pow(above + apart, 2) / variance) + 1e-300) -
+         0.5 * std::log(variance);
+}
+
 /// The points by column, as the rounds of a fit read them.
 struct PairColumns {
-  Eigen::ArrayXd u, v, height, weight, sides;
+  Eigen::ArrayXd u, v, height, weight, labels;
   Eigen::Matrix<double, Eigen::Dynamic, 10>
       moments;                                       ///< weight times 1, u, v, u^2, u v, v^2, u^3, u^2 v, ...
   Eigen::Matrix<double, Eigen::Dynamic, 3> heights;  ///< weight times height times 1, u, v
 
   explicit PairColumns(const std::vector<SheetPoint>& points) {
     const auto n = Eigen::Index(points.size());
-    for (Eigen::ArrayXd* column : {&u, &v, &height, &weight, &sides}) column->resize(n);
+    for (Eigen::ArrayXd* column : {&u, &v, &height, &weight, &labels}) column->resize(n);
     moments.resize(n, 10);
     heights.resize(n, 3);
     for (Eigen::Index k = 0; k < n; ++k) {
@@ -64,7 +78,7 @@ struct PairColumns {
       v[k] = p.v;
       height[k] = p.height;
       weight[k] = p.weight;
-      sides[k] = side(p);
+      labels[k] = label(p);
       const double uu = p.u * p.u, vv = p.v * p.v;
       const double of[10] = {1, p.u, p.v, uu, p.u * p.v, vv, uu * p.u, uu * p.v, p.u * vv, p.v * vv};
       for (int m = 0; m < 10; ++m) moments(k, m) = p.weight * of[m];
@@ -113,6 +127,11 @@ double SheetPair::apart(const SheetPoint& p) const {
   return apart_[0] + apart_[1] * p.u + apart_[2] * p.v;
 }
 
+double SheetPair::nearer(const SheetPoint& p) const {
+  const double m = middle(p);
+  return m + nearer_label(p.height - m) * apart(p);
+}
+
 void SheetPair::fit_one(std::vector<SheetPoint>& points) {
   Matrix6 a = Matrix6::Zero();
   Vector6 right;
@@ -123,22 +142,22 @@ void SheetPair::fit_one(std::vector<SheetPoint>& points) {
   middle_ = SmallCholesky<6>(a).solve(right);
   for (const SheetPoint& p : points) single_ += p.weight * std::pow(p.height - middle(p), 2);
   single_ /= weights_;
-  const double apart = std::sqrt(std::max(0.0, single_ - 1));
-  for (SheetPoint& p : points) p.upper = probability(p.height - middle(p), apart);
+  const double d = std::sqrt(std::max(0.0, squared_apart(single_, 1)));
+  for (SheetPoint& p : points) p.upper = probability(p.height - middle(p), d);
 }
 
 void SheetPair::fit_two(std::vector<SheetPoint>& points) {
-  // The normal equations of f, side (1, u, v) hold products of the sides with moments of degree 3 and less.
+  // The normal equations of f, s (1, u, v) hold products of the labels with moments of degree 3 and less.
   constexpr std::array<std::array<int, 3>, 6> kProduct = {
       {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}, {3, 6, 7}, {4, 7, 8}, {5, 8, 9}}};
   const PairColumns of(points);
-  Eigen::ArrayXd sides = of.sides;
+  Eigen::ArrayXd labels = of.labels;
   for (int round = 0; round < kPairRounds; ++round) {
-    const Eigen::Matrix<double, 10, 1> once = of.moments.transpose() * sides.matrix();
-    const Vector6 twice = of.moments.leftCols<6>().transpose() * sides.square().matrix();
+    const Eigen::Matrix<double, 10, 1> once = of.moments.transpose() * labels.matrix();
+    const Vector6 twice = of.moments.leftCols<6>().transpose() * labels.square().matrix();
     Matrix9 a = Matrix9::Zero();  // its lower half
     Vector9 right;
-    right << heights_, of.heights.transpose() * sides.matrix();
+    right << heights_, of.heights.transpose() * labels.matrix();
     a.topLeftCorner<6, 6>() = moments_;
     for (int i = 0; i < 6; ++i)
       for (int j = 0; j < 3; ++j) a(6 + j, i) = once[kProduct[i][j]];
@@ -152,13 +171,13 @@ void SheetPair::fit_two(std::vector<SheetPoint>& points) {
     const Eigen::ArrayXd above = of.height - middle_[0] - of.u * (middle_[1] + middle_[3] * of.u) -
                                  of.v * (middle_[2] + middle_[4] * of.u + middle_[5] * of.v),
                          d = apart_[0] + apart_[1] * of.u + apart_[2] * of.v;
-    sides = 2 / (1 + (-2 / variance_ * above * d).max(-kMostCertain).min(kMostCertain).exp()) - 1;
+    labels = 2 / (1 + (-2 / variance_ * above * d).max(-kMostCertain).min(kMostCertain).exp()) - 1;
     // P (above - d)^2 + (1 - P) (above + d)^2
-    const double squares = (of.weight * (above.square() + d.square() - 2 * sides * above * d)).sum();
+    const double squares = (of.weight * (above.square() + d.square() - 2 * labels * above * d)).sum();
     left_ = squares / (weights_ - kUnknowns);
     variance_ = std::clamp(left_, kLeastVariance, 1.0);
   }
-  for (std::size_t k = 0; k < points.size(); ++k) points[k].upper = (1 + sides[Eigen::Index(k)]) / 2;
+  for (std::size_t k = 0; k < points.size(); ++k) points[k].upper = (1 + labels[Eigen::Index(k)]) / 2;
 }
 
 void SheetPair::judge(const std::vector<SheetPoint>& points) {
@@ -173,14 +192,13 @@ void SheetPair::judge(const std::vector<SheetPoint>& points) {
   for (const SheetPoint& p : points) {
     if (p.weight == 0) continue;
     const double above = p.height - middle(p), d = apart(p);
-    two += p.weight * (std::log(0.5 * std::exp(-0.5 * std::pow(above - d, 2) / variance_) +
-                                0.5 * std::exp(-0.5 * std::pow(above + d, 2) / variance_) + 1e-300) -
-                       0.5 * std::log(variance_));
-    known += p.weight * (p.estimate - middle(p)) * side(p);
-    all += p.weight * d * side(p) * side(p);
+    const double s = label(p);
+    two += p.weight * log_likelihood_of_two(above, d, variance_);
+    known += p.weight * (p.estimate - middle(p)) * s;
+    all += p.weight * d * s * s;
     Cell& cell = cells[cell_of(p.u)][cell_of(p.v)];
-    cell.middle += p.weight * (above - side(p) * d);
-    cell.apart += p.weight * (side(p) * above - d);
+    cell.middle += p.weight * (above - s * d);
+    cell.apart += p.weight * (s * above - d);
     cell.squares += p.weight * p.weight;
   }
   const double one = -0.5 * weights_ * (std::log(single_) + 1);
@@ -195,6 +213,51 @@ void SheetPair::judge(const std::vector<SheetPoint>& points) {
   possible_ = left_ < kByChance * kMostLeftByPair && misfit < kByChance * kMostLeftByPair * counted;
   convincing_ = two - one > kNatsOfTwo && left_ < kMostLeftByPair && misfit < kMostLeftByPair * counted &&
                 apart_[0] < kFarApart && known > kKnown * all;
+}
+
+void LabelledSheets::add(const Eigen::Vector2d& uv, double height, double label, double weight) {
+  const Eigen::Vector4d f(1, uv.x(), uv.y(), label);
+  a_.noalias() += weight * f * f.transpose();
+  right_ += weight * height * f;
+  squares_ += weight * height * height;
+  weights_ += weight;
+}
+
+LabelledSheets::Fit LabelledSheets::fit() const {
+  Eigen::Matrix4d a = a_;
+  a.diagonal().array() += kRidgeOfLabelled * weights_;
+  const Eigen::Vector4d x = a.ldlt().solve(right_);
+  return {x[0], {x[1], x[2]}, x[3], (squares_ - x.dot(right_)) / weights_};
+}
+
+SplitHeights split_heights(const std::vector<double>& ascending, std::size_t fewest) {
+  const std::size_t n = ascending.size();
+  double sum = 0, squares = 0, below = 0, least = std::numeric_limits<double>::infinity();
+  for (const double height : ascending) {
+    sum += height;
+    squares += height * height;
+  }
+  SplitHeights split = {fewest, 0};
+  for (std::size_t k = 1; k + fewest <= n; ++k) {
+    below += ascending[k - 1];
+    if (k < fewest) continue;
+    const double within = squares - below * below / double(k) - (sum - below) * (sum - below) / double(n - k);
+    if (within < least) {
+      least = within;
+      split.lower = k;
+    }
+  }
+  split.variance = std::max(0.0, least) / double(n);
+  return split;
+}
+
+double share_of_sheet(double flatness) {
+  return 1 - std::sqrt(std::clamp((3 - flatness) / 2, 0.0, 1.0));
+}
+
+double sharpened_label(double above, double apart, double variance) {
+  const double sharper = apart * apart > kSharpFrom * variance ? kSharper : 1;
+  return expected_label(above, sharper * apart, variance);
 }
 
 }  // namespace rfsmooth::rfs_mesh
