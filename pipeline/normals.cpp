@@ -10,9 +10,9 @@
 #include "rfs_mesh/levels.h"
 #include "rfs_mesh/normals/bilateral_normals.h"
 #include "rfs_mesh/normals/orient.h"
+#include "rfs_mesh/normals/thin_parts.h"
+#include "rfs_mesh/normals/wall_sides.h"
 #include "rfs_mesh/search/neighbors.h"
-#include "rfs_mesh/sheets/thin_parts.h"
-#include "rfs_mesh/sheets/wall_sides.h"
 
 namespace rfsmooth {
 

@@ -36,9 +36,6 @@ constexpr double kStray = 5;
 /// of it: a radius of 5.5 sigma.
 constexpr double kFlatSlab = 0.18;
 
-/// Nats by which two sheets must say more of points than one does: odds of 7 to 1.
-constexpr double kNatsOfTwo = 2;
-
 /// Points that stand for all of a cloud in a mean or a median over it, which they give to half a per cent.
 constexpr std::size_t kSampleOfCloud = 50000;
 

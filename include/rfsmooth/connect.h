@@ -10,7 +10,7 @@
 ///
 /// Differs from the paper: connectivity is tested on the shadow of the cloud (local_surface.h) where noise
 /// exceeds a share of the spacing, or on positions the caller gives; points that noise carried between two
-/// near sheets have no neighbours (two_sheets.h); thresholds are ours (SheetsOptions, SdgOptions,
+/// near sheets have no neighbours (part_sheets.h); thresholds are ours (SheetsOptions, SdgOptions,
 /// UmbrellaOptions).
 #pragma once
 

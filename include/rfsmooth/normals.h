@@ -3,8 +3,8 @@
 ///
 ///     cloud -> working cloud -> connect (EMST, RFS-mesh) -> local quadrics -> bilateral normals ->
 ///     orient (rfs_mesh/normals/orient.h) -> settle those that stand against all around them ->
-///     without a viewpoint: turn those of merged walls and limbs outward (rfs_mesh/sheets/thin_parts.h) ->
-///     turn those between the sheets of a wall to the nearer one (rfs_mesh/sheets/wall_sides.h)
+///     without a viewpoint: turn those of merged walls and limbs outward (rfs_mesh/normals/thin_parts.h) ->
+///     turn those between the sheets of a wall to the nearer one (rfs_mesh/normals/wall_sides.h)
 ///
 /// Meant for what `denoise` gives back, and for any cloud: neighbourhoods are as wide as its noise asks.
 #pragma once

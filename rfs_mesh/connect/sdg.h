@@ -9,7 +9,7 @@
 /// - (B) A point whose neighbours leave a wide gap in the tangent plane is joined to the nearest admissible
 ///   point inside the gap, if that point wants the same edge or the edge is short; two rounds.
 /// - (C) A tree edge is a bridge if it is far longer than the tree around both ends, or stands up from the
-///   surface at both, or has an end between two sheets (two_sheets.h).
+///   surface at both, or has an end between two sheets (part_sheets.h).
 ///
 /// Each rule decides for every vertex on one snapshot of the graph, so the order of visiting does not matter.
 /// Thread safe: no state is kept.
@@ -31,7 +31,7 @@ struct Terrain {
   const std::vector<LocalSurface>& surfaces;  ///< n; only the normals are read
   const NeighborTable& near;                  ///< n rows, nearest first
   double noise = 0;                           ///< standard deviation of `at` along the normal, world units
-  const std::vector<char>& between;           ///< n flags (two_sheets.h), or none
+  const std::vector<char>& between;           ///< n flags (part_sheets.h), or none
 
   /// Whether v lies between two sheets; it gets no neighbours then.
   bool is_between(Index v) const { return !between.empty() && between[v] != 0; }

@@ -7,6 +7,7 @@
 
 #include "base/parallel.h"
 #include "rfs_mesh/levels.h"
+#include "rfs_mesh/sheets/two_sheets.h"
 
 namespace rfsmooth::rfs_mesh {
 
@@ -31,18 +32,20 @@ constexpr std::size_t kPlateauTo = 8 * kNeighbourhood;
 // The residuals within a window show its own variance if they are of a normal distribution that it was made
 // for, three times that if they fill it evenly, as those of a far louder one do: the mean of the two factors.
 constexpr double kEven = 3, kFilled = 1.73;
+// Scatter::middle above which noise so flat is that of no two sheets: nearly that of an even distribution.
+constexpr double kMiddleOfSheets = 0.25;
 constexpr int kOpeningRounds = 8;  // windows widen by up to 1.7 in each
 
 /// What scatter at kNeighbourhood points, `few`, and at kPlateauTo, `many`, makes sure of. \param radius of
 /// the ball of the few.
 double plateau(double few, double many, double radius) {
   constexpr double kStops = 1.6, kNeverStops = 1.9, kSure = 0.65;
-  constexpr double kFlat = 0.14, kThick = 0.2;
+  constexpr double kThin = 0.14, kThick = 0.2;
   if (!(few > 0)) return 0;
   const double growth = many / few, share = few / radius;
   const double trust = std::clamp((growth - 1) / (kSameNoise - 1), 0.0, 1.0) *
                        std::clamp((kNeverStops - growth) / (kNeverStops - kStops), 0.0, 1.0) *
-                       std::clamp((kThick - share) / (kThick - kFlat), 0.0, 1.0);
+                       std::clamp((kThick - share) / (kThick - kThin), 0.0, 1.0);
   return trust * std::max(few, kSure * many);
 }
 

@@ -11,9 +11,9 @@
 ///
 /// Where both sheets of a wall are within the narrowest windows, what opens ends at their distance. But the
 /// residuals of fits without windows, whose places hold both, are then flatter than a normal distribution,
-/// and their fourth moment tells the variance of one sheet (share_of_sheet): no window there shows more. Two
-/// dozen sites decide that together, of 24 points each, and of 192. Not if the
-/// residuals fill their middle nearly as an even distribution does: then the noise itself is flat.
+/// and their fourth moment tells the variance of one sheet (share_of_sheet, two_sheets.h): no window there
+/// shows more. Two dozen sites decide that together, of 24 points each, and of 192. Not if the residuals fill
+/// their middle nearly as an even distribution does: then the noise itself is flat.
 ///
 /// Without a window the scatter is more than the noise, so that of nearly all of the dozen nearest sites is a
 /// bound, where their balls hold the slab.

@@ -16,10 +16,6 @@ double chi_square(double freedom, double deviate) {
 
 }  // namespace
 
-double share_of_sheet(double flatness) {
-  return 1 - std::sqrt(std::clamp((3 - flatness) / 2, 0.0, 1.0));
-}
-
 double quantile(std::vector<double>& values, double share) {
   const auto at = values.begin() + std::ptrdiff_t(share * double(values.size() - 1));
   std::nth_element(values.begin(), at, values.end());

@@ -16,17 +16,6 @@ namespace rfsmooth::rfs_mesh {
 /// Times: a deviation so much above another is not of the same noise.
 constexpr double kLouder = 2;
 
-/// Scatter::flatness below which residuals are of two sheets: halfway between that of a normal distribution
-/// and that of two sheets five sigma apart.
-constexpr double kFlatnessOfSheets = 2.25;
-
-/// Scatter::middle above which noise that is so flat is no two sheets: nearly that of an even distribution.
-constexpr double kMiddleOfSheets = 0.25;
-
-/// The part of the variance of residuals that each of two sheets has about itself. Two alike at +-d have a
-/// fourth cumulant of -2 d^4. \param flatness of the residuals; the share is 1 from 3 on.
-double share_of_sheet(double flatness);
-
 /// A value and how much it counts.
 struct Weighed {
   double value, weight;

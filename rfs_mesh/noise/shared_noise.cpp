@@ -7,6 +7,7 @@
 #include <Eigen/Cholesky>
 
 #include "rfs_mesh/levels.h"
+#include "rfs_mesh/sheets/two_sheets.h"
 
 namespace rfsmooth::rfs_mesh {
 

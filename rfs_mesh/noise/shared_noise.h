@@ -19,8 +19,8 @@
 /// or if depths in steps (depth_steps.h) make sure of it. Its variance is then the largest S with p = 3, or
 /// that of the steps as far as it is seen. An m beyond which s^2 grows faster than noise does is the last; on
 /// terraces, which it grows fast within, the first such after one from which it does not. Neighbourhoods
-/// whose residuals are flatter than kFlatnessOfSheets are of two sheets, and tell nothing. k is the number
-/// for which
+/// whose residuals are flatter than kFlatnessOfSheets (two_sheets.h) are of two sheets, and tell nothing. k
+/// is the number for which
 ///
 ///     s^2(m) = sigma^2 g(k / m)
 ///

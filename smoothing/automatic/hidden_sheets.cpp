@@ -7,6 +7,7 @@
 
 #include "base/parallel.h"
 #include "rfs_mesh/levels.h"
+#include "rfs_mesh/sheets/two_sheets.h"
 
 namespace rfsmooth::smoothing {
 
@@ -23,20 +24,9 @@ constexpr float kMostOwn = 0.25F;         // points that were hardly smoothed sa
 constexpr double kPrior = 0.15;           // standard deviation of ln c
 constexpr int kSheetRounds = 4;           // of as many local means in all 16, over some 500 points
 constexpr float kNone = 1e9F;             // in lanes without a point: its values count as too large
-constexpr double kSharper = 4;            // than the posterior mean, where
-constexpr double kSharpFrom = 0.5;        // d^2 / c is above this (hidden_sheets.h)
 
 /// So many points are weighed side by side.
 using Lanes = Eigen::Array<float, 16, 1>;
-
-/// The logarithms of the ratios of the likelihoods: two sheets against louder noise.
-Lanes for_sheets(const Lanes& residual, const Lanes& squared_distance, const Lanes& variance) {
-  const Lanes all = variance + squared_distance, square = residual.square(),
-              per_variance = variance.inverse(), x = squared_distance.sqrt() * residual.abs() * per_variance,
-              near_one = 0.5F + 0.5F * (-2 * x).exp();  // log cosh x = x + log((1 + e^-2x) / 2)
-  return x - 0.5F * ((square + squared_distance) * per_variance - square / all) +
-         0.5F * (all * per_variance * near_one.square()).log();
-}
 
 struct Sum {
   double evidence = 0;
@@ -70,8 +60,9 @@ HiddenSheets best_evidence(const Residuals& left, const std::vector<float>& own,
             const auto counts = share <= kMostOwn && mean >= kLouder * float(c) && mean <= kLoudest;
             const auto counted = std::size_t(counts.count());
             if (counted == 0) continue;
-            const Lanes evidence =
-                for_sheets(lanes(left.scores), mean - float(c), float(c) * (1 - 2 * share));
+            const Lanes squared = rfs_mesh::squared_apart(mean, float(c)),
+                        variance = float(c) * (1 - 2 * share),
+                        evidence = rfs_mesh::evidence_of_two(lanes(left.scores), squared, variance);
             part.evidence += double(counts.select(evidence, 0).sum());
             part.points += counted;
           }
@@ -123,9 +114,8 @@ HiddenSheets split_hidden_sheets(const HeightField& field, const Residuals& left
   found.split = sum_over(context, n, std::size_t(0), [&](std::size_t i) {
     const double mean = double(v[i]);
     if (mean < double(kLouder) * c) return std::size_t(0);
-    const double d = std::sqrt(mean - c);
-    const double sharper = d * d > kSharpFrom * c ? kSharper : 1;
-    height[i] += float(left.unit * d * std::tanh(sharper * d * double(residual[i]) / c));
+    const double d = std::sqrt(rfs_mesh::squared_apart(mean, c));
+    height[i] += float(left.unit * d * rfs_mesh::sharpened_label(double(residual[i]), d, c));
     return std::size_t(1);
   });
   return found;

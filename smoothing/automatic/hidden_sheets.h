@@ -1,35 +1,25 @@
 /// Two sheets of a wall so thin that the noise hides that there are two.
 ///
-/// Below about two sigma between them, the points of both scatter about the surface half-way like those of
-/// one, only wider: with variance v > c where the rest of the cloud has c. What pulls every point to the
-/// middle would then make a film of the wall. Put the sheets at +-d of the middle, d^2 = v - c, and let the
-/// noise have variance c. For a point with the residual e the guess of least mean square error is the
-/// posterior mean, E[sheet | e] = d tanh(d e / c). It leaves most points half-way, where there is no surface.
-/// So where d^2 > c / 2 a sharper guess is taken instead,
-///
-///     d tanh(4 d e / c).
-///
-/// It puts nearly all points on the nearer sheet, which for up to a quarter of them is the wrong one: on
+/// Below about two sigma between them, the points of both scatter about the middle like those of one sheet,
+/// only wider: with variance v > c where the rest of the cloud has c. What pulls every point to the middle
+/// would then make a film of the wall. With d^2 = v - c, a point whose residual is e goes to the height d s
+/// over the middle; s is its expected label where d^2 <= c / 2, and the sharpened one beyond (two_sheets.h).
+/// That puts nearly all points on the nearer sheet, which for up to a quarter of them is the wrong one: on
 /// rotor (10,000 points, noise of 2 %) the mean squared distance to the surface is 0.13 instead of 0.17 of
 /// sigma^2, 93 % of the normals point outward instead of 87 %, and Poisson's surface has half of the error.
-/// Where the sheets are nearer to each other the side is a guess and the posterior mean is better: at 3 %
+/// Where the sheets are nearer to each other the label is a guess and its expectation is better: at 3 %
 /// sharpening makes the distance 0.127 instead of 0.12 of sigma^2.
 ///
 /// Noise that is louder in some places has a larger v as well, and no neighbourhood has the points to tell
-/// (one nat takes some 500 of them); the cloud as a whole does. Both explanations are laid beside each other
-/// for all points with v > 1.3 c:
-///
-///     one sheet, louder noise:  e ~ N(0, s^2 + d^2)
-///     two sheets:               e ~ 1/2 N(-d, s^2) + 1/2 N(d, s^2)
-///
-/// where s^2 = c (1 - 2 own) is what smoothing left of c, and the sum of the logarithms of their ratio, less
-/// (ln c)^2 / 2 (0.15)^2 for a noise that was measured wrongly, is the evidence for two sheets at the c where
-/// it is largest. Walls make the measured noise too high themselves, so c must be found.
+/// (one nat takes some 500 of them); the cloud as a whole does. The evidence of two sheets against one sheet
+/// with louder noise (two_sheets.h) is added up over all points with v > 1.3 c, in noise of variance
+/// c (1 - 2 own), which is what smoothing left of c. From it (ln c)^2 / 2 (0.15)^2 is taken off for a noise
+/// that was measured wrongly, and the c is taken where the rest is largest. Walls make the measured noise too
+/// high themselves, so c must be found.
 ///
 /// v is the mean of the other points around: one that holds a share w of the point itself adds w r^2 nats,
-/// with r = d^2 / (s^2 + d^2), to what two sheets would bring, about r^4 / 12 (1 - r). For thin walls, where
-/// r is 0.3, that is as much again at w = 0.01, and it is there without walls, too, and grows with their
-/// points.
+/// with r = d^2 / v, to what two sheets would bring, about r^4 / 12 (1 - r). For thin walls, where r is 0.3,
+/// that is as much again at w = 0.01, and it is there without walls, too, and grows with their points.
 ///
 /// Source: a likelihood ratio of two simple hypotheses.
 /// Residuals in steps (depths of a sensor) look a little like two sheets in some places, so walls are
@@ -65,12 +55,12 @@ struct Residuals {
   bool with_tails = false;    ///< whether the law that they are the scores of has tails (tails.h)
 };
 
-/// Moves `height` (n: the smoothed heights, world units) of points on hidden double sheets to
-/// the nearer one, or almost. `own` (n): each point's share of its own height in its smoothed height
-/// (patches.h). It is not changed here, so for the points that were moved it is too small afterwards. O(n);
-/// parallel, the same bits for any number of threads. Thread safe. \param whole points of the cloud that the
-/// field is of, over its own: so many times its evidence counts. \param known evidence and c, taken if they
-/// are there, else entered.
+/// Moves `height` (n: the smoothed heights over the field, world units) of points on hidden sheets to the
+/// nearer one, or almost. `own` (n): each point's share of its own height in its smoothed height (patches.h).
+/// It is not changed here, so for the points that were moved it is too small afterwards. O(n); parallel, the
+/// same bits for any number of threads. Thread safe.
+/// \param whole points of the cloud that the field is of, over its own: so many times its evidence counts.
+/// \param known evidence and c, taken if they are there, else entered.
 HiddenSheets split_hidden_sheets(const HeightField& field, const Residuals& left, std::vector<float>& height,
                                  const std::vector<float>& own, double whole,
                                  std::optional<Statistics::Sheets>& known, const Context& context);

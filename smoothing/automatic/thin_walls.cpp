@@ -11,7 +11,7 @@
 #include "rfs_mesh/levels.h"
 #include "rfs_mesh/search/thinning.h"
 #include "rfs_mesh/search/wide_neighbors.h"
-#include "rfs_mesh/sheets/sheet_pair.h"
+#include "rfs_mesh/sheets/two_sheets.h"
 #include "smoothing/automatic/hidden_sheets.h"
 
 namespace rfsmooth::smoothing {

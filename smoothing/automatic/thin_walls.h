@@ -2,7 +2,7 @@
 ///
 /// Noise carries points of such a wall past its middle, and a patch of one sheet takes some of the other for
 /// its own: the smoothed sheets touch, wave, and leave points between them. Here patches take in the points
-/// of both and tell them apart by the fit of two sheets with a common middle (sheet_pair.h); where that is
+/// of both and tell them apart by the fit of two sheets with a common middle (two_sheets.h); where that is
 /// convincing, a point goes to the sheet nearer to it, half-way between which there is no surface. Which of
 /// the two it came from is not known, and need not be for the surface to be right.
 ///

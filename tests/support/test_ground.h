@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "rfs_mesh/connect/emst.h"
+#include "rfs_mesh/connect/emst/emst.h"
 #include "rfs_mesh/connect/sdg.h"
 #include "rfs_mesh/fit/local_surface.h"
 

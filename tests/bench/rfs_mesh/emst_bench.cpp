@@ -21,7 +21,7 @@
 #include <unistd.h>
 
 #include "base/parallel.h"
-#include "rfs_mesh/connect/emst.h"
+#include "rfs_mesh/connect/emst/emst.h"
 #include "tests/bench/peers/index_peers.h"
 #include "tests/bench/support/median.h"
 #ifdef RFSMOOTH_BENCH_CGAL

@@ -1,4 +1,4 @@
-#include "rfs_mesh/connect/emst.h"
+#include "rfs_mesh/connect/emst/emst.h"
 
 #include <atomic>
 #include <cmath>

@@ -1,7 +1,7 @@
-#include "rfs_mesh/connect/emst.h"
+#include "rfs_mesh/connect/emst/emst.h"
 
 #include "base/parallel.h"
-#include "rfs_mesh/connect/boruvka.h"
+#include "rfs_mesh/connect/emst/boruvka.h"
 
 namespace rfsmooth::rfs_mesh {
 

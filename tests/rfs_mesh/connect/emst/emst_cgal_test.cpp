@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "rfs_mesh/connect/emst.h"
+#include "rfs_mesh/connect/emst/emst.h"
 #include "tests/support/awkward_clouds.h"
 
 using rfsmooth::Positions;

@@ -1,4 +1,4 @@
-#include "rfs_mesh/sheets/wall_sides.h"
+#include "rfs_mesh/normals/wall_sides.h"
 
 #include <cmath>
 #include <random>

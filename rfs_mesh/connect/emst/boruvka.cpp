@@ -1,4 +1,4 @@
-#include "rfs_mesh/connect/boruvka.h"
+#include "rfs_mesh/connect/emst/boruvka.h"
 
 #include <algorithm>
 #include <atomic>

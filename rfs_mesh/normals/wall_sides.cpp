@@ -1,4 +1,4 @@
-#include "rfs_mesh/sheets/wall_sides.h"
+#include "rfs_mesh/normals/wall_sides.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,20 +6,16 @@
 #include <utility>
 #include <vector>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 
 #include "base/parallel.h"
 #include "rfs_mesh/fit/tangent_plane.h"
 #include "rfs_mesh/levels.h"
+#include "rfs_mesh/sheets/two_sheets.h"
 
 namespace rfsmooth::rfs_mesh {
 
 namespace {
-
-// Chosen on the shapes rotor, armadillo and femur (50,000 points, noise of 1 %). The share of normals that
-// end up on the right side there hardly changes with them.
-constexpr double kWallRidge = 1e-9;
 
 /// Whether there is another sheet: a single normal is none.
 bool faces_another(const Positions& normals, std::size_t i, const Adjacency::Row& row) {
@@ -37,27 +33,16 @@ bool on_other_sheet(const Positions& points, const Positions& normals, std::size
   for (const Index j : row) square = std::max(square, 1.05 * (points[j] - points[i]).squaredNorm());
   if (!(square > 0)) return false;
   const double in_radii = 1 / std::sqrt(square);
-  Eigen::Matrix4d a = Eigen::Matrix4d::Zero();
-  Eigen::Vector4d right = Eigen::Vector4d::Zero();
-  double all = 0, squares = 0;
+  LabelledSheets sheets;
   for (const Index j : row) {
     const double cosine = normal.dot(normals[j]);
     if (std::abs(cosine) < kSameSheet) continue;
     const Eigen::Vector3d r = in_radii * (points[j] - points[i]);
     const double inside = 1 - r.squaredNorm(), weight = inside * inside;
-    const Eigen::Vector2d at = plane.project(r);
-    const Eigen::Vector4d f(1, at.x(), at.y(), cosine < 0 ? -1 : 1);
-    a.noalias() += weight * f * f.transpose();
-    const double height = normal.dot(r);
-    right += weight * height * f;
-    squares += weight * height * height;
-    all += weight;
+    sheets.add(plane.project(r), normal.dot(r), cosine < 0 ? -1 : 1, weight);
   }
-  a.diagonal().array() += kWallRidge * all;
-  const Eigen::Vector4d x = a.ldlt().solve(right);
-  const double middle = x[0], apart = x[3];
-  const double left = (squares - x.dot(right)) / all;  // about the two planes, mean square
-  return middle > 0 && middle < 2 * apart && left < apart * apart;
+  const LabelledSheets::Fit fit = sheets.fit();
+  return fit.middle > 0 && fit.middle < 2 * fit.apart && fit.variance < fit.apart * fit.apart;
 }
 
 }  // namespace

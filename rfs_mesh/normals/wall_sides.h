@@ -6,10 +6,10 @@
 ///
 ///     a.(x_j - x) = m + b.(u, v)_j + d s_j,    s_j = sign a.n_j,
 ///
-/// is fitted by weighted least squares: two parallel planes at distance d from a middle, which is m above the
-/// point. In a wall (d > 0) a point below the middle (m > 0) belongs to the sheet whose normal is -a, unless
-/// m > 2 d: then it is on neither. The planes must be distinct: the mean square of the points about them must
-/// be below d^2 / 2. Thread safe: no state is kept.
+/// is fitted: two sheets with labels given (two_sheets.h), two parallel planes apart by d from a middle that
+/// is m above the point. In a wall (d > 0) a point below the middle (m > 0) belongs to the sheet whose normal
+/// is -a, unless m > 2 d: then it is on neither. The planes must be distinct: the mean square of the points
+/// about them must be below d^2. Thread safe: no state is kept.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-#include "rfs_mesh/sheets/thin_parts.h"
+#include "rfs_mesh/normals/thin_parts.h"
 
 #include <algorithm>
 #include <cmath>
