@@ -111,7 +111,9 @@ Positions automatic_smoothing(Mesh& mesh, bool keep_rings, rfs_mesh::NoiseField 
                           move = field->guide()[i] + double(pass.height[i]) * field->normal(i) - from;
     smooth[i] = allowed(i, move) ? from + move : from;
   });
-  part_thin_walls(*field, data, pass.several, pass.members_seeing, noise, smooth, whole.thin_walls, context);
+  if (!(noise.shared > 1))  // a k-th of the evidence never was enough
+    part_thin_walls(*field, data, pass.several, pass.members_seeing, noise, smooth, whole.thin_walls,
+                    context);
   if (learned) {
     const auto may_go = [&](std::size_t i, const Eigen::Vector3d& there) {
       const Eigen::Vector3d& from = mesh.positions[i];

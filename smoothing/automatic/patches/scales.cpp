@@ -94,9 +94,9 @@ Scale try_scale(const HeightField& field, std::size_t members, const std::vector
 
 /// Means over near neighbours for all scales, each in place of `worse`.
 void average_near(const HeightField& field, std::vector<Scale>& scales, const Context& context) {
-  constexpr std::size_t kTogether = HeightField::Columns::SizeAtCompileTime;
-  for (std::size_t first = 0; first < scales.size(); first += kTogether) {
-    const std::size_t count = std::min(kTogether, scales.size() - first);
+  constexpr std::size_t kColumns = HeightField::Columns::SizeAtCompileTime;
+  for (std::size_t first = 0; first < scales.size(); first += kColumns) {
+    const std::size_t count = std::min(kColumns, scales.size() - first);
     std::vector<HeightField::Columns> near(field.size());
     for_each_index(context, field.size(), [&](std::size_t i) {
       near[i].setZero();
