@@ -75,7 +75,7 @@ TEST(NoiseLeft, StraysDoNotCount) {
   Halves halves(1, 1);
   const double without = halves.left();
   halves.height[5] = 40;
-  EXPECT_NEAR(halves.left(), without, 0.01 * without);
+  EXPECT_NEAR(halves.left(), without, 0.1 * without);  // 3 times, if it did
 }
 
 }  // namespace
