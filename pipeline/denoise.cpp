@@ -9,7 +9,7 @@
 
 #include <rfsmooth/denoise.h>
 
-#include "base/median.h"
+#include "base/quantile.h"
 #include "base/parallel.h"
 #include "base/stopwatch.h"
 #include "pipeline/outliers.h"

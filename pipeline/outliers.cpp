@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "base/linear/symmetric_eigen.h"
-#include "base/median.h"
+#include "base/quantile.h"
 #include "base/parallel.h"
 #include "rfs_mesh/levels.h"
 #include "rfs_mesh/noise/noise.h"

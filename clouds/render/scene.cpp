@@ -6,7 +6,7 @@
 #include <Eigen/Geometry>
 
 #include "base/linear/symmetric_eigen.h"
-#include "base/median.h"
+#include "base/quantile.h"
 #include "base/parallel.h"
 #include "clouds/render/rasterizer.h"
 #include "pipeline/io/mesh_file.h"

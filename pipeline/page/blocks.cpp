@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 
 #include "base/parallel.h"
+#include "base/quantile.h"
 #include "rfs_mesh/search/neighbors.h"
 
 namespace rfsmooth::pipeline {
@@ -98,9 +99,7 @@ std::vector<double> sixth_distances(const Positions& points, const Context& cont
 /// farther apart than in the other, and there should be no holes between them.
 double upper_quartile(std::vector<double>::const_iterator first, std::vector<double>::const_iterator last) {
   std::vector<double> values(first, last);
-  const auto at = values.begin() + std::ptrdiff_t((values.size() - 1) * 3 / 4);
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
+  return quantile(values, 0.75);
 }
 
 /// Fills in `reach`: outliers and removed points are drawn as large as the others.

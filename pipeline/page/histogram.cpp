@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "base/quantile.h"
+
 namespace rfsmooth::pipeline {
 
 namespace {
@@ -53,9 +55,7 @@ Histogram histogram_of(const std::vector<double>& displacements) {
   }
   histogram.counts.assign(kBars, 0);
   if (moved.empty()) return histogram;
-  const auto top = moved.begin() + std::ptrdiff_t((moved.size() - 1) * 99 / 100);
-  std::nth_element(moved.begin(), top, moved.end());
-  histogram.top = *top;
+  histogram.top = quantile(moved, 0.99);
   for (const double d : moved) {
     if (d > histogram.top)
       ++histogram.beyond;

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
-#include "base/median.h"
+#include "base/quantile.h"
 #include "base/parallel.h"
 #include "pipeline/io/io.h"
 #include "pipeline/tiles/job.h"

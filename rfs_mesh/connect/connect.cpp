@@ -8,6 +8,7 @@
 
 #include "base/collect.h"
 #include "base/parallel.h"
+#include "base/quantile.h"
 #include "base/stopwatch.h"
 #include "rfs_mesh/connect/emst/boruvka.h"
 #include "rfs_mesh/connect/emst/emst.h"

@@ -7,7 +7,7 @@
 #include <Eigen/Geometry>
 
 #include "base/collect.h"
-#include "base/median.h"
+#include "base/quantile.h"
 #include "base/parallel.h"
 #include "rfs_mesh/fit/tangent_plane.h"
 

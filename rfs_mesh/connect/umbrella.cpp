@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/median.h"
+#include "base/quantile.h"
 #include "base/parallel.h"
 #include "rfs_mesh/fit/tangent_plane.h"
 #include "rfs_mesh/measure.h"

@@ -6,7 +6,7 @@
 
 #include <Eigen/Geometry>
 
-#include "base/median.h"
+#include "base/quantile.h"
 #include "base/parallel.h"
 #include "rfs_mesh/fit/quadric.h"
 #include "rfs_mesh/levels.h"

@@ -9,7 +9,7 @@
 
 #include "base/avx2.h"
 #include "base/linear/symmetric_eigen.h"
-#include "base/median.h"
+#include "base/quantile.h"
 #include "rfs_mesh/fit/quadric_moments.h"
 #include "rfs_mesh/levels.h"
 

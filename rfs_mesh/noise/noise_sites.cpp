@@ -93,9 +93,9 @@ class Listener {
           open_[s] =
               std::sqrt(mean_variance(fits_around(s, few, group_[s].size()), kTypical, kTypicalDeviate));
           bound(s, all);
-          if (steps == nullptr) part_sheets(s, few, middle[s]);
+          if (steps == nullptr) look_for_sheets(s, few, middle[s]);
           if (n < 2 * kPlateauTo) return;
-          if (steps == nullptr) part_sheets(s, many, middle[s]);
+          if (steps == nullptr) look_for_sheets(s, many, middle[s]);
           find_floor(s, few, many, steps);
         },
         64);
@@ -186,7 +186,7 @@ class Listener {
 
   /// Lowers `sheet_`, and `middle` to their Scatter::middle, where fits without windows show two sheets
   /// around. Depths in steps look like sheets.
-  void part_sheets(std::size_t s, const std::vector<Scatter>& open, double& middle) {
+  void look_for_sheets(std::size_t s, const std::vector<Scatter>& open, double& middle) {
     const std::vector<Scatter> near = fits_around(s, open, kNeighbourhood);
     double flatness = 0, full = 0, saying = 0;
     for (const Scatter& fit : near) {

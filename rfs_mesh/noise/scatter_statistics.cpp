@@ -16,12 +16,6 @@ double chi_square(double freedom, double deviate) {
 
 }  // namespace
 
-double quantile(std::vector<double>& values, double share) {
-  const auto at = values.begin() + std::ptrdiff_t(share * double(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
-
 double quantile(std::vector<Weighed>& values, double share) {
   std::sort(values.begin(), values.end(),
             [](const Weighed& a, const Weighed& b) { return a.value < b.value; });

@@ -9,6 +9,7 @@
 
 #include <rfsmooth/context.h>
 
+#include "base/quantile.h"
 #include "rfs_mesh/fit/scatter.h"
 
 namespace rfsmooth::rfs_mesh {
@@ -21,8 +22,7 @@ struct Weighed {
   double value, weight;
 };
 
-/// The value with `share` (0 to 1) of the others below it. Reorders. \param values at least one.
-double quantile(std::vector<double>& values, double share);
+using rfsmooth::quantile;  // of values that count alike
 
 /// The least value that with those below it has `share` of the weight. Sorts. \param values at least one.
 double quantile(std::vector<Weighed>& values, double share);

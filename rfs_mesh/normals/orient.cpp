@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "base/collect.h"
-#include "base/median.h"
+#include "base/quantile.h"
 #include "base/parallel.h"
 #include "rfs_mesh/levels.h"
 #include "rfs_mesh/measure.h"

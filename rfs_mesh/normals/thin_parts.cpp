@@ -8,6 +8,7 @@
 
 #include "base/linear/symmetric_eigen.h"
 #include "base/parallel.h"
+#include "base/quantile.h"
 #include "rfs_mesh/levels.h"
 #include "rfs_mesh/normals/winding.h"
 #include "rfs_mesh/sample.h"
@@ -110,12 +111,7 @@ class ThinParts {
   /// Whether w is that of a closed surface but for thin parts, where it is low: what nine tenths of the
   /// samples do not exceed, and the median.
   static bool closes(std::vector<double> w) {
-    const auto at = [&](double share) {
-      const auto it = w.begin() + std::ptrdiff_t(share * double(w.size() - 1));
-      std::nth_element(w.begin(), it, w.end());
-      return *it;
-    };
-    return std::abs(at(0.5) - 0.5) < kClosed && at(0.9) - 0.5 < kClosed;
+    return std::abs(quantile(w, 0.5) - 0.5) < kClosed && quantile(w, 0.9) - 0.5 < kClosed;
   }
 
   /// e of every sample.

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <unordered_map>
 
-#include "base/median.h"
+#include "base/quantile.h"
 #include "base/parallel.h"
 
 namespace rfsmooth::rfs_mesh {

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "base/quantile.h"
 #include "rfs_mesh/levels.h"
 #include "rfs_mesh/noise/noise.h"
 #include "smoothing/automatic/equalize.h"
@@ -71,9 +72,7 @@ NoiseSummary summary_of(const rfs_mesh::NoiseField& noise) {
   NoiseSummary summary{noise.sigma, noise.sigma, noise.shared, noise.step};
   if (noise.local.empty()) return summary;
   std::vector<double> local = noise.local;
-  const auto tenth = local.begin() + std::ptrdiff_t(9 * (local.size() - 1) / 10);
-  std::nth_element(local.begin(), tenth, local.end());
-  summary.loudest = *tenth;
+  summary.loudest = quantile(local, 0.9);
   return summary;
 }
 

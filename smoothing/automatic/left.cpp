@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 
 #include "base/parallel.h"
+#include "base/quantile.h"
 #include "rfs_mesh/levels.h"
 #include "smoothing/automatic/patches/patches.h"
 
@@ -77,9 +78,7 @@ class ToldByResiduals {
   static double median(const std::vector<Place>& places, std::size_t begin, std::size_t end) {
     std::vector<double> told;
     for (std::size_t k = begin; k < end; ++k) told.push_back(places[k].told);
-    const auto middle = told.begin() + std::ptrdiff_t(told.size() / 2);
-    std::nth_element(told.begin(), middle, told.end());
-    return *middle;
+    return rfsmooth::median(told);
   }
 
   std::vector<Place> parts_;  ///< the loudest of each part, and what all of it tell

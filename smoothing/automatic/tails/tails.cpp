@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "base/quantile.h"
 #include "rfs_mesh/levels.h"
 
 namespace rfsmooth::smoothing {
@@ -25,10 +26,7 @@ double scale(const std::vector<float>& values) {
   std::vector<float> absolute;
   for (const float r : values)
     if (!std::isnan(r)) absolute.push_back(std::abs(r));
-  if (absolute.empty()) return 0;
-  const auto middle = absolute.begin() + std::ptrdiff_t(absolute.size() / 2);
-  std::nth_element(absolute.begin(), middle, absolute.end());
-  return double(*middle) / kMedianOfNormal;
+  return median(absolute.begin(), absolute.end()) / kMedianOfNormal;
 }
 
 double share_of_far(const std::vector<float>& values, double unit) {

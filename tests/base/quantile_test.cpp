@@ -1,4 +1,4 @@
-#include "base/median.h"
+#include "base/quantile.h"
 
 #include <random>
 
@@ -19,6 +19,21 @@ TEST(Median, HasHalfOfTheOthersOnEachSide) {
     std::sort(values.begin(), values.end());
     EXPECT_EQ(found, values[n / 2]) << n;
     EXPECT_TRUE(std::is_permutation(values.begin(), values.end(), shuffled.begin()));
+  }
+}
+
+TEST(Quantile, HasItsShareOfTheOthersBelowIt) {
+  std::mt19937_64 engine(3);
+  std::uniform_int_distribution<int> tied(0, 9);
+  for (std::size_t n = 1; n <= 64; ++n) {
+    std::vector<double> values(n);
+    for (double& v : values) v = tied(engine);
+    std::vector<double> sorted = values;
+    std::sort(sorted.begin(), sorted.end());
+    for (const double share : {0.0, 0.25, 0.5, 0.75, 1.0}) {
+      EXPECT_EQ(rfsmooth::quantile(values, share), sorted[std::size_t(share * double(n - 1))]) << n;
+      EXPECT_TRUE(std::is_permutation(sorted.begin(), sorted.end(), values.begin()));
+    }
   }
 }
 

@@ -1,16 +1,30 @@
-/// The median. Of an even number of values it is the upper of the two in the middle, so it is always one of
-/// the values; of none it is 0. Reorders the values. O(n). Thread safe for different values.
+/// Quantiles and the median: always one of the values. They reorder the values. O(n). Thread safe for
+/// different values.
 #pragma once
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <vector>
 
 namespace rfsmooth {
 
-/// The median of [first, last).
+/// The value of [first, last) with `share` (0 to 1) of the others below it, rounded down: at least one value.
+template <class Iterator>
+double quantile(Iterator first, Iterator last, double share) {
+  const Iterator at = first + std::ptrdiff_t(share * double(last - first - 1));
+  std::nth_element(first, at, last);
+  return *at;
+}
+
+/// The same of `values`.
+inline double quantile(std::vector<double>& values, double share) {
+  return quantile(values.begin(), values.end(), share);
+}
+
+/// The median of [first, last): of an even number of values the upper of the two in the middle, of none 0.
 template <class Iterator>
 double median(Iterator first, Iterator last) {
   if (first == last) return 0;
