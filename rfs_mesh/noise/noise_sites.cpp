@@ -63,7 +63,7 @@ class Listener {
         open_(at.size(), 0),
         sheet_(at.size(), std::numeric_limits<double>::infinity()),
         widest_(widest_scatter(cloud)),
-        louder_(kLouder * start.sigma),
+        start_(start.sigma),
         m(at.size(), start.m),
         sigma(at.size(), std::max(start.sigma, start.least)),
         most(at.size(), std::numeric_limits<double>::infinity()),
@@ -120,12 +120,12 @@ class Listener {
           }
           if (!hear_at(s, all)) {
             const double typical = full.empty() ? kEven : quantile(full, 0.5);
-            if (typical > kFilled)
+            if (typical > kFilled && !std::isfinite(sheet_[s]))
               sigma[s] =
-                  std::min(sheet_[s], std::max(kNarrowestWindow * open_[s], std::sqrt(typical) * before[s]));
+                  std::min(at_most(s), std::max(kNarrowestWindow * open_[s], std::sqrt(typical) * before[s]));
             opened[s] = char(sigma[s] > before[s]);
           }
-          if (sigma[s] > louder_ && widen(s, quantile(radius, 0.5))) opened[s] = 1;
+          if (sigma[s] > kLouder * start_ && widen(s, quantile(radius, 0.5))) opened[s] = 1;
         },
         64);
     for_each_index(context_, at_.size(), [&](std::size_t s) { centre_[s] = all[s].foot; });
@@ -159,9 +159,12 @@ class Listener {
     double variance = mean_variance(around, kTypical, kTypicalDeviate);
     speaks[s] = char(variance > 0 && double(saying) >= kMostSpeak * double(around.size()));
     if (near > kDiffers * variance) variance = near;
-    if (speaks[s] != 0) sigma[s] = std::min(sheet_[s], std::sqrt(variance));
+    if (speaks[s] != 0) sigma[s] = std::min(at_most(s), std::sqrt(variance));
     return speaks[s] != 0;
   }
+
+  /// What a window at the site may show: what is seen without one, and of two sheets that of each.
+  double at_most(std::size_t s) const { return std::min(sheet_[s], std::max(start_, kSameNoise * most[s])); }
 
   /// Sets `most` from what the nearest sites see without windows.
   void bound(std::size_t s, const std::vector<Scatter>& open) {
@@ -251,7 +254,7 @@ class Listener {
   std::vector<double> open_;    ///< what the fits around show without windows, world units
   std::vector<double> sheet_;   ///< what each of two sheets shows at most; infinite: there is one
   std::size_t widest_;
-  double louder_;
+  double start_;  ///< world units
 
  public:
   std::vector<std::size_t> m;

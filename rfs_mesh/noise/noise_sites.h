@@ -12,11 +12,12 @@
 /// Where both sheets of a wall are within the narrowest windows, what opens ends at their distance. But the
 /// residuals of fits without windows, whose places hold both, are then flatter than a normal distribution,
 /// and their fourth moment tells the variance of one sheet (share_of_sheet, two_sheets.h): no window there
-/// shows more. Two dozen sites decide that together, of 24 points each, and of 192. Not if the residuals fill
-/// their middle nearly as an even distribution does: then the noise itself is flat.
+/// opens, nor shows more. Two dozen sites decide that together, of 24 points each, and of 192. Not if the
+/// residuals fill their middle nearly as an even distribution does: then the noise itself is flat.
 ///
 /// Without a window the scatter is more than the noise, so that of nearly all of the dozen nearest sites is a
-/// bound, where their balls hold the slab.
+/// bound, where their balls hold the slab. No window shows more: it would take more points, and those more of
+/// the shape.
 ///
 /// Then two things are told apart that both make the scatter s(m) grow with the number of neighbours m:
 ///
