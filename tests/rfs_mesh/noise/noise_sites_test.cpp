@@ -93,5 +93,57 @@ TEST(NoiseSites, TheUnitDoesNotMatter) {
     EXPECT_NEAR(there.sigma[s], 0x1p10 * here.sigma[s], 1e-6 * there.sigma[s]);
 }
 
+/// A hub with twelve ribs, `thick` spacings thick, with normal noise of `sigma` spacings.
+Positions ribs(double thick, double sigma) {
+  constexpr double kHub = 12, kEnd = 40, kHigh = 20;
+  std::mt19937_64 engine(1);
+  std::uniform_real_distribution<double> even;
+  std::normal_distribution<double> normal;
+  Positions points;
+  const auto add = [&](double area, auto&& at) {
+    for (int i = 0; i < int(area); ++i) {
+      const double a = even(engine), b = even(engine);
+      points.push_back(at(a, b) + sigma * Eigen::Vector3d(normal(engine), normal(engine), normal(engine)));
+    }
+  };
+  for (int k = 0; k < 12; ++k) {
+    const double turn = 2 * M_PI * k / 12;
+    const Eigen::Vector3d out(std::cos(turn), std::sin(turn), 0), side(-out.y(), out.x(), 0);
+    const auto rib = [&](double along, double across, double up) {
+      return Eigen::Vector3d((kHub + along * (kEnd - kHub)) * out + (across - 0.5) * thick * side +
+                             up * kHigh * Eigen::Vector3d::UnitZ());
+    };
+    for (const double end : {0.0, 1.0}) {
+      add((kEnd - kHub) * kHigh, [&](double a, double b) { return rib(a, end, b); });
+      add((kEnd - kHub) * thick, [&](double a, double b) { return rib(a, b, end); });
+    }
+    add(kHigh * thick, [&](double a, double b) { return rib(1, a, b); });
+  }
+  add(2 * M_PI * kHub * kHigh, [&](double a, double b) {
+    return Eigen::Vector3d(kHub * std::cos(2 * M_PI * a), kHub * std::sin(2 * M_PI * a), b * kHigh);
+  });
+  return points;
+}
+
+// Windows that show more take more points, and those show more of the shape, and so on.
+TEST(NoiseSites, HearNoMoreThanIsSeenWithoutAWindow) {
+  for (const double thick : {4.0, 6.0})
+    for (const double sigma : {0.1, 0.2, 0.4}) {
+      const Positions points = ribs(thick, sigma);
+      const SpatialIndex index(points, {});
+      const NoiseStart start = search_noise(index, search_places(points), nullptr, {});
+      const NoiseSites sites = listen(index, listening_places(points, start.m), start, nullptr, {});
+      std::size_t known = 0, above = 0;
+      for (std::size_t s = 0; s < sites.at.size(); ++s) {
+        if (!std::isfinite(sites.most[s])) continue;
+        ++known;
+        const double most = std::max(start.sigma, kSameNoise * sites.most[s]);
+        above += sites.sigma[s] > (1 + 1e-9) * std::max(most, sites.floor[s]) ? 1 : 0;
+      }
+      EXPECT_GT(known, 100u) << thick << ' ' << sigma;
+      EXPECT_EQ(above, 0u) << thick << ' ' << sigma;
+    }
+}
+
 }  // namespace
 }  // namespace rfsmooth::rfs_mesh
