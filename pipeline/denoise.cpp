@@ -9,8 +9,8 @@
 
 #include <rfsmooth/denoise.h>
 
-#include "base/quantile.h"
 #include "base/parallel.h"
+#include "base/quantile.h"
 #include "base/stopwatch.h"
 #include "pipeline/outliers.h"
 #include "rfs_mesh/connect/connect.h"

@@ -8,8 +8,8 @@
 #include <optional>
 
 #include "base/linear/symmetric_eigen.h"
-#include "base/quantile.h"
 #include "base/parallel.h"
+#include "base/quantile.h"
 #include "rfs_mesh/levels.h"
 #include "rfs_mesh/noise/noise.h"
 #include "rfs_mesh/search/neighbors.h"

@@ -6,8 +6,8 @@
 #include <Eigen/Geometry>
 
 #include "base/linear/symmetric_eigen.h"
-#include "base/quantile.h"
 #include "base/parallel.h"
+#include "base/quantile.h"
 #include "clouds/render/rasterizer.h"
 #include "pipeline/io/mesh_file.h"
 #include "pipeline/io/point_fields.h"

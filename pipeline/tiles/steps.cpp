@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
-#include "base/quantile.h"
 #include "base/parallel.h"
+#include "base/quantile.h"
 #include "pipeline/io/io.h"
 #include "pipeline/tiles/job.h"
 #include "pipeline/tiles/records.h"

@@ -7,8 +7,8 @@
 #include <Eigen/Geometry>
 
 #include "base/collect.h"
-#include "base/quantile.h"
 #include "base/parallel.h"
+#include "base/quantile.h"
 #include "rfs_mesh/fit/tangent_plane.h"
 
 namespace rfsmooth::rfs_mesh {

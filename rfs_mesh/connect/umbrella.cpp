@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/quantile.h"
 #include "base/parallel.h"
+#include "base/quantile.h"
 #include "rfs_mesh/fit/tangent_plane.h"
 #include "rfs_mesh/measure.h"
 

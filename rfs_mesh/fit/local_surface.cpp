@@ -6,8 +6,8 @@
 
 #include <Eigen/Geometry>
 
-#include "base/quantile.h"
 #include "base/parallel.h"
+#include "base/quantile.h"
 #include "rfs_mesh/fit/quadric.h"
 #include "rfs_mesh/levels.h"
 #include "rfs_mesh/sample.h"

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "base/collect.h"
-#include "base/quantile.h"
 #include "base/parallel.h"
+#include "base/quantile.h"
 #include "rfs_mesh/levels.h"
 #include "rfs_mesh/measure.h"
 #include "rfs_mesh/normals/sides.h"

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <unordered_map>
 
-#include "base/quantile.h"
 #include "base/parallel.h"
+#include "base/quantile.h"
 
 namespace rfsmooth::rfs_mesh {
 
