@@ -128,6 +128,8 @@ void sum_up(const NoiseSites& sites, const NoiseStart& start, NoiseModel& noise)
   double share = start.m == kNarrowestPatch ? kFigureNarrow : kFigureWide;
   if (saying < kLeastPart * all) share = kCalmFifth;
   noise.sigma = heard.empty() ? std::min(start.sigma, start.most) : quantile(heard, share);
+  // No more than the calm quarter of the cloud shows: those few are the loudest.
+  if (saying < kLeastPart * all) noise.sigma = std::min(noise.sigma, start.sigma);
   noise.shape = shape.empty() ? 0 : quantile(shape, 0.5);
   if (start.m > kNarrowestPatch && noise.shape < kLittleShape)
     noise.sigma = mean_of_alike(heard, noise.sigma);
