@@ -108,7 +108,8 @@ void bound_sites(double most, NoiseSites& sites) {
 
 /// The figure, and how much of it shape had, from what the sites say. Of places that have noise, where these
 /// are a tenth of the cloud or more: the rest has nothing to smooth. Where hardly a site speaks, most of the
-/// cloud is rough, and what does speak there is half roughness: the calm fifth of it says the figure.
+/// cloud is rough, and what does speak there is half roughness: the calm fifth of it says the figure,
+/// but no more than the start, which all of the cloud says: in clean clouds the loudest are all that speaks.
 void sum_up(const NoiseSites& sites, const NoiseStart& start, NoiseModel& noise) {
   const double some = kNoNoise * noise.spacing;
   std::vector<Weighed> heard, noisy, shape;
@@ -125,11 +126,11 @@ void sum_up(const NoiseSites& sites, const NoiseStart& start, NoiseModel& noise)
     loud += area;
   }
   if (loud > kLeastPart * saying) heard = std::move(noisy);
-  double share = start.m == kNarrowestPatch ? kFigureNarrow : kFigureWide;
-  if (saying < kLeastPart * all) share = kCalmFifth;
-  noise.sigma = heard.empty() ? std::min(start.sigma, start.most) : quantile(heard, share);
-  // No more than the calm quarter of the cloud shows: those few are the loudest.
-  if (saying < kLeastPart * all) noise.sigma = std::min(noise.sigma, start.sigma);
+  const bool hardly = saying < kLeastPart * all;
+  const double of_speaking = start.m == kNarrowestPatch ? kFigureNarrow : kFigureWide;
+  noise.sigma =
+      heard.empty() ? std::min(start.sigma, start.most) : quantile(heard, hardly ? kCalmFifth : of_speaking);
+  if (hardly) noise.sigma = std::min(noise.sigma, start.sigma);
   noise.shape = shape.empty() ? 0 : quantile(shape, 0.5);
   if (start.m > kNarrowestPatch && noise.shape < kLittleShape)
     noise.sigma = mean_of_alike(heard, noise.sigma);
