@@ -14,7 +14,7 @@ using namespace rfsmooth::smoothing;
 
 namespace {
 
-constexpr int kSide = 100;
+constexpr int kAcross = 100;
 constexpr float kOwn = 0.03F;
 
 /// A plane whose left half has noise of 1 and whose right half of 0.1, smoothed so that each point keeps
@@ -24,10 +24,10 @@ struct Halves {
     std::mt19937 random(3);
     std::normal_distribution<double> normal;
     Positions guide, data;
-    for (int i = 0; i < kSide; ++i)
-      for (int j = 0; j < kSide; ++j) {
+    for (int i = 0; i < kAcross; ++i)
+      for (int j = 0; j < kAcross; ++j) {
         guide.emplace_back(i + 0.3 * std::sin(5.0 * j), j + 0.3 * std::cos(3.0 * i), 0);
-        const bool left = i < kSide / 2;
+        const bool left = i < kAcross / 2;
         const double sigma = left ? 1 : 0.1, z = sigma * normal(random);
         data.push_back(guide.back() + Eigen::Vector3d(0, 0, z));
         // The others' noise is as large as the point's own part of it, once it is weighed alike.
