@@ -89,7 +89,8 @@ struct Heard {
     const std::size_t n = sites.at.size();
     std::vector<double> variance(n, 0), said;
     for (std::size_t i = 0; i < n; ++i) {
-      variance[i] = std::max(sites.fits[i].variance * (1 - sites.shape[i]), sites.floor[i] * sites.floor[i]);
+      const double seen = says(sites.fits[i]) ? sites.fits[i].variance * (1 - sites.shape[i]) : 0;
+      variance[i] = std::max(seen, sites.floor[i] * sites.floor[i]);
       if (speaks(sites, i)) said.push_back(variance[i]);
     }
     const double typical = said.empty() ? 0 : quantile(said, 0.5);

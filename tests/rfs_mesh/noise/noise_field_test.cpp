@@ -89,6 +89,17 @@ TEST(NoiseField, DoesNotHearSitesThatDoNotSpeakNorThoseFarAbove) {
   EXPECT_LT(error(sites, 1, even), 0.03);
 }
 
+TEST(NoiseField, OfFitsThatSayNothingHearsTheFloorAlone) {
+  const auto even = [](const auto&, const auto&) { return 1.0; };
+  NoiseSites sites = room(even);
+  for (std::size_t s = 0; s < kSites; s += 2) {
+    sites.fits[s].variance = 100;  // of what little its window kept
+    sites.fits[s].freedom = 0;
+    sites.floor[s] = 1;
+  }
+  EXPECT_LT(error(sites, 1, even), 0.03);
+}
+
 TEST(NoiseField, DoesNotHearSitesWhoseWindowIsTheirNeighbours) {
   const auto even = [](const auto&, const auto&) { return 1.0; };
   NoiseSites sites = room(even);
