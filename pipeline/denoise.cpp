@@ -187,6 +187,20 @@ void land_tails(const double* xyz, const std::vector<double>& strength, const De
   }
 }
 
+/// \throw Failure for stated noise that is larger than the whole cloud, which has no surface then; most
+/// likely it is in other units. `spacing`: 0 if it is not known yet, and then only world units are looked at.
+void refuse_noise_beyond(const Statistics::Box& box, double spacing, const DenoiseOptions& options) {
+  const auto* automatic = std::get_if<AutomaticOptions>(&options.flow.flow);
+  if (automatic == nullptr || !automatic->noise) return;
+  const double noise = automatic->noise->resolve(spacing), size = (box.high - box.low).norm();
+  if (noise > size && size > 0)
+    throw Failure(
+        {ErrorCode::usage,
+         fmt::format("`noise` is {:.4g}, more than the whole cloud, which is {:.4g} from corner to "
+                     "corner; it takes the units of the coordinates, or times the spacing as in 0.5x",
+                     noise, size)});
+}
+
 /// The points to work on.
 rfs_mesh::WorkingCloud prepare(const double* xyz, std::size_t n, const DenoiseOptions& options,
                                const Context& context, DenoiseReport& report) {
@@ -271,7 +285,9 @@ DenoiseReport run(double* xyz, std::size_t n, const DenoiseOptions& options, con
   report.effective = options;
   if (options.statistics) report.statistics = *options.statistics;
   rfs_mesh::WorkingCloud cloud = prepare(xyz, n, options, context, report);
+  refuse_noise_beyond(cloud.box, 0, options);
   Mesh mesh = told_of(connected(cloud, options, context, report), report);
+  refuse_noise_beyond(cloud.box, report.spacing, options);
   Positions().swap(cloud.points);  // the mesh has them, and the caller
 
   std::vector<double> reach;  // the automatic smoother keeps to its own

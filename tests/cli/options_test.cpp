@@ -92,6 +92,33 @@ TEST_F(Lengths, AreWorldUnitsTimesTheSpacingOrAuto) {
   EXPECT_NEAR(report("auto")["noise"].get<double>(), 0.2, 0.06);
 }
 
+TEST_F(Lengths, OfNoiseBeyondTheWholeCloudAreRefused) {
+  put("in.ply", noisy_plane(20).bytes());
+  for (const char* noise : {"30", "1e8", "1e300", "1e9x", "1e300x"}) {
+    const Ran ran = run({"denoise", "--noise", noise, "in.ply", "out.ply"});
+    EXPECT_EQ(ran.code, 2) << noise << ran.err;
+    EXPECT_THAT(ran.err, HasSubstr("in.ply: --noise is ")) << noise;
+    EXPECT_THAT(ran.err, HasSubstr("more than the whole cloud")) << noise;
+    EXPECT_FALSE(there("out.ply")) << noise;
+  }
+  EXPECT_EQ(run({"denoise", "--noise", "20", "in.ply", "out.ply"}).code, 0) << "the plane's diagonal is 27";
+}
+
+TEST_F(Lengths, OfNoiseWithoutMeasureHarmNothing) {
+  BinaryPly cloud = noisy_plane(20);
+  cloud.xyz.insert(cloud.xyz.end(), {1e17F, 0, 0});
+  put("far.ply", cloud.bytes());
+  const Ran ran = run({"denoise", "--noise", "1e12", "far.ply", "out.ply"});
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  put("in.ply", noisy_plane(20).bytes());
+  ASSERT_EQ(run({"mesh", "in.ply", "mesh.ply"}).code, 0);
+  for (const char* noise : {"1e8", "1e300", "1e300x"}) {
+    const Ran of_mesh =
+        run({"smooth-mesh", "--flow", "auto", "--noise", noise, "mesh.ply", "m.ply", "--force"});
+    EXPECT_EQ(of_mesh.code, 0) << noise << of_mesh.err;
+  }
+}
+
 class Flags : public InFolder {};
 
 TEST_F(Flags, ThatAreAutoCanBeTurnedOnAndOff) {

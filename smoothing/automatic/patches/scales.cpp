@@ -169,7 +169,8 @@ class Ladder {
 
   /// How patches of about m points are made here: with seeds thinned as far as these allow.
   Statistics::Scale scale_of(double m, const Context& context) {
-    const std::size_t n = field_.size(), members = std::min(std::size_t(m), n / 2);
+    // Compared before it is converted: noise of far more than the cloud asks for more points than numbers go.
+    const std::size_t n = field_.size(), members = m < double(n) / 2 ? std::size_t(m) : n / 2;
     thin_to(1, context);
     while (seeds_.size() * members > kMostOverlap * n) thin_to(thinnings_ + 1, context);
     return {members, thinnings_};
