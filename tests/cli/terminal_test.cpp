@@ -115,13 +115,14 @@ TEST_P(Interrupted, StopsAndLeavesNoFile) {
   setup.terminal = true;
   setup.environment = {"TERM=xterm"};
   setup.interrupt_when = std::string("\x1b[K") + GetParam();
-  const Ran ran = run({"denoise", "in.ply", "out.ply"}, setup);
+  const Ran ran = run({"denoise", "in.ply", "out.ply", "--report", "r.json", "--html", "page.html"}, setup);
   RecordProperty("seconds_after_interrupt", std::to_string(ran.seconds_after_interrupt));
   EXPECT_THAT(ran.err, HasSubstr(setup.interrupt_when));
   if (ran.code == 0) {
     // The signal came after the last look before the file was renamed: then it is complete.
     EXPECT_TRUE(last);
     EXPECT_EQ(take("out.ply").size(), take("in.ply").size());
+    EXPECT_THAT(names(), ElementsAre("in.ply", "out.ply", "page.html", "r.json"));
     return;
   }
   EXPECT_EQ(ran.code, 130) << ran.err;

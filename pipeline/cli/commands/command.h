@@ -46,6 +46,9 @@ struct OnCloud {
   std::function<void(const Invocation&)> check;
   std::function<std::vector<StageShare>()> stages;  ///< those of reading and working
   CloudWork work;
+  /// Writes what stands beside the cloud (a page, a trace), which `work` has made ready; empty: nothing does.
+  /// Called once the cloud is there, and not stopped any more. \throw Failure.
+  std::function<void(Console&)> beside = {};
 };
 
 struct Command {

@@ -82,6 +82,13 @@ struct DenoiseCommandOptions {
   bool removes() const { return denoise.outliers == Outliers::remove; }
 };
 
+/// What is written beside the cloud, once that is there.
+struct Beside {
+  std::string command;  ///< that was typed
+  std::string page;
+  std::vector<TraceRow> trace;
+};
+
 void enter(const DenoiseReport& done, const DenoiseCommandOptions& options, ordered_json& entry) {
   DenoiseCommandOptions used = options;
   used.denoise = done.effective;
@@ -213,22 +220,22 @@ void page_after(const DenoiseReport& done, const DenoiseCommandOptions& options,
     contents.figures.emplace_back("about left of it", fmt::format("{:.3g}", done.noise_left));
 }
 
-std::string denoise_cloud(const DenoiseCommandOptions& options, pipeline::PageContents& page,
-                          pipeline::io::Cloud& cloud, const Job& job, const Context& context,
-                          Console& console, std::vector<StageTime>& stages, ordered_json& entry) {
+std::string denoise_cloud(const DenoiseCommandOptions& options, Beside& beside, pipeline::io::Cloud& cloud,
+                          const Job& job, const Context& context, Console& console,
+                          std::vector<StageTime>& stages, ordered_json& entry) {
   const std::size_t n = cloud.size();
   check_fields(options, cloud);
   if (const auto error = refuse_without_memory(job.input, rfsmooth::denoise_memory(n))) throw Failure(*error);
   std::vector<double> xyz = pipeline::io::positions(cloud, context);
   const std::vector<double> strength =
       options.strength_field ? strengths(cloud, *options.strength_field, context) : std::vector<double>{};
+  pipeline::PageContents page;
   if (options.html) page = pipeline::page_before(job.input, cloud, context);
   DenoiseOptions how = options.denoise;
   how.flow.trace = options.trace.trace.has_value();
   if (options.statistics) how.statistics = pipeline::tiles::read_settled(*options.statistics).statistics;
-  const DenoiseReport done =
-      value_or_fail(rfsmooth::denoise(xyz.data(), n, how, context, strength), job.input);
-  options.trace.write(done.trace, options.job.files);
+  DenoiseReport done = value_or_fail(rfsmooth::denoise(xyz.data(), n, how, context, strength), job.input);
+  beside.trace = std::move(done.trace);
   const bool some_removed = options.removes() && done.outliers > 0,
              as_nan = some_removed && keeps_grid(cloud);
   const auto blank_outliers = [&] {
@@ -254,18 +261,20 @@ std::string denoise_cloud(const DenoiseCommandOptions& options, pipeline::PageCo
   enter(done, options, entry);
   if (some_removed) blank_outliers();  // normals are of the points that stay
   write_normals(options.normals, cloud, xyz.data(), job.output, options.job.files, context, stages, entry);
-  if (options.html) page_after(done, options, cloud, job, context, page);
+  if (options.html) {
+    page_after(done, options, cloud, job, context, page);
+    page.command = beside.command;
+    beside.page = pipeline::make_page(page, context);
+  }
   if (some_removed && !as_nan) remove_outliers(cloud, done.outlier, context);
   return summary(done, options);
 }
 
 /// \throw Failure.
-void write_page(const DenoiseCommandOptions& options, pipeline::PageContents page, const std::string& line) {
-  page.command = line;
-  Console console(options.job.talk);
-  const Context context = console.context(options.job.run.threads.value_or(0));
-  value_or_throw(pipeline::io::write_bytes(pipeline::make_page(page, context), *options.html,
-                                           options.job.files.force, context));
+void write_beside(const DenoiseCommandOptions& options, const Beside& beside, Console& console) {
+  options.trace.write(beside.trace, options.job.files);
+  if (!options.html) return;
+  value_or_throw(pipeline::io::write_bytes(beside.page, *options.html, options.job.files.force, {}));
   console.say(fmt::format("{}: open it in a browser", *options.html));
 }
 
@@ -372,25 +381,27 @@ Command denoise_command() {
       "points' other fields, or take the place of the one of that name.\n\n"
       "- stands for standard input or output; --format names the format where there is no extension. "
       "Without -o exactly two names are taken, IN and OUT; with -o every name is an input. Existing files "
-      "are replaced only with --force. Ctrl-C stops within a second and leaves no file.";
+      "are replaced only with --force. Ctrl-C stops within a second and leaves no file; of several inputs "
+      "those "
+      "stay that were done before. A report, a page or a trace is written once its cloud is there, and not "
+      "without one.";
   collect(*options, command.options);
   collect(options->job, command.options);
   command.everyday = {"strength", "noise",   "flow",   "outliers", "normals", "output",
                       "force",    "threads", "report", "quiet",    "verbose"};
   polish(command);
-  const auto page = std::make_shared<pipeline::PageContents>();
+  const auto beside = std::make_shared<Beside>();
   command.on_cloud = {[options](const Invocation& typed) { check_denoise(*options, typed); },
                       [options] { return denoising_stages(options->normals.normals); },
-                      [options, page](auto&&... all) {
-                        return denoise_cloud(*options, *page, std::forward<decltype(all)>(all)...);
-                      }};
-  command.run = [options, page, on_cloud = command.on_cloud,
+                      [options, beside](auto&&... all) {
+                        return denoise_cloud(*options, *beside, std::forward<decltype(all)>(all)...);
+                      },
+                      [options, beside](Console& console) { write_beside(*options, *beside, console); }};
+  command.run = [options, beside, on_cloud = command.on_cloud,
                  known = command.options](const Invocation& typed) {
     if (const auto tiled = denoise_in_tiles(*options, typed)) return *tiled;
-    const int code = run_cloud_jobs("denoise", options->job, typed, on_cloud);
-    if (code == 0 && options->html)
-      write_page(*options, std::move(*page), command_line("denoise", typed, known));
-    return code;
+    beside->command = command_line("denoise", typed, known);
+    return run_cloud_jobs("denoise", options->job, typed, on_cloud);
   };
   return command;
 }

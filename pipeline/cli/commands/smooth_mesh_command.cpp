@@ -132,9 +132,9 @@ void mark_ridges(const After& after, pipeline::io::Cloud& cloud, FileMesh& file,
   pipeline::io::set_field(cloud, "ridge", pipeline::io::Scalar::int8, field, context);
 }
 
-std::string smooth_file(const SmoothMeshCommandOptions& options, pipeline::io::Cloud& cloud, const Job& job,
-                        const Context& context, Console& console, std::vector<StageTime>& stages,
-                        ordered_json& entry) {
+std::string smooth_file(const SmoothMeshCommandOptions& options, std::vector<TraceRow>& trace,
+                        pipeline::io::Cloud& cloud, const Job& job, const Context& context, Console& console,
+                        std::vector<StageTime>& stages, ordered_json& entry) {
   Stopwatch watch(stages, "connect");
   FileMesh file =
       file_mesh(cloud, job.input, context, options.flow.modifiers.preserve == Preserve::height_field);
@@ -146,8 +146,8 @@ std::string smooth_file(const SmoothMeshCommandOptions& options, pipeline::io::C
   watch.next("smooth");
   FlowOptions flow = options.flow;
   flow.trace = options.trace.trace.has_value();
-  const auto done = value_or_fail(rfsmooth::smooth(file.mesh, flow, context, constraints), job.input);
-  options.trace.write(done.trace, options.job.files);
+  auto done = value_or_fail(rfsmooth::smooth(file.mesh, flow, context, constraints), job.input);
+  trace = std::move(done.trace);
   bool moved = false;
   const std::vector<double> rows = file.moved_rows(moved);
   const std::size_t points = cloud.size(), faces = file.mesh.faces.size();
@@ -206,13 +206,16 @@ Command smooth_mesh_command() {
   command.everyday = {"flow",  "iterations", "strength-field", "refine", "ridges", "output",
                       "force", "threads",    "report",         "quiet",  "verbose"};
   polish(command);
-  command.on_cloud = {
-      [options](const Invocation& typed) { check_smooth_mesh(*options, typed); },
-      [options]() -> std::vector<StageShare> {
-        const double refining = options->after.refine.levels > 0 ? 20 : 0;
-        return {{"read", 1}, {"smooth", 10}, {"refine", refining}};
-      },
-      [options](auto&&... all) { return smooth_file(*options, std::forward<decltype(all)>(all)...); }};
+  const auto trace = std::make_shared<std::vector<TraceRow>>();
+  command.on_cloud = {[options](const Invocation& typed) { check_smooth_mesh(*options, typed); },
+                      [options]() -> std::vector<StageShare> {
+                        const double refining = options->after.refine.levels > 0 ? 20 : 0;
+                        return {{"read", 1}, {"smooth", 10}, {"refine", refining}};
+                      },
+                      [options, trace](auto&&... all) {
+                        return smooth_file(*options, *trace, std::forward<decltype(all)>(all)...);
+                      },
+                      [options, trace](Console&) { options->trace.write(*trace, options->job.files); }};
   command.run = [options, on_cloud = command.on_cloud](const Invocation& typed) {
     return run_cloud_jobs("smooth-mesh", options->job, typed, on_cloud);
   };

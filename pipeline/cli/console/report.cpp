@@ -14,8 +14,8 @@ Report::Report(std::string command, const std::optional<std::string>& path, bool
   if (wanted() && path_ != "-") check_no_cloud_target(path_, force_, "report");
 }
 
-void Report::write() const {
-  if (!wanted()) return;
+void Report::write(bool any_done) const {
+  if (!wanted() || (path_ != "-" && !any_done)) return;
   nlohmann::ordered_json all = {{"rfsmooth", kVersion}, {"command", command_}};
   if (files_.size() == 1)
     all.update(files_[0]);

@@ -21,8 +21,10 @@ class Report {
   /// Adds the entry of one file; it should have "input", "output", "options", ...
   void add(nlohmann::ordered_json entry) { files_.push_back(std::move(entry)); }
 
-  /// Writes the report: one file as an object, several under "files". \throw Failure (cannot_write).
-  void write() const;
+  /// Writes the report: one file as an object, several under "files". If no job was done, there is no cloud
+  /// for a file to stand beside, and in the way of the next run: then it goes to standard output only.
+  /// \throw Failure (cannot_write).
+  void write(bool any_done) const;
 
  private:
   std::string command_, path_;

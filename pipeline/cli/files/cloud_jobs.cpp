@@ -33,7 +33,7 @@ void tell(const Job& job, const std::string& summary, bool one_of_many, Console&
   for (const std::string& line : lines) console.say(line);
 }
 
-void run_one(const Job& job, const JobOptions& options, const CloudWork& work, const Context& context,
+void run_one(const Job& job, const JobOptions& options, const OnCloud& on_cloud, const Context& context,
              Console& console, ordered_json& entry, bool one_of_many) {
   need_own_target(job, options.files.output);
   check_target(job.output, options.files);
@@ -41,9 +41,10 @@ void run_one(const Job& job, const JobOptions& options, const CloudWork& work, c
   pipeline::io::Cloud cloud = load_cloud(job.input, context, stages);
   entry["input"].update(describe(cloud));
   console.set_points(cloud.size());
-  const std::string summary = work(cloud, job, context, console, stages, entry);
+  const std::string summary = on_cloud.work(cloud, job, context, console, stages, entry);
   store_cloud(cloud, job.output, options.files, context, stages);
   tell(job, summary, one_of_many, console);
+  if (on_cloud.beside) on_cloud.beside(console);
   console.detail("seconds: " + text_of(stages));
   entry["threads"] = options.run.threads ? ordered_json(*options.run.threads) : ordered_json(nullptr);
   entry["seconds"] = json_of(stages);
@@ -60,12 +61,14 @@ int run_cloud_jobs(const std::string& command, const JobOptions& options, const 
   Console console(options.talk);
   console.progress().plan(on_cloud.stages());
   const Context context = console.context(options.run.threads.value_or(0));
+  bool any_done = false;
   const int code = run_jobs(jobs, console, [&](const Job& job) {
     ordered_json entry = {{"input", {{"path", job.input}}}, {"output", {{"path", job.output}}}};
     const auto done = guarded([&] {
-      run_one(job, options, on_cloud.work, context, console, entry, jobs.size() > 1);
+      run_one(job, options, on_cloud, context, console, entry, jobs.size() > 1);
       return Done{};
     });
+    any_done = any_done || done.ok();
     std::optional<Error> error;
     if (!done.ok()) {
       error = Error{done.error().code, with_dashes(done.error().message)};
@@ -74,7 +77,7 @@ int run_cloud_jobs(const std::string& command, const JobOptions& options, const 
     report.add(std::move(entry));
     return error;
   });
-  report.write();
+  if (code != exit_code(ErrorCode::cancelled)) report.write(any_done);
   return code;
 }
 

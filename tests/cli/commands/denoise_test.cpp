@@ -222,6 +222,34 @@ TEST_F(DenoiseCommand, ManyFilesGoOnAfterAnError) {
   EXPECT_TRUE(take("out/a.ply") == take("single.ply"));
 }
 
+TEST_F(DenoiseCommand, WithoutACloudNothingStandsBesideIt) {
+  put("broken.ply", "not a cloud");
+  // A list is what XYZ cannot hold, which is found when all the work is done.
+  std::string list = "ply\nformat ascii 1.0\nelement vertex 100\n";
+  for (const char* property : {"float x", "float y", "float z", "list uchar int seen"})
+    list += std::string("property ") + property + "\n";
+  list += "end_header\n";
+  for (int i = 0; i < 100; ++i)
+    list += std::to_string(i % 10) + " " + std::to_string(i / 10) + " 0." + std::to_string(i * i % 7) +
+            (i % 2 ? " 1 5\n" : " 0\n");
+  put("list.ply", list);
+  for (const auto& [input, code] : {std::pair("broken.ply", 3), {"list.ply", 2}})
+    for (int again = 0; again < 2; ++again) {
+      const Ran ran = run({"denoise", "--flow", "hc", input, "out.xyz", "--report", "r.json", "--html",
+                           "page.html", "--trace", "trace.csv"});
+      EXPECT_EQ(ran.code, code) << ran.err;
+      EXPECT_THAT(names(), ElementsAre("broken.ply", "list.ply")) << "they would be in the next run's way";
+    }
+  const Ran piped = run({"denoise", "broken.ply", "out.xyz", "--report", "-"});
+  EXPECT_EQ(nlohmann::json::parse(piped.out)["error"]["code"], 3);
+  put("good.ply", noisy_plane(10).bytes());
+  EXPECT_EQ(run({"denoise", "good.ply", "broken.ply", "-o", "out/", "--report", "r.json"}).code, 3);
+  const auto files = nlohmann::json::parse(take("r.json"))["files"];
+  ASSERT_EQ(files.size(), 2u);
+  EXPECT_FALSE(files[0].contains("error"));
+  EXPECT_EQ(files[1]["error"]["code"], 3);
+}
+
 TEST_F(DenoiseCommand, TwoInputsOfOneNameAreRefusedBeforeAnythingIsDone) {
   std::filesystem::create_directory(at("x"));
   put("a.ply", noisy_plane(10).bytes());
