@@ -6,6 +6,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "pipeline/io/io.h"
 #include "tests/cli/support/folder.h"
@@ -45,6 +46,39 @@ class Formats : public InFolder {
     EXPECT_FALSE(there("out.ply"));
   }
 };
+
+/// A cloud with what neither XYZ nor LAS holds: a list, another element, and for LAS a row that is not
+/// finite.
+std::string ply_of_everything() {
+  std::string out = "ply\nformat ascii 1.0\nelement vertex 100\n";
+  for (const char* property : {"double x", "double y", "double z", "list uchar int seen"})
+    out += std::string("property ") + property + "\n";
+  out += "element camera 1\nproperty float focus\nend_header\n";
+  for (int i = 0; i < 100; ++i)
+    out += std::to_string(i % 10) + (i == 7 ? " nan " : " " + std::to_string(i / 10) + " ") + "0." +
+           std::to_string(i * i % 7) + (i % 2 ? " 1 5\n" : " 0\n");
+  return out + "50\n";
+}
+
+TEST_F(Formats, WhatIsDroppedIsSaid) {
+  put("in.ply", ply_of_everything());
+  for (const char* out : {"out.xyz", "out.las"}) {
+    const bool las = std::string(out) == "out.las";
+    const Ran ran =
+        run({"denoise", "-v", "--drop-unsupported", "in.ply", out, "--report", "r.json", "--force"});
+    ASSERT_EQ(ran.code, 0) << ran.err;
+    EXPECT_THAT(ran.err, AllOf(HasSubstr(std::string("warning: ") + out + ": left out"),
+                               HasSubstr("field 'seen'"), HasSubstr("element 'camera'")));
+    std::vector<std::string> dropped = {"field 'seen'", "element 'camera'"};
+    if (las) dropped.emplace_back("1 points that are not finite");
+    EXPECT_EQ(nlohmann::json::parse(take("r.json"))["output"]["dropped"], dropped);
+    EXPECT_EQ(ran.err.find("they stay as they are") != std::string::npos, !las) << ran.err;
+  }
+  const Ran kept =
+      run({"denoise", "--drop-unsupported", "in.ply", "out.ply", "--report", "r.json", "--force"});
+  EXPECT_THAT(kept.err, ::testing::Not(HasSubstr("warning"))) << "PLY holds all of it";
+  EXPECT_FALSE(nlohmann::json::parse(take("r.json"))["output"].contains("dropped"));
+}
 
 std::string pcd_header(const std::string& fields, const std::string& size, const std::string& type,
                        const std::string& count, const std::string& data) {

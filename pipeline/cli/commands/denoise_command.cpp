@@ -114,9 +114,11 @@ void enter(const DenoiseReport& done, const DenoiseCommandOptions& options, orde
 
 void tell(const DenoiseReport& done, const DenoiseCommandOptions& options, const pipeline::io::Cloud& cloud,
           const Job& job, Console& console) {
-  if (done.finite < done.points)
-    console.detail(fmt::format("{}: {} points are not finite; they stay as they are", job.input,
-                               done.points - done.finite));
+  if (done.finite < done.points) {
+    const bool las = output_format(cloud, job.output, options.job.files) == pipeline::io::Format::las;
+    console.detail(fmt::format("{}: {} points are not finite; {}", job.input, done.points - done.finite,
+                               las ? "LAS cannot hold them" : "they stay as they are"));
+  }
   if (done.moved > 0 && has_normals(cloud) && !options.normals.normals)
     console.warn(fmt::format(
         "{}: the normals are kept and stale: they describe the old positions (--normals makes new ones)",

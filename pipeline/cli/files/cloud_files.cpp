@@ -11,6 +11,7 @@
 #include "base/stopwatch.h"
 #include "pipeline/cli/files/memory.h"
 #include "pipeline/cli/own_files.h"
+#include "pipeline/io/convert.h"
 #include "pipeline/io/formats/las/las.h"
 
 namespace rfsmooth::cli {
@@ -70,10 +71,17 @@ io::Cloud load_cloud(const std::string& input, const Context& context, std::vect
   return value_or_throw(io::read_cloud(path, {}, context));
 }
 
-void store_cloud(const io::Cloud& cloud, const std::string& output, const FileOptions& options,
-                 const Context& context, std::vector<StageTime>& stages) {
+std::vector<std::string> store_cloud(const io::Cloud& cloud, const std::string& output,
+                                     const FileOptions& options, const Context& context,
+                                     std::vector<StageTime>& stages) {
   const Stopwatch watch(stages, "write");
   context.report("write", 0);
+  std::vector<std::string> dropped;
+  if (options.drop_unsupported) {
+    const io::Format format = output_format(cloud, output, options);
+    dropped = io::what_is_lost(cloud, format,
+                               io::target_encoding(cloud, format, write_options(options).encoding), context);
+  }
   if (output == "-") {
     const std::string bytes = value_or_throw(io::serialize_cloud(cloud, write_options(options), context));
     if (std::fwrite(bytes.data(), 1, bytes.size(), stdout) != bytes.size() || std::fflush(stdout) != 0)
@@ -83,6 +91,7 @@ void store_cloud(const io::Cloud& cloud, const std::string& output, const FileOp
     mark_as_own(output);
   }
   if (context.progress) context.progress("write", 1);  // too late to cancel: the file is there
+  return dropped;
 }
 
 io::Format output_format(const io::Cloud& cloud, const std::string& output, const FileOptions& options) {

@@ -25,9 +25,11 @@ void need_free_stdout(const std::vector<Job>& jobs, const RunOptions& options);
 pipeline::io::Cloud load_cloud(const std::string& input, const Context& context,
                                std::vector<StageTime>& stages);
 
-/// Writes to a path, or to standard output for "-"; adds a stage "write". \throw Failure.
-void store_cloud(const pipeline::io::Cloud& cloud, const std::string& output, const FileOptions& options,
-                 const Context& context, std::vector<StageTime>& stages);
+/// Writes to a path, or to standard output for "-"; adds a stage "write". \return in words what the format
+/// cannot carry and --drop-unsupported left out. \throw Failure.
+std::vector<std::string> store_cloud(const pipeline::io::Cloud& cloud, const std::string& output,
+                                     const FileOptions& options, const Context& context,
+                                     std::vector<StageTime>& stages);
 
 /// Whether the points have fields nx, ny, nz or normal_x, normal_y, normal_z.
 bool has_normals(const pipeline::io::Cloud& cloud);

@@ -42,7 +42,13 @@ void run_one(const Job& job, const JobOptions& options, const OnCloud& on_cloud,
   entry["input"].update(describe(cloud));
   console.set_points(cloud.size());
   const std::string summary = on_cloud.work(cloud, job, context, console, stages, entry);
-  store_cloud(cloud, job.output, options.files, context, stages);
+  const pipeline::io::Format format = output_format(cloud, job.output, options.files);
+  const std::vector<std::string> dropped = store_cloud(cloud, job.output, options.files, context, stages);
+  if (!dropped.empty()) {
+    console.warn(fmt::format("{}: left out, as {} cannot carry them: {}", job.output,
+                             pipeline::io::name_of(format), fmt::join(dropped, ", ")));
+    entry["output"]["dropped"] = dropped;
+  }
   tell(job, summary, one_of_many, console);
   if (on_cloud.beside) on_cloud.beside(console);
   console.detail("seconds: " + text_of(stages));
