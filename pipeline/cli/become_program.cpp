@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -40,6 +41,8 @@ std::vector<std::string> as_typed(const Invocation& typed, const std::vector<Com
     if (!flag) word.append("=").append(text);
     words.push_back(std::move(word));
   }
+  const auto like_option = [](const std::string& word) { return word.size() > 1 && word[0] == '-'; };
+  if (std::any_of(typed.arguments.begin(), typed.arguments.end(), like_option)) words.emplace_back("--");
   words.insert(words.end(), typed.arguments.begin(), typed.arguments.end());
   return words;
 }

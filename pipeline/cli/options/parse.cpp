@@ -1,7 +1,9 @@
 #include "pipeline/cli/options/parse.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <set>
+#include <string_view>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -58,8 +60,32 @@ std::string in_our_words(const CLI::ParseError& error) {
 
 [[noreturn]] void refuse_unknown_option(const std::string& typed, const Command& command) {
   const std::string name = typed.substr(0, typed.find('='));
-  refuse(fmt::format("unknown option {} for rfsmooth {}{}", name, command.name,
-                     did_you_mean(name, option_names(command))));
+  std::error_code unknown;
+  const std::string hint = std::filesystem::exists(typed, unknown)
+                               ? fmt::format("; the file of that name is ./{0}, or {0} behind --", typed)
+                               : did_you_mean(name, option_names(command));
+  refuse(fmt::format("unknown option {} for rfsmooth {}{}", name, command.name, hint));
+}
+
+/// Whether the word behind `word` is its value.
+bool takes_next(const Command& command, const std::string& word) {
+  return std::any_of(command.options.begin(), command.options.end(), [&](const CommandOption& o) {
+    return o.kind != ValueKind::flag &&
+           (word == "--" + o.name || (o.short_name && word == std::string("-") + o.short_name));
+  });
+}
+
+/// Where the options end: at the first "--" that is no option's value; argc if there is none, or no command.
+int end_of_options(int argc, const char* const* argv, const std::vector<Command>& commands) {
+  if (argc < 2) return argc;
+  const auto command =
+      std::find_if(commands.begin(), commands.end(), [&](const Command& c) { return c.name == argv[1]; });
+  if (command == commands.end()) return argc;
+  for (int k = 2; k < argc; ++k) {
+    if (std::string_view(argv[k]) == "--") return k;
+    if (takes_next(*command, argv[k])) ++k;
+  }
+  return argc;
 }
 
 }  // namespace
@@ -85,17 +111,19 @@ Parsed parse(int argc, const char* const* argv, const std::vector<Command>& comm
     subs.push_back(sub);
   }
 
+  const int options_end = end_of_options(argc, argv, commands);
   const auto note_command = [&] {
     for (std::size_t i = 0; i < commands.size(); ++i)
       if (subs[i]->parsed()) {
         parsed.command = &commands[i];
         into.arguments = positional[i];
+        for (int k = options_end + 1; k < argc; ++k) into.arguments.emplace_back(argv[k]);
         for (const std::string& extra : subs[i]->remaining())
-          if (extra.size() > 1 && extra[0] == '-' && extra != "--") refuse_unknown_option(extra, commands[i]);
+          if (extra.size() > 1 && extra[0] == '-') refuse_unknown_option(extra, commands[i]);
       }
   };
   try {
-    app.parse(argc, argv);
+    app.parse(options_end, argv);
   } catch (const CLI::ParseError& error) {
     refuse(in_our_words(error));
   }

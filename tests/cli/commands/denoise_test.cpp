@@ -266,6 +266,28 @@ TEST_F(DenoiseCommand, AFileCalledLikeACommandIsAFile) {
   EXPECT_TRUE(there("mesh"));
 }
 
+TEST_F(DenoiseCommand, BehindTwoDashesNoWordIsAnOption) {
+  put("-in.ply", noisy_plane(10).bytes());
+  const Ran unknown = run({"denoise", "--flow", "hc", "-in.ply", "out.ply"});
+  EXPECT_EQ(unknown.code, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("./-in.ply"));
+  ASSERT_EQ(run({"denoise", "--flow", "hc", "./-in.ply", "plain.ply"}).code, 0);
+  for (const auto& words : std::vector<std::vector<std::string>>{{"--", "-in.ply", "-o.ply"},
+                                                                 {"--force", "./-in.ply", "--", "-o.ply"},
+                                                                 {"--output=-o.ply", "--", "-in.ply"}}) {
+    std::vector<std::string> typed = {"denoise", "--flow", "hc"};
+    typed.insert(typed.end(), words.begin(), words.end());
+    const Ran ran = run(typed);
+    ASSERT_EQ(ran.code, 0) << ran.err;
+    EXPECT_TRUE(take("-o.ply") == take("plain.ply"));
+    std::filesystem::remove(at("-o.ply"));
+  }
+  EXPECT_EQ(run({"denoise", "--", "-in.ply", "--force"}).code, 0) << "a cloud called --force";
+  EXPECT_TRUE(there("--force"));
+  EXPECT_EQ(run({"info", "--", "--help"}).code, 3) << "a file that is not there";
+  EXPECT_EQ(run({"render", "--width", "50", "-o", "p.png", "--", "-in.ply"}).code, 0) << "another program's";
+}
+
 TEST_F(DenoiseCommand, PositionalArgumentsAreCounted) {
   for (const auto& arguments : std::vector<std::vector<std::string>>{{"denoise"},
                                                                      {"denoise", "a"},
