@@ -25,17 +25,19 @@ using namespace pipeline;
 
 namespace {
 
-/// Takes over what the automatic smoother measured and chose.
-void enter(const AutomaticReport& found, DenoiseReport& report) {
-  report.noise = found.noise;
-  report.measured = found.measured;
-  report.noise_left = found.left;
-  std::get<AutomaticOptions>(report.effective.flow.flow).noise = Length{found.noise, false};
-  report.stranded = found.stranded;
-  report.guide_strength = found.guide_strength;
-  report.tail_times = found.tail_times;
-  report.equalized_rms = found.equalized;
-  report.equalized_largest = found.equalized_most;
+/// Takes over what the automatic smoother measured of the cloud in its first step, and what its last one
+/// left. Of several steps each measures for itself: then the noise stays as open as it was.
+void enter(const AutomaticReport& first, const AutomaticReport& last, DenoiseReport& report) {
+  report.noise = first.noise;
+  report.measured = first.measured;
+  report.noise_left = last.guide_strength > 0 ? last.left : last.noise;
+  auto& effective = std::get<AutomaticOptions>(report.effective.flow.flow);
+  if (effective.iterations == 1) effective.noise = Length{first.noise, false};
+  report.stranded = last.stranded;
+  report.guide_strength = first.guide_strength;
+  report.tail_times = first.tail_times;
+  report.equalized_rms = last.equalized;
+  report.equalized_largest = last.equalized_most;
 }
 
 /// Smooths the mesh, alternating steps and swaps. What is left of it are its positions.
@@ -45,7 +47,7 @@ void alternate(Mesh& mesh, const Constraints& constraints, const DenoiseOptions&
   const int steps = iterations(options.flow.flow);
   const bool swap = options.swap && steps > 1;
   const auto* automatic = std::get_if<AutomaticOptions>(&options.flow.flow);
-  std::optional<AutomaticReport> found;
+  std::optional<AutomaticReport> found, first;
   std::unique_ptr<Flow> flow;  // none where the automatic smoother has nothing around it
   if (automatic == nullptr)
     flow = value_or_throw(make_flow(mesh, options.flow, context, constraints));
@@ -67,6 +69,7 @@ void alternate(Mesh& mesh, const Constraints& constraints, const DenoiseOptions&
             last && !options.flow.trace ? smoothing::Connectivity::used_up : smoothing::Connectivity::kept,
             nullptr, step == 0 ? &whole : nullptr);
     }
+    if (step == 0) first = found;
     tracer.add(mesh, context);
     if (!swap || last) continue;
     const Stopwatch watch(report.seconds, "swap");
@@ -75,7 +78,7 @@ void alternate(Mesh& mesh, const Constraints& constraints, const DenoiseOptions&
     if (swaps > 0 && flow) flow->connectivity_changed(mesh, context);
   }
   context.report("smooth", 1);
-  if (found) enter(*found, report);
+  if (first) enter(*first, *found, report);
 }
 
 /// The median edge length around each vertex: as far as a flow may move it. A noisy point is at least as far

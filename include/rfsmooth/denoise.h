@@ -67,10 +67,11 @@ struct DenoiseReport {
   std::size_t outliers = 0;   ///< rows with no surface near them
   std::vector<char> outlier;  ///< n: which; empty if there are none
   double spacing = 0;  ///< mean distance to the nearest neighbour, world units; 0 with fewer than 2 points
-  double noise = 0;    ///< standard deviation along the normal, as measured before; world units
+  double noise = 0;    ///< standard deviation along the normal, as stated or measured before; world units
   /// What the cloud shows of its noise, as the automatic smoother measures it, whatever noise is stated.
   NoiseSummary measured;
-  double noise_left = 0;     ///< estimate of what is left of it; as before under flows, which cannot tell
+  double noise_left = 0;  ///< estimate of what is left of it; as before where nothing was smoothed, and under
+                          ///< flows, which cannot tell
   double equalized_rms = 0;  ///< how far points went along the surface to lie evenly, root mean square, world
                              ///< units; 0 for flows that do not even them out
   double equalized_largest = 0;  ///< the farthest

@@ -25,6 +25,7 @@
 #include "pipeline/io/formats/las/las_scale.h"
 #include "pipeline/page/page.h"
 #include "pipeline/tiles/in_one_process.h"
+#include "smoothing/automatic/patches/height_field.h"
 
 namespace rfsmooth::cli {
 
@@ -189,20 +190,35 @@ std::string said_of_outliers(const DenoiseReport& done, const DenoiseCommandOpti
   return fmt::format("; {} outlier{} {}", done.outliers, done.outliers == 1 ? "" : "s", what);
 }
 
+/// Why nothing was smoothed, or nothing.
+std::string why_not(const DenoiseReport& done) {
+  if (rfsmooth::iterations(done.effective.flow.flow) == 0) return "not smoothed, as --iterations 0 asks";
+  const auto* automatic = std::get_if<AutomaticOptions>(&done.effective.flow.flow);
+  if (automatic == nullptr) return "";
+  if (automatic->strength == 0) return "not smoothed, as --strength 0 asks";
+  if (done.guide_strength > 0) return "";
+  if (done.distinct < std::size_t(smoothing::HeightField::kNear)) return "too few points to smooth";
+  return "too little to smooth (--strength 2 does it all the same)";
+}
+
+/// ", as stated" of noise that was; else what there is to say of what was measured, and what it became.
+std::string said_of_noise(const DenoiseReport& done, const DenoiseCommandOptions& options) {
+  const auto* typed = std::get_if<AutomaticOptions>(&options.denoise.flow.flow);
+  const bool stated = typed != nullptr && typed->noise;
+  std::string words = stated ? ", as stated" : "";
+  if (const std::string why = why_not(done); !why.empty()) return words + ", " + why;
+  if (!stated) words += in_words(done.measured);
+  if (done.tail_times > 1) words += fmt::format(", some points {:.2g} times that", done.tail_times);
+  if (done.noise_left < done.noise) words += fmt::format(", about {:.3g} left", done.noise_left);
+  return words;
+}
+
 /// What came in, its noise, and how far it moved: a line each.
 std::string summary(const DenoiseReport& done, const DenoiseCommandOptions& options) {
-  const bool clean =
-      std::holds_alternative<AutomaticOptions>(done.effective.flow.flow) && done.guide_strength == 0;
-  const std::string left = clean ? ", too little to smooth (--strength 2 does it all the same)"
-                           : done.noise_left < done.noise
-                               ? fmt::format(", about {:.3g} left", done.noise_left)
-                               : "";
-  const std::string tails =
-      done.tail_times > 1 ? fmt::format(", some points {:.2g} times that", done.tail_times) : "";
   return fmt::format(
-      "{} points, {} finite{}\nnoise {:.3g}{}{}{}; spacing {:.4g}\nlargest move {:.4g}, rms {:.4g}",
-      done.points, done.finite, said_of_outliers(done, options), done.noise,
-      clean ? "" : in_words(done.measured), tails, left, done.spacing, done.largest_move, done.rms_move);
+      "{} points, {} finite{}\nnoise {:.3g}{}; spacing {:.4g}\nlargest move {:.4g}, rms {:.4g}", done.points,
+      done.finite, said_of_outliers(done, options), done.noise, said_of_noise(done, options), done.spacing,
+      done.largest_move, done.rms_move);
 }
 
 /// What --html shows of what became of the cloud; its normals only if they are of the new surface. Outliers

@@ -55,6 +55,43 @@ TEST_F(DenoiseCommand, SaysWhatItDidOnStderr) {
   EXPECT_THAT(ran.err, Not(HasSubstr("\r"))) << "no bar away from a terminal";
 }
 
+TEST_F(DenoiseCommand, SaysOfNoiseWhatBelongsTogether) {
+  put("in.ply", noisy_plane(30).bytes());
+  const auto said = [&](const std::vector<std::string>& typed) {
+    std::vector<std::string> words = {"denoise", "in.ply", "out.ply", "--force", "--report", "r.json"};
+    words.insert(words.end(), typed.begin(), typed.end());
+    const Ran ran = run(words);
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    return ran.err;
+  };
+  const auto report = [&] { return nlohmann::json::parse(take("r.json")); };
+  said({});
+  const double noise = report()["noise"];
+  for (const char* option : {"--strength", "--iterations"}) {
+    const std::string err = said({option, "0"});
+    EXPECT_THAT(err, HasSubstr(std::string(", not smoothed, as ") + option + " 0 asks;"));
+    EXPECT_THAT(err, Not(HasSubstr("too little")));
+    EXPECT_EQ(report()["noise_left"], report()["noise"]) << option;
+    EXPECT_EQ(report()["noise"], noise) << option;
+  }
+  said({"--iterations", "3"});
+  EXPECT_EQ(report()["noise"], noise) << "the scan's, not what the third step found";
+  EXPECT_LT(report()["noise_left"], noise);
+  EXPECT_TRUE(report()["options"]["noise"].is_null()) << "each step measures its own";
+  const std::string once = take("out.ply");
+  put("again.json", take("r.json"));
+  said({"--config", "again.json"});
+  EXPECT_TRUE(take("out.ply") == once);
+  for (const char* stated : {"0.01", "5"}) {
+    const std::string err = said({"--noise", stated});
+    EXPECT_THAT(err, HasSubstr(std::string("noise ") + stated + ", as stated"));
+    EXPECT_THAT(err, Not(HasSubstr("loudest tenth"))) << "that is of another figure";
+  }
+  put("few.xyz", "5 6 7\n5 6 8\n5 7 7\n");
+  EXPECT_THAT(run({"denoise", "few.xyz", "few_out.xyz"}).err,
+              HasSubstr("noise 0, too few points to smooth;"));
+}
+
 TEST_F(DenoiseCommand, QuietSaysNothing) {
   put("in.ply", noisy_plane(10).bytes());
   const Ran ran = run({"denoise", "--flow", "hc", "-q", "in.ply", "out.ply"});
