@@ -1,11 +1,14 @@
 #include "pipeline/io/formats/xyz.h"
 
 #include <algorithm>
+#include <cmath>
 
+#include <Eigen/Core>
 #include <fmt/format.h>
 
 #include "pipeline/io/formats/header_lines.h"
 #include "pipeline/io/formats/ply.h"
+#include "pipeline/io/point_fields.h"
 #include "pipeline/io/table/rows.h"
 
 namespace rfsmooth::pipeline::io {
@@ -92,6 +95,45 @@ Beginning read_beginning(TextCursor& cursor, Cloud& cloud) {
   return beginning;
 }
 
+// What one row says of three columns being a normal: flags, one of them set, have its length, too.
+enum class Says { normal, normal_or_flags, nothing, no };
+
+Says says_of_normal(const Eigen::Vector3d& v) {
+  constexpr double kRounded = 0.02;                         // off 1, of components written with two digits
+  if (!v.allFinite() || v.isZero(0)) return Says::nothing;  // as programs write where there is none
+  if (std::abs(v.norm() - 1) > kRounded) return Says::no;
+  const bool flags = ((v.array() == 0) || (v.array() == 1)).all();
+  return flags ? Says::normal_or_flags : Says::normal;
+}
+
+// The first of three columns behind x, y, z that are unit vectors in up to a thousand rows spread over the
+// file, or empty in less than half of them; 0 if there are none.
+std::size_t unit_columns(const Table& table) {
+  constexpr std::size_t kRows = 1000;
+  const std::size_t columns = table.fields.size(), stride = std::max<std::size_t>(1, table.count / kRows);
+  constexpr std::size_t kSure = 100;  // one row in so many, at least, is no flags
+  std::vector<std::size_t> normal(columns, 0), unit(columns, 0);
+  std::size_t seen = 0;
+  std::vector<char> no(columns, 0);
+  std::vector<double> values(columns);
+  for (std::size_t i = 0; i < table.count; i += stride) {
+    const std::string_view row = table.row(i);
+    const char* p = row.data();
+    for (double& value : values)
+      value = parse_real(next_word(p, row.data() + row.size(), table.separators)).value_or(std::nan(""));
+    for (std::size_t k = 3; k + 3 <= columns; ++k) {
+      const Says says = says_of_normal({values[k], values[k + 1], values[k + 2]});
+      normal[k] += std::size_t(says == Says::normal);
+      unit[k] += std::size_t(says == Says::normal || says == Says::normal_or_flags);
+      no[k] = char(no[k] != 0 || says == Says::no);
+    }
+    ++seen;
+  }
+  for (std::size_t k = 3; k + 3 <= columns; ++k)
+    if (no[k] == 0 && 2 * unit[k] > seen && kSure * normal[k] >= seen) return k;
+  return 0;
+}
+
 }  // namespace
 
 Cloud read_xyz(const Source& source, const Context& context) {
@@ -137,6 +179,8 @@ Cloud read_xyz(const Source& source, const Context& context) {
   }
   count_text_rows(table, cursor);
   read_text_rows(table, cursor, context);
+  if (const std::size_t k = beginning.names.empty() ? unit_columns(table) : 0; k > 0)
+    for (std::size_t axis = 0; axis < 3; ++axis) table.fields[k + axis].name = kPlyNormal[axis];
   cloud.tail = cursor.rest();
   cloud.elements.push_back(std::move(table));
   find_coordinates(cloud, source, context);

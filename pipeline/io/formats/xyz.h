@@ -1,6 +1,7 @@
 /// XYZ, plain columns of numbers: blanks, tabs, commas or semicolons between them; comments ('#', '//') and
 /// blank lines anywhere; a line of column names or a number of points (.pts) first. Columns are doubles;
-/// without names the first three are x, y, z and column k is "column_k".
+/// without names the first three are x, y, z and column k is "column_k", but three columns in a row that hold
+/// unit vectors are the normals nx, ny, nz.
 #pragma once
 
 #include "pipeline/io/stream/sink.h"

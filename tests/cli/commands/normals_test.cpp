@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstring>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -105,6 +106,62 @@ TEST_F(NormalsCommand, WithoutTheOptionNormalsStayAndAWarningSaysTheyAreStale) {
   ASSERT_EQ(cloud.size(), 801u);
   for (const char* name : kPly)
     for (const double value : values(cloud, name)) EXPECT_EQ(value, 0.5);
+}
+
+/// Columns without names: x y z, `between`, and the direction from the middle, which no file says is a
+/// normal.
+std::string columns(const std::string& between, double length = 1) {
+  std::string out;
+  for (const auto& p : noisy_sphere(800, 0.01, 5)) {
+    const Eigen::Vector3d inward = -length * p.normalized();
+    out += fmt::format("{:.6f} {:.6f} {:.6f} {}{:.6f} {:.6f} {:.6f}\n", p.x(), p.y(), p.z(), between,
+                       inward.x(), inward.y(), inward.z());
+  }
+  return out;
+}
+
+TEST_F(NormalsCommand, UnitVectorsInColumnsWithoutNamesAreNormals) {
+  for (const char* between : {"", "0.5 ", "10 20 30 "}) {
+    put("in.xyz", columns(between));
+    const Ran kept = run({"denoise", "in.xyz", "kept.xyz", "--force"});
+    ASSERT_EQ(kept.code, 0) << kept.err;
+    EXPECT_THAT(kept.err, HasSubstr("stale")) << between;
+    const Ran ran = run({"denoise", "--normals", "in.xyz", "out.xyz", "--force"});
+    ASSERT_EQ(ran.code, 0) << ran.err;
+    EXPECT_THAT(ran.err, Not(HasSubstr("stale")));
+    const io::Cloud before = read(at("in.xyz")), after = read(at("out.xyz"));
+    EXPECT_EQ(field_names(after), field_names(before)) << "in their place, and no line of names";
+    EXPECT_EQ(outward(before, kPly), 0);
+    EXPECT_EQ(outward(after, kPly), 800);
+    for (const auto& field : before.points().fields)
+      if (field.name.rfind("column", 0) == 0) {
+        EXPECT_EQ(values(after, field.name), values(before, field.name)) << field.name;
+      }
+  }
+}
+
+TEST_F(NormalsCommand, ColumnsOfACubesNormalsAreNormalsToo) {
+  std::string text;
+  for (int i = 0; i < 100; ++i)
+    text +=
+        fmt::format("{} {} 0 {} 0 {}\n", i % 10, i / 10, i % 20 == 0 ? "-1" : "1e-14", i % 20 == 0 ? 0 : 1);
+  put("in.xyz", text);
+  EXPECT_THAT(field_names(read(at("in.xyz"))), ElementsAre("x", "y", "z", "nx", "ny", "nz"));
+}
+
+TEST_F(NormalsCommand, OtherColumnsWithoutNamesAreNone) {
+  std::string flags;
+  for (int i = 0; i < 100; ++i)
+    flags += fmt::format("{} {} 0.{} {} {} {}\n", i % 10, i / 10, i * i % 7, int(i % 3 == 0), int(i % 3 == 1),
+                         int(i % 3 == 2));
+  for (const std::string& text : {columns("", 0.9), columns("", 255), flags}) {
+    put("in.xyz", text);
+    const Ran ran = run({"denoise", "in.xyz", "out.xyz", "--force"});
+    ASSERT_EQ(ran.code, 0) << ran.err;
+    EXPECT_THAT(ran.err, Not(HasSubstr("stale")));
+    EXPECT_THAT(field_names(read(at("in.xyz"))),
+                ElementsAre("x", "y", "z", "column_4", "column_5", "column_6"));
+  }
 }
 
 TEST_F(NormalsCommand, FaceTheViewpointTyped) {
