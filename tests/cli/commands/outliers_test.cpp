@@ -96,6 +96,31 @@ TEST_F(OutliersOption, MarkAddsAField) {
   }
 }
 
+/// A sphere with noise of which one point in thirty has ten times as much.
+TEST_F(OutliersOption, PointsThatHeavyTailsExplainAreNoneUnderTheAutomaticFlow) {
+  std::mt19937_64 engine(3);
+  std::normal_distribution<double> noise(0, 0.02);
+  std::string text;
+  const int n = 4000;
+  for (int i = 0; i < n; ++i) {  // a spiral from pole to pole
+    const double z = 1 - (2 * i + 1.0) / n, turn = i * 2.399963, r = std::sqrt(1 - z * z),
+                 scale = 1 + noise(engine) * (i % 30 == 0 ? 10 : 1);
+    text += fmt::format("{:.6f} {:.6f} {:.6f}\n", scale * r * std::cos(turn), scale * r * std::sin(turn),
+                        scale * z);
+  }
+  put("tails.xyz", text);
+  const auto removed = [&](const char* flow) {
+    EXPECT_EQ(run({"denoise", "--flow", flow, "--outliers", "remove", "tails.xyz", "out.xyz", "--force",
+                   "--report", "r.json"})
+                  .code,
+              0);
+    return nlohmann::json::parse(take("r.json"))["counts"]["removed"].get<int>();
+  };
+  EXPECT_LT(2 * removed("auto"), removed("hc"));
+  EXPECT_THAT(run({"denoise", "--help-all"}).out, HasSubstr("tails explain"));
+  EXPECT_THAT(run({"man", "denoise"}).out, HasSubstr("heavy tails"));
+}
+
 TEST_F(OutliersOption, RemoveLeavesThemOutAndKeepsTheOrder) {
   const io::Cloud kept = clean({}), out = clean({"--outliers", "remove"});
   EXPECT_THAT(said_, HasSubstr("3 outliers removed"));
