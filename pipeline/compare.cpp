@@ -204,7 +204,10 @@ void measure_evenness(const PointTree& tree, const Context& context, Measures& o
 Measures on_unit_sphere(const Measures& own_units, double radius) {
   Measures out = own_units;
   Measures::describe(out, [&](const MeasureInfo& info, std::optional<double>& value) {
-    if (value) *value /= std::pow(radius, info.length_power);
+    if (info.length_power > 0 && !(radius > 0))
+      value.reset();
+    else if (value)
+      *value /= std::pow(radius, info.length_power);
   });
   return out;
 }

@@ -103,7 +103,8 @@ struct CompareReport {
   std::vector<double> deviation;
 };
 
-/// The figures as they would be on a sphere of radius 1: lengths / radius, squares / radius^2.
+/// The figures as they would be on a sphere of radius 1: lengths / radius, squares / radius^2. A truth of one
+/// place has no such sphere (radius 0): then lengths and squares are empty.
 Measures on_unit_sphere(const Measures& own_units, double radius);
 
 /// Measures the finite rows of `cloud`. Errors: no_usable_points if the cloud or the truth has no finite

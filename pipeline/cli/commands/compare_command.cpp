@@ -60,8 +60,9 @@ struct ToText {
   void operator()(const MeasureInfo& info, const std::optional<double>& value) {
     if (!value) return;
     std::string scaled;
-    if (info.length_power > 0)
-      scaled = fmt::format("{:.5g}", on_unit_sphere[std::string(info.name)].get<double>() * 1e4);
+    if (const auto it = on_unit_sphere.find(std::string(info.name));
+        info.length_power > 0 && it != on_unit_sphere.end())
+      scaled = fmt::format("{:.5g}", it->get<double>() * 1e4);
     fmt::print("{:<21} {:>12.6g} {:>12}  {}\n", info.name, *value, scaled, info.help);
   }
 };

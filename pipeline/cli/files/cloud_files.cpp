@@ -116,7 +116,7 @@ void warn_if_coarse(const io::Cloud& cloud, const std::vector<double>& xyz, doub
   const double step =
       double(std::nextafter(largest, std::numeric_limits<float>::infinity())) - double(largest);
   const double rounding = step / std::sqrt(12.0);  // standard deviation of what is lost
-  if (rounding > spacing / 20)
+  if (spacing > 0 && largest > 0 && rounding > spacing / 20)
     console.warn(
         fmt::format("{}: coordinates of {:.3g} have steps of {:.2g} in float32, at a spacing of {:.2g}: "
                     "that noise was made when the file was written; write it anew with double "

@@ -35,7 +35,8 @@ std::vector<std::string> store_cloud(const pipeline::io::Cloud& cloud, const std
 bool has_normals(const pipeline::io::Cloud& cloud);
 
 /// Warns if rounding the coordinates to float32 has moved them by more than a twentieth of the spacing, noise
-/// that denoise leaves alone. `xyz`: the file's coordinates. O(n).
+/// that denoise leaves alone. `xyz`: the file's coordinates. `spacing`: 0 if no two points differ, and then
+/// there is nothing to say. O(n).
 void warn_if_coarse(const pipeline::io::Cloud& cloud, const std::vector<double>& xyz, double spacing,
                     const std::string& name, Console& console);
 

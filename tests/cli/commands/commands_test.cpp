@@ -197,6 +197,29 @@ TEST_F(Commands, CompareAgainstItselfIsZero) {
   EXPECT_THAT(run({"compare", "in.ply", "mesh.ply"}).out, HasSubstr("p2s_root"));
 }
 
+TEST_F(Commands, CloudsOfOnePlaceHaveNoFiguresThatAreNoNumbers) {
+  const std::string header =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float "
+      "z\nend_header\n";
+  put("equal.ply", header + "5 6 7\n5 6 7\n5 6 7\n");
+  put("one.xyz", "5 6 7\n");
+  put("two.xyz", "5 6 7\n5 6 8\n");
+  for (const char* name : {"equal.ply", "one.xyz"}) {
+    const Ran ran = run({"denoise", name, std::string("out-") + name});
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    EXPECT_THAT(ran.err, ::testing::Not(HasSubstr("float32"))) << "nothing was lost";
+    EXPECT_EQ(take(std::string("out-") + name), take(name));
+    for (const char* other : {"equal.ply", "one.xyz", "two.xyz"}) {
+      const Ran text = run({"compare", other, name});
+      EXPECT_EQ(text.code, 0) << text.err;
+      for (const char* word : {"nan", "inf"}) EXPECT_THAT(text.out, ::testing::Not(HasSubstr(word))) << other;
+      const json figures = json::parse(run({"compare", "--json", other, name}).out);
+      EXPECT_TRUE(figures["own_units"].contains("chamfer"));
+      EXPECT_FALSE(figures["unit_sphere"].contains("chamfer")) << "a place has no unit sphere";
+    }
+  }
+}
+
 TEST_F(Commands, CompareNeedsTwoFiles) {
   EXPECT_EQ(run({"compare", "a.ply"}).code, 2);
   EXPECT_EQ(run({"compare", "a.ply", "b.ply"}).code, 3);
