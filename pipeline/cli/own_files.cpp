@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <sys/stat.h>
 #include <sys/xattr.h>
+#include <unistd.h>
 
 #include "pipeline/io/detect.h"
 #include "pipeline/io/io.h"
@@ -21,6 +22,12 @@ std::string state_of(const std::string& path) {
   struct stat info {};
   if (stat(path.c_str(), &info) != 0 || !S_ISREG(info.st_mode)) return "";
   return fmt::format("{} {}.{:09}", info.st_size, info.st_mtim.tv_sec, info.st_mtim.tv_nsec);
+}
+
+/// Whether a regular file is there that this user may not read, so that nobody can tell what it holds.
+bool is_unreadable(const std::string& path) {
+  std::error_code unknown;
+  return std::filesystem::is_regular_file(path, unknown) && access(path.c_str(), R_OK) != 0;
 }
 
 }  // namespace
@@ -39,6 +46,7 @@ bool is_own(const std::string& path) {
 bool holds_cloud(const std::string& path) {
   std::error_code unknown;
   if (!std::filesystem::is_regular_file(path, unknown)) return false;
+  if (is_unreadable(path)) return true;
   const auto holds = guarded([&] {
     const auto format =
         pipeline::io::detect_format(pipeline::io::Source(std::filesystem::path(path), Context()), {});
@@ -56,22 +64,31 @@ void need_own_target(const Job& job, const std::optional<std::string>& named) {
       named ? !std::filesystem::equivalent(job.input, job.output, unknown) : job.output == job.input;
   if (meant || is_own(job.output) || !holds_cloud(job.output)) return;
   throw Failure({ErrorCode::cannot_write,
-                 named ? fmt::format("{0}: is the scan itself; it stays as it is. Name another folder, or to "
-                                     "replace it: --force {0} -o {0}",
-                                     job.input)
-                       : fmt::format("{1}: is a cloud that rfsmooth did not write; it stays as it is. To "
-                                     "replace it: --force {0} -o {1}; to work on both: {0} {1} -o FOLDER",
-                                     job.input, job.output)});
+                 named
+                     ? fmt::format("{0}: is the scan itself; it stays as it is. Name another folder, or to "
+                                   "replace it: --force {0} -o {0}",
+                                   job.input)
+                     : fmt::format("{1}: {2}; it stays as it is. To replace it: --force {0} -o {1}; to work "
+                                   "on both: {0} {1} -o FOLDER",
+                                   job.input, job.output,
+                                   is_unreadable(job.output) ? "cannot be read and may be a cloud"
+                                                             : "is a cloud that rfsmooth did not write")});
 }
 
 void check_no_cloud_target(const std::string& path, bool force, const char* what) {
+  if (path == "-")
+    throw Failure(
+        {ErrorCode::usage,
+         fmt::format("standard output (-) does not take the {}; it needs the name of a file", what)});
   pipeline::io::WriteOptions options;
   options.force = force;
   options.format = pipeline::io::Format::ply;  // any: the extension of a report stands for no cloud
   value_or_throw(pipeline::io::check_output(path, options));
   if (holds_cloud(path))
-    throw Failure({ErrorCode::cannot_write,
-                   fmt::format("{}: is a cloud, which no {} replaces; remove it yourself", path, what)});
+    throw Failure(
+        {ErrorCode::cannot_write,
+         fmt::format("{}: {}, which no {} replaces; remove it yourself", path,
+                     is_unreadable(path) ? "cannot be read and may be a cloud" : "is a cloud", what)});
 }
 
 }  // namespace rfsmooth::cli

@@ -16,7 +16,8 @@ void mark_as_own(const std::string& path);
 /// Whether a file carries a valid mark.
 bool is_own(const std::string& path);
 
-/// Whether a regular file is there that begins as a PLY, PCD, OFF or LAS file does, or that reads as points.
+/// Whether a regular file is there that begins as a PLY, PCD, OFF or LAS file does, or that reads as points;
+/// or that cannot be opened, and so may.
 bool holds_cloud(const std::string& path);
 
 /// Refuses an OUT that is a cloud without a valid mark, because `*.ply` in a folder with two scans passes the
@@ -25,8 +26,9 @@ bool holds_cloud(const std::string& path);
 /// (cannot_write).
 void need_own_target(const Job& job, const std::optional<std::string>& named);
 
-/// Refuses, before any work, what a file that is no cloud ("report", "picture") could not be written to: a
-/// file that exists, without `force`, and with it a cloud. \throw Failure (cannot_write).
+/// Refuses, before any work, what a file that is no cloud ("report", "picture") could not be written to:
+/// standard output, a file that exists, without `force`, and with it a cloud. \throw Failure (usage,
+/// cannot_write).
 void check_no_cloud_target(const std::string& path, bool force, const char* what);
 
 }  // namespace rfsmooth::cli

@@ -60,6 +60,17 @@ TEST_F(Render, LeavesOutOutliersIfAsked) {
   EXPECT_TRUE(picture({"render", "stray.ply", "--direction", "0,1,-0.5", "--without-outliers"}) == clean);
 }
 
+TEST_F(Render, WritesNoFormatButPngAndNothingToStandardOutput) {
+  for (const char* name : {"out.jpg", "out.tiff", "-"}) {
+    const Ran ran = run({"render", "in.ply", "-o", name});
+    EXPECT_EQ(ran.code, 2) << name;
+    EXPECT_THAT(ran.err, HasSubstr(*name == '-' ? "does not take the picture" : "out."));
+    EXPECT_EQ(ran.out, "");
+  }
+  EXPECT_THAT(run({"render", "in.ply", "-o", "out.jpg"}).err, HasSubstr("the picture is a PNG"));
+  EXPECT_EQ(names(), std::vector<std::string>{"in.ply"});
+}
+
 TEST_F(Render, KeepsTheContractsOfTheCommand) {
   put("out.png", "mine");
   EXPECT_EQ(run({"render", "in.ply", "-o", "out.png"}).code, 5);

@@ -1,7 +1,9 @@
 /// What --force replaces and what it does not: nobody's scan is lost to a pattern that names it as OUT.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <sys/xattr.h>
+#include <unistd.h>
 
 #include "tests/cli/support/folder.h"
 #include "tests/cli/support/small_clouds.h"
@@ -47,6 +49,30 @@ TEST_F(Replacing, AScanOfAnyFormatIsKept) {
     EXPECT_EQ(run({"denoise", "--force", "a.ply", name}).code, 5) << name;
     EXPECT_EQ(take(name), before);
   }
+}
+
+/// Root reads everything: there the command is run as somebody else.
+TEST_F(Replacing, WhatCannotBeReadMayBeAScanAndIsKept) {
+  ASSERT_EQ(chmod(at("").c_str(), 0777), 0);
+  ASSERT_EQ(chmod(at("b.ply").c_str(), 0), 0);
+  RunSetup setup;
+  setup.folder = at("");
+  const auto as_user = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), RFSMOOTH_COMMAND);
+    if (geteuid() == 0) words.insert(words.begin(), {"setpriv", "--reuid=65534", "--clear-groups"});
+    return run_program(words[0], {words.begin() + 1, words.end()}, setup);
+  };
+  if (as_user({"info", "a.ply"}).code != 0) GTEST_SKIP() << "nobody else may run the command here";
+  if (as_user({"info", "b.ply"}).code == 0) GTEST_SKIP() << "everybody reads everything here";
+  for (const auto& words :
+       std::vector<std::vector<std::string>>{{"denoise", "--force", "a.ply", "b.ply"},
+                                             {"report", "--force", "a.ply", "a.ply", "-o", "b.ply"}}) {
+    const Ran ran = as_user(words);
+    EXPECT_EQ(ran.code, 5) << words[0];
+    EXPECT_THAT(ran.err, HasSubstr("b.ply: cannot be read and may be a cloud"));
+  }
+  chmod(at("b.ply").c_str(), 0644);
+  EXPECT_TRUE(take("b.ply") == raw_);
 }
 
 TEST_F(Replacing, WhatIsNamedWithOIsMeant) {

@@ -1,6 +1,9 @@
 #include "pipeline/cli/commands/render_command.h"
 
+#include <filesystem>
 #include <memory>
+
+#include <fmt/format.h>
 
 #include "pipeline/cli/files/file_options.h"
 #include "pipeline/cli/other_program.h"
@@ -32,6 +35,9 @@ void check_request(const RenderOptions& options, const Invocation& typed) {
   if (typed.arguments.empty()) throw Failure({ErrorCode::usage, "no input given"});
   if (!options.output) throw Failure({ErrorCode::usage, "no picture named: -o OUT.png"});
   check_no_cloud_target(*options.output, options.force, "picture");
+  const std::string extension = std::filesystem::path(*options.output).extension().string();
+  if (!extension.empty() && extension != ".png" && extension != ".PNG")
+    throw Failure({ErrorCode::usage, fmt::format("{}: the picture is a PNG; name it .png", *options.output)});
 }
 
 }  // namespace

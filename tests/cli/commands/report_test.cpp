@@ -53,6 +53,14 @@ BinaryPly flattened(BinaryPly cloud) {
   return cloud;
 }
 
+TEST_F(ReportPage, IsNotForStandardOutput) {
+  put("in.ply", noisy_plane(10).bytes());
+  const Ran ran = run({"report", "in.ply", "in.ply", "-o", "-"});
+  EXPECT_EQ(ran.code, 2);
+  EXPECT_THAT(ran.err, HasSubstr("does not take the page"));
+  EXPECT_FALSE(there("-"));
+}
+
 TEST_F(ReportPage, TheCountsOfItsHistogramSumToTheFinitePoints) {
   BinaryPly before = noisy_plane(50);
   const BinaryPly clean = flattened(before);
