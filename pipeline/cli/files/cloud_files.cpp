@@ -44,13 +44,7 @@ ordered_json describe_las(const io::LasSummary& las) {
 }  // namespace
 
 void check_target(const std::string& output, const FileOptions& options) {
-  if (output == "-") {
-    if (!options.format)
-      throw Failure(
-          {ErrorCode::usage, "standard output (-) has no extension: --format must name the format"});
-    return;
-  }
-  value_or_throw(io::check_output(output, write_options(options)));
+  if (output != "-") value_or_throw(io::check_output(output, write_options(options)));
 }
 
 void need_free_stdout(const std::vector<Job>& jobs, const RunOptions& options) {
@@ -63,12 +57,17 @@ void need_free_stdout(const std::vector<Job>& jobs, const RunOptions& options) {
 io::Cloud load_cloud(const std::string& input, const Context& context, std::vector<StageTime>& stages) {
   const Stopwatch watch(stages, "read");
   context.report("read", 0);
-  const std::string path = input == "-" ? "/dev/stdin" : input;
+  const std::string standard_input = "/dev/stdin", path = input == "-" ? standard_input : input;
   std::error_code unknown;
   // The file's own size is the least that reading it takes.
   if (const auto bytes = std::filesystem::file_size(path, unknown); !unknown)
     if (const auto error = refuse_without_memory(input, bytes)) throw Failure(*error);
-  return value_or_throw(io::read_cloud(path, {}, context));
+  auto cloud = io::read_cloud(path, {}, context);
+  if (input != "-" || cloud.ok()) return value_or_throw(std::move(cloud));
+  Error error = cloud.error();
+  if (error.message.rfind(standard_input, 0) == 0)
+    error.message.replace(0, standard_input.size(), "standard input");
+  throw Failure(std::move(error));
 }
 
 std::vector<std::string> store_cloud(const io::Cloud& cloud, const std::string& output,

@@ -14,7 +14,7 @@
 
 namespace rfsmooth::cli {
 
-/// Refuses an output that cannot be written, before any work. \throw Failure.
+/// Refuses an output that cannot be written, before any work. "-" always can. \throw Failure.
 void check_target(const std::string& output, const FileOptions& options);
 
 /// Refuses two outputs to standard output; --report - counts as one. \throw Failure (usage).

@@ -133,11 +133,36 @@ TEST_F(DenoiseCommand, StreamsGiveTheSameBytesAsFiles) {
   EXPECT_TRUE(ran.out == take("out.ply"));
 }
 
-TEST_F(DenoiseCommand, StandardOutputNeedsAFormat) {
+TEST_F(DenoiseCommand, StandardOutputHasTheFormatOfTheInput) {
   put("in.ply", noisy_plane(10).bytes());
-  const Ran ran = run({"denoise", "in.ply", "-"});
-  EXPECT_EQ(ran.code, 2);
-  EXPECT_THAT(ran.err, HasSubstr("--format"));
+  put("in.xyz", "0 0 0\n1 0 0\n0 1 0\n");
+  ASSERT_EQ(run({"denoise", "in.ply", "out.ply"}).code, 0);
+  RunSetup setup;
+  setup.input = take("in.ply");
+  const Ran ran = run({"denoise", "-", "-"}, setup);
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  EXPECT_TRUE(ran.out == take("out.ply"));
+  EXPECT_EQ(run({"denoise", "in.xyz", "-"}).out, take("in.xyz"));
+  EXPECT_EQ(run({"denoise", "in.xyz", "-", "--format", "pcd"}).out.substr(0, 6), "# .PCD");
+}
+
+TEST_F(DenoiseCommand, StandardInputIsCalledSo) {
+  RunSetup setup;
+  setup.input = "no cloud";
+  const Ran ran = run({"denoise", "-", "out.ply"}, setup);
+  EXPECT_EQ(ran.code, 3);
+  EXPECT_THAT(ran.err, HasSubstr("error: standard input: "));
+  EXPECT_THAT(ran.err, Not(HasSubstr("/dev/stdin")));
+}
+
+TEST_F(DenoiseCommand, WhatStandsBesideTheCloudNeedsAName) {
+  put("in.ply", noisy_plane(10).bytes());
+  for (const char* option : {"--html", "--trace"}) {
+    const Ran ran = run({"denoise", "in.ply", "out.ply", option, "-"});
+    EXPECT_EQ(ran.code, 2) << option;
+    EXPECT_THAT(ran.err, HasSubstr("standard output (-) does not take the"));
+  }
+  EXPECT_THAT(names(), ElementsAre("in.ply"));
 }
 
 TEST_F(DenoiseCommand, NormalsStayAndAWarningSaysTheyAreOld) {
