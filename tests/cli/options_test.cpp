@@ -205,6 +205,19 @@ TEST(Help, ManualPagesNameEveryOptionOfTheHelp) {
   }
 }
 
+TEST(Help, WordsOfTheNoiseAreExplained) {
+  for (const auto& words : std::vector<std::vector<std::string>>{{"info", "--help"}, {"man", "info"}}) {
+    std::string text = rfsmooth(words).out;
+    std::replace(text.begin(), text.end(), '\n', ' ');
+    for (const char* said : {"in the loudest tenth", "shared by N neighbours", "depth in steps of"})
+      EXPECT_THAT(text, HasSubstr(said)) << words[0];
+  }
+  EXPECT_THAT(rfsmooth({"denoise", "--help-all"}).out, HasSubstr("rfsmooth info --help"));
+  std::ifstream file(std::filesystem::path(RFSMOOTH_SOURCE) / "docs/GLOSSARY.md");
+  EXPECT_THAT(std::string((std::istreambuf_iterator<char>(file)), {}),
+              HasSubstr("| shared by N neighbours |"));
+}
+
 TEST(Help, ExitCodesAreDocumentedThereAndInTheReadme) {
   std::ifstream file(std::filesystem::path(RFSMOOTH_SOURCE) / "README.md");
   const std::string readme((std::istreambuf_iterator<char>(file)), {});

@@ -397,15 +397,16 @@ Command denoise_command() {
       "other field, the order and the number of points stay. Points that are not finite stay as they are. "
       "Fields that are asked for (--write-displacement, --mark-outliers, --normals) come behind the "
       "points' other fields, or take the place of the one of that name.\n\n"
+      "What is said of the noise beside its figure (the loudest tenth, shared by N neighbours, depth in "
+      "steps) is explained by rfsmooth info --help.\n\n"
       "Outliers are points with no surface near. How many there are depends on the flow: the automatic one "
       "sees the tails of the noise, and a point that heavy tails explain is put onto the surface, is no "
       "outlier and is not removed; other flows look for no tails, and --outliers decides over it.\n\n"
       "- stands for standard input or output, and behind -- no word is an option. Where a name has no "
       "extension the format is that of the input, or of --format. Without -o exactly two names are taken, IN "
-      "and OUT; with -o every name is an input. Existing files "
-      "are replaced only with --force. Ctrl-C stops within a second and leaves no file; of several inputs "
-      "those stay that were done before. A report, a page or a trace is written once its cloud is there, and "
-      "not without one.";
+      "and OUT; with -o every name is an input. Existing files are replaced only with --force. Ctrl-C stops "
+      "within a second and leaves no file; of several inputs those stay that were done before. A report, a "
+      "page or a trace is written once its cloud is there, and not without one.";
   collect(*options, command.options);
   collect(options->job, command.options);
   command.everyday = {"strength", "noise",   "flow",   "outliers", "normals", "output",

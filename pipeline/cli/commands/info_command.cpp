@@ -189,7 +189,15 @@ Command info_command() {
   command.usage = {"[options] IN..."};
   command.description =
       "Prints format, fields with their types, points (finite, distinct), whether they are "
-      "organised, extent and spacing. - stands for standard input.";
+      "organised, extent, spacing and noise. - stands for standard input.\n\n"
+      "The noise is that of the typical place. Where there is more to say, it follows: 'S in the loudest "
+      "tenth' is the noise that a tenth of the points exceed. 'shared by N neighbours': neighbours err "
+      "together, "
+      "as in the blotches of depth cameras, and N of them tell no more than one; smoothing takes so many "
+      "points "
+      "more together. 'depth in steps of S': depths are rounded, and S is the typical distance from one to "
+      "the "
+      "next.";
   collect(*options, command.options);
   polish(command);
   command.run = [options](const Invocation& typed) { return run_info(*options, typed); };

@@ -116,7 +116,8 @@ std::string help_of(const Command& command, bool complete) {
     out += fmt::format("{}rfsmooth {} {}\n", lead, command.name, form);
     lead = "       ";
   }
-  if (complete) out += '\n' + wrapped(command.description, 0) + '\n';
+  const bool short_page = command.everyday.empty();  // has room for it
+  if (complete || short_page) out += '\n' + wrapped(command.description, 0) + '\n';
   out += "\noptions:\n";
   const std::vector<CommandOption> shown = complete ? command.options : everyday_options(command);
   for (const CommandOption& o : shown) {
@@ -129,7 +130,7 @@ std::string help_of(const Command& command, bool complete) {
   const std::size_t more = command.options.size() - shown.size();
   out += entry("    --help-all", complete   ? "this page"
                                  : more > 0 ? fmt::format("everything: {} more options, exit codes", more)
-                                            : std::string("everything: what it does, exit codes"));
+                                            : std::string("this page and the exit codes"));
   if (!complete) return out;
   out += "\nexit codes:\n";
   for (const ExitCode& e : exit_codes()) out += entry(std::to_string(e.code), e.meaning);
