@@ -98,10 +98,12 @@ Positions automatic_smoothing(Mesh& mesh, bool keep_rings, rfs_mesh::NoiseField 
   if (!keep_rings) mesh.one_ring = {};
   const double of_whole = whole.points ? double(*whole.points) / double(n) : 1;
   const std::vector<float> mixed = learned ? pass.height : std::vector<float>();
-  const Tails law = noise.shared > 1 ? Tails() : tails;  // as told: else it counts as noise of all
-  const HiddenSheets hidden =
-      split_hidden_sheets(*field, residuals_of(*field, pass.height, mesh.positions, measured, law, context),
-                          pass.height, pass.own, of_whole, whole.sheets, context);
+  const bool own_noise = !(noise.shared > 1);  // a k-th of the evidence never was enough for walls
+  HiddenSheets hidden;
+  if (own_noise)
+    hidden = split_hidden_sheets(*field,
+                                 residuals_of(*field, pass.height, mesh.positions, measured, tails, context),
+                                 pass.height, pass.own, of_whole, whole.sheets, context);
   const auto allowed = [&](std::size_t i, const Eigen::Vector3d& move) {
     return move.allFinite() && move.norm() <= most[i];
   };
@@ -111,7 +113,7 @@ Positions automatic_smoothing(Mesh& mesh, bool keep_rings, rfs_mesh::NoiseField 
                           move = field->guide()[i] + double(pass.height[i]) * field->normal(i) - from;
     smooth[i] = allowed(i, move) ? from + move : from;
   });
-  if (!(noise.shared > 1))  // a k-th of the evidence never was enough
+  if (own_noise)
     part_thin_walls(*field, data, pass.several, pass.members_seeing, noise, smooth, whole.thin_walls,
                     context);
   if (learned) {

@@ -20,8 +20,9 @@
 ///    those of points that stay, having none, do not: in units of their noise any patch would be far off.
 /// 4. Walls thinner than the noise, which look like one sheet with more of it, are taken apart where the
 ///    cloud as a whole says that they are walls (hidden_sheets.h); those of a few sigma get their two sheets
-///    fitted together (thin_walls.h), unless points share their noise. Where patches contradict each other, a
-///    learned step goes on from there towards the surface (learned/last_step.h).
+///    fitted together (thin_walls.h). Neither is tried where points share their noise: blotches look like
+///    sheets. Where patches contradict each other, a learned step goes on from there towards the surface
+///    (learned/last_step.h).
 /// 5. What is left: the mean risk of the mixture, at least the variance that the data's own weight passes on,
 ///    sum sigma^2 df/dz, both with the variance that the residuals tell where the surface is smooth, of
 ///    places as loud as each other together: next to what little is left there, a few percent in sigma would

@@ -7,6 +7,7 @@
 #include "base/quantile.h"
 #include "rfs_mesh/levels.h"
 #include "rfs_mesh/noise/noise.h"
+#include "rfs_mesh/noise/scatter_statistics.h"
 #include "smoothing/automatic/equalize.h"
 
 namespace rfsmooth::smoothing {
@@ -14,10 +15,13 @@ namespace rfsmooth::smoothing {
 namespace {
 
 /// Where most of the scatter is shape, noise of twice kNoNoise cannot be told from detail either: better
-/// leave a clean cloud alone.
+/// leave a clean cloud alone, unless a part of it is clearly louder than that.
 double measured(const rfs_mesh::NoiseField& noise, double spacing) {
   constexpr double kMostlyShape = 0.4;  // of the development shapes, clean and with noise of 0.1 spacings
-  return noise.sigma < 2 * rfs_mesh::kNoNoise * spacing && noise.shape > kMostlyShape ? 0 : noise.sigma;
+  const double detail = 2 * rfs_mesh::kNoNoise * spacing;
+  if (!(noise.sigma < detail && noise.shape > kMostlyShape)) return noise.sigma;
+  std::vector<double> sites = noise.at_sites;
+  return !sites.empty() && quantile(sites, 0.9) > rfs_mesh::kLouder * detail ? noise.sigma : 0;
 }
 
 /// Noise of the size `sigma`, that varies over the cloud as `noise` does, times `strength`. Places of less

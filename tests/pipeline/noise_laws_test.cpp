@@ -9,6 +9,7 @@
 
 #include "rfs_mesh/fit/local_surface.h"
 #include "tests/support/meshes.h"
+#include "tests/support/shapes.h"
 
 using namespace rfsmooth;
 
@@ -185,6 +186,22 @@ TEST(NoiseLaws, AThinPlateInDepthsOfStepsStaysAPlate) {
     plate.push_back(p);
   }
   EXPECT_LE(rms(denoised(plate)), 1.01 * rms(plate));
+}
+
+TEST(NoiseLaws, ATorusInDepthsOfStepsIsNotTornIntoSheets) {
+  for (const unsigned seed : {1U, 2U, 3U}) {
+    Positions stepped = test::random_points(test::torus(), 10000, seed);
+    const rfs_mesh::SpatialIndex index(stepped, {});
+    const double step = rfs_mesh::mean_spacing(index, {});
+    for (Eigen::Vector3d& p : stepped) p.z() = step * std::round(p.z() / step);
+    const auto rms = [](const Positions& points) {
+      double sum = 0;
+      for (const Eigen::Vector3d& p : points)
+        sum += std::pow(std::hypot(std::hypot(p.x(), p.y()) - 1, p.z()) - 0.4, 2);
+      return std::sqrt(sum / double(points.size()));
+    };
+    EXPECT_LT(rms(denoised(stepped)), 0.5 * rms(stepped)) << seed;
+  }
 }
 
 TEST(NoiseLaws, NoiseThatNeighboursShareIsSmoothedOverMoreOfThem) {

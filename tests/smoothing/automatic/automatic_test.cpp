@@ -102,6 +102,30 @@ TEST(Automatic, NoiseThatVariesIsSmoothedAwayWhereItIsLoud) {
   EXPECT_LT(with_field, 0.7 * loud_half(smoothed(mesh, quiet, report)));
 }
 
+TEST(Automatic, ALoudPartOfACloudThatIsMostlyDetailIsSmoothed) {
+  const Mesh clean = support::icosphere(5);
+  const double h = spacing(clean.positions);
+  Mesh noisy = clean;
+  support::add_noise(noisy, 0.5 * h, 7);
+  for (std::size_t i = 0; i < noisy.positions.size(); ++i)
+    if (clean.positions[i].z() < 0.3) noisy.positions[i] = clean.positions[i];
+  const auto moved = [&](double loud) {
+    Statistics whole;
+    whole.noise = NoiseModel();
+    whole.noise->spacing = h;
+    whole.noise->sigma = 0.08 * h;
+    whole.noise->shape = 0.6;
+    whole.noise->sites = clean.positions;
+    for (const Eigen::Vector3d& p : clean.positions)
+      whole.noise->at_sites.push_back((p.z() < 0.3 ? 0.08 : loud) * h);
+    Mesh mesh = noisy;
+    smooth_automatically(mesh, {}, {}, Connectivity::kept, nullptr, &whole);
+    return mesh.positions;
+  };
+  EXPECT_LT(support::rms_off_unit_sphere(moved(0.5)), 0.5 * support::rms_off_unit_sphere(noisy.positions));
+  EXPECT_EQ(moved(0.1), noisy.positions);
+}
+
 TEST(Automatic, NoNoiseIsTheIdentity) {
   const Mesh mesh = support::icosphere(4);
   AutomaticReport report;
