@@ -41,9 +41,10 @@ struct Statistics {
   };
   /// Points several times noisier than their neighbours.
   struct Tails {
-    double share = 0;   ///< of the points; 0: none
-    double times = 1;   ///< their standard deviation over that of the others
-    double narrow = 1;  ///< standard deviation of the others over what was measured for all
+    double share = 0;     ///< of the points; 0: none
+    double times = 1;     ///< their standard deviation over that of the others
+    double narrow = 1;    ///< standard deviation of the others over what was measured for all
+    double together = 0;  ///< how many times more of the neighbours of far points are far than of all points
   };
   /// A scale of smoothing: patches of so many points, around seeds that are left of so many thinnings.
   struct Scale {

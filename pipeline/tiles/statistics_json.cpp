@@ -91,7 +91,10 @@ ordered_json json_of(const Statistics& all) {
   if (all.spacing) json["spacing"] = *all.spacing;
   if (all.noise) json["noise"] = json_of_noise(*all.noise);
   if (all.tails)
-    json["tails"] = {{"share", all.tails->share}, {"times", all.tails->times}, {"narrow", all.tails->narrow}};
+    json["tails"] = {{"share", all.tails->share},
+                     {"times", all.tails->times},
+                     {"narrow", all.tails->narrow},
+                     {"together", all.tails->together}};
   json["passes"] = ordered_json::array();
   for (const auto& pass : all.passes) json["passes"].push_back(json_of_pass(pass));
   if (all.sheets) json["sheets"] = {{"evidence", all.sheets->evidence}, {"variance", all.sheets->variance}};
@@ -110,7 +113,7 @@ Statistics statistics_of(const ordered_json& json) {
   if (json.contains("tails")) {
     const auto& tails = json.at("tails");
     all.tails = {tails.at("share").get<double>(), tails.at("times").get<double>(),
-                 tails.at("narrow").get<double>()};
+                 tails.at("narrow").get<double>(), tails.at("together").get<double>()};
   }
   for (const auto& pass : json.at("passes")) all.passes.push_back(pass_of(pass));
   if (json.contains("sheets"))

@@ -340,6 +340,23 @@ TEST(Denoise, StatisticsOfARunGiveItsBytesAgainAndThoseOfAnotherCloudOthers) {
   EXPECT_EQ(refused.error().code, ErrorCode::usage);
 }
 
+// Where far points stand together it is shape, not tails, and a part of a cloud is told so by the whole.
+TEST(Denoise, HowFarPointsStandTogetherIsOfTheWholeCloud) {
+  Flat before = sphere();
+  for (std::size_t i = 0; i < before.size(); i += 30)  // a tenth is some sigma farther off
+    for (std::size_t k = 0; k < 3; ++k) before[i + k] *= i % 60 == 0 ? 1.05 : 0.95;
+  Flat first = before, told = before;
+  const DenoiseReport report = run(first, {});
+  ASSERT_TRUE(report.statistics.tails.has_value());
+  EXPECT_GT(report.statistics.tails->share, 0);
+  EXPECT_LT(report.statistics.tails->together, 1.6) << "each by itself";
+  DenoiseOptions other;
+  other.statistics = report.statistics;
+  other.statistics->tails->together = 10;
+  run(told, other);
+  EXPECT_FALSE(same_bits(first, told));
+}
+
 TEST(Denoise, TheNoiseThatIsReportedIsTheOneThatTellsOutliers) {
   constexpr double kOff = 0.2, kTimes = 6;  // off the sphere: 20 sigma, and 3.3 of a noise six times as large
   Flat before = sphere();

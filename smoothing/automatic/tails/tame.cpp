@@ -108,10 +108,18 @@ Tails tame(const HeightField& field, const MixedScales& pass, const Mesh& mesh, 
     // Where the mixture had to be narrow, a wide patch says little.
     least[i] = std::min(std::abs(relative[i]), std::abs(without) / sigma);
   });
-  const double together = far_together(field, least, context);
-  if (noise.shared > 1 && together > kGroups) return {};
-  if (together > kByChance) relate_to_neighbours(field, relative, least, context);
-  if (!whole) whole = find_tails(relative, least);
+  if (!whole) {
+    const double together = far_together(field, least, context);
+    if (noise.shared > 1 && together > kGroups)
+      whole.emplace();
+    else {
+      if (together > kByChance) relate_to_neighbours(field, relative, least, context);
+      whole = find_tails(relative, least);
+    }
+    whole->together = together;
+  } else if (whole->together > kByChance) {
+    relate_to_neighbours(field, relative, least, context);
+  }
   const Tails tails(*whole);
   if (!(tails.share > 0)) return tails;
   for_each_index(context, off.size(), [&](std::size_t i) {
