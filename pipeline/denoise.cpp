@@ -12,9 +12,11 @@
 #include "base/parallel.h"
 #include "base/quantile.h"
 #include "base/stopwatch.h"
+#include "pipeline/measure_points.h"
 #include "pipeline/outliers.h"
 #include "rfs_mesh/connect/connect.h"
 #include "rfs_mesh/connect/edge_swap.h"
+#include "rfs_mesh/levels.h"
 #include "rfs_mesh/points.h"
 #include "smoothing/automatic/flow_auto.h"
 #include "smoothing/trace.h"
@@ -223,6 +225,42 @@ rfs_mesh::WorkingCloud prepare(const double* xyz, std::size_t n, const DenoiseOp
   return cloud;
 }
 
+/// Who is near whom in a working cloud.
+struct Searched {
+  std::optional<rfs_mesh::SpatialIndex> index;
+  rfs_mesh::NeighborTable near;
+};
+
+/// Finds the neighbours, the noise, and the outliers, which are set aside.
+Searched search(rfs_mesh::WorkingCloud& cloud, int neighbours, const DenoiseOptions& options,
+                const Context& context, DenoiseReport& report) {
+  Statistics& whole = report.statistics;
+  Searched found;
+  auto& [index, near] = found;
+  {
+    const Stopwatch watch(report.seconds, "index");
+    context.report("index", 0);
+    index.emplace(cloud.points, context);
+  }
+  {
+    const Stopwatch watch(report.seconds, "neighbours");
+    context.report("neighbours", 0);
+    near = index->nearest(neighbours, context);
+  }
+  if (options.outliers == Outliers::smooth) return found;
+  context.report("noise", 0);
+  Stopwatch watch(report.seconds, "noise");
+  find_noise(*index, near, whole, context);
+  watch.next("outliers");
+  const std::vector<char> outlier = find_outliers(*index, near, whole, context);
+  if (std::find(outlier.begin(), outlier.end(), 1) != outlier.end()) {
+    set_aside(outlier, cloud, report);
+    index.emplace(cloud.points, context);
+    near = rfs_mesh::nearest_left(near, outlier, *index, context);
+  }
+  return found;
+}
+
 /// The rough mesh of the points, less those that are outliers and set aside.
 Connection connected(rfs_mesh::WorkingCloud& cloud, const DenoiseOptions& options, const Context& context,
                      DenoiseReport& report) {
@@ -233,32 +271,10 @@ Connection connected(rfs_mesh::WorkingCloud& cloud, const DenoiseOptions& option
   // without neighbours they stay. Kept, such an edge would carry a stray over its whole length, and HC's
   // push-back would throw its neighbour after it.
   connect.loose_edges = false;
-  std::optional<rfs_mesh::SpatialIndex> index;
-  {
-    const Stopwatch watch(report.seconds, "index");
-    context.report("index", 0);
-    index.emplace(cloud.points, context);
-  }
-  rfs_mesh::NeighborTable near;
-  {
-    const Stopwatch watch(report.seconds, "neighbours");
-    context.report("neighbours", 0);
-    near = index->nearest(connect.neighbours, context);
-  }
-  if (options.outliers != Outliers::smooth) {
-    context.report("noise", 0);
-    Stopwatch watch(report.seconds, "noise");
-    find_noise(*index, near, whole, context);
-    watch.next("outliers");
-    const std::vector<char> outlier = find_outliers(*index, near, whole, context);
-    if (std::find(outlier.begin(), outlier.end(), 1) != outlier.end()) {
-      set_aside(outlier, cloud, report);
-      index.emplace(cloud.points, context);
-      near = rfs_mesh::nearest_left(near, outlier, *index, context);
-    }
-  }
-  if (!whole.points) whole.points = index->points().size();
-  return value_or_throw(rfs_mesh::connect(std::move(*index), std::move(near), connect, context, &whole));
+  Searched found = search(cloud, connect.neighbours, options, context, report);
+  if (!whole.points) whole.points = found.index->points().size();
+  return value_or_throw(
+      rfs_mesh::connect(std::move(*found.index), std::move(found.near), connect, context, &whole));
 }
 
 /// What the connection says of the cloud. Of the rest only the mesh is needed while smoothing.
@@ -333,6 +349,18 @@ Result<DenoiseReport> denoise(double* xyz, std::size_t n, const DenoiseOptions& 
     in_arena(context, [&] { report = run(xyz, n, options, context, strength); });
     return report;
   });
+}
+
+Statistics pipeline::measure_points(const double* xyz, std::size_t n, const DenoiseOptions& options,
+                                    const Context& context) {
+  DenoiseReport report;
+  in_arena(context, [&] {
+    if (options.statistics) report.statistics = *options.statistics;
+    rfs_mesh::WorkingCloud cloud = prepare(xyz, n, options, context, report);
+    const Searched found = search(cloud, int(rfs_mesh::kRing), options, context, report);
+    rfs_mesh::measure_cloud(*found.index, found.near, report.statistics, context);
+  });
+  return report.statistics;
 }
 
 std::size_t denoise_memory(std::size_t n) {

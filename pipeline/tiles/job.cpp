@@ -121,9 +121,9 @@ JobInput describe_input(const std::string& path, const Context& context) {
 
 ordered_json json_of_job(const Job& job, const PlanOptions& how) {
   ordered_json json = {
-      {"rfsmooth_tiles", 1},    {"tile_points", how.tile_points}, {"sample_points", how.sample_points},
-      {"options", job.options}, {"points", job.points},           {"sample", job.sample},
-      {"box", json_of(job.box)}};
+      {"rfsmooth_tiles", 1},      {"tile_points", how.tile_points}, {"sample_points", how.sample_points},
+      {"options", job.options},   {"points", job.points},           {"sample", job.sample},
+      {"measured", job.measured}, {"box", json_of(job.box)}};
   json["inputs"] = ordered_json::array();
   for (const JobInput& input : job.inputs)
     json["inputs"].push_back(
@@ -162,6 +162,7 @@ Job job_of(const ordered_json& json, const fs::path& folder) {
     job.options = json.at("options");
     job.points = json.at("points");
     job.sample = json.at("sample");
+    job.measured = json.at("measured");
     job.box = box_of(json.at("box"));
     for (const auto& input : json.at("inputs"))
       job.inputs.push_back({input.at("path"), input.at("rows"), input.at("bytes"), input.at("changed")});
@@ -268,6 +269,7 @@ Job plan_job(const std::vector<std::string>& inputs, const fs::path& folder, con
   if (job.points == 0) throw Failure({ErrorCode::no_usable_points, "none of the points is finite"});
   job.box = {box.min(), box.max()};
   job.sample = std::min(job.points, how.sample_points);
+  job.measured = std::min(job.points, kMeasuredOverSmoothed * how.sample_points);
   const double share = double(sample.size()) / double(job.points);
   const auto most = std::size_t(std::max(1.0, share * double(how.tile_points)));
   cut_rows(job, Cuts(std::move(sample), most), context);

@@ -3,7 +3,9 @@
 ///
 ///     plan     cuts the cloud into tiles of about as many points, each row in one of them
 ///     measure  takes a tile's part of the sample
-///     settle   smooths the sample, which says what the cloud as a whole is like (rfsmooth/statistics.h)
+///     settle   finds what the cloud as a whole is like (rfsmooth/statistics.h): the noise of the sample as
+///     it
+///              is, the rest of a part of it that is smoothed
 ///     run      smooths a tile with what lies around it, and keeps what is its own
 ///     join     copies the inputs with the new coordinates in them
 ///
@@ -46,9 +48,10 @@ struct Tile {
 struct Job {
   std::filesystem::path folder;
   std::vector<JobInput> inputs;
-  Statistics::Box box;       ///< of the finite points
-  std::uint64_t points = 0;  ///< finite rows
-  std::uint64_t sample = 0;  ///< points that the statistics are of
+  Statistics::Box box;         ///< of the finite points
+  std::uint64_t points = 0;    ///< finite rows
+  std::uint64_t sample = 0;    ///< points that are smoothed for the statistics
+  std::uint64_t measured = 0;  ///< points whose noise and spacing are measured
   std::vector<Tile> tiles;
   nlohmann::ordered_json options;  ///< of denoise, as the command keeps them
 
@@ -67,10 +70,13 @@ struct Job {
 /// this is 3.5 of those.
 constexpr double kHaloRadii = 3;
 
+/// How many times more points are measured than smoothed: so many that it takes no more memory.
+constexpr std::uint64_t kMeasuredOverSmoothed = 3;
+
 /// How to plan.
 struct PlanOptions {
   std::uint64_t tile_points = 5'000'000;    ///< most points of a tile, without what lies around it
-  std::uint64_t sample_points = 1'000'000;  ///< of all tiles together
+  std::uint64_t sample_points = 1'000'000;  ///< of all tiles together, that are smoothed to be known
 };
 
 /// Refuses options by which points at any distance may have a say in where a point goes. \throw Failure
@@ -118,7 +124,9 @@ std::vector<Joined> join_job(const Job& job, const std::vector<std::string>& out
 /// What settle found.
 struct Settled {
   Statistics statistics;
-  double halo = 0;                   ///< width of what a tile is smoothed with, world units
+  double halo = 0;                   ///< typical width of what a tile is smoothed with, world units
+  double radii = 0;                  ///< the same in radii of the widest patch
+  std::size_t widest = 0;            ///< points of that
   double noise = 0, noise_left = 0;  ///< as in DenoiseReport
 };
 
@@ -129,7 +137,7 @@ Settled read_settled(const std::filesystem::path& path);
 struct JobStatus {
   std::size_t tiles = 0, measured = 0, run = 0;
   bool settled = false;
-  double halo = 0;        ///< width of the surroundings, world units; 0 until settled
+  double halo = 0;        ///< typical width of the surroundings, world units; 0 until settled
   double halo_share = 0;  ///< points around the tiles that were run, over those in them
   double seconds = 0;     ///< of processor time that these took
   std::uint64_t points = 0;

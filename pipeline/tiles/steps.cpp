@@ -11,6 +11,8 @@
 #include "base/parallel.h"
 #include "base/quantile.h"
 #include "pipeline/io/io.h"
+#include "pipeline/measure_points.h"
+#include "pipeline/tiles/halo.h"
 #include "pipeline/tiles/job.h"
 #include "pipeline/tiles/records.h"
 #include "pipeline/tiles/row_file.h"
@@ -71,25 +73,6 @@ double processor_seconds() {
 Settled settled_of(const Job& job) {
   if (!std::filesystem::exists(job.settled())) refuse_step(job, "is not settled yet");
   return read_settled(job.settled());
-}
-
-/// The median distance to the m-th neighbour.
-double typical_radius(const std::vector<double>& xyz, std::size_t m, const Context& context) {
-  Positions points(xyz.size() / 3);
-  for (std::size_t i = 0; i < points.size(); ++i)
-    points[i] = Vector3d(xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]);
-  const rfs_mesh::SpatialIndex index(points, context);
-  const std::size_t places = std::min(points.size(), rfs_mesh::kPlacesOfCloud);
-  std::vector<double> radii(places);
-  for_each_index(
-      context, places,
-      [&](std::size_t k) {
-        std::vector<rfs_mesh::Neighbor> near;
-        index.nearest(points[k * points.size() / places], int(std::min(m, points.size())), near);
-        radii[k] = std::sqrt(near.back().squared_distance);
-      },
-      16);
-  return rfsmooth::median(radii);
 }
 
 /// The records of all tiles, by rows.
@@ -189,21 +172,89 @@ io::RefinedScale refine_moved(const Job& job, RowFile& file, std::uint64_t befor
   return moved ? file.refine_scale(step, ends.low, ends.high) : io::RefinedScale();
 }
 
-/// How far away a point may be that has a say in where another goes, world units: through quadrics, the rough
-/// mesh's neighbourhoods and the patches (kHaloRadii), then along the mesh. \param found for the sample
-double halo_of(const DenoiseOptions& options, const Statistics& found, const std::vector<double>& sample,
-               const Context& context) {
-  std::size_t widest = std::size_t(options.connect.neighbours);
-  if (found.scale) widest = std::max(widest, found.scale->neighbours);
+/// How far away a point may be that has a say in where another goes: through quadrics, the rough mesh's
+/// neighbourhoods and the patches (kHaloRadii), then along the mesh. Fills `widest`, `radii` and `halo`.
+/// \param sample of the points
+void find_halo(const DenoiseOptions& options, const Positions& sample, const Context& context,
+               Settled& settled) {
+  settled.widest = std::size_t(options.connect.neighbours);
+  const Statistics& found = settled.statistics;
+  if (found.scale) settled.widest = std::max(settled.widest, found.scale->neighbours);
   for (const auto& pass : found.passes)
-    for (const auto& scale : pass.scales) widest = std::max(widest, scale.members);
-  double halo = kHaloRadii * typical_radius(sample, widest, context);
+    for (const auto& scale : pass.scales) settled.widest = std::max(settled.widest, scale.members);
+  const double radius = typical_radius(sample, settled.widest, context);
+  settled.halo = kHaloRadii * radius;
   if (const auto rings = support_rings(options.flow)) {
     const int swaps = options.swap ? std::max(0, iterations(options.flow.flow) - 1) : 0;
     const double longest_edge = typical_radius(sample, rfs_mesh::kMostRibs, context);
-    halo += (*rings + kRingsOfSwaps * swaps) * longest_edge;
+    settled.halo += (*rings + kRingsOfSwaps * swaps) * longest_edge;
   }
-  return halo;
+  settled.radii = radius > 0 ? settled.halo / radius : kHaloRadii;
+}
+
+Positions positions_of(const std::vector<double>& xyz) {
+  Positions points(xyz.size() / 3);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    points[i] = Vector3d(xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]);
+  return points;
+}
+
+/// Calls `visit(record, tile)` for the points of all other tiles that are in what `meets` and `holds`.
+template <class Meets, class Holds, class Visit>
+void for_each_around(const Job& job, std::size_t tile, const Context& context, Meets&& meets, Holds&& holds,
+                     Visit&& visit) {
+  for (std::size_t t = 0; t < job.tiles.size(); ++t) {
+    if (t == tile || job.tiles[t].points == 0) continue;
+    if (!meets(AlignedBox3d(job.tiles[t].box.low, job.tiles[t].box.high))) continue;
+    RecordReader reader(job.cut(t), context);
+    for (; const Record* r = reader.peek(); reader.next())
+      if (holds(place(*r))) visit(*r, t);
+  }
+}
+
+/// Leaves so many of a tile's points that all tiles have `wanted` together: those nearest to the one in the
+/// middle of the tile, a piece of the surface that is as whole as it can be.
+void keep_middle(const Job& job, std::size_t tile, std::uint64_t wanted, std::vector<Record>& points) {
+  const double share = double(wanted) / double(job.points);
+  const auto kept = std::size_t(std::ceil(share * double(job.tiles[tile].points)));
+  if (kept >= points.size() || points.empty()) return;
+  const Vector3d middle = 0.5 * (job.tiles[tile].box.low + job.tiles[tile].box.high);
+  const auto nearer = [](const Vector3d& to) {
+    return [to](const Record& a, const Record& b) {
+      const double x = (place(a) - to).squaredNorm(), y = (place(b) - to).squaredNorm();
+      return x != y ? x < y : a.row < b.row;
+    };
+  };
+  const Vector3d centre = place(*std::min_element(points.begin(), points.end(), nearer(middle)));
+  std::nth_element(points.begin(), points.begin() + std::ptrdiff_t(kept), points.end(), nearer(centre));
+  points.resize(kept);
+  std::sort(points.begin(), points.end(), [](const Record& a, const Record& b) { return a.row < b.row; });
+}
+
+/// `wanted` points of all tiles, of those that were measured: n x 3.
+std::vector<double> sample_of(const Job& job, std::uint64_t wanted, const Context& context) {
+  std::vector<double> xyz;
+  for (std::size_t t = 0; t < job.tiles.size(); ++t) {
+    std::vector<Record> points = read_records(job.sampled(t), context);
+    keep_middle(job, t, wanted, points);
+    for (const Record& r : points) xyz.insert(xyz.end(), {r.x, r.y, r.z});
+  }
+  return xyz;
+}
+
+/// The surroundings of a tile of these points.
+Halo halo_of(const Job& job, std::size_t tile, const std::vector<Record>& own, const Settled& settled,
+             const Context& context) {
+  const AlignedBox3d box(job.tiles[tile].box.low, job.tiles[tile].box.high);
+  const double most = std::pow(settled.halo / settled.radii, 2);
+  Positions points;
+  for (const Record& r : own) points.push_back(place(r));
+  for_each_around(
+      job, tile, context,
+      [&](const AlignedBox3d& other) { return box.squaredExteriorDistance(other) <= most; },
+      [&](const Vector3d& p) { return box.squaredExteriorDistance(p) <= most; },
+      [&](const Record& r, std::size_t) { points.push_back(place(r)); });
+  return Halo(points, own.size(), settled.widest, settled.radii, context);
 }
 
 void check_inputs(const Job& job) {
@@ -243,7 +294,12 @@ Settled read_settled(const std::filesystem::path& path) {
   if (!file) throw Failure({ErrorCode::input_unreadable, fmt::format("{}: cannot be read", path.string())});
   try {
     const ordered_json json = ordered_json::parse(file);
-    return {statistics_of(json.at("statistics")), json.at("halo"), json.at("noise"), json.at("noise_left")};
+    return {statistics_of(json.at("statistics")),
+            json.at("halo"),
+            json.at("halo_radii"),
+            json.at("widest"),
+            json.at("noise"),
+            json.at("noise_left")};
   } catch (const nlohmann::json::exception& error) {
     throw Failure({ErrorCode::input_unreadable, fmt::format("{}: {}", path.string(), error.what())});
   }
@@ -253,22 +309,7 @@ void measure_tile(const Job& job, std::size_t tile, const Context& context) {
   check_tile(job, tile);
   if (complete_records(job.sampled(tile), context)) return;
   std::vector<Record> points = read_records(job.cut(tile), context);
-  const double share = double(job.sample) / double(job.points);
-  const auto wanted = std::min(points.size(), std::size_t(std::ceil(share * double(points.size()))));
-  if (wanted < points.size() && wanted > 0) {
-    // Those nearest to the median of the tile's points: a piece of the surface that is as whole as it can be.
-    const Vector3d middle = 0.5 * (job.tiles[tile].box.low + job.tiles[tile].box.high);
-    const auto nearer = [](const Vector3d& to) {
-      return [to](const Record& a, const Record& b) {
-        const double x = (place(a) - to).squaredNorm(), y = (place(b) - to).squaredNorm();
-        return x != y ? x < y : a.row < b.row;
-      };
-    };
-    const Vector3d centre = place(*std::min_element(points.begin(), points.end(), nearer(middle)));
-    std::nth_element(points.begin(), points.begin() + std::ptrdiff_t(wanted), points.end(), nearer(centre));
-    points.resize(wanted);
-    std::sort(points.begin(), points.end(), [](const Record& a, const Record& b) { return a.row < b.row; });
-  }
+  keep_middle(job, tile, job.measured, points);
   RecordWriter writer(job.sampled(tile), context);
   for (const Record& r : points) writer.add(r);
   writer.commit();
@@ -277,26 +318,30 @@ void measure_tile(const Job& job, std::size_t tile, const Context& context) {
 void settle_job(const Job& job, const DenoiseOptions& options, const Context& context) {
   if (std::filesystem::exists(job.settled())) return;
   check_for_tiles(options);
-  std::vector<double> xyz;
-  for (std::size_t t = 0; t < job.tiles.size(); ++t) {
+  for (std::size_t t = 0; t < job.tiles.size(); ++t)
     if (!complete_records(job.sampled(t), context))
       refuse_step(job, fmt::format("tile {} is not measured yet", t));
-    for (const Record& r : read_records(job.sampled(t), context)) xyz.insert(xyz.end(), {r.x, r.y, r.z});
-  }
-  const std::size_t n = xyz.size() / 3;
   DenoiseOptions how = options;
   how.statistics.emplace();
   how.statistics->box = job.box;
+  if (job.sample < job.measured) {
+    const std::vector<double> xyz = sample_of(job, job.measured, context);
+    how.statistics = measure_points(xyz.data(), xyz.size() / 3, how, context);
+  }
+  const std::vector<double> xyz = sample_of(job, job.sample, context);
+  const std::size_t n = xyz.size() / 3;
   if (n < job.points) how.statistics->points = std::size_t(job.points);
   std::vector<double> smooth = xyz;
   const DenoiseReport report = value_or_throw(denoise(smooth.data(), n, how, context));
-  const Statistics& all = report.statistics;
-  double halo = 0;
-  in_arena(context, [&] { halo = halo_of(options, all, xyz, context); });
-  const ordered_json json = {{"halo", halo},
+  Settled settled;
+  settled.statistics = report.statistics;
+  in_arena(context, [&] { find_halo(options, positions_of(xyz), context, settled); });
+  const ordered_json json = {{"halo", settled.halo},
+                             {"halo_radii", settled.radii},
+                             {"widest", settled.widest},
                              {"noise", report.noise},
                              {"noise_left", report.noise_left},
-                             {"statistics", json_of(all)}};
+                             {"statistics", json_of(settled.statistics)}};
   value_or_throw(io::write_bytes(json.dump(1) + '\n', job.settled(), true, context));
 }
 
@@ -309,21 +354,18 @@ void run_tile(const Job& job, std::size_t tile, const DenoiseOptions& options,
   if (there && *there == job.tiles[tile].points && (!normals || complete_normals(job, tile, context))) return;
   const double began = processor_seconds();
   std::vector<Record> own = read_records(job.cut(tile), context);
-  const AlignedBox3d box(job.tiles[tile].box.low, job.tiles[tile].box.high);
-  const double reach = settled.halo * settled.halo;
   std::vector<double> xyz;
   std::vector<Around> around;
   for (const Record& r : own) xyz.insert(xyz.end(), {r.x, r.y, r.z});
-  for (std::size_t t = 0; t < job.tiles.size(); ++t) {
-    const AlignedBox3d other(job.tiles[t].box.low, job.tiles[t].box.high);
-    if (t == tile || job.tiles[t].points == 0 || box.squaredExteriorDistance(other) > reach) continue;
-    RecordReader reader(job.cut(t), context);
-    for (; const Record* r = reader.peek(); reader.next()) {
-      if (box.squaredExteriorDistance(place(*r)) > reach) continue;
-      xyz.insert(xyz.end(), {r->x, r->y, r->z});
-      if (normals) around.push_back({r->row, t});
-    }
-  }
+  std::optional<Halo> halo;
+  in_arena(context, [&] { halo = halo_of(job, tile, own, settled, context); });
+  for_each_around(
+      job, tile, context, [&](const AlignedBox3d& other) { return halo->meets(other); },
+      [&](const Vector3d& p) { return halo->holds(p); },
+      [&](const Record& r, std::size_t t) {
+        xyz.insert(xyz.end(), {r.x, r.y, r.z});
+        if (normals) around.push_back({r.row, t});
+      });
   if (!own.empty()) {
     DenoiseOptions how = options;
     how.statistics = settled.statistics;

@@ -147,9 +147,8 @@ NoiseScale scale_for(const SpatialIndex& index, const NoiseModel& noise, const C
 /// What `whole` says of the noise; what it does not say is measured and entered.
 NoiseLevel measure(const SpatialIndex& index, const NeighborTable& near, const Context& context,
                    Statistics& whole) {
-  NoiseField field = spread_noise(known_noise(index, whole, context), index.points(), context);
-  if (!whole.spacing) whole.spacing = mean_spacing(index.points(), near, context);
-  if (!whole.scale) whole.scale = scale_for(index, field, context);
+  measure_cloud(index, near, whole, context);
+  NoiseField field = spread_noise(*whole.noise, index.points(), context);
   const double loud = loudness(field), least = kNoNoise * field.spacing;
   const double share = loud > 0 ? whole.scale->sigma / loud : 0;
   for (double& sigma : field.local) sigma = std::max(share * sigma, least);
@@ -252,6 +251,13 @@ Connection connect_all(const Positions& points, std::optional<Cloud> known, cons
 }
 
 }  // namespace
+
+void measure_cloud(const SpatialIndex& index, const NeighborTable& near, Statistics& whole,
+                   const Context& context) {
+  const NoiseModel& noise = known_noise(index, whole, context);
+  if (!whole.spacing) whole.spacing = mean_spacing(index.points(), near, context);
+  if (!whole.scale) whole.scale = scale_for(index, noise, context);
+}
 
 Result<Connection> connect(SpatialIndex index, NeighborTable near, const ConnectOptions& options,
                            const Context& context, Statistics* statistics) {

@@ -1,0 +1,47 @@
+/// What lies around a tile and has a say in where its points go.
+///
+/// A patch of so many points is wide where points are sparse: scans have ten times fewer of them in an area
+/// far away than near by. So the width of the halo is in units of the widest patch around each part of the
+/// tile, not of the cloud's typical one.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include <rfsmooth/context.h>
+#include <rfsmooth/mesh.h>
+
+namespace rfsmooth::pipeline::tiles {
+
+/// The median distance to the m-th neighbour, of up to 1,000 points. O(m) after the index.
+double typical_radius(const Positions& points, std::size_t m, const Context& context);
+
+/// A tile's surroundings: the points that are nearer to a part of it than the part reaches.
+class Halo {
+ public:
+  /// \param points the tile's own first, then others within `radius` of its box, if they are there: where
+  /// they are missing at its rim, patches seem wider than they are and the halo is the wider for it.
+  /// \param own how many are the tile's. \param m points of the widest patch. \param radii how many of its
+  /// radii a part reaches.
+  Halo(const Positions& points, std::size_t own, std::size_t m, double radii, const Context& context);
+
+  bool holds(const Eigen::Vector3d& p) const;
+  /// Whether it may hold points of the box.
+  bool meets(const Eigen::AlignedBox3d& box) const;
+  /// Makes it narrower or wider.
+  void scale(double times);
+
+ private:
+  struct Part {
+    Eigen::AlignedBox3d box;
+    double reach = 0;
+  };
+  std::vector<Part> parts_;
+  std::vector<Eigen::AlignedBox3d> groups_;  ///< of kGroup parts each, with their reach
+  void group();
+};
+
+}  // namespace rfsmooth::pipeline::tiles

@@ -1,0 +1,110 @@
+/// Real scans in tiles: parts of them are ten times sparser than others, louder, in steps.
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "pipeline/io/io.h"
+#include "tests/cli/support/folder.h"
+#include "tests/support/scans.h"
+
+namespace rfsmooth::test {
+namespace {
+
+/// A scan, the points of its tiles, and how far they may be off the whole cloud (spacings, rms): with all
+/// points for a sample, and with so few that they are measured but not smoothed.
+struct Scan {
+  std::string path, tile_points, sample_points;
+  double seams, all;
+};
+
+class TilesOfScans : public InFolder {
+ protected:
+  nlohmann::json json(const std::string& file) const { return nlohmann::json::parse(take(file)); }
+
+  void step(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.begin(), "tiles");
+    const Ran ran = run(arguments);
+    EXPECT_EQ(ran.code, 0) << ran.err;
+  }
+
+  /// Smooths in.pcd in a job of that name.
+  void smooth(const std::string& job, const std::string& tile_points,
+              const std::string& sample_points) const {
+    step({"plan", "--tile-points", tile_points, "--sample-points", sample_points, "in.pcd", job});
+    std::vector<std::string> tiles;
+    for (std::size_t t = 0; t < json(job + "/job.json")["tiles"].size(); ++t)
+      tiles.push_back(std::to_string(t));
+    EXPECT_GT(tiles.size(), 3U);
+    const auto each = [&](const char* what) {
+      std::vector<std::string> arguments = {what, job};
+      arguments.insert(arguments.end(), tiles.begin(), tiles.end());
+      step(arguments);
+    };
+    each("measure");
+    step({"settle", job});
+    each("run");
+    step({"join", job, job + ".pcd"});
+  }
+
+  /// The root mean square of the distances of two clouds' points.
+  double apart(const std::string& one, const std::string& other) const {
+    const auto places = [&](const std::string& name) {
+      const Context context;
+      return pipeline::io::positions(value_or_throw(pipeline::io::read_cloud(at(name), {}, context)),
+                                     context);
+    };
+    const std::vector<double> a = places(one), b = places(other);
+    EXPECT_EQ(a.size(), b.size());
+    double squares = 0, count = 0;
+    for (std::size_t i = 0; i < a.size(); i += 3) {
+      if (!std::isfinite(a[i]) || !std::isfinite(b[i])) continue;
+      squares +=
+          std::pow(a[i] - b[i], 2) + std::pow(a[i + 1] - b[i + 1], 2) + std::pow(a[i + 2] - b[i + 2], 2);
+      ++count;
+    }
+    EXPECT_GT(count, 1000);
+    return std::sqrt(squares / count);
+  }
+
+  void expect_as_whole(const Scan& scan) const {
+    const Ran binary =
+        run({"denoise", "--force", "--strength", "0", "--encoding", "binary", scan.path, "in.pcd"});
+    EXPECT_EQ(binary.code, 0) << binary.err;
+    EXPECT_EQ(run({"denoise", "--report", "report.json", "in.pcd", "whole.pcd"}).code, 0);
+    const double spacing = json("report.json")["spacing"];
+    EXPECT_GT(apart("in.pcd", "whole.pcd"), 0.1 * spacing) << "it is smoothed";
+    smooth("all", scan.tile_points, "1000000");
+    EXPECT_LT(apart("all.pcd", "whole.pcd") / spacing, scan.seams);
+    smooth("some", scan.tile_points, scan.sample_points);
+    EXPECT_LT(apart("some.pcd", "whole.pcd") / spacing, scan.all);
+  }
+};
+
+// Far away the floor is four times sparser than near by, and patches twice as wide.
+TEST_F(TilesOfScans, AFloorWhoseFarEndIsSparse) {
+  expect_as_whole({kFloorCrop, "2000", "4000", 0.15, 0.7});
+}
+
+// The sample is less than half of the points, and their noise is that of the whole cloud.
+TEST_F(TilesOfScans, ABox) {
+  expect_as_whole({kBoxCrop, "2000", "4000", 0.005, 0.02});
+}
+
+TEST_F(TilesOfScans, ABuilding) {
+  expect_as_whole({kBuildingCrop, "2000", "4000", 0.02, 0.05});
+}
+
+// Its points lie twice at one place, and its walls stand out of the noise as tails do: in some of its tiles.
+TEST_F(TilesOfScans, ARoom) {
+  const std::vector<std::string> room = whole_scans({"room_scan1.pcd"});
+  if (room.empty()) GTEST_SKIP() << "no folder of whole scans";
+  expect_as_whole({room.front(), "20000", "1000000", 0.04, 0.04});
+}
+
+}  // namespace
+}  // namespace rfsmooth::test
