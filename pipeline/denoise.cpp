@@ -351,12 +351,13 @@ Result<DenoiseReport> denoise(double* xyz, std::size_t n, const DenoiseOptions& 
   });
 }
 
-Statistics pipeline::measure_points(const double* xyz, std::size_t n, const DenoiseOptions& options,
+Statistics pipeline::measure_points(std::vector<double> xyz, const DenoiseOptions& options,
                                     const Context& context) {
   DenoiseReport report;
   in_arena(context, [&] {
     if (options.statistics) report.statistics = *options.statistics;
-    rfs_mesh::WorkingCloud cloud = prepare(xyz, n, options, context, report);
+    rfs_mesh::WorkingCloud cloud = prepare(xyz.data(), xyz.size() / 3, options, context, report);
+    std::vector<double>().swap(xyz);
     const Searched found = search(cloud, int(rfs_mesh::kRing), options, context, report);
     rfs_mesh::measure_cloud(*found.index, found.near, report.statistics, context);
   });

@@ -1,8 +1,8 @@
-/// What can be said of a cloud before it is connected: less than half of the memory of `denoise` does for it,
+/// What can be said of a cloud before it is connected: a quarter of the memory of `denoise` does for it,
 /// so that it can be of more points than are smoothed at once.
 #pragma once
 
-#include <cstddef>
+#include <vector>
 
 #include <rfsmooth/context.h>
 #include <rfsmooth/denoise.h>
@@ -11,9 +11,8 @@
 namespace rfsmooth::pipeline {
 
 /// The box, reach, noise, spacing and scale of n x 3 coordinates as `denoise` would enter them with these
-/// options. What options.statistics has is taken. O(n log n), about 250 bytes a point. Parallel,
+/// options. What options.statistics has is taken. O(n log n), about 200 bytes a point. Parallel,
 /// deterministic. \throw Failure (no_usable_points).
-Statistics measure_points(const double* xyz, std::size_t n, const DenoiseOptions& options,
-                          const Context& context);
+Statistics measure_points(std::vector<double> xyz, const DenoiseOptions& options, const Context& context);
 
 }  // namespace rfsmooth::pipeline

@@ -245,19 +245,18 @@ rfs_mesh::NeighborTable nearest_few(const rfs_mesh::SpatialIndex& index, const r
 void find_noise(const rfs_mesh::SpatialIndex& index, const rfs_mesh::NeighborTable& near, Statistics& whole,
                 const Context& context) {
   if (whole.noise) return;
-  Positions left = index.points();
-  if (left.size() >= kRegion) {
-    const std::vector<char> apart =
-        Search(index, nearest_few(index, near, context), 0, whole.reach, context).run();
-    std::size_t next = 0;
-    for (std::size_t i = 0; i < apart.size(); ++i)
-      if (apart[i] == 0) left[next++] = left[i];
-    left.resize(next);
-  }
-  if (left.size() == index.points().size())
+  const Positions& points = index.points();
+  std::vector<char> apart;
+  if (points.size() >= kRegion)
+    apart = Search(index, nearest_few(index, near, context), 0, whole.reach, context).run();
+  if (std::find(apart.begin(), apart.end(), 1) == apart.end()) {
     rfs_mesh::known_noise(index, whole, context);
-  else
-    rfs_mesh::known_noise(rfs_mesh::SpatialIndex(left, context), whole, context);
+    return;
+  }
+  Positions left;
+  for (std::size_t i = 0; i < apart.size(); ++i)
+    if (apart[i] == 0) left.push_back(points[i]);
+  rfs_mesh::known_noise(rfs_mesh::SpatialIndex(left, context), whole, context);
 }
 
 std::vector<char> find_outliers(const rfs_mesh::SpatialIndex& index, const rfs_mesh::NeighborTable& near,

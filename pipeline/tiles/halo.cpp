@@ -16,6 +16,7 @@ namespace {
 using Eigen::AlignedBox3d;
 using Eigen::Vector3d;
 
+constexpr std::size_t kFewestOfPart = 64;  // points of a part
 constexpr std::size_t kParts = 64;         // of a tile, as many points in each
 constexpr std::size_t kPlacesOfPart = 16;  // at which patches are looked at
 constexpr double kWidePlaces = 0.9;        // the quantile of these that is the part's
@@ -60,14 +61,15 @@ Halo::Halo(const Positions& points, std::size_t own, std::size_t m, double radii
   std::vector<Index> order(own);
   std::iota(order.begin(), order.end(), Index(0));
   std::vector<std::vector<Index>> places;
-  halve(points, order.data(), order.data() + own, kParts, [&](const Index* first, const Index* last) {
-    if (first == last) return;
-    parts_.emplace_back();
-    for (const Index* i = first; i != last; ++i) parts_.back().box.extend(points[*i]);
-    const auto count = std::size_t(last - first), some = std::min(count, kPlacesOfPart);
-    places.emplace_back();
-    for (std::size_t k = 0; k < some; ++k) places.back().push_back(first[k * count / some]);
-  });
+  halve(points, order.data(), order.data() + own, std::min(kParts, own / kFewestOfPart),
+        [&](const Index* first, const Index* last) {
+          if (first == last) return;
+          parts_.emplace_back();
+          for (const Index* i = first; i != last; ++i) parts_.back().box.extend(points[*i]);
+          const auto count = std::size_t(last - first), some = std::min(count, kPlacesOfPart);
+          places.emplace_back();
+          for (std::size_t k = 0; k < some; ++k) places.back().push_back(first[k * count / some]);
+        });
   const rfs_mesh::SpatialIndex index(points, context);
   for_each_index(
       context, parts_.size(),

@@ -1,6 +1,7 @@
 #include "pipeline/tiles/in_one_process.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -59,22 +60,52 @@ Context part_of(const Context& context, double from, double to) {
   return part;
 }
 
+// At its peak a step takes 440 to 920 bytes a point on ten scans, as denoise_memory has it, with normals 1070
+// to 1230.
+double bytes_a_point(bool normals) {
+  constexpr double kBytesPerPoint = 950, kBytesWithNormals = 1300;
+  return normals ? kBytesWithNormals : kBytesPerPoint;
+}
+
+constexpr std::uint64_t kFixed = std::uint64_t{24} << 20;
+constexpr double kFewest = 3000;  // points of a tile: fewer are not worth what lies around them
+constexpr double kLeastPoints =
+    50000;  // a tile of these, with the surroundings that the usual noise asks for
+
+/// Halves the tiles that are too many points with what lies around them, as far as that is worth it.
+void split_large(Job& job, const Within& how, const Context& context) {
+  for (std::size_t t = 0; t < job.tiles.size(); ++t)
+    while (double(job.tiles[t].points) >= 2 * kFewest && points_with_halo(job, t, context) > how.most &&
+           split_tile(job, t, context))
+      ;
+}
+
 }  // namespace
 
-PlanOptions plan_within(std::uint64_t memory, bool normals) {
-  // At its peak a step takes some 700 bytes a point, records and all (denoise_memory), with normals 1000;
-  // more where tiles are not square or not of even size. A square of n points has its halo on both sides; the
-  // widest patches have 1600 points and a radius of sqrt(1600 / pi) where noise is below 2.7 spacings
-  // (automatic.cpp).
-  constexpr double kBytesPerPoint = 800, kBytesWithNormals = 1150, kHalos = 2 * kHaloRadii * 22.6,
-                   kFewest = 20000;
-  constexpr std::uint64_t kFixed = std::uint64_t{256} << 20;
-  const double bytes = normals ? kBytesWithNormals : kBytesPerPoint;
-  const double across = std::sqrt(double(std::max(memory, kFixed) - kFixed) / bytes) - kHalos;
-  PlanOptions how;
-  how.tile_points = std::uint64_t(std::max(kFewest, across * std::max(across, 0.0)));
-  how.sample_points = std::min(how.sample_points, how.tile_points);
+Within plan_within(std::uint64_t memory, bool normals) {
+  // A square of n points has its halo on both sides; the widest patches have 1600 points and a radius of
+  // sqrt(1600 / pi) where noise is below 2.7 spacings (automatic.cpp).
+  constexpr double kHalos = 2 * kHaloRadii * 22.6;
+  Within how;
+  how.most = std::max(memory, kFixed) - kFixed;
+  how.most = std::uint64_t(double(how.most) / bytes_a_point(normals));
+  const double across = std::sqrt(double(how.most)) - kHalos;
+  how.plan.tile_points = std::uint64_t(std::max(kFewest, across * std::max(across, 0.0)));
+  how.plan.sample_points = std::min(how.plan.sample_points, std::max<std::uint64_t>(1, how.most));
   return how;
+}
+
+std::uint64_t least_memory(std::uint64_t points, bool normals) {
+  constexpr double kStep = 1.05;
+  double memory = double(kFixed) + kLeastPoints * bytes_a_point(normals);
+  // Joining has a buffer of 32 KB for each tile, and another one for its normals.
+  const auto joining = [&] {
+    const double tiles =
+        1 + 2 * double(points) / double(plan_within(std::uint64_t(memory), normals).plan.tile_points);
+    return double(kFixed) + tiles * (normals ? 73728 : 32768);
+  };
+  while (joining() > memory) memory *= kStep;
+  return std::uint64_t(memory);
 }
 
 std::optional<InPieces> in_pieces(const std::string& path, const Context& context) {
@@ -87,28 +118,47 @@ std::optional<InPieces> in_pieces(const std::string& path, const Context& contex
   return file.ok() ? std::optional(file.value()) : std::nullopt;
 }
 
-Joined smooth_in_tiles(const std::string& input, const std::string& output, bool force, bool keep_scale,
-                       const PlanOptions& how, const DenoiseOptions& options,
-                       const std::optional<NormalsOptions>& normals, const Context& context) {
+std::uint64_t finite_rows(const std::string& path, const Context& context) {
+  const RowFile file(path, context);
+  std::uint64_t finite = 0;
+  file.for_each_piece(context, [&](std::uint64_t, std::size_t count, const io::Bytes& rows) {
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::array<double, 3> xyz = file.get(rows, i);
+      finite += std::uint64_t(std::isfinite(xyz[0]) && std::isfinite(xyz[1]) && std::isfinite(xyz[2]));
+    }
+  });
+  return finite;
+}
+
+SmoothedInTiles smooth_in_tiles(const std::string& input, const std::string& output, bool force,
+                                bool keep_scale, const Within& how, const DenoiseOptions& options,
+                                const std::optional<NormalsOptions>& normals, const Context& context) {
   constexpr double kPlan = 0.03, kSettled = 0.1, kJoin = 0.98;  // shares of the time, for the bar
   check_for_tiles(options);
   io::check_target(output, force);
-  if (normals) RowFile(input, context).need_normals();  // refused before the work
+  SmoothedInTiles done;
+  RowFile file(input, context);
+  done.had_normals = file.has_normals();
+  if (normals) file.need_normals();  // refused before the work
   const fs::path target(output);
   const PassingFolder folder(target.parent_path() / fmt::format(".{}.tiles-{}",
                                                                 target.filename().string().substr(0, 200),
                                                                 ::getpid()));
-  const Job job = plan_job({input}, folder.path(), how, nullptr, part_of(context, 0, kPlan));
-  check_sizes(job, how);
+  Job job = plan_job({input}, folder.path(), how.plan, nullptr, part_of(context, 0, kPlan));
+  check_sizes(job, how.plan);
   for (std::size_t t = 0; t < job.tiles.size(); ++t) measure_tile(job, t, part_of(context, kPlan, kPlan));
   settle_job(job, options, part_of(context, kPlan, kSettled));
+  split_large(job, how, part_of(context, kSettled, kSettled));
   for (std::size_t t = 0; t < job.tiles.size(); ++t) {
     const double each = (kJoin - kSettled) / double(job.tiles.size());
     run_tile(job, t, options, normals,
-             part_of(context, kSettled + each * double(t), kSettled + each * double(t + 1)));
+             part_of(context, kSettled + each * double(t), kSettled + each * double(t + 1)), how.most);
     context.report("tiles", kSettled + each * double(t + 1));
   }
-  return join_job(job, {output}, force, keep_scale, normals.has_value(), part_of(context, kJoin, 1)).front();
+  done.report = report_of(job, options);
+  done.joined =
+      join_job(job, {output}, force, keep_scale, normals.has_value(), part_of(context, kJoin, 1)).front();
+  return done;
 }
 
 }  // namespace rfsmooth::pipeline::tiles

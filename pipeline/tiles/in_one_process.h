@@ -9,9 +9,18 @@
 
 namespace rfsmooth::pipeline::tiles {
 
+/// How to stay within some memory.
+struct Within {
+  PlanOptions plan;
+  std::uint64_t most = 0;  ///< points of a tile with what lies around it
+};
+
 /// How many points a tile and the sample may have so that the work, with normals or without, takes at
-/// most `memory` bytes.
-PlanOptions plan_within(std::uint64_t memory, bool normals);
+/// most `memory` bytes, which is least_memory or more.
+Within plan_within(std::uint64_t memory, bool normals);
+
+/// The least memory that a cloud of so many points is smoothed in where its noise is usual; bytes.
+std::uint64_t least_memory(std::uint64_t points, bool normals);
 
 /// A file that can be read in pieces.
 struct InPieces {
@@ -22,10 +31,22 @@ struct InPieces {
 /// None: text, compressed, missing.
 std::optional<InPieces> in_pieces(const std::string& path, const Context& context);
 
-/// Smooths `input` to `output` in tiles, in a folder beside the output. Reports one stage, "tiles". The
-/// folder stays after an error or a cancel of the caller's only if it cannot be removed. \throw Failure.
-Joined smooth_in_tiles(const std::string& input, const std::string& output, bool force, bool keep_scale,
-                       const PlanOptions& how, const DenoiseOptions& options,
-                       const std::optional<NormalsOptions>& normals, const Context& context);
+/// Its rows whose coordinates are finite. Reads all of it. \throw Failure.
+std::uint64_t finite_rows(const std::string& path, const Context& context);
+
+/// What there is to say of a cloud smoothed in tiles.
+struct SmoothedInTiles {
+  Joined joined;
+  DenoiseReport report;      ///< of report_of
+  bool had_normals = false;  ///< whether the input has fields of that name
+};
+
+/// Smooths `input` to `output` in tiles, in a folder beside the output. Tiles that are more than how.most
+/// points with what lies around them are halved; where that does not help, less is taken around them. Reports
+/// one stage, "tiles". The folder stays after an error or a cancel of the caller's only if it cannot be
+/// removed. \throw Failure.
+SmoothedInTiles smooth_in_tiles(const std::string& input, const std::string& output, bool force,
+                                bool keep_scale, const Within& how, const DenoiseOptions& options,
+                                const std::optional<NormalsOptions>& normals, const Context& context);
 
 }  // namespace rfsmooth::pipeline::tiles

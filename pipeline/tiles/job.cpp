@@ -11,6 +11,7 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
+#include "base/quantile.h"
 #include "pipeline/io/io.h"
 #include "pipeline/tiles/records.h"
 #include "pipeline/tiles/row_file.h"
@@ -25,7 +26,8 @@ using nlohmann::ordered_json;
 
 namespace {
 
-constexpr std::uint64_t kPlanned = 1'000'000;  // points that the cuts are found among
+constexpr std::uint64_t kPlanned = 250'000;  // points that the cuts are found among, to twice as many
+constexpr std::size_t kOpen = 500;           // files that are written at once
 
 /// A number that a place has, whatever its row: the finaliser of splitmix64 (Steele et al. 2014) of its bits.
 std::uint64_t number_of(const Vector3d& p) {
@@ -184,22 +186,42 @@ void make_folders(const Job& job) {
   }
 }
 
-/// Writes every finite row into the file of its tile.
+/// Writes the points of a tile.
+class TileWriter {
+ public:
+  TileWriter(const Job& job, std::size_t tile, const Context& context) : writer_(job.cut(tile), context) {}
+  void add(const Record& r) {
+    writer_.add(r);
+    box_.extend(Vector3d(r.x, r.y, r.z));
+    ++tile_.points;
+  }
+  Tile commit() {
+    writer_.commit();
+    if (tile_.points > 0) tile_.box = {box_.min(), box_.max()};
+    return tile_;
+  }
+
+ private:
+  RecordWriter writer_;
+  AlignedBox3d box_;
+  Tile tile_;
+};
+
+/// Writes every finite row into the file of its tile. Memory: 32 KB a tile, of at most kOpen.
 void cut_rows(Job& job, const Cuts& cuts, const Context& context) {
-  std::vector<std::unique_ptr<RecordWriter>> writers(cuts.tiles());
-  std::vector<AlignedBox3d> boxes(cuts.tiles());
   job.tiles.assign(cuts.tiles(), {});
-  for (std::size_t t = 0; t < writers.size(); ++t)
-    writers[t] = std::make_unique<RecordWriter>(job.cut(t), context);
-  for_each_point(job.inputs, "plan", 0.5, 1, context, [&](std::uint64_t row, const Vector3d& p) {
-    const std::size_t t = cuts.tile_of(p);
-    writers[t]->add({row, p[0], p[1], p[2]});
-    boxes[t].extend(p);
-    ++job.tiles[t].points;
-  });
-  for (std::size_t t = 0; t < writers.size(); ++t) {
-    writers[t]->commit();
-    if (job.tiles[t].points > 0) job.tiles[t].box = {boxes[t].min(), boxes[t].max()};
+  for (std::size_t first = 0; first < cuts.tiles(); first += kOpen) {
+    const std::size_t count = std::min(kOpen, cuts.tiles() - first);
+    std::vector<std::unique_ptr<TileWriter>> writers;
+    for (std::size_t t = first; t < first + count; ++t)
+      writers.push_back(std::make_unique<TileWriter>(job, t, context));
+    const auto done = [&](std::size_t tiles) { return 0.5 + 0.5 * double(tiles) / double(cuts.tiles()); };
+    for_each_point(job.inputs, "plan", done(first), done(first + count), context,
+                   [&](std::uint64_t row, const Vector3d& p) {
+                     const std::size_t t = cuts.tile_of(p);
+                     if (t >= first && t < first + count) writers[t - first]->add({row, p[0], p[1], p[2]});
+                   });
+    for (std::size_t t = 0; t < count; ++t) job.tiles[first + t] = writers[t]->commit();
   }
 }
 
@@ -261,6 +283,7 @@ Job plan_job(const std::vector<std::string>& inputs, const fs::path& folder, con
   AlignedBox3d box;
   std::vector<Vector3d> sample;
   const std::uint64_t one_in = std::max<std::uint64_t>(1, rows / kPlanned);
+  sample.reserve(std::size_t(std::min(rows, 2 * kPlanned)));
   for_each_point(job.inputs, "plan", 0, 0.5, context, [&](std::uint64_t, const Vector3d& p) {
     box.extend(p);
     ++job.points;
@@ -275,6 +298,23 @@ Job plan_job(const std::vector<std::string>& inputs, const fs::path& folder, con
   cut_rows(job, Cuts(std::move(sample), most), context);
   value_or_throw(io::write_bytes(json_of_job(job, how).dump(1) + '\n', plan_file(folder), true, context));
   return job;
+}
+
+bool split_tile(Job& job, std::size_t tile, const Context& context) {
+  std::vector<Record> points = read_records(job.cut(tile), context);
+  const Statistics::Box& box = job.tiles[tile].box;
+  Eigen::Index axis = 0;
+  if (points.size() < 2 || !((box.high - box.low).maxCoeff(&axis) > 0)) return false;
+  const auto along = [axis](const Record& r) { return axis == 0 ? r.x : axis == 1 ? r.y : r.z; };
+  std::vector<double> places;
+  for (const Record& r : points) places.push_back(along(r));
+  double place = rfsmooth::median(places);
+  if (place == box.low[axis]) place = std::nextafter(place, box.high[axis]);
+  TileWriter low(job, tile, context), high(job, job.tiles.size(), context);
+  for (const Record& r : points) (along(r) < place ? low : high).add(r);
+  job.tiles[tile] = low.commit();
+  job.tiles.push_back(high.commit());
+  return true;
 }
 
 Job open_job(const fs::path& folder) {

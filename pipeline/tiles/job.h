@@ -11,12 +11,13 @@
 ///
 /// Tiles may be measured and run in any order, by any number of processes, on any machines that see the
 /// folder, and again: whatever is there complete is not made again, and a file is there complete or not at
-/// all. The same inputs give the same bytes. Memory: plan and join a few MB and 128 KB a tile, the others
+/// all. The same inputs give the same bytes. Memory: plan some 30 MB, join a few and 32 KB a tile, the others
 /// what `denoise` takes for the points of a tile and its surroundings, or of the sample.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -71,7 +72,7 @@ struct Job {
 constexpr double kHaloRadii = 3;
 
 /// How many times more points are measured than smoothed: so many that it takes no more memory.
-constexpr std::uint64_t kMeasuredOverSmoothed = 3;
+constexpr std::uint64_t kMeasuredOverSmoothed = 4;
 
 /// How to plan.
 struct PlanOptions {
@@ -96,9 +97,11 @@ void measure_tile(const Job& job, std::size_t tile, const Context& context);
 /// Needs every tile measured. \throw Failure (usage) naming the first that is not.
 void settle_job(const Job& job, const DenoiseOptions& options, const Context& context);
 
-/// Needs the job settled. \param normals how to find them, if at all. \throw Failure.
+/// Needs the job settled. \param normals how to find them, if at all. \param most of the tile's points and
+/// those around it: where these are more, what lies around is made narrower. \throw Failure.
 void run_tile(const Job& job, std::size_t tile, const DenoiseOptions& options,
-              const std::optional<NormalsOptions>& normals, const Context& context);
+              const std::optional<NormalsOptions>& normals, const Context& context,
+              std::uint64_t most = std::numeric_limits<std::uint64_t>::max());
 
 /// Where the scanner stood, if all inputs tell the same place.
 std::optional<Eigen::Vector3d> common_viewpoint(const std::vector<std::string>& inputs,
@@ -128,10 +131,23 @@ struct Settled {
   double radii = 0;                  ///< the same in radii of the widest patch
   std::size_t widest = 0;            ///< points of that
   double noise = 0, noise_left = 0;  ///< as in DenoiseReport
+  NoiseSummary shows;                ///< the same
+  double guide_strength = 0, tail_times = 1, spacing = 0;  ///< the same
 };
 
 /// \throw Failure (input_unreadable).
 Settled read_settled(const std::filesystem::path& path);
+
+/// What there is to say of a job whose tiles were run, as of a whole cloud, but for its mesh. Moves are those
+/// before the coordinates were written. \throw Failure.
+DenoiseReport report_of(const Job& job, const DenoiseOptions& options);
+
+/// The points that a tile of a settled job is smoothed with, its own among them. \throw Failure.
+std::uint64_t points_with_halo(const Job& job, std::size_t tile, const Context& context);
+
+/// Halves a tile; the new one is the last, and the plan on the disk does not know of it. False if all of its
+/// points are at one place. Before the first tile is run. \throw Failure.
+bool split_tile(Job& job, std::size_t tile, const Context& context);
 
 /// How far a job is.
 struct JobStatus {

@@ -12,7 +12,7 @@ namespace rfsmooth::pipeline::tiles {
 namespace {
 
 constexpr std::uint64_t kMark = 0x31656c6974736672;  // "rfstile1"
-constexpr std::size_t kHeld = 4096;                  // records, 128 KB
+constexpr std::size_t kHeld = 1024;                  // records, 32 KB
 constexpr std::uint64_t kHashStart = 0xcbf29ce484222325;
 
 /// Fowler, Noll and Vo's hash 1a, by words of eight bytes.
@@ -107,6 +107,14 @@ std::optional<std::uint64_t> complete_records(const std::filesystem::path& path,
     hash = hashed(hash, part.data(), part.size());
   }
   return hash == trailer->hash ? std::optional(trailer->count) : std::nullopt;
+}
+
+std::vector<Record> read_records(const std::filesystem::path& path, const Context& context) {
+  RecordReader reader(path, context);
+  std::vector<Record> all;
+  all.reserve(std::size_t(reader.size()));
+  for (; const Record* record = reader.peek(); reader.next()) all.push_back(*record);
+  return all;
 }
 
 template class WriterOf<Record>;

@@ -70,6 +70,9 @@ class ReaderOf {
 using RecordWriter = WriterOf<Record>;  ///< of coordinates
 using RecordReader = ReaderOf<Record>;  ///< of coordinates
 
+/// All of them. \throw Failure (input_unreadable).
+std::vector<Record> read_records(const std::filesystem::path& path, const Context& context);
+
 /// The number of records, if the file is there and every byte of it as it was written.
 template <class T = Record>
 std::optional<std::uint64_t> complete_records(const std::filesystem::path& path, const Context& context);

@@ -112,6 +112,11 @@ std::optional<Eigen::Vector3d> RowFile::viewpoint(const Context& context) const 
   return recorded_viewpoint(top, xyz.data(), context);
 }
 
+bool RowFile::has_normals() const {
+  return format_ != io::Format::las &&
+         (io::find_field(header_, io::kPlyNormal[0]) || io::find_field(header_, io::kPcdNormal[0]));
+}
+
 void RowFile::need_normals() {
   if (format_ == io::Format::las)
     throw Failure({ErrorCode::usage,

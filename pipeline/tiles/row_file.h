@@ -38,6 +38,8 @@ class RowFile {
   /// The scanner's place, as far as the header and the first rows tell (pipeline/viewpoint.h).
   std::optional<Eigen::Vector3d> viewpoint(const Context& context) const;
 
+  /// Whether the file has a field of a normal.
+  bool has_normals() const;
   /// Has fields for normals: those there are, else new ones behind the others, of NaN from here on. \throw
   /// Failure (usage) for LAS, and for fields that cannot take them.
   void need_normals();
@@ -52,7 +54,7 @@ class RowFile {
   /// Calls `visit(first, count, rows)` for all rows in order, with the bytes of some at once.
   template <class Visit>
   void for_each_piece(const Context& context, Visit&& visit) const {
-    constexpr std::uint64_t kPiece = 1 << 18;  // rows
+    constexpr std::uint64_t kPiece = 1 << 16;  // rows
     for (std::uint64_t first = 0; first < rows_; first += kPiece) {
       const auto count = std::size_t(std::min<std::uint64_t>(kPiece, rows_ - first));
       io::Bytes rows = read(first, count, context);

@@ -50,14 +50,6 @@ std::vector<std::string_view> flows_in_tiles() {
   return names;
 }
 
-std::vector<Record> read_records(const std::filesystem::path& path, const Context& context) {
-  RecordReader reader(path, context);
-  std::vector<Record> all;
-  all.reserve(std::size_t(reader.size()));
-  for (; const Record* record = reader.peek(); reader.next()) all.push_back(*record);
-  return all;
-}
-
 Vector3d place(const Record& r) {
   return {r.x, r.y, r.z};
 }
@@ -234,6 +226,7 @@ void keep_middle(const Job& job, std::size_t tile, std::uint64_t wanted, std::ve
 /// `wanted` points of all tiles, of those that were measured: n x 3.
 std::vector<double> sample_of(const Job& job, std::uint64_t wanted, const Context& context) {
   std::vector<double> xyz;
+  xyz.reserve(3 * std::size_t(wanted + job.tiles.size()));  // rounded up in every tile
   for (std::size_t t = 0; t < job.tiles.size(); ++t) {
     std::vector<Record> points = read_records(job.sampled(t), context);
     keep_middle(job, t, wanted, points);
@@ -242,9 +235,40 @@ std::vector<double> sample_of(const Job& job, std::uint64_t wanted, const Contex
   return xyz;
 }
 
-/// The surroundings of a tile of these points.
-Halo halo_of(const Job& job, std::size_t tile, const std::vector<Record>& own, const Settled& settled,
-             const Context& context) {
+/// How a tile's points moved, and how many have no surface near them. `now`, `outlier`: theirs come first.
+ordered_json moves_of(const std::vector<Record>& own, const std::vector<double>& now,
+                      const std::vector<char>& outlier) {
+  std::size_t moved = 0;
+  double squares = 0, largest = 0;
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    const Vector3d move = Vector3d(now[3 * i], now[3 * i + 1], now[3 * i + 2]) - place(own[i]);
+    moved += std::size_t(move.squaredNorm() > 0);
+    squares += move.squaredNorm();
+    largest = std::max(largest, move.norm());
+  }
+  const auto strays =
+      outlier.empty() ? 0
+                      : std::count(outlier.begin(), outlier.begin() + std::ptrdiff_t(own.size()), char(1));
+  return {{"moved", moved}, {"squares", squares}, {"largest", largest}, {"outliers", strays}};
+}
+
+/// The surroundings of a tile, and how many points they are with the tile's own.
+struct Surroundings {
+  Halo halo;
+  std::uint64_t points = 0;
+};
+
+std::uint64_t count_in(const Job& job, std::size_t tile, const Halo& halo, const Context& context) {
+  std::uint64_t points = job.tiles[tile].points;
+  for_each_around(
+      job, tile, context, [&](const AlignedBox3d& other) { return halo.meets(other); },
+      [&](const Vector3d& p) { return halo.holds(p); }, [&](const Record&, std::size_t) { ++points; });
+  return points;
+}
+
+/// Those of a tile of these points.
+Surroundings surroundings_of(const Job& job, std::size_t tile, const std::vector<Record>& own,
+                             const Settled& settled, const Context& context) {
   const AlignedBox3d box(job.tiles[tile].box.low, job.tiles[tile].box.high);
   const double most = std::pow(settled.halo / settled.radii, 2);
   Positions points;
@@ -254,7 +278,21 @@ Halo halo_of(const Job& job, std::size_t tile, const std::vector<Record>& own, c
       [&](const AlignedBox3d& other) { return box.squaredExteriorDistance(other) <= most; },
       [&](const Vector3d& p) { return box.squaredExteriorDistance(p) <= most; },
       [&](const Record& r, std::size_t) { points.push_back(place(r)); });
-  return Halo(points, own.size(), settled.widest, settled.radii, context);
+  std::optional<Halo> halo;
+  in_arena(context, [&] { halo.emplace(points, own.size(), settled.widest, settled.radii, context); });
+  const std::uint64_t count = count_in(job, tile, *halo, context);
+  return {std::move(*halo), count};
+}
+
+/// Makes them narrower until they are at most so many points.
+void narrow(const Job& job, std::size_t tile, std::uint64_t most, const Context& context,
+            Surroundings& around) {
+  constexpr double kNarrower = 0.85;
+  most = std::max(most, job.tiles[tile].points);
+  for (int round = 0; around.points > most && round < 100; ++round) {
+    around.halo.scale(kNarrower);
+    around.points = count_in(job, tile, around.halo, context);
+  }
 }
 
 void check_inputs(const Job& job) {
@@ -294,12 +332,17 @@ Settled read_settled(const std::filesystem::path& path) {
   if (!file) throw Failure({ErrorCode::input_unreadable, fmt::format("{}: cannot be read", path.string())});
   try {
     const ordered_json json = ordered_json::parse(file);
+    const ordered_json& shows = json.at("shows");
     return {statistics_of(json.at("statistics")),
             json.at("halo"),
             json.at("halo_radii"),
             json.at("widest"),
             json.at("noise"),
-            json.at("noise_left")};
+            json.at("noise_left"),
+            {shows.at("typical"), shows.at("loudest"), shows.at("shared_by"), shows.at("depth_step")},
+            json.at("guide_strength"),
+            json.at("tail_times"),
+            json.at("spacing")};
   } catch (const nlohmann::json::exception& error) {
     throw Failure({ErrorCode::input_unreadable, fmt::format("{}: {}", path.string(), error.what())});
   }
@@ -325,8 +368,7 @@ void settle_job(const Job& job, const DenoiseOptions& options, const Context& co
   how.statistics.emplace();
   how.statistics->box = job.box;
   if (job.sample < job.measured) {
-    const std::vector<double> xyz = sample_of(job, job.measured, context);
-    how.statistics = measure_points(xyz.data(), xyz.size() / 3, how, context);
+    how.statistics = measure_points(sample_of(job, job.measured, context), how, context);
   }
   const std::vector<double> xyz = sample_of(job, job.sample, context);
   const std::size_t n = xyz.size() / 3;
@@ -341,12 +383,20 @@ void settle_job(const Job& job, const DenoiseOptions& options, const Context& co
                              {"widest", settled.widest},
                              {"noise", report.noise},
                              {"noise_left", report.noise_left},
+                             {"shows",
+                              {{"typical", report.measured.typical},
+                               {"loudest", report.measured.loudest},
+                               {"shared_by", report.measured.shared},
+                               {"depth_step", report.measured.step}}},
+                             {"guide_strength", report.guide_strength},
+                             {"tail_times", report.tail_times},
+                             {"spacing", report.spacing},
                              {"statistics", json_of(settled.statistics)}};
   value_or_throw(io::write_bytes(json.dump(1) + '\n', job.settled(), true, context));
 }
 
 void run_tile(const Job& job, std::size_t tile, const DenoiseOptions& options,
-              const std::optional<NormalsOptions>& normals, const Context& context) {
+              const std::optional<NormalsOptions>& normals, const Context& context, std::uint64_t most) {
   check_tile(job, tile);
   check_for_tiles(options);
   const Settled settled = settled_of(job);
@@ -357,21 +407,24 @@ void run_tile(const Job& job, std::size_t tile, const DenoiseOptions& options,
   std::vector<double> xyz;
   std::vector<Around> around;
   for (const Record& r : own) xyz.insert(xyz.end(), {r.x, r.y, r.z});
-  std::optional<Halo> halo;
-  in_arena(context, [&] { halo = halo_of(job, tile, own, settled, context); });
+  Surroundings surroundings = surroundings_of(job, tile, own, settled, context);
+  narrow(job, tile, most, context, surroundings);
+  const Halo& halo = surroundings.halo;
   for_each_around(
-      job, tile, context, [&](const AlignedBox3d& other) { return halo->meets(other); },
-      [&](const Vector3d& p) { return halo->holds(p); },
+      job, tile, context, [&](const AlignedBox3d& other) { return halo.meets(other); },
+      [&](const Vector3d& p) { return halo.holds(p); },
       [&](const Record& r, std::size_t t) {
         xyz.insert(xyz.end(), {r.x, r.y, r.z});
         if (normals) around.push_back({r.row, t});
       });
+  std::vector<char> outlier;
   if (!own.empty()) {
     DenoiseOptions how = options;
     how.statistics = settled.statistics;
-    value_or_throw(denoise(xyz.data(), xyz.size() / 3, how, context));
+    outlier = value_or_throw(denoise(xyz.data(), xyz.size() / 3, how, context)).outlier;
   }
   ordered_json cost = {{"around", xyz.size() / 3 - own.size()}, {"seconds", 0}};
+  cost.update(moves_of(own, xyz, outlier));
   if (normals)  // from within the widest patch, where those of both tiles are good
     cost.update(write_normals(job, tile, own, around, xyz, *normals, settled.halo / kHaloRadii, context));
   RecordWriter writer(job.done(tile), context);
@@ -419,6 +472,38 @@ std::vector<Joined> join_job(const Job& job, const std::vector<std::string>& out
     throw Failure(
         {ErrorCode::internal, fmt::format("{} of {} points were written", patcher.patched(), job.points)});
   return joined;
+}
+
+DenoiseReport report_of(const Job& job, const DenoiseOptions& options) {
+  const Settled settled = settled_of(job);
+  DenoiseReport report;
+  report.effective = options;
+  for (const JobInput& input : job.inputs) report.points += std::size_t(input.rows);
+  report.finite = std::size_t(job.points);
+  report.spacing = settled.spacing;
+  report.noise = settled.noise;
+  report.measured = settled.shows;
+  report.noise_left = settled.noise_left;
+  report.guide_strength = settled.guide_strength;
+  report.tail_times = settled.tail_times;
+  report.statistics = settled.statistics;
+  double squares = 0;
+  for (std::size_t t = 0; t < job.tiles.size(); ++t) {
+    std::ifstream file(job.cost(t));
+    const ordered_json cost = ordered_json::parse(file, nullptr, false);
+    if (!cost.is_object()) continue;
+    report.moved += cost.value("moved", std::size_t{0});
+    report.outliers += cost.value("outliers", std::size_t{0});
+    report.largest_move = std::max(report.largest_move, cost.value("largest", 0.0));
+    squares += cost.value("squares", 0.0);
+  }
+  if (report.finite > 0) report.rms_move = std::sqrt(squares / double(report.finite));
+  return report;
+}
+
+std::uint64_t points_with_halo(const Job& job, std::size_t tile, const Context& context) {
+  const std::vector<Record> own = read_records(job.cut(tile), context);
+  return surroundings_of(job, tile, own, settled_of(job), context).points;
 }
 
 JobStatus job_status(const Job& job, const Context& context) {

@@ -113,17 +113,23 @@ void enter(const DenoiseReport& done, const DenoiseCommandOptions& options, orde
   entry["rms_move"] = done.rms_move;
 }
 
-void tell(const DenoiseReport& done, const DenoiseCommandOptions& options, const pipeline::io::Cloud& cloud,
-          const Job& job, Console& console) {
-  if (done.finite < done.points) {
-    const bool las = output_format(cloud, job.output, options.job.files) == pipeline::io::Format::las;
+/// \param had_normals whether the input has fields of that name
+/// \param as_las whether the output is LAS
+void tell_points(const DenoiseReport& done, const DenoiseCommandOptions& options, bool had_normals,
+                 bool as_las, const Job& job, Console& console) {
+  if (done.finite < done.points)
     console.detail(fmt::format("{}: {} points are not finite; {}", job.input, done.points - done.finite,
-                               las ? "LAS cannot hold them" : "they stay as they are"));
-  }
-  if (done.moved > 0 && has_normals(cloud) && !options.normals.normals)
+                               as_las ? "LAS cannot hold them" : "they stay as they are"));
+  if (done.moved > 0 && had_normals && !options.normals.normals)
     console.warn(fmt::format(
         "{}: the normals are kept and stale: they describe the old positions (--normals makes new ones)",
         job.input));
+}
+
+void tell(const DenoiseReport& done, const DenoiseCommandOptions& options, const pipeline::io::Cloud& cloud,
+          const Job& job, Console& console) {
+  const bool as_las = output_format(cloud, job.output, options.job.files) == pipeline::io::Format::las;
+  tell_points(done, options, has_normals(cloud), as_las, job, console);
   console.detail(fmt::format("{} faces, {} edges, {} bridges, {} points without a face, {} swaps", done.faces,
                              done.edges, done.bridges, done.faceless, done.swaps));
 }
@@ -238,6 +244,37 @@ void page_after(const DenoiseReport& done, const DenoiseCommandOptions& options,
     contents.figures.emplace_back("about left of it", fmt::format("{:.3g}", done.noise_left));
 }
 
+/// \throw Failure (usage).
+std::uint64_t bytes_of(const std::string& text) {
+  const double bytes = read_amount(text).value_or(0);
+  if (!(bytes >= 1e6) || !(bytes < 1e18))
+    throw Failure({ErrorCode::usage, fmt::format("--memory takes bytes, 8G or 500M say, not '{}'", text)});
+  return std::uint64_t(bytes);
+}
+
+/// Bytes that a cloud takes as a whole: `finite` points of a file of `bytes`.
+std::uint64_t memory_of_whole(std::uint64_t finite, std::uint64_t bytes, bool normals) {
+  constexpr std::uint64_t kMoreForNormals = 350;  // a point: 1070 to 1230 on ten scans together
+  return rfsmooth::denoise_memory(std::size_t(finite)) + (normals ? kMoreForNormals * finite : 0) + bytes;
+}
+
+/// \throw Failure if the cloud, which cannot go in tiles, needs more than --memory says.
+void check_memory(const DenoiseCommandOptions& options, const Job& job, const std::vector<double>& xyz) {
+  if (!options.memory) return;
+  std::uint64_t finite = 0;
+  for (std::size_t i = 0; i < xyz.size(); i += 3)
+    finite += std::uint64_t(std::isfinite(xyz[i]) && std::isfinite(xyz[i + 1]) && std::isfinite(xyz[i + 2]));
+  const std::uint64_t most = bytes_of(*options.memory);
+  std::error_code error;
+  const std::uint64_t bytes = job.input == "-" ? 0 : std::filesystem::file_size(job.input, error),
+                      needed = memory_of_whole(finite, error ? 0 : bytes, options.normals.normals);
+  if (needed <= most) return;
+  throw Failure({ErrorCode::out_of_memory,
+                 fmt::format("{}: needs about {:.0f} MB, --memory allows {:.0f} MB; a single file of binary "
+                             "PLY, binary PCD or LAS would be smoothed in tiles",
+                             job.input, std::ceil(double(needed) / 1e6), double(most) / 1e6)});
+}
+
 std::string denoise_cloud(const DenoiseCommandOptions& options, Beside& beside, pipeline::io::Cloud& cloud,
                           const Job& job, const Context& context, Console& console,
                           std::vector<StageTime>& stages, ordered_json& entry) {
@@ -245,6 +282,7 @@ std::string denoise_cloud(const DenoiseCommandOptions& options, Beside& beside, 
   check_fields(options, cloud);
   if (const auto error = refuse_without_memory(job.input, rfsmooth::denoise_memory(n))) throw Failure(*error);
   std::vector<double> xyz = pipeline::io::positions(cloud, context);
+  check_memory(options, job, xyz);
   const std::vector<double> strength =
       options.strength_field ? strengths(cloud, *options.strength_field, context) : std::vector<double>{};
   pipeline::PageContents page;
@@ -307,14 +345,6 @@ void check_denoise(const DenoiseCommandOptions& options, const Invocation& typed
   check_no_cloud_target(*options.html, options.job.files.force, "page");
 }
 
-/// \throw Failure (usage).
-std::uint64_t bytes_of(const std::string& text) {
-  const double bytes = read_amount(text).value_or(0);
-  if (!(bytes >= 1e6) || !(bytes < 1e18))
-    throw Failure({ErrorCode::usage, fmt::format("--memory takes bytes, 8G or 500M say, not '{}'", text)});
-  return std::uint64_t(bytes);
-}
-
 /// What the options ask for that is made of the whole cloud at once; empty: nothing.
 std::string needs_whole_cloud(const DenoiseCommandOptions& options) {
   const FileOptions& files = options.job.files;
@@ -344,10 +374,12 @@ std::optional<std::uint64_t> memory_of_tiles(const DenoiseCommandOptions& option
   std::error_code error;
   const std::uint64_t bytes = std::filesystem::file_size(job.input, error);
   constexpr std::uint64_t kLeastRow = 3;  // bytes: three coordinates
-  if (error || rfsmooth::denoise_memory(std::size_t(bytes / kLeastRow)) + bytes <= most) return std::nullopt;
+  const bool normals = options.normals.normals;
+  if (error || memory_of_whole(bytes / kLeastRow, bytes, normals) <= most) return std::nullopt;
   const auto file = pipeline::tiles::in_pieces(job.input, context);
-  if (!file) return std::nullopt;
-  if (rfsmooth::denoise_memory(std::size_t(file->rows)) + bytes <= most) return std::nullopt;
+  if (!file || memory_of_whole(file->rows, bytes, normals) <= most) return std::nullopt;
+  const std::uint64_t finite = pipeline::tiles::finite_rows(job.input, context);
+  if (memory_of_whole(finite, bytes, normals) <= most) return std::nullopt;
   if (const std::string what = needs_whole_cloud(options); !what.empty()) {
     if (!asked) return std::nullopt;  // refused where the whole cloud is, with both figures
     throw Failure({ErrorCode::usage,
@@ -356,6 +388,11 @@ std::optional<std::uint64_t> memory_of_tiles(const DenoiseCommandOptions& option
   if (asked) pipeline::tiles::check_format(file->format, job.output);
   if (pipeline::io::format_of_extension(job.output).value_or(file->format) != file->format)
     return std::nullopt;
+  if (const std::uint64_t least = pipeline::tiles::least_memory(finite, normals); most < least) {
+    if (!asked) return std::nullopt;
+    throw Failure({ErrorCode::usage, fmt::format("{}: in tiles it takes --memory {:.0f}M or more", job.input,
+                                                 std::ceil(double(least) / 1e6))});
+  }
   return most;
 }
 
@@ -370,16 +407,17 @@ std::optional<int> denoise_in_tiles(const DenoiseCommandOptions& options, const 
   const auto memory = memory_of_tiles(options, job, context);
   if (!memory) return std::nullopt;
   need_own_target(job, options.job.files.output);
-  const pipeline::tiles::PlanOptions how = pipeline::tiles::plan_within(*memory, options.normals.normals);
+  const pipeline::tiles::Within how = pipeline::tiles::plan_within(*memory, options.normals.normals);
   console.say(fmt::format("{}: too large for {:.3g} GB: smoothed in tiles of {} points", job.input,
-                          double(*memory) / 1e9, how.tile_points));
-  const pipeline::tiles::Joined joined = pipeline::tiles::smooth_in_tiles(
+                          double(*memory) / 1e9, how.plan.tile_points));
+  const pipeline::tiles::SmoothedInTiles done = pipeline::tiles::smooth_in_tiles(
       job.input, job.output, options.job.files.force, options.keep_scale, how, options.denoise,
       normals_in_tiles(options.normals, {job.input}, context), context);
-  tell_scale(job.input, joined.scale, joined.noise, joined.noise_left, console);
-  if (joined.las) warn_of_index(job.output, console);
+  tell_scale(job.input, done.joined.scale, done.report.noise, done.report.noise_left, console);
+  if (done.joined.las) warn_of_index(job.output, console);
   mark_as_own(job.output);
-  console.say(fmt::format("{} -> {}", job.input, job.output));
+  tell_points(done.report, options, done.had_normals, done.joined.las, job, console);
+  tell_summary(job, summary(done.report, options), false, console);
   return 0;
 }
 

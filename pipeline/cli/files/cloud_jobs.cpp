@@ -23,16 +23,6 @@ std::string text_of(const std::vector<StageTime>& stages) {
   return text;
 }
 
-/// Says a summary; of one job of many its first two lines, as one.
-void tell(const Job& job, const std::string& summary, bool one_of_many, Console& console) {
-  std::vector<std::string> lines;
-  std::istringstream text(summary);
-  for (std::string line; std::getline(text, line);) lines.push_back(line);
-  if (one_of_many && lines.size() > 1) lines = {lines[0] + "; " + lines[1]};
-  lines[0] = fmt::format("{} -> {}: {}", job.input, job.output, lines[0]);
-  for (const std::string& line : lines) console.say(line);
-}
-
 void run_one(const Job& job, const JobOptions& options, const OnCloud& on_cloud, const Context& context,
              Console& console, ordered_json& entry, bool one_of_many) {
   need_own_target(job, options.files.output);
@@ -49,7 +39,7 @@ void run_one(const Job& job, const JobOptions& options, const OnCloud& on_cloud,
                              pipeline::io::name_of(format), fmt::join(dropped, ", ")));
     entry["output"]["dropped"] = dropped;
   }
-  tell(job, summary, one_of_many, console);
+  tell_summary(job, summary, one_of_many, console);
   if (on_cloud.beside) on_cloud.beside(console);
   console.detail("seconds: " + text_of(stages));
   entry["threads"] = options.run.threads ? ordered_json(*options.run.threads) : ordered_json(nullptr);
@@ -57,6 +47,15 @@ void run_one(const Job& job, const JobOptions& options, const OnCloud& on_cloud,
 }
 
 }  // namespace
+
+void tell_summary(const Job& job, const std::string& summary, bool one_of_many, Console& console) {
+  std::vector<std::string> lines;
+  std::istringstream text(summary);
+  for (std::string line; std::getline(text, line);) lines.push_back(line);
+  if (one_of_many && lines.size() > 1) lines = {lines[0] + "; " + lines[1]};
+  lines[0] = fmt::format("{} -> {}: {}", job.input, job.output, lines[0]);
+  for (const std::string& line : lines) console.say(line);
+}
 
 int run_cloud_jobs(const std::string& command, const JobOptions& options, const Invocation& typed,
                    const OnCloud& on_cloud) {

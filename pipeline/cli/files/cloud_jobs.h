@@ -23,6 +23,9 @@ struct JobOptions {
   }
 };
 
+/// Says what became of a job, in lines; of one of many the first two, as one.
+void tell_summary(const Job& job, const std::string& summary, bool one_of_many, Console& console);
+
 /// Checks the options and plans the jobs, then for each: reads, works, writes, reports. \return the exit
 /// code.
 int run_cloud_jobs(const std::string& command, const JobOptions& options, const Invocation& typed,
