@@ -19,8 +19,10 @@ using Eigen::Vector3d;
 constexpr std::size_t kFewestOfPart = 64;  // points of a part
 constexpr std::size_t kParts = 64;         // of a tile, as many points in each
 constexpr std::size_t kPlacesOfPart = 16;  // at which patches are looked at
-constexpr double kWidePlaces = 0.9;        // the quantile of these that is the part's
-constexpr std::size_t kGroup = 8;          // parts that are asked together first
+// Of the radii there, the quantile that is the part's: all but one, which may be a stray's. The median leaves
+// too little around its sparse side.
+constexpr double kWidePlaces = 1 - 1.0 / double(kPlacesOfPart);
+constexpr std::size_t kGroup = 8;  // parts that are asked together first
 
 /// Halves the places at the median of their widest axis, `times` over; calls `take` with each part.
 template <class Take>

@@ -1,7 +1,7 @@
 /// What lies around a tile and has a say in where its points go.
 ///
-/// A patch of so many points is wide where points are sparse: scans have ten times fewer of them in an area
-/// far away than near by. So the width of the halo is in units of the widest patch around each part of the
+/// A patch of so many points is wide where points are sparse: scans have fewer of them in an area far away
+/// than near by. So the width of the halo is in units of the widest patch around each part of the
 /// tile, not of the cloud's typical one.
 #pragma once
 

@@ -60,8 +60,8 @@ Context part_of(const Context& context, double from, double to) {
   return part;
 }
 
-// At its peak a step takes 440 to 920 bytes a point on ten scans, as denoise_memory has it, with normals 1070
-// to 1230.
+// At its peak a cloud takes 380 to 920 bytes a point on nine scans, as denoise_memory has it, with normals
+// 640 to 1230.
 double bytes_a_point(bool normals) {
   constexpr double kBytesPerPoint = 950, kBytesWithNormals = 1300;
   return normals ? kBytesWithNormals : kBytesPerPoint;

@@ -254,7 +254,7 @@ std::uint64_t bytes_of(const std::string& text) {
 
 /// Bytes that a cloud takes as a whole: `finite` points of a file of `bytes`.
 std::uint64_t memory_of_whole(std::uint64_t finite, std::uint64_t bytes, bool normals) {
-  constexpr std::uint64_t kMoreForNormals = 350;  // a point: 1070 to 1230 on ten scans together
+  constexpr std::uint64_t kMoreForNormals = 350;  // a point: 640 to 1230 in all on nine scans
   return rfsmooth::denoise_memory(std::size_t(finite)) + (normals ? kMoreForNormals * finite : 0) + bytes;
 }
 

@@ -85,7 +85,7 @@ class TilesOfScans : public InFolder {
   }
 };
 
-// Far away the floor is four times sparser than near by, and patches twice as wide.
+// Far away the floor is sparser than near by, and patches are wider.
 TEST_F(TilesOfScans, AFloorWhoseFarEndIsSparse) {
   expect_as_whole({kFloorCrop, "2000", "4000", 0.15, 0.7});
 }
