@@ -6,8 +6,8 @@
 
 namespace rfsmooth::rfs_mesh {
 
-/// Unit length; not finite if the points do not span a plane. `near`: indices of the neighbours, without i.
-/// O(|near|).
+/// Unit length; any across their line, or any at all, where they span no plane. `near`: indices of the
+/// neighbours, without i. O(|near|).
 Eigen::Vector3d plane_normal(const Positions& points, std::size_t i, Adjacency::Row near);
 
 }  // namespace rfsmooth::rfs_mesh

@@ -29,13 +29,14 @@ double variance_inside(double c);
 
 /// How far the points around one scatter about the quadric through them.
 struct Scatter {
-  double variance = 0;  ///< s^2, world units squared
-  double freedom = 0;   ///< its degrees of freedom; 0: nothing can be said here
-  double radius = 0;    ///< of the ball of neighbours, world units
-  double together = 1;  ///< kRing nearest are above (1) or below (-1): their sum squared, over as
-                        ///< many; in the mean 1 of points on their own, whatever their noise. Without window
-  double flatness = 3;  ///< fourth moment of the residuals over the square of the second: 3 of a normal
-                        ///< distribution, 1.8 of an even one, 1 of two sheets. Without window
+  double variance = 0;    ///< s^2, world units squared
+  double freedom = 0;     ///< its degrees of freedom; 0: nothing can be said here
+  double radius = 0;      ///< of the ball of neighbours, world units
+  double together = 1;    ///< of the kRing nearest points, those above the quadric count 1, those below -1:
+                          ///< the sum's square over kRing. Its mean is 1 where every point errs by itself,
+                          ///< kRing where they err the same way. Without window
+  double flatness = 3;    ///< fourth moment of the residuals over the square of the second: 3 of a normal
+                          ///< distribution, 1.8 of an even one, 1 of two sheets. Without window
   double middle = 0.383;  ///< share of the weight within half a deviation of the quadric: 0.383 of a normal
                           ///< distribution, 0.289 of an even one, 0 of two sheets. Without window
   double within = 0;      ///< s^2 also where the window cuts off so much that the place says nothing; 0: too

@@ -31,8 +31,8 @@ namespace rfsmooth::rfs_mesh {
 /// Spacings: noise below this cannot be told from detail.
 inline constexpr double kNoNoise = 0.05;
 
-/// Of the figure: the noise of places that are calmer than that, of which points stay where they are. It is
-/// above zero, since others' is told in units of it.
+/// Least noise of a place, as a part of the figure. Points with less than twice that are not moved. Not zero,
+/// because other values are divided by it.
 inline constexpr double kStays = 1e-3;
 
 /// Whether points of so much noise stay. \param figure of the cloud.

@@ -10,8 +10,8 @@
 /// l = ln(s/s')/ln 3 where the sites around it show less than those around the one that asks, else 0: a loud
 /// part beside a calm one is not told by it that it is calm, too. The other way round would be as true, but
 /// noise that is read too small is not smoothed at all, and too large is hardly seen; calm places have their
-/// own bound (below). And half a fit that has the mean of the cloud: where little of the surface has spoken,
-/// that is the answer. Without areas a crowd of sites on one object beside the scanner, all of it within a
+/// own bound (below). Half a fit with the mean of the cloud is added: where few fits say anything, the noise
+/// is that of the cloud. Without areas a crowd of sites on one object beside the scanner, all of it within a
 /// step of the depths, would speak for the room around it.
 ///
 /// The mean is Huber's, of ln v (freed of the bias that f gives it): what is off by much, an edge or a second

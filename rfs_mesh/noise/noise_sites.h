@@ -1,13 +1,14 @@
 /// The noise around up to 2,000 sites of a cloud.
 ///
-/// Around a site speaks the mean of its nearest sites' fits, each with the site's own window (scatter.h),
-/// from the figure to start from: of up to 48, but where the dozen nearest show 1.5 times their variance,
-/// these speak alone: a loud part beside a calm one. (The other way round they do not: a flat beside an edge
-/// would be told from it, and noise that is read too large is hardly seen.) Where that window is too narrow
-/// it cuts off so much that no fit says anything. So it does where a wall has its second sheet beside it; but
-/// there what is left within the window scatters as little as the window was made for, while louder noise
-/// fills it evenly, at three times that variance. Windows that are filled open to what they show, in up to
-/// eight rounds, and at more than twice the start their fits take more points, as many as such noise needs.
+/// The noise at a site is the mean of the fits at its nearest sites, each with a window of its own
+/// (scatter.h) that begins at the noise search_noise found. The mean is of up to 48 fits; but where the dozen
+/// nearest show 1.5 times the variance of all, it is of these alone: a loud part beside a calm one. (A dozen
+/// that shows less does not speak alone: a flat beside an edge would, and noise that is read too large does
+/// little harm.) A window that is too narrow for the noise cuts off so many points that no fit says anything.
+/// So does one that cuts off the second sheet of a wall; but there what is left in the window scatters as
+/// little as the window was made for, while louder noise fills it evenly, at three times that variance. A
+/// window that is filled evenly gets wider, to the scatter seen in it, and that up to eight times. Where it
+/// ends at more than twice the noise it began with, the fits take more points, as many as such noise needs.
 ///
 /// Where both sheets of a wall are within the narrowest windows, what opens ends at their distance. But the
 /// residuals of fits without windows, whose places hold both, are then flatter than a normal distribution,

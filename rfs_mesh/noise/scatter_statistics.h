@@ -36,9 +36,9 @@ std::vector<double> areas(const std::vector<Scatter>& all);
 std::vector<Weighed> comparable(const std::vector<Scatter>& all, const std::vector<double>& area,
                                 double deviate);
 
-/// The mean variance of the fits, without those above four times the typical one, which is the quantile
-/// `share` made up for being one by `deviate` (the same of a normal distribution). Zero if none has anything
-/// to say.
+/// The mean variance of the fits, without those above four times the typical one. Typical is the quantile
+/// `share` of the fits' variances, brought to the mean by `deviate`, the same quantile of a normal
+/// distribution. Zero if no fit says anything.
 double mean_variance(const std::vector<Scatter>& all, double share, double deviate);
 
 /// `count` points of the cloud, evenly over the indices.

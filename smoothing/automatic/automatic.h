@@ -2,8 +2,8 @@
 ///
 /// 1. Guide: one implicit fairing of second order on the RFS-mesh, (I + c L^2) g = x with the umbrella and
 ///    c = 10 (sigma/h)^2, 10 (sigma/h)^4 above one spacing (Desbrun et al. 1999, 2.6; Kobbelt et al. 1998),
-///    sigma the noise, h the spacing. The more noise there is in a spacing, the more points must be averaged
-///    before neighbours on the guide are neighbours on the surface.
+///    sigma the noise, h the spacing. The larger the noise is beside the spacing, the more points must be
+///    averaged before neighbours on the guide are neighbours on the surface.
 ///    Points it stranded are landed (stranded.h). The cloud is now a height field z over the guide.
 /// 2. Candidates: overlapping quadrics over m = m_0, 2 m_0, 4 m_0, ... points (patches.h), each scale a
 ///    prediction f_m of every height. The narrowest patch has a radius of about 4.5 sigma: below that the
@@ -16,8 +16,8 @@
 ///    points can judge), and the scales are mixed with weights exp(-size of the evidence) (Leung and Barron
 ///    2006) times how well each serves the cloud as a whole (mixture.h): smooth places take wide patches,
 ///    edges and thin parts narrow ones, and where every patch is worse than the data the data stay.
-///    Where the noise differs from place to place, the risks that a mean is of count by 1 / sigma^2, and
-///    those of points that stay, having none, do not: in units of their noise any patch would be far off.
+///    Where the noise differs from place to place, each risk has the weight 1 / sigma^2 in such a mean.
+///    Points that stay have no noise, and their risks are left out: divided by it they would be huge.
 /// 4. Walls thinner than the noise, which look like one sheet with more of it, are taken apart where the
 ///    cloud as a whole says that they are walls (hidden_sheets.h); those of a few sigma get their two sheets
 ///    fitted together (thin_walls.h). Neither is tried where points share their noise: blotches look like

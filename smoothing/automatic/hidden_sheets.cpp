@@ -96,8 +96,8 @@ HiddenSheets split_hidden_sheets(const HeightField& field, const Residuals& left
   const std::vector<float>& residual = left.scores;
   const auto square = [&](std::size_t i) { return residual[i] * residual[i] + 2 * own[i]; };
   for_each_index(context, n, [&](std::size_t i) { v[i] = square(i); });
-  // A mean that follows its own points makes any noise look like two sheets, the more so the fewer they are:
-  // where it does not even then, one over more would not either.
+  // Each round averages v over more points. A mean over few follows each of them, and that makes any noise
+  // look like two sheets: where it does not even so, wider means will not, and the rounds end.
   for (int round = 0; round < kSheetRounds; ++round) {
     for (int again = 0; again < kSheetRounds; ++again) v = field.local_mean(v, context);
     if (known) continue;

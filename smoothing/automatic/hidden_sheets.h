@@ -37,7 +37,8 @@
 
 namespace rfsmooth::smoothing {
 
-/// Of the cloud: walls that take less say nothing of it, here as in thin_walls.h.
+/// Walls are believed only if they take at least this share of the cloud's points; thin_walls.cpp uses it,
+/// too.
 constexpr double kLeastSheetShare = 0.05;
 
 /// What was found.

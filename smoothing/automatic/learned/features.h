@@ -4,8 +4,8 @@
 /// All lengths are in units of s, the noise around the point (at most the cloud's figure: walls make the
 /// field too high), heights along the point's normal n over the guide, from h = (P - g) n, P being the place
 /// that the mixture, hidden sheets and thin walls gave it. So a cloud that is turned, moved or made larger
-/// has the same features. To turn the normals round changes the sign of the odd ones and nothing else of the
-/// even ones.
+/// has the same features. Turning the normals round changes the sign of the odd features and leaves the even
+/// ones as they are.
 ///
 /// From the scales (patches.h): the four narrowest and the widest, the widest in place of those that are not
 /// there.

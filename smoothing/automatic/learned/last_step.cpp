@@ -13,9 +13,9 @@ namespace {
 constexpr double kLeastNoise = 0.2;  // spacings: with less noise patches of 16 points are as wide as walls
 constexpr std::size_t kBlockOfSites = 256;
 
-/// By how much a patch of 6 to 13 sigma is worse in the mean, over its own width, than the one of half as
-/// many points, in sigma^2. Where none is, nothing is there that a quadric does not follow, and the mixture
-/// has averaged over hundreds of points.
+/// By how much a patch of 6 to 13 sigma in radius (wider where the noise is below half a spacing) is worse in
+/// the mean, over its own width, than the one of half as many points, in sigma^2. Where none is, nothing is
+/// there that a quadric does not follow, and the mixture has averaged over hundreds of points.
 float contradiction(const ScalesSay& says) {
   return std::max({says[1].wide, says[2].wide, says[3].wide, 0.0F});
 }

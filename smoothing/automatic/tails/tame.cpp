@@ -55,7 +55,8 @@ double far_together(const HeightField& field, const std::vector<float>& off, con
   return sums[2] > 0 ? sums[3] * sums[0] / (sums[1] * sums[2]) : 0;
 }
 
-/// Divides by what the neighbours' tell where they are farther off, too, than the noise has it.
+/// Where the neighbours are farther off than the noise explains, too, divides by how many times: that is
+/// noise which was measured too small there, or shape, and no tail.
 void relate_to_neighbours(const HeightField& field, std::vector<float>& relative, std::vector<float>& least,
                           const Context& context) {
   constexpr float kMeanOfNormal = 0.766F;  // the mean of min(|x|, kMostOfOne), x normal
@@ -71,8 +72,8 @@ void relate_to_neighbours(const HeightField& field, std::vector<float>& relative
   });
 }
 
-/// Points of the tails that a first smoothing left beside the surface, since their neighbours are each other,
-/// are seen from the surface instead.
+/// Points of the tails that are each other's neighbours on the guide stay together beside the surface in the
+/// first smoothing. Here they are put onto the surface that the points around them show.
 void land_hovering(const HeightField& field, const MixedScales& pass, const Mesh& mesh, const Tails& tails,
                    const rfs_mesh::NoiseField& noise, Positions& data, const Context& context) {
   Positions smooth(field.size());
