@@ -40,16 +40,18 @@ std::vector<float> off_neighbours(const HeightField& field, const MixedScales& p
 /// tails, which are each point's own; beside shape, and where the noise is louder than was measured, far
 /// points stand together.
 double far_together(const HeightField& field, const std::vector<float>& off, const Context& context) {
+  const auto known = [&](std::size_t i) { return !std::isnan(off[i]); };
   const auto far = [&](std::size_t i) {  // not if unknown
     return double(std::abs(off[i])) > rfs_mesh::kScatterWindow;
   };
-  // Points, far ones, their neighbours, and far ones of these.
+  // Of those that are known: points, far ones, their neighbours, and far ones of these.
   const Eigen::Vector4d sums =
       sum_over(context, field.size(), Eigen::Vector4d(0, 0, 0, 0), [&](std::size_t i) {
-        Eigen::Vector4d one(1, 0, 0, 0);
+        Eigen::Vector4d one(known(i) ? 1 : 0, 0, 0, 0);
         if (!far(i)) return one;
         one[1] = 1;
-        for (const Index j : field.neighbors()[i]) one += Eigen::Vector4d(0, 0, 1, far(j) ? 1 : 0);
+        for (const Index j : field.neighbors()[i])
+          if (known(j)) one += Eigen::Vector4d(0, 0, 1, far(j) ? 1 : 0);
         return one;
       });
   return sums[2] > 0 ? sums[3] * sums[0] / (sums[1] * sums[2]) : 0;
