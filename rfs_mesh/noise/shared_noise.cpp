@@ -174,9 +174,9 @@ SharedNoise find_shared_noise(const SpatialIndex& index, const Positions& places
     at = i;
   };
   bool wide = !terraces;
-  for (std::size_t i = 0; i + 1 < calm.m.size(); ++i) {
+  for (std::size_t i = 0; i < calm.m.size(); ++i) {
     make_sure(i, std::min(calm.steps, calm.seen[i]));
-    if (calm.m[i + 1] != 2 * calm.m[i] || calm.m[i] < 2 * double(start.m)) continue;
+    if (i + 1 == calm.m.size() || calm.m[i + 1] != 2 * calm.m[i] || calm.m[i] < 2 * double(start.m)) continue;
     const double growth = calm.seen[i + 1] / calm.seen[i];
     if (wide && growth > (terraces ? kGrowthAcrossEdges : kMostGrowthOfNoise)) break;
     wide = wide || growth < kGrowthAcrossEdges;

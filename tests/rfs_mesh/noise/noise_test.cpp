@@ -303,6 +303,21 @@ TEST(Noise, OfFewDepthsIsTheirRounding) {
   EXPECT_NEAR(noise.sigma / along_normal, 1, 0.2);
 }
 
+// The widest neighbourhoods that so few points allow are the only ones that see the steps.
+TEST(Noise, OfASphereOfFewPointsInFewDepthsIsTheirRounding) {
+  constexpr double kStep = 0.15;  // five spacings
+  const test::Shape sphere = test::unit_sphere();
+  for (const unsigned seed : {1U, 2U, 3U}) {
+    Positions points = test::random_points(sphere, 3000, seed);
+    double rounding = 0;
+    for (Eigen::Vector3d& p : points) {
+      p.z() = kStep * std::round(p.z() / kStep);
+      rounding += std::pow(p.norm() - 1, 2) / 3000;
+    }
+    EXPECT_NEAR(measured(points).sigma / std::sqrt(rounding), 1, 0.25) << seed;
+  }
+}
+
 TEST(Noise, OfRingsIsThatAcrossThem) {
   constexpr double kGap = 0.1, kStep = 0.005;  // twenty times farther apart than their points
   std::mt19937_64 engine(4);
