@@ -1,6 +1,7 @@
 /// Real scans in tiles: parts of them are ten times sparser than others, louder, in steps.
 #include <cmath>
 #include <cstddef>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -20,9 +21,11 @@ namespace {
 struct Scan {
   std::string path, tile_points, sample_points;
   double seams, all;
+
+  friend void PrintTo(const Scan& scan, std::ostream* out) { *out << scan.path; }
 };
 
-class TilesOfScans : public InFolder {
+class TilesOfScans : public InFolder, public testing::WithParamInterface<Scan> {
  protected:
   nlohmann::json json(const std::string& file) const { return nlohmann::json::parse(take(file)); }
 
@@ -85,26 +88,26 @@ class TilesOfScans : public InFolder {
   }
 };
 
-// Far away the floor is sparser than near by, and patches are wider.
-TEST_F(TilesOfScans, AFloorWhoseFarEndIsSparse) {
-  expect_as_whole({kFloorCrop, "2000", "4000", 0.15, 0.7});
+std::vector<Scan> scans() {
+  std::vector<Scan> all = {
+      // Far away the floor is sparser than near by, and patches are wider.
+      {kFloorCrop, "2000", "4000", 0.15, 0.7},
+      // The sample is less than half of the points, and their noise is that of the whole cloud.
+      {kBoxCrop, "2000", "4000", 0.005, 0.02},
+      {kBuildingCrop, "2000", "4000", 0.02, 0.05}};
+  // Its points lie twice at one place, and its walls stand out of the noise as tails do: in some of its
+  // tiles.
+  for (const std::string& room : whole_scans({"room_scan1.pcd"}))
+    all.push_back({room, "20000", "1000000", 0.04, 0.04});
+  return all;
 }
 
-// The sample is less than half of the points, and their noise is that of the whole cloud.
-TEST_F(TilesOfScans, ABox) {
-  expect_as_whole({kBoxCrop, "2000", "4000", 0.005, 0.02});
+TEST_P(TilesOfScans, AreTheWholeCloud) {
+  expect_as_whole(GetParam());
 }
 
-TEST_F(TilesOfScans, ABuilding) {
-  expect_as_whole({kBuildingCrop, "2000", "4000", 0.02, 0.05});
-}
-
-// Its points lie twice at one place, and its walls stand out of the noise as tails do: in some of its tiles.
-TEST_F(TilesOfScans, ARoom) {
-  const std::vector<std::string> room = whole_scans({"room_scan1.pcd"});
-  if (room.empty()) GTEST_SKIP() << "no folder of whole scans";
-  expect_as_whole({room.front(), "20000", "1000000", 0.04, 0.04});
-}
+INSTANTIATE_TEST_SUITE_P(Crops, TilesOfScans, testing::ValuesIn(scans()),
+                         [](const auto& test) { return test_name(test.param.path); });
 
 }  // namespace
 }  // namespace rfsmooth::test
