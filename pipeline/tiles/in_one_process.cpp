@@ -68,9 +68,8 @@ double bytes_a_point(bool normals) {
 }
 
 constexpr std::uint64_t kFixed = std::uint64_t{24} << 20;
-constexpr double kFewest = 3000;  // points of a tile: fewer are not worth what lies around them
-constexpr double kLeastPoints =
-    50000;  // a tile of these, with the surroundings that the usual noise asks for
+constexpr double kFewest = 3000;        // points of a tile: fewer are not worth what lies around them
+constexpr double kLeastPoints = 50000;  // a tile with what the usual noise asks for around it
 
 /// Halves the tiles that are too many points with what lies around them, as far as that is worth it.
 void split_large(Job& job, const Within& how, const Context& context) {

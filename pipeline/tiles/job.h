@@ -3,9 +3,8 @@
 ///
 ///     plan     cuts the cloud into tiles of about as many points, each row in one of them
 ///     measure  takes a tile's part of the sample
-///     settle   finds what the cloud as a whole is like (rfsmooth/statistics.h): the noise of the sample as
-///     it
-///              is, the rest of a part of it that is smoothed
+///     settle   finds what the cloud as a whole is like (rfsmooth/statistics.h): the noise of the sample,
+///              the rest of a part of it that is smoothed
 ///     run      smooths a tile with what lies around it, and keeps what is its own
 ///     join     copies the inputs with the new coordinates in them
 ///
