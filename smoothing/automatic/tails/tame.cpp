@@ -114,7 +114,7 @@ Tails tame(const HeightField& field, const MixedScales& pass, const Mesh& mesh, 
   if (!whole) {
     const double together = far_together(field, least, context);
     if (noise.shared > 1 && together > kGroups)
-      whole.emplace();
+      whole = Statistics::Tails();
     else {
       if (together > kByChance) relate_to_neighbours(field, relative, least, context);
       whole = find_tails(relative, least);
