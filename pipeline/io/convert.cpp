@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 
 #include <fmt/format.h>
 
-#include "base/parallel.h"
 #include "pipeline/io/formats/header_lines.h"
 #include "pipeline/io/formats/las/las_plain.h"
 #include "pipeline/io/formats/off.h"
@@ -76,14 +74,6 @@ std::vector<std::size_t> kept_fields(const Cloud& cloud, Format format, const Co
 
 bool has_points_only(Format format) {
   return format == Format::pcd || format == Format::xyz || format == Format::las;
-}
-
-std::size_t points_not_finite(const Cloud& cloud, const Context& context) {
-  const std::vector<double> xyz = positions(cloud, context);
-  return sum_over(context, cloud.size(), std::size_t{0}, [&](std::size_t i) {
-    return std::size_t(!std::isfinite(xyz[3 * i]) || !std::isfinite(xyz[3 * i + 1]) ||
-                       !std::isfinite(xyz[3 * i + 2]));
-  });
 }
 
 bool float_digits_lost(const Table& table, std::size_t field, const Context& context) {
@@ -303,8 +293,9 @@ std::vector<std::string> what_is_lost(const Cloud& cloud, Format format, Encodin
       lost.push_back("colours of the faces");
     }
   }
-  if (const std::size_t n = format == Format::las ? points_not_finite(cloud, context) : 0; n > 0)
-    lost.push_back(fmt::format("{} points that are not finite", n));
+  if (format == Format::las)
+    if (const std::size_t n = cloud.size() - finite_rows(positions(cloud, context), context); n > 0)
+      lost.push_back(fmt::format("{} points that are not finite", n));
   if (format == Format::xyz || format == Format::off) {
     if (cloud.organised()) lost.push_back(fmt::format("the grid of {} x {}", cloud.width, cloud.height));
     if (cloud.viewpoint != kNoViewpoint) lost.push_back("the viewpoint");

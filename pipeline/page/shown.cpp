@@ -4,15 +4,12 @@
 #include <cmath>
 #include <limits>
 
+#include "pipeline/io/table/cloud.h"
 #include "rfs_mesh/points.h"
 
 namespace rfsmooth::pipeline {
 
 namespace {
-
-bool finite_row(const std::vector<double>& xyz, std::size_t row) {
-  return std::isfinite(xyz[3 * row]) && std::isfinite(xyz[3 * row + 1]) && std::isfinite(xyz[3 * row + 2]);
-}
 
 /// The finite rows along a Morton curve, those of one position in their own order.
 std::vector<std::size_t> along_curve(const std::vector<double>& xyz, const Context& context) {
@@ -54,8 +51,8 @@ std::vector<RowKind> kinds_of_rows(const std::vector<double>& before, const std:
                                    const std::vector<char>& outlier) {
   std::vector<RowKind> kinds(before.size() / 3, RowKind::absent);
   for (std::size_t row = 0; row < kinds.size(); ++row) {
-    if (!finite_row(before, row)) continue;
-    kinds[row] = !finite_row(after, row)                 ? RowKind::removed
+    if (!io::finite_row(&before[3 * row])) continue;
+    kinds[row] = !io::finite_row(&after[3 * row])        ? RowKind::removed
                  : !outlier.empty() && outlier[row] != 0 ? RowKind::outlier
                                                          : RowKind::surface;
   }
@@ -65,7 +62,7 @@ std::vector<RowKind> kinds_of_rows(const std::vector<double>& before, const std:
 std::vector<double> displacements(const std::vector<double>& before, const std::vector<double>& after) {
   std::vector<double> moved(before.size() / 3, std::numeric_limits<double>::quiet_NaN());
   for (std::size_t row = 0; row < moved.size(); ++row)
-    if (finite_row(before, row) && finite_row(after, row))
+    if (io::finite_row(&before[3 * row]) && io::finite_row(&after[3 * row]))
       moved[row] = std::hypot(after[3 * row] - before[3 * row], after[3 * row + 1] - before[3 * row + 1],
                               after[3 * row + 2] - before[3 * row + 2]);
   return moved;

@@ -1,13 +1,13 @@
 #include "pipeline/tiles/in_one_process.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include "pipeline/io/stream/atomic_file.h"
+#include "pipeline/io/table/cloud.h"
 #include "pipeline/tiles/row_file.h"
 
 namespace rfsmooth::pipeline::tiles {
@@ -121,10 +121,7 @@ std::uint64_t finite_rows(const std::string& path, const Context& context) {
   const RowFile file(path, context);
   std::uint64_t finite = 0;
   file.for_each_piece(context, [&](std::uint64_t, std::size_t count, const io::Bytes& rows) {
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::array<double, 3> xyz = file.get(rows, i);
-      finite += std::uint64_t(std::isfinite(xyz[0]) && std::isfinite(xyz[1]) && std::isfinite(xyz[2]));
-    }
+    for (std::size_t i = 0; i < count; ++i) finite += std::uint64_t(io::finite_row(file.get(rows, i).data()));
   });
   return finite;
 }

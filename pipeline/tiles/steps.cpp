@@ -184,13 +184,6 @@ void find_halo(const DenoiseOptions& options, const Positions& sample, const Con
   settled.radii = radius > 0 ? settled.halo / radius : kHaloRadii;
 }
 
-Positions positions_of(const std::vector<double>& xyz) {
-  Positions points(xyz.size() / 3);
-  for (std::size_t i = 0; i < points.size(); ++i)
-    points[i] = Vector3d(xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]);
-  return points;
-}
-
 /// Calls `visit(record, tile)` for the points of all other tiles that are in what `meets` and `holds`.
 template <class Meets, class Holds, class Visit>
 void for_each_around(const Job& job, std::size_t tile, const Context& context, Meets&& meets, Holds&& holds,
@@ -377,7 +370,7 @@ void settle_job(const Job& job, const DenoiseOptions& options, const Context& co
   const DenoiseReport report = value_or_throw(denoise(smooth.data(), n, how, context));
   Settled settled;
   settled.statistics = report.statistics;
-  in_arena(context, [&] { find_halo(options, positions_of(xyz), context, settled); });
+  in_arena(context, [&] { find_halo(options, io::points_of(xyz), context, settled); });
   const ordered_json json = {{"halo", settled.halo},
                              {"halo_radii", settled.radii},
                              {"widest", settled.widest},

@@ -259,15 +259,14 @@ std::uint64_t memory_of_whole(std::uint64_t finite, std::uint64_t bytes, bool no
 }
 
 /// \throw Failure if the cloud, which cannot go in tiles, needs more than --memory says.
-void check_memory(const DenoiseCommandOptions& options, const Job& job, const std::vector<double>& xyz) {
+void check_memory(const DenoiseCommandOptions& options, const Job& job, const std::vector<double>& xyz,
+                  const Context& context) {
   if (!options.memory) return;
-  std::uint64_t finite = 0;
-  for (std::size_t i = 0; i < xyz.size(); i += 3)
-    finite += std::uint64_t(std::isfinite(xyz[i]) && std::isfinite(xyz[i + 1]) && std::isfinite(xyz[i + 2]));
   const std::uint64_t most = bytes_of(*options.memory);
   std::error_code error;
   const std::uint64_t bytes = job.input == "-" ? 0 : std::filesystem::file_size(job.input, error),
-                      needed = memory_of_whole(finite, error ? 0 : bytes, options.normals.normals);
+                      needed = memory_of_whole(pipeline::io::finite_rows(xyz, context), error ? 0 : bytes,
+                                               options.normals.normals);
   if (needed <= most) return;
   throw Failure({ErrorCode::out_of_memory,
                  fmt::format("{}: needs about {:.0f} MB, --memory allows {:.0f} MB; a single file of binary "
@@ -282,7 +281,7 @@ std::string denoise_cloud(const DenoiseCommandOptions& options, Beside& beside, 
   check_fields(options, cloud);
   if (const auto error = refuse_without_memory(job.input, rfsmooth::denoise_memory(n))) throw Failure(*error);
   std::vector<double> xyz = pipeline::io::positions(cloud, context);
-  check_memory(options, job, xyz);
+  check_memory(options, job, xyz, context);
   const std::vector<double> strength =
       options.strength_field ? strengths(cloud, *options.strength_field, context) : std::vector<double>{};
   pipeline::PageContents page;

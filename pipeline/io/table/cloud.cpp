@@ -87,6 +87,18 @@ std::vector<double> positions(const Cloud& cloud, const Context& context) {
   return gather(cloud.points(), {cloud.xyz.begin(), cloud.xyz.end()}, context);
 }
 
+Positions points_of(const std::vector<double>& xyz) {
+  Positions points;
+  points.reserve(xyz.size() / 3);
+  for (std::size_t i = 0; i < xyz.size(); i += 3) points.emplace_back(&xyz[i]);
+  return points;
+}
+
+std::size_t finite_rows(const std::vector<double>& xyz, const Context& context) {
+  return sum_over(context, xyz.size() / 3, std::size_t{0},
+                  [&](std::size_t i) { return std::size_t(finite_row(&xyz[3 * i])); });
+}
+
 void set_positions(Cloud& cloud, const double* xyz, const Context& context) {
   warn_of_range(cloud, xyz, context);
   for (const std::size_t f : cloud.xyz)

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -13,6 +14,7 @@
 
 #include <rfsmooth/cloud_file.h>
 #include <rfsmooth/context.h>
+#include <rfsmooth/mesh.h>
 #include <rfsmooth/result.h>
 
 #include "pipeline/io/table/table.h"
@@ -74,6 +76,17 @@ struct Cloud {
 /// The coordinates, n x 3 row-major, as doubles; those of text with all their digits, whatever the type.
 /// O(n), parallel.
 std::vector<double> positions(const Cloud& cloud, const Context& context = {});
+
+/// The same rows as points. O(n).
+Positions points_of(const std::vector<double>& xyz);
+
+/// Whether x, y and z are finite.
+inline bool finite_row(const double* xyz) {
+  return std::isfinite(xyz[0]) && std::isfinite(xyz[1]) && std::isfinite(xyz[2]);
+}
+
+/// How many rows are, of n x 3. O(n), parallel.
+std::size_t finite_rows(const std::vector<double>& xyz, const Context& context = {});
 
 /// Writes n x 3 coordinates back, each in its own type, floats rounded to nearest. A coordinate equal to the
 /// present one keeps its bytes or text. Integer coordinates are rounded to whole numbers and a warning is

@@ -70,6 +70,20 @@ TEST(Scans, ComeBackBitForBit) {
   EXPECT_GE(seen, 3u) << "the crops at least";
 }
 
+TEST(Rows, AreFiniteOnlyWithAllThreeCoordinates) {
+  const std::vector<double> xyz = {1, 2, 3, -0.0, 1e308, 4};
+  EXPECT_EQ(points_of(xyz), (rfsmooth::Positions{{1, 2, 3}, {0, 1e308, 4}}));
+  EXPECT_EQ(finite_rows(xyz), 2U);
+  for (const double bad : {std::nan(""), HUGE_VAL, -HUGE_VAL})
+    for (std::size_t i = 0; i < 3; ++i) {
+      std::vector<double> one = xyz;
+      one[i] = bad;
+      EXPECT_FALSE(finite_row(one.data()));
+      EXPECT_TRUE(finite_row(&one[3]));
+      EXPECT_EQ(finite_rows(one), 1U);
+    }
+}
+
 TEST(Ply, HeaderAndOtherElementsSurvive) {
   const std::string file =
       "ply\r\ncomment first\r\nformat ascii 1.0\r\nobj_info a b\r\nelement camera 1\r\nproperty  float32 "

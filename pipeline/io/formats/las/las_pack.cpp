@@ -232,7 +232,7 @@ Cloud las_of_plain(const Cloud& cloud, const std::vector<double>& coordinates, c
   std::vector<double> xyz;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const double* p = &coordinates[3 * i];
-    if (!std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2])) continue;
+    if (!finite_row(p)) continue;
     finite.push_back(i);
     xyz.insert(xyz.end(), p, p + 3);
   }
