@@ -62,6 +62,10 @@ double processor_seconds() {
   return seconds(used.ru_utime) + seconds(used.ru_stime);
 }
 
+void append(const std::vector<Record>& points, std::vector<double>& xyz) {
+  for (const Record& r : points) xyz.insert(xyz.end(), {r.x, r.y, r.z});
+}
+
 Settled settled_of(const Job& job) {
   if (!std::filesystem::exists(job.settled())) refuse_step(job, "is not settled yet");
   return read_settled(job.settled());
@@ -216,16 +220,24 @@ void keep_middle(const Job& job, std::size_t tile, std::uint64_t wanted, std::ve
   std::sort(points.begin(), points.end(), [](const Record& a, const Record& b) { return a.row < b.row; });
 }
 
-/// `wanted` points of all tiles, of those that were measured: n x 3.
-std::vector<double> sample_of(const Job& job, std::uint64_t wanted, const Context& context) {
-  std::vector<double> xyz;
-  xyz.reserve(3 * std::size_t(wanted + job.tiles.size()));  // rounded up in every tile
+/// Points of all tiles, n x 3: those that are measured, where they are more, and those that are smoothed.
+struct Sample {
+  std::vector<double> measured, smoothed;
+};
+
+Sample sample_of(const Job& job, const Context& context) {
+  Sample sample;
+  const bool more = job.sample < job.measured;
+  const std::size_t rounded_up = job.tiles.size();  // in every tile
+  if (more) sample.measured.reserve(3 * (std::size_t(job.measured) + rounded_up));
+  sample.smoothed.reserve(3 * (std::size_t(job.sample) + rounded_up));
   for (std::size_t t = 0; t < job.tiles.size(); ++t) {
     std::vector<Record> points = read_records(job.sampled(t), context);
-    keep_middle(job, t, wanted, points);
-    for (const Record& r : points) xyz.insert(xyz.end(), {r.x, r.y, r.z});
+    if (more) append(points, sample.measured);
+    keep_middle(job, t, job.sample, points);
+    append(points, sample.smoothed);
   }
-  return xyz;
+  return sample;
 }
 
 /// How a tile's points moved, and how many have no surface near them. `now`, `outlier`: theirs come first.
@@ -360,10 +372,9 @@ void settle_job(const Job& job, const DenoiseOptions& options, const Context& co
   DenoiseOptions how = options;
   how.statistics.emplace();
   how.statistics->box = job.box;
-  if (job.sample < job.measured) {
-    how.statistics = measure_points(sample_of(job, job.measured, context), how, context);
-  }
-  const std::vector<double> xyz = sample_of(job, job.sample, context);
+  Sample sample = sample_of(job, context);
+  if (!sample.measured.empty()) how.statistics = measure_points(std::move(sample.measured), how, context);
+  const std::vector<double>& xyz = sample.smoothed;
   const std::size_t n = xyz.size() / 3;
   if (n < job.points) how.statistics->points = std::size_t(job.points);
   std::vector<double> smooth = xyz;
@@ -399,7 +410,7 @@ void run_tile(const Job& job, std::size_t tile, const DenoiseOptions& options,
   std::vector<Record> own = read_records(job.cut(tile), context);
   std::vector<double> xyz;
   std::vector<Around> around;
-  for (const Record& r : own) xyz.insert(xyz.end(), {r.x, r.y, r.z});
+  append(own, xyz);
   Surroundings surroundings = surroundings_of(job, tile, own, settled, context);
   narrow(job, tile, most, context, surroundings);
   const Halo& halo = surroundings.halo;
