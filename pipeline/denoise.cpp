@@ -32,7 +32,8 @@ namespace {
 void enter(const AutomaticReport& first, const AutomaticReport& last, DenoiseReport& report) {
   report.noise = first.noise;
   report.measured = first.measured;
-  report.noise_left = last.guide_strength > 0 ? last.left : last.noise;
+  report.not_smoothed = first.not_smoothed;
+  report.noise_left = last.not_smoothed ? last.noise : last.left;
   auto& effective = std::get<AutomaticOptions>(report.effective.flow.flow);
   if (effective.iterations == 1) effective.noise = Length{first.noise, false};
   report.stranded = last.stranded;
@@ -80,7 +81,12 @@ void alternate(Mesh& mesh, const Constraints& constraints, const DenoiseOptions&
     if (swaps > 0 && flow) flow->connectivity_changed(mesh, context);
   }
   context.report("smooth", 1);
-  if (first) enter(*first, *found, report);
+  if (first)
+    enter(*first, *found, report);
+  else if (steps == 0)
+    report.not_smoothed = NotSmoothed::no_iterations;
+  else if (automatic != nullptr)
+    report.not_smoothed = NotSmoothed::too_few_points;
 }
 
 /// The median edge length around each vertex: as far as a flow may move it. A noisy point is at least as far

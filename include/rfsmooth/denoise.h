@@ -72,6 +72,7 @@ struct DenoiseReport {
   NoiseSummary measured;
   double noise_left = 0;  ///< estimate of what is left of it; as before where nothing was smoothed, and under
                           ///< flows, which cannot tell
+  std::optional<NotSmoothed> not_smoothed;  ///< why nothing was; none: there was something to smooth
   double equalized_rms = 0;  ///< how far points went along the surface to lie evenly, root mean square, world
                              ///< units; 0 for flows that do not even them out
   double equalized_largest = 0;  ///< the farthest

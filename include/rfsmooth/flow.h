@@ -42,9 +42,18 @@ struct NoiseSummary {
   double step = 0;     ///< typical distance between depths that come in steps, world units; 0: they do not
 };
 
+/// Why everything stays where it is.
+enum class NotSmoothed {
+  no_iterations,     ///< as the options ask
+  no_strength,       ///< the same
+  too_few_points,    ///< for the automatic flow, which looks at 32 neighbours
+  too_little_noise,  ///< to be told from shape
+};
+
 /// What the automatic flow measured and chose.
 struct AutomaticReport {
   NoiseSummary measured;
+  std::optional<NotSmoothed> not_smoothed;  ///< why not; none: there was something to smooth
   double noise = 0;           ///< measured or stated, standard deviation along the normal, world units
   double guide_strength = 0;  ///< c of the guide's fairing, dimensionless
   double left = 0;            ///< estimate of the noise left, root mean square along the normal, world units

@@ -126,11 +126,12 @@ std::vector<Joined> join_job(const Job& job, const std::vector<std::string>& out
 /// What settle found.
 struct Settled {
   Statistics statistics;
-  double halo = 0;                   ///< typical width of what a tile is smoothed with, world units
-  double radii = 0;                  ///< the same in radii of the widest patch
-  std::size_t widest = 0;            ///< points of that
-  double noise = 0, noise_left = 0;  ///< as in DenoiseReport
-  NoiseSummary shows;                ///< the same
+  double halo = 0;                          ///< typical width of what a tile is smoothed with, world units
+  double radii = 0;                         ///< the same in radii of the widest patch
+  std::size_t widest = 0;                   ///< points of that
+  double noise = 0, noise_left = 0;         ///< as in DenoiseReport
+  NoiseSummary shows;                       ///< the same
+  std::optional<NotSmoothed> not_smoothed;  ///< the same
   double guide_strength = 0, tail_times = 1, spacing = 0;  ///< the same
 };
 

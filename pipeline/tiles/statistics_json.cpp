@@ -1,5 +1,6 @@
 #include "pipeline/tiles/statistics_json.h"
 
+#include <array>
 #include <cmath>
 
 namespace rfsmooth::pipeline::tiles {
@@ -7,6 +8,9 @@ namespace rfsmooth::pipeline::tiles {
 namespace {
 
 using nlohmann::ordered_json;
+
+constexpr std::array<const char*, 4> kNotSmoothed = {"no-iterations", "no-strength", "too-few-points",
+                                                     "too-little-noise"};  // in the order of NotSmoothed
 
 ordered_json json_of_place(const Eigen::Vector3d& p) {
   return {p[0], p[1], p[2]};
@@ -121,6 +125,16 @@ Statistics statistics_of(const ordered_json& json) {
                   json.at("sheets").at("variance").get<double>()};
   if (json.contains("thin_walls")) all.thin_walls = json.at("thin_walls").get<bool>();
   return all;
+}
+
+ordered_json json_of(const std::optional<NotSmoothed>& why) {
+  return why ? ordered_json(kNotSmoothed[std::size_t(*why)]) : ordered_json();
+}
+
+std::optional<NotSmoothed> not_smoothed_of(const ordered_json& json) {
+  for (std::size_t i = 0; i < kNotSmoothed.size(); ++i)
+    if (json == kNotSmoothed[i]) return NotSmoothed(i);
+  return std::nullopt;
 }
 
 }  // namespace rfsmooth::pipeline::tiles

@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <rfsmooth/flow.h>
 #include <rfsmooth/statistics.h>
 
 namespace rfsmooth::pipeline::tiles {
@@ -18,5 +19,11 @@ nlohmann::ordered_json json_of(const Statistics& statistics);
 
 /// \throw nlohmann::json::exception where something is missing or of another kind.
 Statistics statistics_of(const nlohmann::ordered_json& json);
+
+/// A word; null for none.
+nlohmann::ordered_json json_of(const std::optional<NotSmoothed>& why);
+
+/// None for anything that is no such word.
+std::optional<NotSmoothed> not_smoothed_of(const nlohmann::ordered_json& json);
 
 }  // namespace rfsmooth::pipeline::tiles

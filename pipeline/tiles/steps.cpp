@@ -345,6 +345,7 @@ Settled read_settled(const std::filesystem::path& path) {
             json.at("noise"),
             json.at("noise_left"),
             {shows.at("typical"), shows.at("loudest"), shows.at("shared_by"), shows.at("depth_step")},
+            not_smoothed_of(json.at("not_smoothed")),
             json.at("guide_strength"),
             json.at("tail_times"),
             json.at("spacing")};
@@ -392,6 +393,7 @@ void settle_job(const Job& job, const DenoiseOptions& options, const Context& co
                                {"loudest", report.measured.loudest},
                                {"shared_by", report.measured.shared},
                                {"depth_step", report.measured.step}}},
+                             {"not_smoothed", json_of(report.not_smoothed)},
                              {"guide_strength", report.guide_strength},
                              {"tail_times", report.tail_times},
                              {"spacing", report.spacing},
@@ -487,6 +489,7 @@ DenoiseReport report_of(const Job& job, const DenoiseOptions& options) {
   report.spacing = settled.spacing;
   report.noise = settled.noise;
   report.measured = settled.shows;
+  report.not_smoothed = settled.not_smoothed;
   report.noise_left = settled.noise_left;
   report.guide_strength = settled.guide_strength;
   report.tail_times = settled.tail_times;

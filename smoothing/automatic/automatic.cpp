@@ -70,7 +70,11 @@ Positions automatic_smoothing(Mesh& mesh, bool keep_rings, rfs_mesh::NoiseField 
   const std::size_t n = mesh.positions.size();
   report = {};
   report.left = noise.sigma;
-  if (n < std::size_t(HeightField::kNear) || !(noise.sigma > 0)) return mesh.positions;
+  if (n < std::size_t(HeightField::kNear))
+    report.not_smoothed = NotSmoothed::too_few_points;
+  else if (!(noise.sigma > 0))
+    report.not_smoothed = NotSmoothed::too_little_noise;
+  if (report.not_smoothed) return mesh.positions;
   const auto guide_strength = [&] {
     const double share = noise.sigma / spacing;
     return kGuide * share * share * std::max(1.0, share * share) * noise.shared;

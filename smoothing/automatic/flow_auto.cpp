@@ -100,7 +100,8 @@ std::optional<AutomaticReport> smooth_automatically(Mesh& mesh, const AutomaticO
   const Positions before = std::move(smooth);
   report.noise = sigma;
   report.measured = summary;
-  if (report.guide_strength > 0) {
+  if (options.strength == 0) report.not_smoothed = NotSmoothed::no_strength;
+  if (!report.not_smoothed) {
     if (options.equalize) {
       const Equalized moved = equalize(mesh.positions, before, noise, spacing, std::move(near), context);
       report.equalized = moved.rms;

@@ -227,6 +227,33 @@ TEST(Denoise, FewPointsAndDegenerateOnesStayWhereTheyAre) {
   }
 }
 
+TEST(Denoise, SaysWhyNothingWasSmoothed) {
+  const auto why_not = [](Flat xyz, const AnyFlow& flow) {
+    const Flat before = xyz;
+    DenoiseOptions options;
+    options.flow.flow = flow;
+    const auto why = run(xyz, options).not_smoothed;
+    EXPECT_EQ(same_bits(xyz, before), why.has_value());
+    return why;
+  };
+  const auto automatic = [](int iterations, double strength) {
+    AutomaticOptions options;
+    options.iterations = iterations;
+    options.strength = strength;
+    return options;
+  };
+  Flat plane;
+  for (int i = 0; i < 400; ++i) plane.insert(plane.end(), {double(i / 20), double(i % 20), 0});
+  EXPECT_EQ(why_not(sphere(), automatic(1, 1)), std::nullopt);
+  EXPECT_EQ(why_not(sphere(), automatic(0, 1)), NotSmoothed::no_iterations);
+  EXPECT_EQ(why_not(sphere(), automatic(1, 0)), NotSmoothed::no_strength);
+  EXPECT_EQ(why_not(plane, automatic(1, 1)), NotSmoothed::too_little_noise);
+  EXPECT_EQ(why_not(Flat(plane.begin(), plane.begin() + 30), automatic(1, 1)), NotSmoothed::too_few_points);
+  EXPECT_EQ(why_not({1, 2, 3}, automatic(1, 1)), NotSmoothed::too_few_points);
+  EXPECT_EQ(why_not(sphere(), hc(1).flow.flow), std::nullopt);
+  EXPECT_EQ(why_not(sphere(), hc(0).flow.flow), NotSmoothed::no_iterations);
+}
+
 TEST(Denoise, NeverThrowsAPointFar) {
   auto clouds = test::awkward_clouds(400);
   clouds.push_back({"two", {{0, 0, 0}, {1, 0, 0}}});

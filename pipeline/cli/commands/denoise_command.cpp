@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <limits>
 #include <memory>
+#include <stdexcept>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -25,7 +26,7 @@
 #include "pipeline/io/formats/las/las_scale.h"
 #include "pipeline/page/page.h"
 #include "pipeline/tiles/in_one_process.h"
-#include "smoothing/automatic/patches/height_field.h"
+#include "pipeline/tiles/statistics_json.h"
 
 namespace rfsmooth::cli {
 
@@ -106,6 +107,7 @@ void enter(const DenoiseReport& done, const DenoiseCommandOptions& options, orde
   entry["noise"] = done.noise;
   entry["noise_measured"] = json_of(done.measured);
   entry["noise_left"] = done.noise_left;
+  entry["not_smoothed"] = pipeline::tiles::json_of(done.not_smoothed);
   entry["guide_strength"] = done.guide_strength;
   entry["tail_times"] = done.tail_times;
   entry["equalized"] = {{"rms", done.equalized_rms}, {"largest", done.equalized_largest}};
@@ -198,13 +200,18 @@ std::string said_of_outliers(const DenoiseReport& done, const DenoiseCommandOpti
 
 /// Why nothing was smoothed, or nothing.
 std::string why_not(const DenoiseReport& done) {
-  if (rfsmooth::iterations(done.effective.flow.flow) == 0) return "not smoothed, as --iterations 0 asks";
-  const auto* automatic = std::get_if<AutomaticOptions>(&done.effective.flow.flow);
-  if (automatic == nullptr) return "";
-  if (automatic->strength == 0) return "not smoothed, as --strength 0 asks";
-  if (done.guide_strength > 0) return "";
-  if (done.distinct < std::size_t(smoothing::HeightField::kNear)) return "too few points to smooth";
-  return "too little to smooth (--strength 2 does it all the same)";
+  if (!done.not_smoothed) return "";
+  switch (*done.not_smoothed) {
+    case NotSmoothed::no_iterations:
+      return "not smoothed, as --iterations 0 asks";
+    case NotSmoothed::no_strength:
+      return "not smoothed, as --strength 0 asks";
+    case NotSmoothed::too_few_points:
+      return "too few points to smooth";
+    case NotSmoothed::too_little_noise:
+      return "too little to smooth (--strength 2 does it all the same)";
+  }
+  throw std::invalid_argument("why_not: not a NotSmoothed");
 }
 
 /// ", as stated" of noise that was; else what there is to say of what was measured, and what it became.

@@ -67,10 +67,12 @@ TEST_F(DenoiseCommand, SaysOfNoiseWhatBelongsTogether) {
   const auto report = [&] { return nlohmann::json::parse(take("r.json")); };
   said({});
   const double noise = report()["noise"];
+  EXPECT_TRUE(report().at("not_smoothed").is_null());
   for (const char* option : {"--strength", "--iterations"}) {
     const std::string err = said({option, "0"});
     EXPECT_THAT(err, HasSubstr(std::string(", not smoothed, as ") + option + " 0 asks;"));
     EXPECT_THAT(err, Not(HasSubstr("too little")));
+    EXPECT_EQ("--" + report()["not_smoothed"].get<std::string>().substr(3), option);  // "no-strength"
     EXPECT_EQ(report()["noise_left"], report()["noise"]) << option;
     EXPECT_EQ(report()["noise"], noise) << option;
   }

@@ -549,6 +549,18 @@ TEST_F(Tiles, DenoiseSaysInTilesWhatItSaysOfTheWholeCloud) {
   EXPECT_EQ(noise_in(tiled.err), noise_in(whole.err));
 }
 
+TEST_F(Tiles, WhyNothingWasSmoothedIsSaidInTiles) {
+  RichCloud clean;
+  for (int i = 0; i < 300 * 300; ++i)
+    clean.xyz.insert(clean.xyz.end(), {double(i / 300), double(i % 300), 0});
+  put("in.ply", clean.bytes());
+  const Ran ran = run({"denoise", "--memory", "80M", "in.ply", "out.ply"});
+  EXPECT_EQ(ran.code, 0);
+  EXPECT_THAT(ran.err, HasSubstr("in tiles"));
+  EXPECT_THAT(ran.err, HasSubstr("too little to smooth"));
+  EXPECT_TRUE(take("out.ply") == take("in.ply"));
+}
+
 TEST_F(Tiles, RowsThatAreNotFiniteTakeNoMemory) {
   put("in.ply", plane_with_normals(300, 5));  // 45,000 points
   const Ran ran = run({"denoise", "--memory", "80M", "in.ply", "out.ply"});
