@@ -1,26 +1,18 @@
 /// rfsmooth denoise: a cloud in, the same cloud without the noise out.
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <filesystem>
 #include <limits>
 #include <memory>
-#include <stdexcept>
-#include <string_view>
 
 #include <fmt/format.h>
 
-#include <rfsmooth/denoise.h>
-
 #include "pipeline/cli/commands/command.h"
+#include "pipeline/cli/commands/denoise/summary.h"
+#include "pipeline/cli/commands/denoise/within_memory.h"
 #include "pipeline/cli/console/report.h"
 #include "pipeline/cli/console/scale_said.h"
-#include "pipeline/cli/console/trace_file.h"
-#include "pipeline/cli/files/cloud_jobs.h"
-#include "pipeline/cli/files/cloud_normals.h"
 #include "pipeline/cli/files/constraint_fields.h"
 #include "pipeline/cli/files/memory.h"
-#include "pipeline/cli/options/text_values.h"
 #include "pipeline/cli/other_program.h"
 #include "pipeline/cli/own_files.h"
 #include "pipeline/io/formats/las/las_scale.h"
@@ -35,54 +27,6 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr const char *kDisplacement = "displacement", *kOutlier = "outlier";
-
-struct DenoiseCommandOptions {
-  DenoiseOptions denoise;
-  std::optional<std::string> strength_field;
-  bool write_displacement = false;
-  bool mark_outliers = false;
-  bool keep_scale = false;
-  std::optional<std::string> html;
-  std::optional<std::string> memory, statistics;
-  NormalsFields normals;
-  TraceFile trace;
-  JobOptions job;
-
-  template <class Self, class Visit>
-  static void describe(Self& self, Visit&& visit) {
-    DenoiseOptions::describe(self.denoise, visit);
-    visit(OptionInfo{"strength-field", "field in [0, 1] of the input: 0 stays, 1 is smoothed fully", ""},
-          self.strength_field);
-    visit(OptionInfo{"write-displacement", "add a field 'displacement': how far each point moved", ""},
-          self.write_displacement);
-    visit(OptionInfo{"mark-outliers", "add a field 'outlier': 1 for points with no surface near, else 0", ""},
-          self.mark_outliers);
-    visit(
-        OptionInfo{
-            "keep-scale",
-            "LAS: keep the scale of the file, also where its steps are coarser than half of the noise left",
-            ""},
-        self.keep_scale);
-    visit(OptionInfo{"html", "a page to look at what was done, for browsers (see report); of one input",
-                     "file"},
-          self.html);
-    visit(OptionInfo{"memory",
-                     "take no more than that (8G, 500M): larger clouds are smoothed in tiles, on the disk of "
-                     "the output; auto: what the machine has",
-                     ""},
-          self.memory);
-    visit(OptionInfo{"statistics",
-                     "what the cloud as a whole is like, as 'rfsmooth tiles settle' wrote it, instead of "
-                     "measuring it: the result in tiles is like that but for the seams",
-                     "file"},
-          self.statistics);
-    NormalsFields::describe(self.normals, visit);
-    TraceFile::describe(self.trace, visit);
-  }
-
-  bool marks() const { return mark_outliers || denoise.outliers == Outliers::mark; }
-  bool removes() const { return denoise.outliers == Outliers::remove; }
-};
 
 /// What is written beside the cloud, once that is there.
 struct Beside {
@@ -113,19 +57,6 @@ void enter(const DenoiseReport& done, const DenoiseCommandOptions& options, orde
   entry["equalized"] = {{"rms", done.equalized_rms}, {"largest", done.equalized_largest}};
   entry["largest_move"] = done.largest_move;
   entry["rms_move"] = done.rms_move;
-}
-
-/// \param had_normals whether the input has fields of that name
-/// \param as_las whether the output is LAS
-void tell_points(const DenoiseReport& done, const DenoiseCommandOptions& options, bool had_normals,
-                 bool as_las, const Job& job, Console& console) {
-  if (done.finite < done.points)
-    console.detail(fmt::format("{}: {} points are not finite; {}", job.input, done.points - done.finite,
-                               as_las ? "LAS cannot hold them" : "they stay as they are"));
-  if (done.moved > 0 && had_normals && !options.normals.normals)
-    console.warn(fmt::format(
-        "{}: the normals are kept and stale: they describe the old positions (--normals makes new ones)",
-        job.input));
 }
 
 void tell(const DenoiseReport& done, const DenoiseCommandOptions& options, const pipeline::io::Cloud& cloud,
@@ -191,49 +122,6 @@ bool keeps_grid(const pipeline::io::Cloud& cloud) {
   return has_nan;
 }
 
-/// "; 3 outliers removed", or nothing.
-std::string said_of_outliers(const DenoiseReport& done, const DenoiseCommandOptions& options) {
-  if (done.outliers == 0) return "";
-  const char* what = options.removes() ? "removed" : options.marks() ? "marked" : "left in place";
-  return fmt::format("; {} outlier{} {}", done.outliers, done.outliers == 1 ? "" : "s", what);
-}
-
-/// Why nothing was smoothed, or nothing.
-std::string why_not(const DenoiseReport& done) {
-  if (!done.not_smoothed) return "";
-  switch (*done.not_smoothed) {
-    case NotSmoothed::no_iterations:
-      return "not smoothed, as --iterations 0 asks";
-    case NotSmoothed::no_strength:
-      return "not smoothed, as --strength 0 asks";
-    case NotSmoothed::too_few_points:
-      return "too few points to smooth";
-    case NotSmoothed::too_little_noise:
-      return "too little to smooth (--strength 2 does it all the same)";
-  }
-  throw std::invalid_argument("why_not: not a NotSmoothed");
-}
-
-/// ", as stated" of noise that was; else what there is to say of what was measured, and what it became.
-std::string said_of_noise(const DenoiseReport& done, const DenoiseCommandOptions& options) {
-  const auto* typed = std::get_if<AutomaticOptions>(&options.denoise.flow.flow);
-  const bool stated = typed != nullptr && typed->noise;
-  std::string words = stated ? ", as stated" : "";
-  if (const std::string why = why_not(done); !why.empty()) return words + ", " + why;
-  if (!stated) words += in_words(done.measured);
-  if (done.tail_times > 1) words += fmt::format(", some points {:.2g} times that", done.tail_times);
-  if (done.noise_left < done.noise) words += fmt::format(", about {:.3g} left", done.noise_left);
-  return words;
-}
-
-/// What came in, its noise, and how far it moved: a line each.
-std::string summary(const DenoiseReport& done, const DenoiseCommandOptions& options) {
-  return fmt::format(
-      "{} points, {} finite{}\nnoise {:.3g}{}; spacing {:.4g}\nlargest move {:.4g}, rms {:.4g}", done.points,
-      done.finite, said_of_outliers(done, options), done.noise, said_of_noise(done, options), done.spacing,
-      done.largest_move, done.rms_move);
-}
-
 /// What --html shows of what became of the cloud; its normals only if they are of the new surface. Outliers
 /// that are to be removed are still there: the page shows them on one side.
 void page_after(const DenoiseReport& done, const DenoiseCommandOptions& options,
@@ -249,36 +137,6 @@ void page_after(const DenoiseReport& done, const DenoiseCommandOptions& options,
                       {"noise", fmt::format("{:.3g}", done.noise)}};
   if (done.noise_left < done.noise)
     contents.figures.emplace_back("about left of it", fmt::format("{:.3g}", done.noise_left));
-}
-
-/// \throw Failure (usage).
-std::uint64_t bytes_of(const std::string& text) {
-  const double bytes = read_amount(text).value_or(0);
-  if (!(bytes >= 1e6) || !(bytes < 1e18))
-    throw Failure({ErrorCode::usage, fmt::format("--memory takes bytes, 8G or 500M say, not '{}'", text)});
-  return std::uint64_t(bytes);
-}
-
-/// Bytes that a cloud takes as a whole: `finite` points of a file of `bytes`.
-std::uint64_t memory_of_whole(std::uint64_t finite, std::uint64_t bytes, bool normals) {
-  constexpr std::uint64_t kMoreForNormals = 350;  // a point: 640 to 1230 in all on nine scans
-  return rfsmooth::denoise_memory(std::size_t(finite)) + (normals ? kMoreForNormals * finite : 0) + bytes;
-}
-
-/// \throw Failure if the cloud, which cannot go in tiles, needs more than --memory says.
-void check_memory(const DenoiseCommandOptions& options, const Job& job, const std::vector<double>& xyz,
-                  const Context& context) {
-  if (!options.memory) return;
-  const std::uint64_t most = bytes_of(*options.memory);
-  std::error_code error;
-  const std::uint64_t bytes = job.input == "-" ? 0 : std::filesystem::file_size(job.input, error),
-                      needed = memory_of_whole(pipeline::io::finite_rows(xyz, context), error ? 0 : bytes,
-                                               options.normals.normals);
-  if (needed <= most) return;
-  throw Failure({ErrorCode::out_of_memory,
-                 fmt::format("{}: needs about {:.0f} MB, --memory allows {:.0f} MB; a single file of binary "
-                             "PLY, binary PCD or LAS would be smoothed in tiles",
-                             job.input, std::ceil(double(needed) / 1e6), double(most) / 1e6)});
 }
 
 std::string denoise_cloud(const DenoiseCommandOptions& options, Beside& beside, pipeline::io::Cloud& cloud,
@@ -349,57 +207,6 @@ void check_denoise(const DenoiseCommandOptions& options, const Invocation& typed
   if (plan_jobs(typed.arguments, options.job.files.output).size() > 1)
     throw Failure({ErrorCode::usage, "--html shows one cloud; several are named"});
   check_no_cloud_target(*options.html, options.job.files.force, "page");
-}
-
-/// What the options ask for that is made of the whole cloud at once; empty: nothing.
-std::string needs_whole_cloud(const DenoiseCommandOptions& options) {
-  const FileOptions& files = options.job.files;
-  const std::pair<bool, const char*> needs[] = {{options.html.has_value(), "--html"},
-                                                {options.strength_field.has_value(), "--strength-field"},
-                                                {options.write_displacement, "--write-displacement"},
-                                                {options.marks(), "marked outliers"},
-                                                {options.removes(), "--outliers remove"},
-                                                {options.trace.trace.has_value(), "--trace"},
-                                                {options.statistics.has_value(), "--statistics"},
-                                                {options.job.run.report.has_value(), "--report"},
-                                                {files.format || files.encoding, "another format"}};
-  for (const auto& [asked, name] : needs)
-    if (asked) return name;
-  return "";
-}
-
-/// The memory to stay in, if the cloud is smoothed in tiles: where one file needs more. None: as a whole.
-std::optional<std::uint64_t> memory_of_tiles(const DenoiseCommandOptions& options, const Job& job,
-                                             const Context& context) {
-  const std::optional<std::uint64_t> asked =
-      options.memory ? std::optional(bytes_of(*options.memory)) : std::nullopt;
-  if (job.input == "-" || job.output == "-") return std::nullopt;
-  const std::optional<std::size_t> there = available_memory();
-  if (!asked && !there) return std::nullopt;
-  const std::uint64_t most = asked ? *asked : std::uint64_t(*there);
-  std::error_code error;
-  const std::uint64_t bytes = std::filesystem::file_size(job.input, error);
-  constexpr std::uint64_t kLeastRow = 3;  // bytes: three coordinates
-  const bool normals = options.normals.normals;
-  if (error || memory_of_whole(bytes / kLeastRow, bytes, normals) <= most) return std::nullopt;
-  const auto file = pipeline::tiles::in_pieces(job.input, context);
-  if (!file || memory_of_whole(file->rows, bytes, normals) <= most) return std::nullopt;
-  const std::uint64_t finite = pipeline::tiles::finite_rows(job.input, context);
-  if (memory_of_whole(finite, bytes, normals) <= most) return std::nullopt;
-  if (const std::string what = needs_whole_cloud(options); !what.empty()) {
-    if (!asked) return std::nullopt;  // refused where the whole cloud is, with both figures
-    throw Failure({ErrorCode::usage,
-                   fmt::format("{}: larger than --memory, and {} needs the whole cloud", job.input, what)});
-  }
-  if (asked) pipeline::tiles::check_format(file->format, job.output);
-  if (pipeline::io::format_of_extension(job.output).value_or(file->format) != file->format)
-    return std::nullopt;
-  if (const std::uint64_t least = pipeline::tiles::least_memory(finite, normals); most < least) {
-    if (!asked) return std::nullopt;
-    throw Failure({ErrorCode::usage, fmt::format("{}: in tiles it takes --memory {:.0f}M or more", job.input,
-                                                 std::ceil(double(least) / 1e6))});
-  }
-  return most;
 }
 
 /// One cloud in tiles. \return the exit code, or none if it is to be smoothed as a whole.

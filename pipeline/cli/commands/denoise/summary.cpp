@@ -1,0 +1,69 @@
+#include "pipeline/cli/commands/denoise/summary.h"
+
+#include <stdexcept>
+#include <variant>
+
+#include <fmt/format.h>
+
+#include "pipeline/cli/console/report.h"
+
+namespace rfsmooth::cli {
+
+namespace {
+
+/// "; 3 outliers removed", or nothing.
+std::string said_of_outliers(const DenoiseReport& done, const DenoiseCommandOptions& options) {
+  if (done.outliers == 0) return "";
+  const char* what = options.removes() ? "removed" : options.marks() ? "marked" : "left in place";
+  return fmt::format("; {} outlier{} {}", done.outliers, done.outliers == 1 ? "" : "s", what);
+}
+
+/// Why nothing was smoothed, or nothing.
+std::string why_not(const DenoiseReport& done) {
+  if (!done.not_smoothed) return "";
+  switch (*done.not_smoothed) {
+    case NotSmoothed::no_iterations:
+      return "not smoothed, as --iterations 0 asks";
+    case NotSmoothed::no_strength:
+      return "not smoothed, as --strength 0 asks";
+    case NotSmoothed::too_few_points:
+      return "too few points to smooth";
+    case NotSmoothed::too_little_noise:
+      return "too little to smooth (--strength 2 does it all the same)";
+  }
+  throw std::invalid_argument("why_not: not a NotSmoothed");
+}
+
+/// ", as stated" of noise that was; else what there is to say of what was measured, and what it became.
+std::string said_of_noise(const DenoiseReport& done, const DenoiseCommandOptions& options) {
+  const auto* typed = std::get_if<AutomaticOptions>(&options.denoise.flow.flow);
+  const bool stated = typed != nullptr && typed->noise;
+  std::string words = stated ? ", as stated" : "";
+  if (const std::string why = why_not(done); !why.empty()) return words + ", " + why;
+  if (!stated) words += in_words(done.measured);
+  if (done.tail_times > 1) words += fmt::format(", some points {:.2g} times that", done.tail_times);
+  if (done.noise_left < done.noise) words += fmt::format(", about {:.3g} left", done.noise_left);
+  return words;
+}
+
+}  // namespace
+
+void tell_points(const DenoiseReport& done, const DenoiseCommandOptions& options, bool had_normals,
+                 bool as_las, const Job& job, Console& console) {
+  if (done.finite < done.points)
+    console.detail(fmt::format("{}: {} points are not finite; {}", job.input, done.points - done.finite,
+                               as_las ? "LAS cannot hold them" : "they stay as they are"));
+  if (done.moved > 0 && had_normals && !options.normals.normals)
+    console.warn(fmt::format(
+        "{}: the normals are kept and stale: they describe the old positions (--normals makes new ones)",
+        job.input));
+}
+
+std::string summary(const DenoiseReport& done, const DenoiseCommandOptions& options) {
+  return fmt::format(
+      "{} points, {} finite{}\nnoise {:.3g}{}; spacing {:.4g}\nlargest move {:.4g}, rms {:.4g}", done.points,
+      done.finite, said_of_outliers(done, options), done.noise, said_of_noise(done, options), done.spacing,
+      done.largest_move, done.rms_move);
+}
+
+}  // namespace rfsmooth::cli
