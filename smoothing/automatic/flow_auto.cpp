@@ -16,6 +16,8 @@ namespace {
 
 /// Where most of the scatter is shape, noise of twice kNoNoise cannot be told from detail either: better
 /// leave a clean cloud alone, unless a part of it is clearly louder than that.
+/// The loudest tenth is of the sites, not of the points as in `summary_of`: the sites are those of the whole
+/// cloud in each of its tiles, too, so that all tiles decide alike.
 double measured(const rfs_mesh::NoiseField& noise, double spacing) {
   constexpr double kMostlyShape = 0.4;  // of the development shapes, clean and with noise of 0.1 spacings
   const double detail = 2 * rfs_mesh::kNoNoise * spacing;
