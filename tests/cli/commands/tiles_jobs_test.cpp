@@ -1,0 +1,184 @@
+/// rfsmooth tiles: the same bytes however the work was done.
+#include <algorithm>
+#include <atomic>
+#include <csignal>
+#include <future>
+
+#include <gmock/gmock.h>
+
+#include "tests/cli/support/small_clouds.h"
+#include "tests/cli/support/tile_jobs.h"
+#include "tests/support/las_bytes.h"
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+namespace rfsmooth::test {
+namespace {
+
+TEST_F(Tiles, SameBytesForWorkersInAnyOrderAgainAndAfterKillsAndDamage) {
+  put("in.ply", strip(0.4).bytes());
+  const std::string expected = joined({"in.ply"}, "one", "one.ply");
+  std::vector<std::string> tiles = settled({"in.ply"}, "many");
+  ASSERT_GE(tiles.size(), 8u);
+  std::vector<std::string> twice = tiles;
+  twice.insert(twice.end(), tiles.begin(), tiles.end());
+  std::shuffle(twice.begin(), twice.end(), std::mt19937(3));
+  // Four workers are killed at random times, 20 of them on the way, though what is there is taken away again.
+  std::atomic<int> killed = 0;
+  const auto kill = [&](std::size_t worker) {
+    std::mt19937 random(unsigned(worker) + 1);
+    for (std::size_t k = worker; killed < 20; k += 4) {
+      const std::string& tile = twice[k % twice.size()];
+      const std::string after = std::to_string(double(1 + random() % 200) / 1000);
+      std::error_code ignored;
+      std::filesystem::remove(at("many/done/" + tile), ignored);
+      killed += run_program("timeout", {"-s", "KILL", after, RFSMOOTH_COMMAND, "tiles", "run", at("many"),
+                                        tile, "--threads", "1"})
+                            .code == 128 + SIGKILL
+                    ? 1
+                    : 0;
+    }
+  };
+  const auto finish = [&](std::size_t worker) {
+    for (std::size_t k = worker; k < twice.size(); k += 4)
+      run_program(RFSMOOTH_COMMAND, {"tiles", "run", at("many"), twice[k], "--threads", "1"});
+  };
+  const auto in_four = [](const auto& work) {
+    std::vector<std::future<void>> workers;
+    for (std::size_t w = 0; w < 4; ++w) workers.push_back(std::async(std::launch::async, work, w));
+    for (auto& worker : workers) worker.get();
+  };
+  in_four(kill);
+  in_four(finish);
+  step({"join", "many", "many.ply"});
+  EXPECT_TRUE(take("many.ply") == expected);
+  const auto all = nlohmann::json::parse(run({"tiles", "status", "many", "--json"}).out);
+  EXPECT_GT(all["halo_share"].get<double>(), 0.1);  // a strip is narrow, and its tiles are short
+  EXPECT_LT(all["halo_share"].get<double>(), double(tiles.size()));
+  EXPECT_GT(all["seconds"].get<double>(), 0);
+
+  // Half a result, and one with a byte of another: both are found, made again, and nothing else is.
+  std::filesystem::resize_file(at("many/done/2"), std::filesystem::file_size(at("many/done/2")) / 2);
+  std::string damaged = take("many/done/5");
+  damaged[damaged.size() / 2] = char(damaged[damaged.size() / 2] ^ 1);
+  put("many/done/5", damaged);
+  const auto status = nlohmann::json::parse(run({"tiles", "status", "many", "--json"}).out);
+  EXPECT_EQ(status["missing"], nlohmann::json::array({2, 5}));
+  const Ran early = run({"tiles", "join", "many", "early.ply"});
+  EXPECT_EQ(early.code, 2);
+  EXPECT_THAT(early.err, HasSubstr("tile 2"));
+  EXPECT_FALSE(there("early.ply"));
+  for (const std::string& tile : tiles) step({"run", "many", tile});
+  step({"join", "many", "again.ply"});
+  EXPECT_TRUE(take("again.ply") == expected);
+}
+
+TEST_F(Tiles, AFolderOfFilesIsOneCloud) {
+  const RichCloud all = strip(0.4);
+  RichCloud first = all, second = all;
+  const std::size_t cut = 3 * (all.size() / 3);
+  first.xyz.resize(cut);
+  second.xyz.erase(second.xyz.begin(), second.xyz.begin() + std::ptrdiff_t(cut));
+  put("all.ply", all.bytes());
+  put("a.ply", first.bytes());
+  put("b.ply", second.bytes());
+  const std::string one = joined({"all.ply"}, "one", "one.ply");
+  joined({"a.ply", "b.ply"}, "two", "out");
+  const std::string a = take("out/a.ply"), b = take("out/b.ply");
+  for (std::size_t i = 0; i < all.size(); ++i)
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double x = all.coordinate(one, i, axis);
+      const double y =
+          i < first.size() ? first.coordinate(a, i, axis) : second.coordinate(b, i - first.size(), axis);
+      ASSERT_TRUE(x == y || (std::isnan(x) && std::isnan(y))) << i;
+    }
+}
+
+// As denoise has it (las_test.cpp), the bytes too: one tile is the whole.
+TEST_F(Tiles, ACoarseScaleOfALasFileIsRefinedAsForTheWholeCloud) {
+  constexpr double kScale = 0.2;
+  std::mt19937_64 engine(9);
+  std::normal_distribution<double> noise(0, 0.2);
+  LasBytes las;
+  las.scale = {kScale, kScale, kScale};
+  for (int i = 0; i < 60; ++i)
+    for (int j = 0; j < 60; ++j) {
+      las.xyz.push_back({});
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double at = k == 0 ? i : k == 1 ? j : 0;
+        las.xyz.back()[k] = std::int32_t(std::lround((at + noise(engine)) / kScale));
+      }
+    }
+  put("in.las", las.bytes());
+  for (const bool keep : {false, true}) {
+    const std::vector<std::string> option(keep ? 1 : 0, "--keep-scale");
+    std::vector<std::string> whole = {"denoise", "--force", "in.las", "whole.las"},
+                             join = {"tiles", "join", "--force", "job", "tiled.las"};
+    whole.insert(whole.end(), option.begin(), option.end());
+    join.insert(join.end(), option.begin(), option.end());
+    EXPECT_EQ(run(whole).code, 0);
+    for (const std::string& tile : settled({"in.las"}, "job", "1000000")) step({"run", "job", tile});
+    const Ran ran = run(join);
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    EXPECT_TRUE(take("tiled.las") == take("whole.las"));
+    if (keep)
+      EXPECT_THAT(ran.err, Not(HasSubstr("scale")));
+    else
+      EXPECT_THAT(ran.err, HasSubstr("is coarse for noise of"));
+    EXPECT_EQ(LasBytes::get<double>(take("tiled.las"), 131) < kScale, !keep);
+  }
+  const Ran other = run({"tiles", "join", "job", "out.ply"});
+  EXPECT_EQ(other.code, 2);
+  EXPECT_THAT(other.err, HasSubstr("keeps its format"));
+}
+
+TEST_F(Tiles, WhatCannotBeDoneIsRefusedWithWhatToDo) {
+  put("in.xyz", "1 2 3\n4 5 6\n");
+  const Ran text = run({"tiles", "plan", "in.xyz", "job"});
+  EXPECT_EQ(text.code, 2);
+  EXPECT_THAT(text.err, HasSubstr("binary PLY"));
+  put("in.ply", strip(0.4).bytes());
+  EXPECT_EQ(run({"tiles", "run", "nothing", "0"}).code, 3);
+  EXPECT_EQ(run({"tiles", "plan", "in.ply", "job", "--tile-points", "3000"}).code, 0);
+  const Ran other = run({"tiles", "plan", "in.ply", "job", "--tile-points", "3000", "--strength", "0.5"});
+  EXPECT_THAT(run({"tiles", "plan", "in.ply", "job", "--tile-points", "3.5"}).err, HasSubstr("or 5M"));
+  EXPECT_EQ(other.code, 5);
+  EXPECT_THAT(other.err, HasSubstr("other inputs or options"));
+  EXPECT_EQ(run({"tiles", "plan", "in.ply", "job", "--tile-points", "3K"}).code, 0) << "the same again";
+  const Ran early = run({"tiles", "settle", "job"});
+  EXPECT_EQ(early.code, 2);
+  EXPECT_THAT(early.err, HasSubstr("tile 0 is not measured"));
+  EXPECT_EQ(run({"tiles", "measure", "job", "1000"}).code, 2);
+  const Ran later = run({"tiles", "settle", "job", "--strength", "2"});
+  EXPECT_EQ(later.code, 2);
+  EXPECT_THAT(later.err, HasSubstr("tiles plan"));
+}
+
+TEST_F(Tiles, AFullDiskIsAnErrorAndTheWorkGoesOnWhenThereIsRoom) {
+  put("in.ply", noisy_plane(150).bytes());
+  std::filesystem::create_directory(at("disk"));
+  RunSetup setup;
+  setup.folder = at("");
+  const std::string script =
+      "mount -t tmpfs -o size=900k tmpfs disk || exit 99\n"
+      "R='" RFSMOOTH_COMMAND
+      "'\n"
+      "$R tiles plan --tile-points 3000 in.ply disk/job -q || exit 98\n"
+      "n=$($R tiles status disk/job --json | sed -n 's/.*\"tiles\": \\([0-9]*\\).*/\\1/p')\n"
+      "$R tiles measure disk/job $(seq 0 $((n - 1))) -q; echo first $?\n"
+      "mount -o remount,size=64m disk\n"
+      "$R tiles measure disk/job $(seq 0 $((n - 1))) -q; echo then $?\n"
+      "$R tiles settle disk/job -q && $R tiles run disk/job $(seq 0 $((n - 1))) -q &&\n"
+      "$R tiles join disk/job full.ply -q; echo last $?\n";
+  std::vector<std::string> arguments = {"--mount", "sh", "-c", script};
+  if (geteuid() != 0) arguments.insert(arguments.begin(), {"--user", "--map-root-user"});
+  const Ran ran = run_program("unshare", arguments, setup);
+  if (ran.code == 99 || ran.code == 1) GTEST_SKIP() << "mounting is not allowed here";
+  EXPECT_EQ(ran.out, "first 5\nthen 0\nlast 0\n") << ran.err;
+  EXPECT_THAT(ran.err, HasSubstr("No space left"));
+  EXPECT_TRUE(take("full.ply") == joined({"in.ply"}, "job", "plenty.ply"));
+}
+
+}  // namespace
+}  // namespace rfsmooth::test

@@ -1,0 +1,129 @@
+/// rfsmooth denoise --memory: in tiles where the memory is less.
+#include <cmath>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include "pipeline/tiles/in_one_process.h"
+#include "tests/cli/support/small_clouds.h"
+#include "tests/cli/support/tile_jobs.h"
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+namespace rfsmooth::test {
+namespace {
+
+TEST_F(Tiles, DenoiseTakesTilesWhereTheMemoryIsLess) {
+  put("in.ply", noisy_plane(300).bytes());
+  const Ran ran = run({"denoise", "--memory", "80M", "in.ply", "out.ply"});
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  EXPECT_EQ(names(), (std::vector<std::string>{"in.ply", "out.ply"})) << "nothing is left";
+  const auto how = pipeline::tiles::plan_within(80'000'000, false).plan;
+  EXPECT_GT(how.sample_points, 50'000U);
+  EXPECT_THAT(ran.err, HasSubstr(fmt::format("in tiles of {} points", how.tile_points)));
+  EXPECT_TRUE(take("out.ply") == joined({"in.ply"}, "job", "steps.ply", std::to_string(how.tile_points),
+                                        std::to_string(how.sample_points)));
+  EXPECT_LT(how.tile_points, pipeline::tiles::plan_within(800'000'000, false).plan.tile_points / 10);
+  EXPECT_EQ(run({"denoise", "--memory", "1T", "in.ply", "whole.ply"}).code, 0);
+  EXPECT_EQ(run({"denoise", "in.ply", "plain.ply"}).code, 0);
+  EXPECT_TRUE(take("whole.ply") == take("plain.ply"));
+  const Ran wrong = run({"denoise", "--memory", "much", "in.ply", "x.ply"});
+  EXPECT_EQ(wrong.code, 2);
+  EXPECT_THAT(wrong.err, HasSubstr("'much'"));
+  for (const std::vector<std::string>& of_all :
+       {std::vector<std::string>{"--html", "x.html"}, {"--report", "x.json"}}) {
+    std::vector<std::string> arguments = {"denoise", "--memory", "80M", "in.ply", "x.ply"};
+    arguments.insert(arguments.end(), of_all.begin(), of_all.end());
+    const Ran whole = run(arguments);
+    EXPECT_EQ(whole.code, 2);
+    EXPECT_THAT(whole.err, HasSubstr(of_all.front() + " needs the whole cloud"));
+  }
+}
+
+TEST_F(Tiles, TheLeastMemoryIsSaidAndKept) {
+  put("in.ply", noisy_plane(300).bytes());
+  const std::string least =
+      fmt::format("{:.0f}M", std::ceil(double(pipeline::tiles::least_memory(90'000, false)) / 1e6));
+  const Ran less = run({"denoise", "--memory", "2M", "in.ply", "out.ply"});
+  EXPECT_EQ(less.code, 2);
+  EXPECT_THAT(less.err, HasSubstr("--memory " + least + " or more"));
+  EXPECT_FALSE(there("out.ply"));
+  EXPECT_EQ(run({"denoise", "--memory", least, "in.ply", "out.ply"}).code, 0);
+}
+
+/// A plane with normals, of which a share of the rows is not finite.
+std::string plane_with_normals(int side, int finite_of_ten) {
+  std::string bytes = fmt::format(
+      "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty float x\nproperty float y\n"
+      "property float z\nproperty float nx\nproperty float ny\nproperty float nz\nend_header\n",
+      side * side);
+  std::mt19937_64 engine(4);
+  std::normal_distribution<double> normal(0, 0.2);
+  for (int i = 0; i < side * side; ++i) {
+    const bool finite = i % 10 < finite_of_ten;
+    for (const double v : {i / side + normal(engine), i % side + normal(engine),
+                           finite ? normal(engine) : std::nan(""), 0.0, 0.0, 1.0}) {
+      const auto value = float(v);
+      bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+    }
+  }
+  return bytes;
+}
+
+// But for figures of a few digits that seams may change, what is said is the same.
+TEST_F(Tiles, DenoiseSaysInTilesWhatItSaysOfTheWholeCloud) {
+  put("in.ply", plane_with_normals(300, 10));
+  const Ran whole = run({"denoise", "in.ply", "whole.ply"}),
+            tiled = run({"denoise", "--memory", "80M", "in.ply", "tiled.ply"});
+  EXPECT_EQ(tiled.code, 0);
+  EXPECT_THAT(tiled.err, HasSubstr("in tiles"));
+  for (const char* said :
+       {"the normals are kept and stale", "90000 points, 90000 finite", "; spacing 0.", "largest move "})
+    for (const Ran* ran : {&whole, &tiled}) EXPECT_THAT(ran->err, HasSubstr(said));
+  const auto noise_in = [](const std::string& text) {
+    const std::size_t at = text.find("noise 0.");
+    return at == std::string::npos ? text : text.substr(at, 10);
+  };
+  EXPECT_EQ(noise_in(tiled.err), noise_in(whole.err));
+}
+
+TEST_F(Tiles, WhyNothingWasSmoothedIsSaidInTiles) {
+  RichCloud clean;
+  for (int i = 0; i < 300 * 300; ++i)
+    clean.xyz.insert(clean.xyz.end(), {double(i / 300), double(i % 300), 0});
+  put("in.ply", clean.bytes());
+  const Ran ran = run({"denoise", "--memory", "80M", "in.ply", "out.ply"});
+  EXPECT_EQ(ran.code, 0);
+  EXPECT_THAT(ran.err, HasSubstr("in tiles"));
+  EXPECT_THAT(ran.err, HasSubstr("too little to smooth"));
+  EXPECT_TRUE(take("out.ply") == take("in.ply"));
+}
+
+TEST_F(Tiles, RowsThatAreNotFiniteTakeNoMemory) {
+  put("in.ply", plane_with_normals(300, 5));  // 45,000 points
+  const Ran ran = run({"denoise", "--memory", "80M", "in.ply", "out.ply"});
+  EXPECT_EQ(ran.code, 0);
+  EXPECT_THAT(ran.err, Not(HasSubstr("in tiles")));
+}
+
+TEST_F(Tiles, WhatCannotGoInTilesIsRefusedWhereTheMemoryIsLess) {
+  put("in.ply", noisy_plane(300).bytes());
+  EXPECT_EQ(run({"denoise", "-q", "--strength", "0", "--encoding", "ascii", "in.ply", "text.ply"}).code, 0);
+  EXPECT_EQ(
+      run({"denoise", "-q", "--strength", "0", "--encoding", "binary_compressed", "in.ply", "small.pcd"})
+          .code,
+      0);
+  for (const std::string input : {"text.ply", "small.pcd"}) {
+    const std::string output = "out." + input.substr(input.size() - 3);
+    const Ran ran = run({"denoise", "--memory", "80M", input, output});
+    EXPECT_EQ(ran.code, 6) << ran.err;
+    EXPECT_THAT(ran.err, HasSubstr("--memory allows 80 MB"));
+    EXPECT_THAT(ran.err, HasSubstr("binary PLY"));
+    EXPECT_FALSE(there(output));
+    EXPECT_EQ(run({"denoise", "--memory", "200M", input, output}).code, 0);
+  }
+}
+
+}  // namespace
+}  // namespace rfsmooth::test

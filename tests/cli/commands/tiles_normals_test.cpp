@@ -1,0 +1,99 @@
+/// rfsmooth tiles --normals: on one side across tiles.
+#include <cstring>
+
+#include "tests/cli/support/tile_jobs.h"
+
+namespace rfsmooth::test {
+namespace {
+
+/// Points of a sphere of that radius, spacing about 1, noise 0.3.
+RichCloud noisy_ball(double radius, bool pcd) {
+  const auto count = int(4 * M_PI * radius * radius);
+  std::mt19937_64 engine(8);
+  std::normal_distribution<double> normal(0, 1);
+  RichCloud cloud;
+  cloud.pcd = pcd;
+  cloud.doubles = true;
+  for (int i = 0; i < count; ++i) {
+    const double z = 1 - (2 * i + 1.0) / count, turn = i * M_PI * (3 - std::sqrt(5.0)),
+                 r = std::sqrt(1 - z * z);
+    const double at = radius + 0.3 * normal(engine);
+    cloud.xyz.insert(cloud.xyz.end(), {at * r * std::cos(turn), at * r * std::sin(turn), at * z});
+  }
+  return cloud;
+}
+
+/// The normals in the fields that came behind all others.
+std::vector<std::array<float, 3>> added_normals(const RichCloud& cloud, const std::string& bytes) {
+  const std::size_t row = cloud.row_bytes() + 12, first = bytes.size() - cloud.size() * row;
+  std::vector<std::array<float, 3>> normals(cloud.size());
+  for (std::size_t i = 0; i < normals.size(); ++i)
+    std::memcpy(normals[i].data(), bytes.data() + first + i * row + cloud.row_bytes(), 12);
+  return normals;
+}
+
+TEST_F(Tiles, NormalsAreOutwardAcrossTilesAndOneTileHasThoseOfTheWholeCloud) {
+  for (const bool pcd : {false, true}) {
+    const RichCloud cloud = noisy_ball(30, pcd);
+    put(cloud.name(), cloud.bytes());
+    const std::string job = pcd ? "pcd" : "ply";
+    EXPECT_EQ(run({"denoise", "--force", "--normals", cloud.name(), cloud.output()}).code, 0);
+    const std::string whole = take(cloud.output());
+    std::filesystem::remove(at(cloud.output()));
+    const std::string one =
+        joined({cloud.name()}, job + "1", cloud.output(), "1000000", "1000000", "--normals");
+    EXPECT_TRUE(one == whole);
+    std::filesystem::remove(at(cloud.output()));
+    const std::string many = joined({cloud.name()}, job, cloud.output(), "3000", "1000000", "--normals");
+    ASSERT_EQ(many.size(), whole.size());
+    ASSERT_GE(tiles_of(job).size(), 4u);
+    const auto normals = added_normals(cloud, many);
+    std::size_t outward = 0;
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      double along = 0;
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        along += double(normals[i][axis]) * cloud.xyz[3 * i + axis];
+      outward += std::size_t(along > 0.9 * 30);
+    }
+    EXPECT_GT(double(outward), 0.999 * double(cloud.size()));
+    std::filesystem::resize_file(at(job + "/done/1.normals"), 100);  // found, and made again
+    EXPECT_EQ(run({"tiles", "join", job, "again.ply"}).code, 2);
+    step({"run", job, "1"});
+    std::filesystem::remove(at(cloud.output()));
+    step({"join", job, cloud.output()});
+    EXPECT_TRUE(take(cloud.output()) == many);
+    std::filesystem::remove(at(cloud.output()));
+  }
+}
+
+TEST_F(Tiles, NormalsFaceTheViewpointAndElseTheSameSideInAllTiles) {
+  const RichCloud cloud = strip(0.3);
+  put("in.ply", cloud.bytes());
+  std::size_t number = 0;
+  for (const std::string viewpoint : {"450,12,-3000", "auto"}) {
+    const std::string job = "job" + std::to_string(++number), out = job + ".ply";
+    step({"plan", "--normals", "--viewpoint", viewpoint, "--tile-points", "6000", "in.ply", job});
+    const std::vector<std::string> tiles = tiles_of(job);
+    ASSERT_GE(tiles.size(), 4u);
+    for (const std::string& tile : tiles) step({"measure", job, tile});
+    step({"settle", job});
+    for (const std::string& tile : tiles) step({"run", job, tile});
+    step({"join", job, out});
+    double up = 0, finite = 0;
+    const auto normals = added_normals(cloud, take(out));
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      const bool there = std::isfinite(cloud.xyz[3 * i + 2]);
+      ASSERT_EQ(std::isfinite(normals[i][2]), there);
+      up += there && normals[i][2] > 0 ? 1 : 0;
+      finite += there ? 1 : 0;
+    }
+    const double share = up / finite;
+    if (viewpoint != "auto") {
+      EXPECT_NEAR(share, 0, 0.001);
+    }
+    EXPECT_NEAR(std::abs(share - 0.5), 0.5, 0.001) << "all on one side";
+  }
+}
+
+}  // namespace
+}  // namespace rfsmooth::test
