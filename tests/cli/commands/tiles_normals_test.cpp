@@ -73,11 +73,10 @@ TEST_F(Tiles, NormalsFaceTheViewpointAndElseTheSameSideInAllTiles) {
   for (const std::string viewpoint : {"450,12,-3000", "auto"}) {
     const std::string job = "job" + std::to_string(++number), out = job + ".ply";
     step({"plan", "--normals", "--viewpoint", viewpoint, "--tile-points", "6000", "in.ply", job});
-    const std::vector<std::string> tiles = tiles_of(job);
-    ASSERT_GE(tiles.size(), 4u);
-    for (const std::string& tile : tiles) step({"measure", job, tile});
+    ASSERT_GE(tiles_of(job).size(), 4u);
+    step_of_all("measure", job);
     step({"settle", job});
-    for (const std::string& tile : tiles) step({"run", job, tile});
+    step_of_all("run", job);
     step({"join", job, out});
     double up = 0, finite = 0;
     const auto normals = added_normals(cloud, take(out));

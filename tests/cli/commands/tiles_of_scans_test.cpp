@@ -5,12 +5,11 @@
 #include <string>
 #include <vector>
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "pipeline/io/io.h"
-#include "tests/cli/support/folder.h"
+#include "tests/cli/support/cloud_file.h"
+#include "tests/cli/support/tile_jobs.h"
 #include "tests/support/sanitized.h"
 #include "tests/support/scans.h"
 
@@ -26,65 +25,36 @@ struct Scan {
   friend void PrintTo(const Scan& scan, std::ostream* out) { *out << scan.path; }
 };
 
-class TilesOfScans : public InFolder, public testing::WithParamInterface<Scan> {
+class TilesOfScans : public Tiles, public testing::WithParamInterface<Scan> {
  protected:
-  nlohmann::json json(const std::string& file) const { return nlohmann::json::parse(take(file)); }
-
-  void step(std::vector<std::string> arguments) const {
-    arguments.insert(arguments.begin(), "tiles");
-    const Ran ran = run(arguments);
-    EXPECT_EQ(ran.code, 0) << ran.err;
-  }
-
-  /// Smooths in.pcd in a job of that name.
-  void smooth(const std::string& job, const std::string& tile_points,
-              const std::string& sample_points) const {
-    step({"plan", "--tile-points", tile_points, "--sample-points", sample_points, "in.pcd", job});
-    std::vector<std::string> tiles;
-    for (std::size_t t = 0; t < json(job + "/job.json")["tiles"].size(); ++t)
-      tiles.push_back(std::to_string(t));
-    EXPECT_GT(tiles.size(), 3U);
-    const auto each = [&](const char* what) {
-      std::vector<std::string> arguments = {what, job};
-      arguments.insert(arguments.end(), tiles.begin(), tiles.end());
-      step(arguments);
-    };
-    each("measure");
-    step({"settle", job});
-    each("run");
-    step({"join", job, job + ".pcd"});
-  }
-
   /// The root mean square of the distances of two clouds' points.
   double apart(const std::string& one, const std::string& other) const {
     const auto places = [&](const std::string& name) {
-      const Context context;
-      return pipeline::io::positions(value_or_throw(pipeline::io::read_cloud(at(name), {}, context)),
-                                     context);
+      return pipeline::io::points_of(pipeline::io::positions(read(at(name))));
     };
-    const std::vector<double> a = places(one), b = places(other);
+    const Positions a = places(one), b = places(other);
     EXPECT_EQ(a.size(), b.size());
     double squares = 0, count = 0;
-    for (std::size_t i = 0; i < a.size(); i += 3) {
-      if (!std::isfinite(a[i]) || !std::isfinite(b[i])) continue;
-      squares +=
-          std::pow(a[i] - b[i], 2) + std::pow(a[i + 1] - b[i + 1], 2) + std::pow(a[i + 2] - b[i + 2], 2);
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      if (!a[i].allFinite() || !b[i].allFinite()) continue;
+      squares += (a[i] - b[i]).squaredNorm();
       ++count;
     }
     EXPECT_GT(count, 1000);
     return std::sqrt(squares / count);
   }
 
-  void expect_as_whole(const Scan& scan) const {
+  void expect_as_whole(const Scan& scan) {
     const Ran binary =
         run({"denoise", "--force", "--strength", "0", "--encoding", "binary", scan.path, "in.pcd"});
     EXPECT_EQ(binary.code, 0) << binary.err;
     EXPECT_EQ(run({"denoise", "--report", "report.json", "in.pcd", "whole.pcd"}).code, 0);
-    const double spacing = json("report.json")["spacing"];
+    const double spacing = nlohmann::json::parse(take("report.json"))["spacing"];
     EXPECT_GT(apart("in.pcd", "whole.pcd"), 0.1 * spacing) << "it is smoothed";
-    smooth("all", scan.tile_points, "1000000");
+    joined({"in.pcd"}, "all", "all.pcd", scan.tile_points);
+    EXPECT_GT(tiles_of("all").size(), 3U);
     EXPECT_LT(apart("all.pcd", "whole.pcd") / spacing, scan.seams);
-    smooth("some", scan.tile_points, scan.sample_points);
+    joined({"in.pcd"}, "some", "some.pcd", scan.tile_points, scan.sample_points);
     EXPECT_LT(apart("some.pcd", "whole.pcd") / spacing, scan.all);
   }
 };

@@ -69,6 +69,12 @@ class Tiles : public InFolder {
     const Ran ran = run(all);
     EXPECT_EQ(ran.code, 0) << ran.err;
   }
+  /// A step of all tiles of a job in one process.
+  void step_of_all(const std::string& what, const std::string& job) {
+    std::vector<std::string> arguments = tiles_of(job);
+    arguments.insert(arguments.begin(), {what, job});
+    step(arguments);
+  }
   /// Plans, measures and settles a job of the inputs; its tiles.
   std::vector<std::string> settled(const std::vector<std::string>& inputs, const std::string& job,
                                    const std::string& points = "3000", const std::string& sample = "1000000",
@@ -78,16 +84,16 @@ class Tiles : public InFolder {
     plan.insert(plan.end(), inputs.begin(), inputs.end());
     plan.push_back(job);
     step(plan);
-    const std::vector<std::string> tiles = tiles_of(job);
-    for (const std::string& tile : tiles) step({"measure", job, tile});
+    step_of_all("measure", job);
     step({"settle", job});
-    return tiles;
+    return tiles_of(job);
   }
   /// The whole job: the cloud that it makes.
   std::string joined(const std::vector<std::string>& inputs, const std::string& job,
                      const std::string& output, const std::string& points = "3000",
                      const std::string& sample = "1000000", const std::string& option = "") {
-    for (const std::string& tile : settled(inputs, job, points, sample, option)) step({"run", job, tile});
+    settled(inputs, job, points, sample, option);
+    step_of_all("run", job);
     step({"join", job, output});
     return std::filesystem::is_directory(at(output)) ? "" : take(output);
   }
