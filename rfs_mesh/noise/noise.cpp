@@ -110,12 +110,15 @@ void bound_sites(double most, NoiseSites& sites) {
 /// are a tenth of the cloud or more: the rest has nothing to smooth. Where hardly a site speaks, most of the
 /// cloud is rough, and what does speak there is half roughness: the calm fifth of it says the figure,
 /// but no more than the start, which all of the cloud says: in clean clouds the loudest are all that speaks.
+/// Loud places, of wider balls, count more than their area: noise read too small leaves more than noise read
+/// too large takes.
 void sum_up(const NoiseSites& sites, const NoiseStart& start, NoiseModel& noise) {
   const double some = kNoNoise * noise.spacing;
   std::vector<Weighed> heard, noisy, shape;
+  const std::vector<double> areas_of_balls = areas(sites.fits);
   double all = 0, saying = 0, loud = 0;
   for (std::size_t s = 0; s < sites.at.size(); ++s) {
-    const double sigma = sites.sigma[s], area = sites.area[s];
+    const double sigma = sites.sigma[s], area = areas_of_balls[s];
     all += area;
     if (!sites.speaks[s]) continue;
     saying += area;

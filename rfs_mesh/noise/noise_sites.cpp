@@ -34,6 +34,8 @@ constexpr std::size_t kPlateauTo = 8 * kNeighbourhood;
 constexpr double kEven = 3, kFilled = 1.73;
 // Scatter::middle above which noise so flat is that of no two sheets: nearly that of an even distribution.
 constexpr double kMiddleOfSheets = 0.25;
+// Points at two depths that follow each other scatter by half a step, and rounding by 1 / sqrt(12) of it.
+constexpr double kTwoDepths = 3;
 constexpr int kOpeningRounds = 8;  // windows widen by up to 1.7 in each
 
 /// What scatter at kNeighbourhood points, `few`, and at kPlateauTo, `many`, makes sure of. \param radius of
@@ -93,9 +95,9 @@ class Listener {
           open_[s] =
               std::sqrt(mean_variance(fits_around(s, few, group_[s].size()), kTypical, kTypicalDeviate));
           bound(s, all);
-          if (steps == nullptr) look_for_sheets(s, few, middle[s]);
+          look_for_sheets(s, few, steps, middle[s]);
           if (n < 2 * kPlateauTo) return;
-          if (steps == nullptr) look_for_sheets(s, many, middle[s]);
+          look_for_sheets(s, many, steps, middle[s]);
           find_floor(s, few, many, steps);
         },
         64);
@@ -119,7 +121,9 @@ class Listener {
             if (all[q.index].within > 0) full.push_back(all[q.index].within / (window * window));
           }
           if (!hear_at(s, all)) {
-            const double typical = full.empty() ? kEven : quantile(full, 0.5);
+            // Nearly nothing around is left within windows made for far calmer places.
+            const bool empty = double(full.size()) < (1 - kMostSpeak) * double(group_[s].size());
+            const double typical = empty ? kEven : quantile(full, 0.5);
             if (typical > kFilled && !std::isfinite(sheet_[s]))
               sigma[s] =
                   std::min(at_most(s), std::max(kNarrowestWindow * open_[s], std::sqrt(typical) * before[s]));
@@ -187,9 +191,17 @@ class Listener {
     return near;
   }
 
+  /// What depths in steps add there by their rounding, world units.
+  double rounding_around(std::size_t s, const std::vector<Scatter>& all, const DepthSteps& steps) const {
+    std::vector<double> sigma_of;
+    for (const Neighbor& q : group_[s]) sigma_of.push_back(steps.sigma(at_[q.index], all[q.index].normal));
+    return quantile(sigma_of, 0.5);
+  }
+
   /// Lowers `sheet_`, and `middle` to their Scatter::middle, where fits without windows show two sheets
-  /// around. Depths in steps look like sheets.
-  void look_for_sheets(std::size_t s, const std::vector<Scatter>& open, double& middle) {
+  /// around, farther apart than two depths that follow each other.
+  void look_for_sheets(std::size_t s, const std::vector<Scatter>& open, const DepthSteps* steps,
+                       double& middle) {
     const std::vector<Scatter> near = fits_around(s, open, kNeighbourhood);
     double flatness = 0, full = 0, saying = 0;
     for (const Scatter& fit : near) {
@@ -200,6 +212,8 @@ class Listener {
     }
     if (!(flatness < kFlatnessOfSheets * saying)) return;
     const double variance = mean_variance(near, kTypical, kTypicalDeviate);
+    const double rounding = steps == nullptr ? 0 : rounding_around(s, open, *steps);
+    if (!(variance > kTwoDepths * rounding * rounding)) return;
     sheet_[s] = std::min(sheet_[s], std::sqrt(variance * share_of_sheet(flatness / saying)));
     middle = std::min(middle, full / saying);
   }
@@ -219,17 +233,16 @@ class Listener {
   /// Sets `floor` from what is seen without windows.
   void find_floor(std::size_t s, const std::vector<Scatter>& few, const std::vector<Scatter>& many,
                   const DepthSteps* steps) {
-    std::vector<double> narrow, wide, radius, of_steps;
+    std::vector<double> narrow, wide, radius;
     for (const Neighbor& q : group_[s]) {
       radius.push_back(few[q.index].radius);
       narrow.push_back(few[q.index].variance);
       wide.push_back(many[q.index].variance);
-      if (steps != nullptr) of_steps.push_back(steps->sigma(at_[q.index], many[q.index].normal));
     }
     const double seen = std::sqrt(quantile(wide, kTypical));
     floor[s] = plateau(std::sqrt(quantile(narrow, kTypical)), seen, quantile(radius, 0.5));
     // A stack of slices has few depths, too, and none of the scatter.
-    if (steps != nullptr) floor[s] = std::max(floor[s], std::min(seen, quantile(of_steps, 0.5)));
+    if (steps != nullptr) floor[s] = std::max(floor[s], std::min(seen, rounding_around(s, many, *steps)));
     sigma[s] = std::max(sigma[s], floor[s]);
   }
 
@@ -283,7 +296,9 @@ NoiseSites listen(const SpatialIndex& index, Positions at, const NoiseStart& sta
   sites.fits = listener.hear(1, false);
   for (std::size_t s = 0; s < windows.size(); ++s)
     sites.cut.push_back(char(sites.fits[s].within > kFilled * windows[s] * windows[s]));
-  sites.area = areas(sites.fits);
+  std::vector<Scatter> per_point = sites.fits;  // balls of more points are not for that more of the surface
+  for (std::size_t s = 0; s < per_point.size(); ++s) per_point[s].radius /= std::sqrt(double(listener.m[s]));
+  sites.area = areas(per_point);
   sites.sigma = listener.sigma;
   sites.speaks = listener.speaks;
   sites.floor = listener.floor;

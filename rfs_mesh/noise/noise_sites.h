@@ -6,15 +6,17 @@
 /// that shows less does not speak alone: a flat beside an edge would, and noise that is read too large does
 /// little harm.) A window that is too narrow for the noise cuts off so many points that no fit says anything.
 /// So does one that cuts off the second sheet of a wall; but there what is left in the window scatters as
-/// little as the window was made for, while louder noise fills it evenly, at three times that variance. A
-/// window that is filled evenly gets wider, to the scatter seen in it, and that up to eight times. Where it
-/// ends at more than twice the noise it began with, the fits take more points, as many as such noise needs.
+/// little as the window was made for, while louder noise fills it evenly, at three times that variance, or
+/// leaves nothing in it at nearly all of the sites around. A window that is filled evenly gets wider, to the
+/// scatter seen in it, and that up to eight times. Where it ends at more than twice the noise it began with,
+/// the fits take more points, as many as such noise needs.
 ///
 /// Where both sheets of a wall are within the narrowest windows, what opens ends at their distance. But the
 /// residuals of fits without windows, whose places hold both, are then flatter than a normal distribution,
 /// and their fourth moment tells the variance of one sheet (share_of_sheet, two_sheets.h): no window there
 /// opens, nor shows more. Two dozen sites decide that together, of 24 points each, and of 192. Not if the
-/// residuals fill their middle nearly as an even distribution does: then the noise itself is flat.
+/// residuals fill their middle nearly as an even distribution does: then the noise itself is flat. Nor if
+/// they are as small as those of two depths in steps that follow each other, which look like two sheets.
 ///
 /// Without a window the scatter is more than the noise, so that of nearly all of the dozen nearest sites is a
 /// bound, where their balls hold the slab. No window shows more: it would take more points, and those more of
@@ -42,12 +44,12 @@ struct NoiseSites {
   Positions at;
   std::vector<double> sigma;  ///< world units
   std::vector<double> shape;  ///< part of s^2(m) taken off as shape, 0 to 0.6
-  std::vector<double> area;   ///< how much the site counts, 0 to 1
+  std::vector<double> area;   ///< of the surface around it, over that where points are sparse: 0 to 1
   std::vector<char> speaks;   ///< whether sigma is of this place; else it is what came nearest to it
   std::vector<char> cut;      ///< whether the site's own fit fills its window, which is its neighbours'
   std::vector<double> most;   ///< what is seen without windows around it, world units; infinite: not known
   std::vector<double> floor;  ///< what depths in steps or shared noise make sure of, world units; 0: nothing
-  std::vector<Scatter> fits;  ///< to the m nearest of the site by itself
+  std::vector<Scatter> fits;  ///< to the m nearest of the site by itself, more where it is far louder
 };
 
 /// Where to listen: up to 2,000 of the given places, evenly over their order, fewer the larger m is.

@@ -106,6 +106,31 @@ TEST(Noise, OfAHalfThatIsTwentyTimesAsLoudAsTheOtherIsSeenWhole) {
   EXPECT_NEAR(loud, 1, 0.15);
 }
 
+// Windows made for the calm part leave nothing of the loud one.
+TEST(Noise, OfALoudFifthOfABumpySheetIsSeenThere) {
+  constexpr double kSigma = 0.0042;  // 0.6 spacings
+  for (const unsigned seed : {1U, 2U}) {
+    std::mt19937_64 engine(seed);
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    std::normal_distribution<double> normal(0, kSigma);
+    Positions points;
+    for (int i = 0; i < 20000; ++i) {
+      const double x = uniform(engine), y = uniform(engine);
+      const double bump = 0.02 * std::sin(30 * x) * std::sin(30 * y);
+      points.emplace_back(x, y, bump + (x > 0.6 ? normal(engine) : 0));
+    }
+    const NoiseField noise = measured(points);
+    double calm = 0, loud = 0, calm_points = 0, loud_points = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const double x = points[i].x(), v = noise.local[i] * noise.local[i];
+      if (x > 0.65) loud += v, ++loud_points;
+      if (x < 0.4) calm += v, ++calm_points;
+    }
+    EXPECT_NEAR(std::sqrt(loud / loud_points) / kSigma, 0.9, 0.25) << seed;  // along z, not the normal
+    EXPECT_LT(std::sqrt(calm / calm_points), 0.1 * kSigma) << seed;
+  }
+}
+
 TEST(Noise, AlongARayIsLessWhereTheRayGrazes) {
   // A scanner far away along z: what is seen along the normal is |cos|, here alike on both sides of the
   // sphere.
@@ -301,6 +326,30 @@ TEST(Noise, OfFewDepthsIsTheirRounding) {
   EXPECT_NEAR(noise.step, kStep, 1e-12);
   const double along_normal = kStep / std::sqrt(12.0) / Eigen::Vector3d(0.5, 0.1, 1).norm();
   EXPECT_NEAR(noise.sigma / along_normal, 1, 0.2);
+}
+
+// Two sheets are farther apart than rounding explains.
+TEST(Noise, OfAWallInFewDepthsIsTheirRounding) {
+  constexpr std::size_t kPoints = 6000;
+  const double spacing = 0.5 * std::sqrt(2.0 / kPoints);
+  const Eigen::Vector3d normal = Eigen::Vector3d(0.6, 0, 0.8), along(0.8, 0, -0.6);
+  for (const double thickness : {1.5, 2.0})
+    for (const double step : {1.0, 1.5}) {
+      std::mt19937_64 engine(1);
+      std::uniform_real_distribution<double> uniform(0, 1);
+      Positions points;
+      double rounding = 0;
+      for (std::size_t i = 0; i < kPoints; ++i) {
+        const double side = (i % 2 == 0 ? 0.5 : -0.5) * thickness * spacing;
+        Eigen::Vector3d p =
+            uniform(engine) * along + uniform(engine) * Eigen::Vector3d::UnitY() + side * normal;
+        const double z = p.z();
+        p.z() = step * spacing * std::round(z / (step * spacing));
+        rounding += std::pow((p.z() - z) * normal.z(), 2) / kPoints;
+        points.push_back(p);
+      }
+      EXPECT_NEAR(measured(points).sigma / std::sqrt(rounding), 1, 0.4) << thickness << ' ' << step;
+    }
 }
 
 // The widest neighbourhoods that so few points allow are the only ones that see the steps.
