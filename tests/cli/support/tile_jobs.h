@@ -13,10 +13,12 @@
 
 #include "tests/cli/support/folder.h"
 #include "tests/cli/support/rich_cloud.h"
+#include "tests/support/sanitized.h"
 
 namespace rfsmooth::test {
 
-constexpr int kLong = 900, kWide = 24;
+constexpr int kLong = kSanitized ? 450 : 900, kWide = 24;
+constexpr const char *kTile = kSanitized ? "1500" : "3000", *kTwoTiles = kSanitized ? "3000" : "6000";
 
 enum class Kind { own, with_tails, shared, in_steps };
 
@@ -77,7 +79,7 @@ class Tiles : public InFolder {
   }
   /// Plans, measures and settles a job of the inputs; its tiles.
   std::vector<std::string> settled(const std::vector<std::string>& inputs, const std::string& job,
-                                   const std::string& points = "3000", const std::string& sample = "1000000",
+                                   const std::string& points = kTile, const std::string& sample = "1000000",
                                    const std::string& option = "") {
     std::vector<std::string> plan = {"plan", "--tile-points", points, "--sample-points", sample};
     if (!option.empty()) plan.push_back(option);
@@ -90,7 +92,7 @@ class Tiles : public InFolder {
   }
   /// The whole job: the cloud that it makes.
   std::string joined(const std::vector<std::string>& inputs, const std::string& job,
-                     const std::string& output, const std::string& points = "3000",
+                     const std::string& output, const std::string& points = kTile,
                      const std::string& sample = "1000000", const std::string& option = "") {
     settled(inputs, job, points, sample, option);
     step_of_all("run", job);
