@@ -123,7 +123,8 @@ TEST_F(Tiles, WhatCannotGoInTilesIsRefusedWhereTheMemoryIsLess) {
     EXPECT_THAT(ran.err, HasSubstr("--memory allows 80 MB"));
     EXPECT_THAT(ran.err, HasSubstr("binary PLY"));
     EXPECT_FALSE(there(output));
-    if (!kSanitized) EXPECT_EQ(run({"denoise", "--memory", "200M", input, output}).code, 0);
+    if (kSanitized) continue;  // what takes longest
+    EXPECT_EQ(run({"denoise", "--memory", "200M", input, output}).code, 0);
   }
 }
 

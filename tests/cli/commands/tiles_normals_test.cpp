@@ -72,7 +72,8 @@ TEST_F(Tiles, NormalsFaceTheViewpointAndElseTheSameSideInAllTiles) {
   const RichCloud cloud = strip(0.3);
   put("in.ply", cloud.bytes());
   std::size_t number = 0;
-  for (const std::string viewpoint : {std::to_string(kLong / 2) + ",12,-3000", std::string("auto")}) {
+  const std::string above = std::to_string(kLong / 2) + ",12,-3000";
+  for (const std::string& viewpoint : {above, std::string("auto")}) {
     const std::string job = "job" + std::to_string(++number), out = job + ".ply";
     step({"plan", "--normals", "--viewpoint", viewpoint, "--tile-points", kTwoTiles, "in.ply", job});
     ASSERT_GE(tiles_of(job).size(), 4u);
