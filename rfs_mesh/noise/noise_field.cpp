@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "base/parallel.h"
+#include "rfs_mesh/levels.h"
 
 namespace rfsmooth::rfs_mesh {
 
@@ -19,6 +20,7 @@ constexpr float kMuchLouder = 3;  // times: so much calmer ones say nothing of a
 // How far below and above the mean a fit pulls in proportion: logarithm of variance. Edges and second sheets
 // are above, places within one step of the depths below.
 constexpr float kBelow = 2, kAbove = 1.5;
+constexpr double kFar = 400;   // of variances: a part twenty times as loud as another
 constexpr float kCloud = 0.5;  // fits that the mean of the cloud counts as
 constexpr int kFieldRounds = 3;
 
@@ -85,7 +87,6 @@ struct Heard {
  private:
   /// Enters values and weights.
   void hear(const NoiseSites& sites) {
-    constexpr double kFar = 400;  // a part twenty times as loud as another
     const std::size_t n = sites.at.size();
     std::vector<double> variance(n, 0), said;
     for (std::size_t i = 0; i < n; ++i) {
@@ -186,12 +187,20 @@ std::vector<double> mean_around(const Heard& heard, const NoiseSites& sites, dou
     Means means = around(heard, reach, context);
     if (best.value.size() == 0 || means.gain > best.gain + kSurely) best = std::move(means);
   }
-  std::vector<double> alike;
-  for (std::size_t i = 0; i < relative.size(); ++i)
-    if (sites.sigma[i] < kAlike * figure && kAlike * sites.sigma[i] > figure)
-      alike.push_back(best.of_all[Eigen::Index(i)]);
+  // What one is: what the field has where sites show about the figure. Not where that is between the noise of
+  // calm and of loud places, and the field would be calmer than they show: then what it shows in the middle.
+  std::vector<double> alike, shown;
+  for (std::size_t i = 0; i < relative.size(); ++i) {
+    const auto k = Eigen::Index(i);
+    const double times = sites.sigma[i] / figure;
+    if (times < kAlike && kAlike * times > 1) alike.push_back(best.of_all[k]);
+    if (sites.speaks[i] && std::abs(std::log(times)) < std::log(kFar) / 2)
+      shown.push_back(best.value[k] - 2 * std::log(times));
+  }
   if (alike.empty()) return relative;
-  const double typical = quantile(alike, 0.5);
+  double typical = quantile(alike, 0.5);
+  const double as_shown = shown.empty() ? typical : quantile(shown, 0.5);
+  if (as_shown < typical - 2 * std::log(kSameNoise)) typical = as_shown;
   for (std::size_t i = 0; i < relative.size(); ++i) {
     // Half: of the standard deviation, not of the variance.
     const double d = (best.value[Eigen::Index(i)] - typical) / 2;

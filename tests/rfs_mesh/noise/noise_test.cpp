@@ -100,6 +100,13 @@ TEST(Noise, OfOneHalfOfAPlaneIsSeenThereAndNotInTheOther) {
   EXPECT_NEAR(loud, 1, 0.15);
 }
 
+// The figure is between what the halves have.
+TEST(Noise, OfAHalfThatIsSixTimesAsLoudAsTheOtherIsSeenInBoth) {
+  const auto [calm, loud] = halves(0.001, 0.006);
+  EXPECT_NEAR(calm, 1, 0.15);
+  EXPECT_NEAR(loud, 1, 0.15);
+}
+
 TEST(Noise, OfAHalfThatIsTwentyTimesAsLoudAsTheOtherIsSeenWhole) {
   const auto [calm, loud] = halves(0.001, 0.02);
   EXPECT_NEAR(calm, 1, 0.15);
