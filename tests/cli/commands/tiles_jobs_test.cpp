@@ -178,7 +178,7 @@ TEST_F(Tiles, AFullDiskIsAnErrorAndTheWorkGoesOnWhenThereIsRoom) {
   if (ran.code == 99 || ran.code == 1) GTEST_SKIP() << "mounting is not allowed here";
   EXPECT_EQ(ran.out, "first 5\nthen 0\nlast 0\n") << ran.err;
   EXPECT_THAT(ran.err, HasSubstr("No space left"));
-  EXPECT_TRUE(take("full.ply") == joined({"in.ply"}, "job", "plenty.ply"));
+  EXPECT_TRUE(take("full.ply") == joined({"in.ply"}, "job", "plenty.ply", "3000"));
 }
 
 }  // namespace

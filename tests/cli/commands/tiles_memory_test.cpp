@@ -25,9 +25,11 @@ TEST_F(Tiles, DenoiseTakesTilesWhereTheMemoryIsLess) {
   EXPECT_TRUE(take("out.ply") == joined({"in.ply"}, "job", "steps.ply", std::to_string(how.tile_points),
                                         std::to_string(how.sample_points)));
   EXPECT_LT(how.tile_points, pipeline::tiles::plan_within(800'000'000, false).plan.tile_points / 10);
-  EXPECT_EQ(run({"denoise", "--memory", "1T", "in.ply", "whole.ply"}).code, 0);
-  EXPECT_EQ(run({"denoise", "in.ply", "plain.ply"}).code, 0);
-  EXPECT_TRUE(take("whole.ply") == take("plain.ply"));
+  if (!kSanitized) {  // two more runs of the whole cloud
+    EXPECT_EQ(run({"denoise", "--memory", "1T", "in.ply", "whole.ply"}).code, 0);
+    EXPECT_EQ(run({"denoise", "in.ply", "plain.ply"}).code, 0);
+    EXPECT_TRUE(take("whole.ply") == take("plain.ply"));
+  }
   const Ran wrong = run({"denoise", "--memory", "much", "in.ply", "x.ply"});
   EXPECT_EQ(wrong.code, 2);
   EXPECT_THAT(wrong.err, HasSubstr("'much'"));
