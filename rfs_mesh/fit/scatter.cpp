@@ -70,11 +70,12 @@ double ScatterFit::err_together(const Vector6& c) {
 }
 
 void ScatterFit::look_at(const Vector6& c, Scatter& s) const {
-  double weights = 0, second = 0, fourth = 0, middle = 0;
+  double weights = 0, second = 0, third = 0, fourth = 0, middle = 0;
   for (std::size_t i = 0; i < local_.size(); ++i) {
     const double e = residual(local_[i], c), w = weight_[i];
     weights += w;
     second += w * e * e;
+    third += w * e * e * e;
     fourth += w * e * e * e * e;
   }
   if (!(second > 0)) return;
@@ -83,6 +84,7 @@ void ScatterFit::look_at(const Vector6& c, Scatter& s) const {
     if (e * e * weights < second) middle += weight_[i];
   }
   s.flatness = fourth * weights / (second * second);
+  s.lean = third * third * weights / (second * second * second);
   s.middle = middle / weights;
 }
 

@@ -37,6 +37,8 @@ struct Scatter {
                           ///< kRing where they err the same way. Without window
   double flatness = 3;    ///< fourth moment of the residuals over the square of the second: 3 of a normal
                           ///< distribution, 1.8 of an even one, 1 of two sheets. Without window
+  double lean = 0;        ///< third moment of the residuals squared, over the cube of the second: 0 of a
+                          ///< symmetric distribution. Without window
   double middle = 0.383;  ///< share of the weight within half a deviation of the quadric: 0.383 of a normal
                           ///< distribution, 0.289 of an even one, 0 of two sheets. Without window
   double within = 0;      ///< s^2 also where the window cuts off so much that the place says nothing; 0: too

@@ -77,7 +77,7 @@ class Listener {
         context, at.size(), [&](std::size_t s) { index.nearest(at_[s], group, group_[s]); }, 64);
   }
 
-  /// Looks without windows: sets `open_`, `sheet_`, `most` and `floor`; no window is narrower than that.
+  /// Looks without windows: sets `open_`, `sheet_`, `most` and `floor`, and no window is narrower than that.
   void look(const DepthSteps* steps) {
     const std::size_t n = cloud_.points().size();
     const std::vector<double> open(at_.size(), 0);
@@ -96,9 +96,12 @@ class Listener {
               std::sqrt(mean_variance(fits_around(s, few, group_[s].size()), kTypical, kTypicalDeviate));
           bound(s, all);
           look_for_sheets(s, few, steps, middle[s]);
-          if (n < 2 * kPlateauTo) return;
-          look_for_sheets(s, many, steps, middle[s]);
-          find_floor(s, few, many, steps);
+          if (n >= 2 * kPlateauTo) {
+            look_for_sheets(s, many, steps, middle[s]);
+            find_floor(s, few, many, steps);
+          }
+          look_for_layers(s, few);
+          sigma[s] = std::max(sigma[s], floor[s]);
         },
         64);
     believe_sheets(middle);
@@ -230,6 +233,30 @@ class Listener {
       std::fill(sheet_.begin(), sheet_.end(), std::numeric_limits<double>::infinity());
   }
 
+  /// Raises `floor` where fits without windows show two layers around that are no sheets.
+  void look_for_layers(std::size_t s, const std::vector<Scatter>& open) {
+    constexpr double kLeanByChance = 6 / double(kNeighbourhood);  // lean of so many normal values
+    constexpr double kNormalFlatness = 3;
+    const std::vector<Scatter> near = fits_around(s, open, kNeighbourhood);
+    std::vector<double> radius;
+    double flatness = 0, lean = 0, saying = 0;
+    for (const Scatter& fit : near) {
+      radius.push_back(fit.radius);
+      if (!says(fit)) continue;
+      flatness += fit.flatness;
+      lean += fit.lean - kLeanByChance;
+      ++saying;
+    }
+    if (!(lean > 0 && flatness < kNormalFlatness * saying)) return;
+    const double of_sheet = share_of_sheet(flatness / saying, lean / saying);
+    if (!(of_sheet < share_of_sheet(kFlatnessOfSheets))) return;
+    const double variance = mean_variance(near, kTypical, kTypicalDeviate), wide = quantile(radius, 0.5),
+                 square_of_point = M_PI * wide * wide / double(kNeighbourhood);
+    if (!(squared_gap(of_sheet, lean / saying) * variance < square_of_point)) return;
+    sheet_[s] = std::numeric_limits<double>::infinity();
+    floor[s] = std::max(floor[s], std::sqrt(variance));
+  }
+
   /// Sets `floor` from what is seen without windows.
   void find_floor(std::size_t s, const std::vector<Scatter>& few, const std::vector<Scatter>& many,
                   const DepthSteps* steps) {
@@ -243,7 +270,6 @@ class Listener {
     floor[s] = plateau(std::sqrt(quantile(narrow, kTypical)), seen, quantile(radius, 0.5));
     // A stack of slices has few depths, too, and none of the scatter.
     if (steps != nullptr) floor[s] = std::max(floor[s], std::min(seen, rounding_around(s, many, *steps)));
-    sigma[s] = std::max(sigma[s], floor[s]);
   }
 
   /// Takes more points where their ball is narrow for the window, as search_noise does for the whole cloud.

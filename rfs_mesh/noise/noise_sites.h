@@ -18,6 +18,11 @@
 /// residuals fill their middle nearly as an even distribution does: then the noise itself is flat. Nor if
 /// they are as small as those of two depths in steps that follow each other, which look like two sheets.
 ///
+/// Two scans that do not quite meet leave two layers. Where more points are on one, the residuals lean, too,
+/// and both moments together tell how far apart the layers are. Nearer to each other than the points are to
+/// their neighbours (a square of the cloud's spacing has one point) they cannot both be surfaces, and what is
+/// seen without a window is the noise. Layers with as many points each may be the sides of a plate.
+///
 /// Without a window the scatter is more than the noise, so that of nearly all of the dozen nearest sites is a
 /// bound, where their balls hold the slab. No window shows more: it would take more points, and those more of
 /// the shape.

@@ -251,8 +251,17 @@ SplitHeights split_heights(const std::vector<double>& ascending, std::size_t few
   return split;
 }
 
-double share_of_sheet(double flatness) {
-  return 1 - std::sqrt(std::clamp((3 - flatness) / 2, 0.0, 1.0));
+double share_of_sheet(double flatness, double lean) {
+  if (!(lean > 0)) return 1 - std::sqrt(std::clamp((3 - flatness) / 2, 0.0, 1.0));
+  double low = 0, high = 1;  // there is one positive root
+  for (double a = 0.5; low < a && a < high; a = (low + high) / 2)
+    (2 * a * a * a - (3 - flatness) * a < lean ? low : high) = a;
+  return 1 - high;
+}
+
+double squared_gap(double of_sheet, double lean) {
+  const double a = 1 - of_sheet;
+  return 4 * a + lean / (a * a);
 }
 
 double sharpened_label(double above, double apart, double variance) {

@@ -17,7 +17,7 @@
 /// | heights and labels                                   | `LabelledSheets`: m, d and c, least squares  |
 /// | heights along an axis, sheets well apart             | `split_heights`: labels of least variance    |
 /// | the variance v about m and that of one sheet, c      | `squared_apart`: d^2 = v - c                 |
-/// | the flatness of the residuals about m                | `share_of_sheet`: c / v                      |
+/// | flatness and lean of the residuals about m           | `share_of_sheet`: c / v                      |
 ///
 /// `evidence_of_two` says of each height whether it is of two sheets or of one with more noise; the caller
 /// adds it up over as many as it takes. `nearer_label`, `expected_label` and `sharpened_label` say where a
@@ -141,9 +141,18 @@ Values squared_apart(const Values& variance, const OfSheet& of_sheet) {
   return variance - of_sheet;
 }
 
-/// c / v of heights with that flatness about the middle: the fourth moment over the square of the second. Two
-/// sheets at +-d have a fourth cumulant of -2 d^4. The share is 1 from 3 on, which a normal distribution has.
-double share_of_sheet(double flatness);
+/// c / v of heights with that flatness, the fourth central moment over the square of the second, and that
+/// lean, the square of the third over the cube of the second. Of sheets that have the shares p and 1 - p of
+/// the points and are g apart, a = 1 - c / v = p (1 - p) g^2 / v is the root of
+///
+///     2 a^3 - (3 - flatness) a - lean = 0.
+///
+/// Without lean, of sheets with as many points each, the share is 1 from 3 on, which a normal distribution
+/// has.
+double share_of_sheet(double flatness, double lean = 0);
+
+/// g^2 / v = 4 a + lean / a^2. \param of_sheet c / v, less than 1.
+double squared_gap(double of_sheet, double lean);
 
 /// The flatness (Scatter::flatness) below which residuals are of two sheets: halfway between that of a normal
 /// distribution and that of two sheets five sigma apart.

@@ -36,6 +36,17 @@ TEST(Scatter, FlatnessTellsNormalEvenAndTwoSheetsApart) {
   EXPECT_NEAR(middle_fit(1000, [&](const auto&) { return above(engine) ? 0.01 : -0.01; }).flatness, 1, 0.05);
 }
 
+TEST(Scatter, LeanTellsUnequalSheetsFromAsManyPointsOnEach) {
+  std::mt19937_64 engine(5);
+  const auto lean_of = [&](double share) {
+    std::bernoulli_distribution above(share);
+    return middle_fit(1000, [&](const auto&) { return above(engine) ? 0.01 : 0.0; }).lean;
+  };
+  EXPECT_NEAR(lean_of(0.5), 0, 0.05);
+  EXPECT_NEAR(lean_of(0.3), 0.4 * 0.4 / (0.3 * 0.7), 0.15);  // (1 - 2 p)^2 / (p (1 - p))
+  EXPECT_NEAR(lean_of(0.7), 0.4 * 0.4 / (0.3 * 0.7), 0.15);
+}
+
 TEST(Scatter, NearestPointsErrTogetherWhereTheyShareTheNoise) {
   std::mt19937_64 engine(6);
   std::normal_distribution<double> normal(0, 0.01);

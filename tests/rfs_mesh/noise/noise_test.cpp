@@ -284,6 +284,47 @@ TEST(Noise, OfTwoCleanSheetsTwoSpacingsApartIsNotTheirDistance) {
   EXPECT_LT(measured(points).sigma, 0.0005);
 }
 
+/// A share of the points of a bumpy sheet's far half lies `gap` higher, as of a second scan; spacing 1.
+/// Returns the noise of the halves, away from where they meet.
+std::array<double, 2> of_two_scans(double share, double gap, double sigma, unsigned seed) {
+  std::mt19937_64 engine(seed);
+  std::uniform_real_distribution<double> uniform;
+  std::normal_distribution<double> normal(0, sigma);
+  Positions points;
+  for (int i = 0; i < 140; ++i)
+    for (int j = 0; j < 140; ++j) {
+      const double x = i + 0.8 * uniform(engine), y = j + 0.8 * uniform(engine);
+      const double bump = 2 * std::sin(x / 10) * std::sin(y / 10);
+      const bool second = x > 70 && uniform(engine) < share;
+      points.emplace_back(x, y, bump + normal(engine) + (second ? gap : 0));
+    }
+  const NoiseField noise = measured(points);
+  std::array<double, 2> squares = {}, count = {};
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (std::abs(points[i].x() - 70) < 10) continue;
+    const std::size_t half = points[i].x() < 70 ? 0 : 1;
+    squares[half] += noise.local[i] * noise.local[i];
+    ++count[half];
+  }
+  return {std::sqrt(squares[0] / count[0]), std::sqrt(squares[1] / count[1])};
+}
+
+TEST(Noise, OfTwoScansNearerToEachOtherThanTheirPointsIsTheirScatter) {
+  constexpr double kShare = 0.35, kGap = 0.75, kSigma = 0.05;
+  const double scatter = std::sqrt(kShare * (1 - kShare)) * kGap;
+  for (const unsigned seed : {1U, 2U, 3U}) {
+    const auto [one, two] = of_two_scans(kShare, kGap, kSigma, seed);
+    EXPECT_LT(one, 2 * kSigma) << seed;
+    EXPECT_NEAR(two / scatter, 1, 0.25) << seed;
+  }
+}
+
+TEST(Noise, OfTwoScansThreeSpacingsApartIsThatOfEach) {
+  const auto [one, two] = of_two_scans(0.35, 3, 0.05, 1);
+  EXPECT_LT(one, 0.1);
+  EXPECT_LT(two, 0.1);
+}
+
 /// 40,000 points of a square of side 1, spacing about 1/200, at heights that `height` gives them.
 Positions square(const std::function<double(double, double)>& height) {
   std::mt19937_64 engine(9);

@@ -239,6 +239,25 @@ TEST(ShareOfSheet, IsThatOfTheNoise) {
       EXPECT_NEAR(share_of_sheet(flatness_of_two(d, c)), c / (c + d * d), 1e-7) << d << " " << c;
 }
 
+TEST(ShareOfSheet, IsThatOfTheNoiseOfUnequalSheetsAndTellsTheirGap) {
+  for (const double p : {0.1, 0.3, 0.45})
+    for (const double gap : {0.5, 2.0, 6.0}) {
+      constexpr double kNoise = 0.7;  // variance
+      // Central moments of the mixture, from those of its two normal distributions about their mean.
+      double second = 0, third = 0, fourth = 0;
+      for (const auto& [weight, d] : {std::pair(p, (1 - p) * gap), std::pair(1 - p, -p * gap)}) {
+        second += weight * (d * d + kNoise);
+        third += weight * (d * d * d + 3 * d * kNoise);
+        fourth += weight * (std::pow(d, 4) + 6 * d * d * kNoise + 3 * kNoise * kNoise);
+      }
+      const double flatness = fourth / (second * second), lean = third * third / std::pow(second, 3);
+      const double of_sheet = share_of_sheet(flatness, lean);
+      EXPECT_NEAR(of_sheet, kNoise / second, 1e-7) << p << " " << gap;
+      EXPECT_NEAR(squared_gap(of_sheet, lean), gap * gap / second, 1e-4) << p << " " << gap;
+    }
+  EXPECT_DOUBLE_EQ(share_of_sheet(1, 1), 0);  // no distribution has that
+}
+
 TEST(ShareOfSheet, ByHand) {  // 1 - sqrt((3 - k) / 2)
   EXPECT_DOUBLE_EQ(share_of_sheet(2.5), 0.5);
   EXPECT_DOUBLE_EQ(share_of_sheet(1), 0);
