@@ -36,10 +36,11 @@ struct FlowReport {
 
 /// What a cloud itself shows of its noise. Lengths in world units.
 struct NoiseSummary {
-  double typical = 0;  ///< standard deviation along the normal, of the typical place
-  double loudest = 0;  ///< the same of the loudest tenth of the points, its least
-  double shared = 1;   ///< over how many neighbouring points it is about the same; 1: each has its own
-  double step = 0;     ///< typical distance between depths that come in steps, world units; 0: they do not
+  double typical = 0;     ///< standard deviation along the normal, of the typical place
+  double loudest = 0;     ///< the same of the loudest tenth of the points, its least
+  double shared = 1;      ///< over how many neighbouring points it is about the same; 1: each has its own
+  double step = 0;        ///< typical distance between depths that come in steps, world units; 0: they do not
+  bool on_lines = false;  ///< whether the points lie along lines, as on the rings of a spinning laser
 };
 
 /// Why everything stays where it is.

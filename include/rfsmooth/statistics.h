@@ -28,7 +28,10 @@ struct NoiseModel {
   double spacing = 0;  ///< mean distance to the nearest neighbour, of up to 50,000 points
   std::size_t neighbours = 0;  ///< of the fits that it was measured by
   double shared = 1;  ///< points that say as much as one, since they share the noise; 1: each its own
-  double step = 0;    ///< typical distance between depths that come in steps, world units; 0: none
+  /// Set where the nearest points lie along a line, as on the rings of a spinning laser: how many neighbours
+  /// reach across to other lines and are a piece of the surface.
+  std::optional<std::size_t> across;
+  double step = 0;  ///< typical distance between depths that come in steps, world units; 0: none
   std::vector<Eigen::Vector3d> sites;  ///< places, around the middle of the box; one where noise is even
   std::vector<double> at_sites;        ///< sigma there, world units
 };

@@ -33,6 +33,7 @@ ordered_json json_of_noise(const NoiseModel& noise) {
                        {"spacing", noise.spacing},  {"neighbours", noise.neighbours},
                        {"shared_by", noise.shared}, {"depth_step", noise.step},
                        {"at_sites", noise.at_sites}};
+  if (noise.across) json["across"] = *noise.across;
   json["sites"] = ordered_json::array();
   for (const auto& p : noise.sites) json["sites"].push_back(json_of_place(p));
   return json;
@@ -46,6 +47,7 @@ NoiseModel noise_of(const ordered_json& json) {
   noise.neighbours = json.at("neighbours");
   noise.shared = json.at("shared_by");
   noise.step = json.at("depth_step");
+  if (json.contains("across")) noise.across = json.at("across").get<std::size_t>();
   noise.at_sites = json.at("at_sites").get<std::vector<double>>();
   for (const auto& p : json.at("sites")) noise.sites.push_back(place_of(p));
   return noise;
@@ -125,6 +127,19 @@ Statistics statistics_of(const ordered_json& json) {
                   json.at("sheets").at("variance").get<double>()};
   if (json.contains("thin_walls")) all.thin_walls = json.at("thin_walls").get<bool>();
   return all;
+}
+
+ordered_json json_of(const NoiseSummary& noise) {
+  return {{"typical", noise.typical},
+          {"loudest_tenth", noise.loudest},
+          {"shared_by", noise.shared},
+          {"depth_step", noise.step},
+          {"on_lines", noise.on_lines}};
+}
+
+NoiseSummary summary_of(const ordered_json& json) {
+  return {json.at("typical"), json.at("loudest_tenth"), json.at("shared_by"), json.at("depth_step"),
+          json.at("on_lines")};
 }
 
 ordered_json json_of(const std::optional<NotSmoothed>& why) {

@@ -20,6 +20,11 @@ nlohmann::ordered_json json_of(const Statistics& statistics);
 /// \throw nlohmann::json::exception where something is missing or of another kind.
 Statistics statistics_of(const nlohmann::ordered_json& json);
 
+nlohmann::ordered_json json_of(const NoiseSummary& noise);
+
+/// \throw nlohmann::json::exception where something is missing or of another kind.
+NoiseSummary summary_of(const nlohmann::ordered_json& json);
+
 /// A word; null for none.
 nlohmann::ordered_json json_of(const std::optional<NotSmoothed>& why);
 

@@ -337,14 +337,13 @@ Settled read_settled(const std::filesystem::path& path) {
   if (!file) throw Failure({ErrorCode::input_unreadable, fmt::format("{}: cannot be read", path.string())});
   try {
     const ordered_json json = ordered_json::parse(file);
-    const ordered_json& shows = json.at("shows");
     return {statistics_of(json.at("statistics")),
             json.at("halo"),
             json.at("halo_radii"),
             json.at("widest"),
             json.at("noise"),
             json.at("noise_left"),
-            {shows.at("typical"), shows.at("loudest"), shows.at("shared_by"), shows.at("depth_step")},
+            summary_of(json.at("noise_measured")),
             not_smoothed_of(json.at("not_smoothed")),
             json.at("guide_strength"),
             json.at("tail_times"),
@@ -388,11 +387,7 @@ void settle_job(const Job& job, const DenoiseOptions& options, const Context& co
                              {"widest", settled.widest},
                              {"noise", report.noise},
                              {"noise_left", report.noise_left},
-                             {"shows",
-                              {{"typical", report.measured.typical},
-                               {"loudest", report.measured.loudest},
-                               {"shared_by", report.measured.shared},
-                               {"depth_step", report.measured.step}}},
+                             {"noise_measured", json_of(report.measured)},
                              {"not_smoothed", json_of(report.not_smoothed)},
                              {"guide_strength", report.guide_strength},
                              {"tail_times", report.tail_times},

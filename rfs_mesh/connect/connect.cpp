@@ -133,12 +133,13 @@ double loudness(const NoiseModel& noise) {
 
 /// The scale of the quadrics: that of what the calm quarter of places shows, times how much louder the cloud
 /// is than that. It is less than what was measured where that took a second sheet for noise. But depths in
-/// steps and noise that neighbours share do not show in narrow neighbourhoods: there the measure decides.
+/// steps and noise that neighbours share do not show in narrow neighbourhoods, nor any noise in lines of
+/// points: there the measure decides.
 NoiseScale scale_for(const SpatialIndex& index, const NoiseModel& noise, const Context& context) {
   if (!(noise.sigma > 0)) return {};
   std::vector<double> sigma = at_sites(noise);
   const double loud = loudness(noise), calm = quantile(sigma, 0.25);
-  const bool understated = noise.shared > 1 || noise.step > 0;
+  const bool understated = noise.shared > 1 || noise.step > 0 || noise.across;
   NoiseScale scale = noise_scale(index, context, understated ? loud : 0, std::max(1.0, loud / calm));
   scale.sigma = std::min(scale.sigma, loud);
   return scale;

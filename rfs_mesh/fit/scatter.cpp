@@ -17,7 +17,6 @@ namespace {
 constexpr double kLeastKept = 0.75;   // of the weight; 3 sigma of half the true sigma keep 0.87
 constexpr double kLeastWithin = 0.2;  // of the weight: what a window of a quarter of sigma keeps
 constexpr double kLeastFlat = 0.5;    // the patch's radius over the ball's, where the window is high
-constexpr double kLine = 0.1;         // breadth: rings have 0.004 to 0.04, surfaces 0.2 and more
 constexpr int kScatterRounds = 3;     // the first without a window
 
 typedef double FourSums __attribute__((vector_size(4 * sizeof(double))));

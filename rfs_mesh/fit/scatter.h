@@ -27,6 +27,9 @@ namespace rfsmooth::rfs_mesh {
 /// Variance of a normal variable cut at +-c standard deviations, over its variance uncut.
 double variance_inside(double c);
 
+/// Breadth (Scatter) below which points lie along a line: rings have 0.004 to 0.04, surfaces 0.2 and more.
+constexpr double kLine = 0.1;
+
 /// How far the points around one scatter about the quadric through them.
 struct Scatter {
   double variance = 0;    ///< s^2, world units squared

@@ -144,7 +144,10 @@ void sum_up(const NoiseSites& sites, const NoiseStart& start, NoiseModel& noise)
 void measure(const SpatialIndex& index, const DepthSteps* steps, NoiseModel& noise, const Context& context) {
   const Positions places = search_places(index.points());
   NoiseStart start = search_noise(index, places, steps, context);
-  noise.shared = double(start.narrowest) / double(kNarrowestPatch);
+  if (start.on_lines && steps == nullptr)
+    noise.across = start.narrowest;
+  else  // terraces are of one depth
+    noise.shared = double(start.narrowest) / double(kNarrowestPatch);
   if (!(start.least > 0)) return;
   const SharedNoise shared = find_shared_noise(index, places, start, steps, context);
   if (shared.points > 1) {

@@ -81,24 +81,24 @@ double lowest(const SpatialIndex& index, const Positions& places, std::size_t m,
   return sigma;
 }
 
-/// The least m of which the neighbourhoods are pieces of a surface. The rings of a spinning laser and the
-/// terraces of depths in steps are lines while m is small, and a quadric follows a line wherever it goes.
+/// Sets the least m of which the neighbourhoods are pieces of a surface. The rings of a spinning laser and
+/// the terraces of depths in steps are lines while m is small, and a quadric follows a line wherever it goes.
 /// `all`: the fits at the narrowest m, without windows.
-std::size_t narrowest_surface(const SpatialIndex& index, const Positions& places, std::vector<Scatter> all,
-                              std::size_t widest, const Context& context) {
+void find_surface(const SpatialIndex& index, const Positions& places, std::vector<Scatter> all,
+                  std::size_t widest, NoiseStart& start, const Context& context) {
   // Of the breadth: 1 in a disk, a quarter in a strip twice as long as wide. Scans have 0.56 and more.
   constexpr double kSurface = 0.4;
-  const auto is_surface = [&] {
+  const auto breadth = [&] {
     std::vector<double> breadths;
     for (const Scatter& s : all) breadths.push_back(s.breadth);
-    return quantile(breadths, 0.5) >= kSurface;
+    return quantile(breadths, 0.5);
   };
-  std::size_t m = kNarrowestPatch;
-  while (2 * m <= widest && !is_surface()) {
+  std::size_t& m = start.narrowest;
+  while (2 * m <= widest && breadth() < kSurface) {
     m *= 2;
-    if (2 * m <= widest) all = fits(index, places, m, std::vector<double>(places.size(), 0), context);
+    all = fits(index, places, m, std::vector<double>(places.size(), 0), context);
+    if (m == 2 * kNarrowestPatch) start.on_lines = breadth() < kSurface / 2;
   }
-  return m;
 }
 
 }  // namespace
@@ -130,7 +130,7 @@ NoiseStart search_noise(const SpatialIndex& index, Positions places, const Depth
   const std::size_t widest = widest_scatter(index);
   NoiseStart start;
   std::vector<Scatter> all = fits(index, places, start.m, std::vector<double>(places.size(), 0), context);
-  start.narrowest = narrowest_surface(index, places, all, widest, context);
+  find_surface(index, places, all, widest, start, context);
   const double narrow = median_radius(index, places, start.m);
   start.least = 1e-9 * narrow;
   start.sigma = std::sqrt(mean_variance(all, kCalmPlaces, kCalmDeviate));

@@ -26,6 +26,17 @@ using rfs_mesh::kStray;
 // Chosen on the development shapes (tests/bench/quality) at 10,000 and 50,000 points, noise of 1 to 3 %.
 constexpr double kGuide = 10;  // c = kGuide (sigma/h)^2, to the fourth power above h
 
+/// Rings of the nearest points along the lines that the cloud lies on: an RFS-mesh has hardly a face there,
+/// and where it has one it leads to another line, far away.
+Adjacency along_lines(const Positions& points, const Context& context) {
+  const rfs_mesh::NeighborTable near =
+      rfs_mesh::SpatialIndex(points, context).nearest(int(rfs_mesh::kRing) / 2, context);
+  std::vector<Edge> edges;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    for (const Index j : near[i]) edges.push_back({Index(i), j});
+  return make_adjacency(points.size(), edges, context);
+}
+
 Positions fair(const Mesh& mesh, double strength, std::vector<double>& reductions, const Context& context) {
   const Operator op = umbrella(mesh, context);
   SolverOptions options;
@@ -39,13 +50,14 @@ Positions fair(const Mesh& mesh, double strength, std::vector<double>& reduction
 }
 
 /// The guide of mesh.positions and the heights over it.
-std::unique_ptr<HeightField> raise_field(const Mesh& mesh, double sigma, AutomaticReport& report,
-                                         Statistics::Pass& whole, const Context& context) {
+std::unique_ptr<HeightField> raise_field(const Mesh& mesh, const rfs_mesh::NoiseField& noise,
+                                         AutomaticReport& report, Statistics::Pass& whole,
+                                         const Context& context) {
   Positions guide = fair(mesh, report.guide_strength, whole.reductions, context);
-  Landed landed = land_stranded(mesh, kStray * sigma, guide, context);
+  Landed landed = land_stranded(mesh, kStray * noise.sigma, guide, context);
   report.stranded = landed.stranded;
   return std::make_unique<HeightField>(std::move(guide), std::move(landed.tree), std::move(landed.near),
-                                       mesh.positions, context);
+                                       mesh.positions, noise.across, context);
 }
 
 /// What is left between the data and the surface. With tails of the data as they came, for
@@ -80,8 +92,10 @@ Positions automatic_smoothing(Mesh& mesh, bool keep_rings, rfs_mesh::NoiseField 
     return kGuide * share * share * std::max(1.0, share * share) * noise.shared;
   };
   report.guide_strength = guide_strength();
+  Adjacency rings_of_mesh;
+  if (noise.across) rings_of_mesh = std::exchange(mesh.one_ring, along_lines(mesh.positions, context));
   whole.passes.resize(std::max<std::size_t>(1, whole.passes.size()));
-  auto field = raise_field(mesh, noise.sigma, report, whole.passes[0], context);
+  auto field = raise_field(mesh, noise, report, whole.passes[0], context);
   context.report("smooth", 0.1);
   MixedScales pass = smooth_heights(*field, noise, spacing, learned, whole.passes[0], context);
   Positions data = mesh.positions;  // as tamed
@@ -95,14 +109,16 @@ Positions automatic_smoothing(Mesh& mesh, bool keep_rings, rfs_mesh::NoiseField 
     report.guide_strength = guide_strength();
     mesh.positions.swap(data);
     whole.passes.resize(2);
-    field = raise_field(mesh, noise.sigma, report, whole.passes[1], context);
+    field = raise_field(mesh, noise, report, whole.passes[1], context);
     pass = smooth_heights(*field, noise, spacing, learned, whole.passes[1], context);
     mesh.positions.swap(data);
   }
+  if (noise.across) mesh.one_ring = std::move(rings_of_mesh);
   if (!keep_rings) mesh.one_ring = {};
   const double of_whole = whole.points ? double(*whole.points) / double(n) : 1;
   const std::vector<float> mixed = learned ? pass.height : std::vector<float>();
-  const bool own_noise = !(noise.shared > 1);  // a k-th of the evidence never was enough for walls
+  // A k-th of the evidence never was enough for walls, and across lines there is none.
+  const bool own_noise = !(noise.shared > 1) && !noise.across;
   HiddenSheets hidden;
   if (own_noise)
     hidden = split_hidden_sheets(*field,
@@ -113,8 +129,11 @@ Positions automatic_smoothing(Mesh& mesh, bool keep_rings, rfs_mesh::NoiseField 
   };
   Positions smooth(n);
   for_each_index(context, n, [&](std::size_t i) {
-    const Eigen::Vector3d &from = mesh.positions[i],
-                          move = field->guide()[i] + double(pass.height[i]) * field->normal(i) - from;
+    const Eigen::Vector3d& from = mesh.positions[i];
+    // Along lines the guide is of no surface: points go along their normals only.
+    const Eigen::Vector3d foot =
+        field->on_lines() ? Eigen::Vector3d(from - field->height(i) * field->normal(i)) : field->guide()[i];
+    const Eigen::Vector3d move = foot + double(pass.height[i]) * field->normal(i) - from;
     smooth[i] = allowed(i, move) ? from + move : from;
   });
   if (own_noise)

@@ -35,6 +35,11 @@
 /// noise. What such points have of their own beside it is noise for sure: in place of the data the patches of
 /// 16 points are the first candidate, so that where every wide patch is worse the points are left calm.
 ///
+/// Where the nearest points lie along lines (NoiseModel::across), as on the rings of a spinning laser, the
+/// guide is faired along them, over the nearest of each point in place of the mesh. Normals are those of
+/// the thinned guide, narrow patches are parabolas along the line, points move along their normals only, and
+/// neither walls nor tails are looked for.
+///
 /// Where some points are several times noisier than their neighbours (tails.h), steps 1 to 3 are done twice,
 /// the second time with those drawn towards the surface that the others show. Such points are off each by
 /// itself; where far points stand together, it is shape, or noise that was missed there, and what their

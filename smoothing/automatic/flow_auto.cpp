@@ -75,7 +75,7 @@ class AutomaticFlow : public Flow {
 }  // namespace
 
 NoiseSummary summary_of(const rfs_mesh::NoiseField& noise) {
-  NoiseSummary summary{noise.sigma, noise.sigma, noise.shared, noise.step};
+  NoiseSummary summary{noise.sigma, noise.sigma, noise.shared, noise.step, noise.across.has_value()};
   if (noise.local.empty()) return summary;
   std::vector<double> local = noise.local;
   summary.loudest = quantile(local, 0.9);
@@ -103,7 +103,7 @@ std::optional<AutomaticReport> smooth_automatically(Mesh& mesh, const AutomaticO
   report.noise = sigma;
   report.measured = summary;
   if (options.strength == 0) report.not_smoothed = NotSmoothed::no_strength;
-  if (!report.not_smoothed) {
+  if (!report.not_smoothed && !noise.across) {  // along lines only the normals are known
     if (options.equalize) {
       const Equalized moved = equalize(mesh.positions, before, noise, spacing, std::move(near), context);
       report.equalized = moved.rms;

@@ -209,7 +209,8 @@ TEST(Help, WordsOfTheNoiseAreExplained) {
   for (const auto& words : std::vector<std::vector<std::string>>{{"info", "--help"}, {"man", "info"}}) {
     std::string text = rfsmooth(words).out;
     std::replace(text.begin(), text.end(), '\n', ' ');
-    for (const char* said : {"in the loudest tenth", "shared by N neighbours", "depth in steps of"})
+    for (const char* said :
+         {"in the loudest tenth", "shared by N neighbours", "points along lines", "depth in steps of"})
       EXPECT_THAT(text, HasSubstr(said)) << words[0];
   }
   EXPECT_THAT(rfsmooth({"denoise", "--help-all"}).out, HasSubstr("rfsmooth info --help"));

@@ -221,6 +221,39 @@ TEST(NoiseLaws, NoiseThatNeighboursShareIsSmoothedOverMoreOfThem) {
   EXPECT_LT(rms_off(denoised(noisy), everywhere), 0.7 * rms_off(noisy, everywhere));
 }
 
+/// Rings on the unit sphere, 20 times farther apart than their points, seen from outside: `noise` along the
+/// ray.
+Positions rings_on_sphere(double noise, unsigned seed) {
+  constexpr double kRing = M_PI / 60;
+  const Eigen::Vector3d scanner(2.5, 0.4, 0.8);
+  std::mt19937_64 engine(seed);
+  std::normal_distribution<double> normal(0, noise);
+  Positions points;
+  for (double polar = kRing / 2; polar < M_PI; polar += kRing) {
+    const auto count = int(2 * M_PI * std::sin(polar) / (kRing / 20));
+    for (int i = 0; i < count; ++i) {
+      const double turn = 2 * M_PI * i / count;
+      const Eigen::Vector3d p(std::sin(polar) * std::cos(turn), std::sin(polar) * std::sin(turn),
+                              std::cos(polar));
+      points.emplace_back(p + normal(engine) * (p - scanner).normalized());
+    }
+  }
+  return points;
+}
+
+TEST(NoiseLaws, RingsOfALaserAreSmoothedAlongThemAndAcross) {
+  constexpr double kStep = M_PI / 60 / 20;
+  for (const unsigned seed : {1U, 2U}) {
+    const Positions scan = rings_on_sphere(0.4 * kStep, seed);
+    EXPECT_LT(rms_off(denoised(scan), everywhere), 0.35 * rms_off(scan, everywhere)) << seed;
+  }
+}
+
+TEST(NoiseLaws, RingsWithoutNoiseStay) {
+  const Positions scan = rings_on_sphere(0, 1);
+  EXPECT_LT(rms_move(scan, denoised(scan)), 0.02 * M_PI / 60 / 20);
+}
+
 TEST(NoiseLaws, StrengthActsWhereNextToNothingWasMeasured) {
   std::mt19937_64 engine(6);
   std::normal_distribution<double> normal(0, 0.02 * spacing());

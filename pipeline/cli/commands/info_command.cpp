@@ -12,6 +12,7 @@
 #include "pipeline/cli/console/report.h"
 #include "pipeline/cli/files/cloud_files.h"
 #include "pipeline/outliers.h"
+#include "pipeline/tiles/statistics_json.h"
 #include "rfs_mesh/fit/local_surface.h"
 #include "rfs_mesh/noise/noise.h"
 #include "rfs_mesh/points.h"
@@ -81,14 +82,10 @@ ordered_json measure(const pipeline::io::Cloud& cloud, const Context& context) {
     json["spacing_field"] = tenths(rfs_mesh::measure_spacing(index, context));
     rfs_mesh::NoiseField noise = noise_of_surface(index, working.value().box, context);
     json["noise"] = noise.sigma;
-    json["noise_measured"] = json_of(smoothing::summary_of(noise));
+    json["noise_measured"] = pipeline::tiles::json_of(smoothing::summary_of(noise));
     json["noise_field"] = tenths(std::move(noise.local));
   });
   return json;
-}
-
-NoiseSummary noise_of(const ordered_json& json) {
-  return {json["typical"], json["loudest_tenth"], json["shared_by"], json["depth_step"]};
 }
 
 std::string vector_text(const ordered_json& v, int digits = 9) {
@@ -128,7 +125,7 @@ void print_text(const ordered_json& info) {
   if (!info["noise"].is_null())
     fmt::print(
         "  noise     {:.6g}{} (standard deviation along the normal; over the cloud {} from calm to loud)\n",
-        info["noise"].get<double>(), in_words(noise_of(info["noise_measured"])),
+        info["noise"].get<double>(), in_words(pipeline::tiles::summary_of(info["noise_measured"])),
         vector_text(info["noise_field"], 6));
   fmt::print("  fields   ");
   for (const auto& field : info["fields"]) {
@@ -192,12 +189,10 @@ Command info_command() {
       "organised, extent, spacing and noise. - stands for standard input.\n\n"
       "The noise is that of the typical place. Where there is more to say, it follows: 'S in the loudest "
       "tenth' is the noise that a tenth of the points exceed. 'shared by N neighbours': neighbours err "
-      "together, "
-      "as in the blotches of depth cameras, and N of them tell no more than one; smoothing takes so many "
-      "points "
-      "more together. 'depth in steps of S': depths are rounded, and S is the typical distance from one to "
-      "the "
-      "next.";
+      "together, as in the blotches of depth cameras, and N of them tell no more than one; smoothing takes "
+      "so many points more together. 'points along lines': the nearest of a point are on one line, as on "
+      "the rings of a spinning laser; smoothing follows the lines. 'depth in steps of S': depths are "
+      "rounded, and S is the typical distance from one to the next.";
   collect(*options, command.options);
   polish(command);
   command.run = [options](const Invocation& typed) { return run_info(*options, typed); };

@@ -34,19 +34,13 @@ nlohmann::ordered_json json_of(const std::vector<StageTime>& stages) {
   return object;
 }
 
-nlohmann::ordered_json json_of(const NoiseSummary& noise) {
-  return {{"typical", noise.typical},
-          {"loudest_tenth", noise.loudest},
-          {"shared_by", noise.shared},
-          {"depth_step", noise.step}};
-}
-
 std::string in_words(const NoiseSummary& noise) {
   constexpr double kLouder = 1.1;  // the noise field says nothing of less (rfs_mesh/noise/noise.h)
   std::string words;
   if (noise.loudest > kLouder * noise.typical)
     words += fmt::format(", {:.3g} in the loudest tenth", noise.loudest);
   if (noise.shared >= 2) words += fmt::format(", shared by {:.0f} neighbours", noise.shared);
+  if (noise.on_lines) words += ", points along lines";
   if (noise.step > 0) words += fmt::format(", depth in steps of {:.3g}", noise.step);
   return words;
 }

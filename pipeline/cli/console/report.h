@@ -34,8 +34,6 @@ class Report {
 
 nlohmann::ordered_json json_of(const std::vector<StageTime>& stages);
 
-nlohmann::ordered_json json_of(const NoiseSummary& noise);
-
 /// What there is to say of noise beside its figure, each after a comma: ", 3.4 in the loudest tenth, shared
 /// by 4 neighbours, depth in steps". Nothing for even noise that each point has of its own.
 std::string in_words(const NoiseSummary& noise);

@@ -5,8 +5,7 @@
 #include <utility>
 
 #include "base/parallel.h"
-#include "rfs_mesh/fit/plane_normal.h"
-#include "rfs_mesh/normals/sides.h"
+#include "smoothing/automatic/patches/guide_normals.h"
 #include "smoothing/automatic/patches/weighted_sum.h"
 
 namespace rfsmooth::smoothing {
@@ -18,18 +17,17 @@ constexpr float kByteUnit = 255, kByteRounded = 0.5F;
 }  // namespace
 
 HeightField::HeightField(Positions guide, rfs_mesh::KdTree tree, rfs_mesh::NeighborTable near,
-                         const Positions& data, const Context& context)
-    : guide_(std::move(guide)), index_(guide_, std::move(tree), context), near_(std::move(near)) {
+                         const Positions& data, std::optional<std::size_t> across, const Context& context)
+    : guide_(std::move(guide)),
+      index_(guide_, std::move(tree), context),
+      near_(std::move(near)),
+      on_lines_(across.has_value()) {
   if (near_.size() != size() || data.size() != size())
     throw std::invalid_argument("HeightField: guide, neighbours and data are not of the same points");
+  const std::vector<Eigen::Vector3f> normals = across ? normals_across_lines(guide_, near_, *across, context)
+                                                      : surface_normals(guide_, near_, context);
   local_.resize(size());
-  for_each_index(context, size(), [&](std::size_t i) {
-    const auto row = near_[i];
-    const Eigen::Vector3d normal = rfs_mesh::plane_normal(
-        guide_, i, {row.begin(), row.begin() + std::min(row.size(), rfs_mesh::kNeighbourhood)});
-    local_[i].normal = normal.allFinite() ? Eigen::Vector3f(normal.cast<float>()) : Eigen::Vector3f::UnitZ();
-  });
-  orient(context);
+  for_each_index(context, size(), [&](std::size_t i) { local_[i].normal = normals[i]; });
   for_each_index(context, size(),
                  [&](std::size_t i) { local_[i].height = float(normal(i).dot(data[i] - guide_[i])); });
   near_weight_.resize(near_.items.size());
@@ -43,27 +41,6 @@ HeightField::HeightField(Positions guide, rfs_mesh::KdTree tree, rfs_mesh::Neigh
       near_weight_[i * row.size() + k] =
           std::uint8_t(same ? kByteUnit * float(std::clamp(1 - away, 0.0, 1.0)) + kByteRounded : 0);
     }
-  });
-}
-
-void HeightField::orient(const Context& context) {
-  const auto linked = [&](std::size_t i) {
-    const auto near = near_[i];
-    return std::make_pair(near.begin(), near.begin() + std::min(near.size(), rfs_mesh::kRing));
-  };
-  const auto links = [&](std::size_t begin, std::size_t end, std::vector<rfs_mesh::SideLink>& out) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const auto [first, last] = linked(i);
-      for (auto j = first; j != last; ++j) {
-        const auto [back, stop] = linked(*j);
-        if (*j < i && std::find(back, stop, Index(i)) != stop) continue;  // the other has this link
-        out.push_back({Index(i), *j, local_[i].normal.dot(local_[*j].normal), 1});
-      }
-    }
-  };
-  const rfs_mesh::Regions regions = rfs_mesh::grow_regions_in_blocks(size(), links, context);
-  for_each_index(context, size(), [&](std::size_t i) {
-    if (regions.turned[i] != 0) local_[i].normal = -local_[i].normal;
   });
 }
 

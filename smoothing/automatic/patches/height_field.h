@@ -3,13 +3,14 @@
 ///     x_i = g_i + z_i n_i + (a tangential rest that is left alone)
 ///
 /// The guide g lies near the surface, its neighbourhoods and normals are calm; what is left to estimate is
-/// one number a point. The normals are those of the plane through the nearest guide points, and point to one
-/// side along the guide (Hoppe et al. 1992, 3.3, grown together by sides.h): the two sheets of a thin wall
-/// have opposite normals however near they are to each other. Which of the two sides is arbitrary.
+/// one number a point. The normals (guide_normals.h) point to one side along the guide: the two sheets of a
+/// thin wall have opposite normals however near they are to each other. Which of the two sides is arbitrary.
 /// Const functions are thread safe.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -36,14 +37,16 @@ class HeightField {
   /// \param tree of the guide points, here or at places near these.
   /// \param near n x kNear (n - 1 where that is less): the nearest of every guide point.
   /// \param data n x 3, the noisy points of the same indices.
+  /// \param across as in normals_across_lines, where points lie along lines.
   /// \throw std::invalid_argument if the three differ in n.
   /// O(n log n), parallel, the same bits for any number of threads.
   HeightField(Positions guide, rfs_mesh::KdTree tree, rfs_mesh::NeighborTable near, const Positions& data,
-              const Context& context);
+              std::optional<std::size_t> across, const Context& context);
   HeightField(const HeightField&) = delete;
   HeightField& operator=(const HeightField&) = delete;
 
   std::size_t size() const { return guide_.size(); }
+  bool on_lines() const { return on_lines_; }  ///< whether the nearest points lie along lines
   const Positions& guide() const { return guide_; }
   /// Unit; from single precision, like the height.
   Eigen::Vector3d normal(std::size_t i) const { return local_[i].normal.cast<double>(); }
@@ -65,11 +68,10 @@ class HeightField {
   rfs_mesh::NeighborTable release_neighbors() { return std::move(near_); }
 
  private:
-  void orient(const Context& context);
-
   Positions guide_;
   rfs_mesh::SpatialIndex index_;
   rfs_mesh::NeighborTable near_;
+  bool on_lines_;
   std::vector<Local> local_;
   RawArray<std::uint8_t> near_weight_;  ///< of near_, in 1/255: 1 - d^2/r^2; 0 on another sheet
 };

@@ -12,6 +12,7 @@
 #include "base/collect.h"
 #include "base/linear/small_cholesky.h"
 #include "base/parallel.h"
+#include "rfs_mesh/fit/scatter.h"
 #include "rfs_mesh/search/thinning.h"
 #include "smoothing/automatic/patches/quadric_sums.h"
 #include "smoothing/automatic/patches/weighted_sum.h"
@@ -42,6 +43,35 @@ Floats four(const float* at) {
 
 float total(const Floats& f) {
   return (f[0] + f[1]) + (f[2] + f[3]);
+}
+
+/// The directions of a patch's u and v, unit; v zero where only u is fitted over.
+struct Across {
+  Eigen::Vector3d u, v;
+};
+
+Across across(const Eigen::Vector3d& axis) {
+  const Eigen::Vector3d u = axis.unitOrthogonal();
+  return {u, axis.cross(u)};
+}
+
+/// u along the line that the members lie on, if they do. The v of such members would only tell how far noise
+/// carried each of them, as their heights do: a fit over it would follow the noise.
+Across along_line(const rfs_mesh::WideNeighbors& near, const Eigen::Vector3d& axis, float square) {
+  const auto [u, v] = across(axis);
+  const Eigen::Vector3f first = u.cast<float>(), second = v.cast<float>();
+  float uu = 0, uv = 0, vv = 0;
+  for (std::size_t k = 0; k < near.size(); ++k) {
+    const Eigen::Vector3f r(near.x()[k], near.y()[k], near.z()[k]);
+    const float a = first.dot(r), b = second.dot(r), inside = 1 - near.squared()[k] / square;
+    uu += inside * inside * a * a;
+    uv += inside * inside * a * b;
+    vv += inside * inside * b * b;
+  }
+  const float middle = (uu + vv) / 2, apart = std::hypot((uu - vv) / 2, uv);
+  if (middle - apart > float(rfs_mesh::kLine) * (middle + apart)) return {u, v};
+  const double turn = std::atan2(2 * double(uv), double(uu - vv)) / 2;
+  return {std::cos(turn) * u + std::sin(turn) * v, Eigen::Vector3d::Zero()};
 }
 
 }  // namespace
@@ -150,17 +180,18 @@ Patches::Members Patches::gather(std::size_t s, Workspace& work, Index* member, 
   Patch& patch = memory_.patches_[s];
   rfs_mesh::WideNeighbors& near = work.near;
   near.find(patch.centre);
-  const Eigen::Vector3d axis = axis_at(seeds_[s]), across = axis.unitOrthogonal();
+  const Eigen::Vector3d axis = axis_at(seeds_[s]);
   // A little beyond the farthest point, so that it counts.
   const float square = std::max(1.1F * near.farthest(), std::numeric_limits<float>::min());
+  const Across flat = field_.on_lines() ? along_line(near, axis, square) : across(axis);
   const float shrink = 1 / std::sqrt(square);  // from the lengths of `near` to radii
   Members all;
   all.radius = near.unit() / double(shrink);
   patch.radius = float(all.radius);
-  const Eigen::Vector3f along = axis.cast<float>(), u = across.cast<float>() * shrink,
-                        v = axis.cross(across).cast<float>() * shrink, up = along * shrink;
-  const Eigen::Vector3f u_in_radii = (across / all.radius).cast<float>(),
-                        v_in_radii = (axis.cross(across) / all.radius).cast<float>();
+  const Eigen::Vector3f along = axis.cast<float>(), u = flat.u.cast<float>() * shrink,
+                        v = flat.v.cast<float>() * shrink, up = along * shrink;
+  const Eigen::Vector3f u_in_radii = (flat.u / all.radius).cast<float>(),
+                        v_in_radii = (flat.v / all.radius).cast<float>();
   for (std::size_t of = 0; of < 3; ++of) {
     const auto x = Eigen::Index(of);
     float* const parts = patch.frame.data() + 4 * of;

@@ -95,7 +95,8 @@ void land_hovering(const HeightField& field, const MixedScales& pass, const Mesh
 
 Tails tame(const HeightField& field, const MixedScales& pass, const Mesh& mesh, Positions& data,
            rfs_mesh::NoiseField& noise, std::optional<Statistics::Tails>& whole, const Context& context) {
-  if (rfs_mesh::rounding_noise(noise.step) > noise.sigma) return {};  // terraces stand out as tails do
+  // Terraces stand out as tails do, and so does what lines of points pass over.
+  if (rfs_mesh::rounding_noise(noise.step) > noise.sigma || noise.across) return {};
   constexpr float kMostItsOwn = 0.8F;
   constexpr double kByChance = 1.6;  // far points together: tails have 0.7 to 1.1 in ten thousand points
   constexpr double kGroups = 5;      // the same: groups of points that share what they are off by

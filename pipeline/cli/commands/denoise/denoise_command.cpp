@@ -49,7 +49,7 @@ void enter(const DenoiseReport& done, const DenoiseCommandOptions& options, orde
   entry["counts"]["removed"] = options.removes() ? done.outliers : 0;
   entry["spacing"] = done.spacing;
   entry["noise"] = done.noise;
-  entry["noise_measured"] = json_of(done.measured);
+  entry["noise_measured"] = pipeline::tiles::json_of(done.measured);
   entry["noise_left"] = done.noise_left;
   entry["not_smoothed"] = pipeline::tiles::json_of(done.not_smoothed);
   entry["guide_strength"] = done.guide_strength;

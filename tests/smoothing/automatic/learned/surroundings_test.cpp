@@ -22,7 +22,7 @@ class SurroundingsTest : public testing::Test {
   SurroundingsTest()
       : guide_(clouds::sample(*clouds::make_sphere(1), 3000, 7)),
         field_(guide_, {guide_, {}}, rfs_mesh::SpatialIndex(guide_, {}).nearest(HeightField::kNear, {}),
-               guide_, {}) {
+               guide_, {}, {}) {
     for (std::size_t i = 0; i < guide_.size(); ++i)
       packed_.push_back(
           {Eigen::Vector3f::Zero(), Eigen::Vector3f::Zero(), guide_[i].cast<float>(), float(i)});

@@ -31,7 +31,7 @@ TEST(Patches, PredictAQuadricExactlyWhateverTheSharesOfThePointsAre) {
       guide.emplace_back(x, y, 0);
       data.emplace_back(x, y, 0.01 * x * x - 0.02 * x * y + 0.3 * y - 1);
     }
-  const HeightField field(guide, rfs_mesh::KdTree(guide, {}), support::near_on(guide), data, {});
+  const HeightField field(guide, rfs_mesh::KdTree(guide, {}), support::near_on(guide), data, {}, {});
   for (const std::size_t m : {16, 100}) {
     std::vector<Index> seeds = seeds_of(guide);
     Patches::Memory memory;
@@ -58,11 +58,11 @@ TEST(Patches, OwnIsTheDerivativeOfAPredictionByThePointsHeight) {
   const std::size_t i = 207;
   const double step = 0.5;
   const std::vector<double> sigma(guide.size(), 10);
-  const HeightField field(guide, rfs_mesh::KdTree(guide, {}), support::near_on(guide), data, {});
+  const HeightField field(guide, rfs_mesh::KdTree(guide, {}), support::near_on(guide), data, {}, {});
   Patches::Memory memory;
   const Prediction before = Patches(field, 24, seeds, sigma, memory, {}).predict({});
   data[i].z() += step;
-  const HeightField lifted(guide, rfs_mesh::KdTree(guide, {}), support::near_on(guide), data, {});
+  const HeightField lifted(guide, rfs_mesh::KdTree(guide, {}), support::near_on(guide), data, {}, {});
   const Prediction after = Patches(lifted, 24, seeds, sigma, memory, {}).predict({});
   const double side = field.normal(i).z();
   EXPECT_NEAR(double(after.height[i] - before.height[i]) / (side * step), double(before.own[i]), 1e-4);
@@ -71,7 +71,7 @@ TEST(Patches, OwnIsTheDerivativeOfAPredictionByThePointsHeight) {
 TEST(Patches, MeanOfAConstantIsTheConstant) {
   const Mesh mesh = support::icosphere(3);
   const HeightField field(mesh.positions, rfs_mesh::KdTree(mesh.positions, {}),
-                          support::near_on(mesh.positions), mesh.positions, {});
+                          support::near_on(mesh.positions), mesh.positions, {}, {});
   const std::vector<float> seven(field.size(), 7);
   Patches::Memory memory;
   const Patches patches(field, 40, seeds_of(mesh.positions), std::vector<double>(field.size(), 1), memory,
@@ -92,7 +92,7 @@ HeightField flat_field(int side, Height&& z) {
       data.push_back(guide.back());
       data.back().z() = z(guide.back().x(), guide.back().y());
     }
-  return HeightField(guide, rfs_mesh::KdTree(guide, {}), support::near_on(guide), data, {});
+  return HeightField(guide, rfs_mesh::KdTree(guide, {}), support::near_on(guide), data, {}, {});
 }
 
 TEST(Patches, WiderOnesTakeMoreOfWhiteNoiseAwayAndSayHowMuch) {
@@ -116,6 +116,32 @@ TEST(Patches, WiderOnesTakeMoreOfWhiteNoiseAwayAndSayHowMuch) {
     EXPECT_GT(square, 0.3 * own) << m;
     before = square;
   }
+}
+
+// What carries a point of a line off its height carries it across the line, too.
+TEST(Patches, OnLinesDoNotFollowNoiseThatMovesPointsAcrossThem) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise;
+  Positions guide, data;
+  for (int line = 0; line < 12; ++line)
+    for (int i = 0; i < 240; ++i) {
+      const double off = noise(random);
+      guide.emplace_back(i, 20 * line + 0.5 * off, 0);
+      data.emplace_back(i, 20 * line + 0.5 * off, off);
+    }
+  const std::vector<double> sigma(guide.size(), 1);
+  const auto left = [&](std::optional<std::size_t> across) {
+    const HeightField field(guide, rfs_mesh::KdTree(guide, {}), support::near_on(guide), data, across, {});
+    Patches::Memory memory;
+    const Prediction p = Patches(field, 24, seeds_of(guide), sigma, memory, {}).predict({});
+    double square = 0;
+    for (std::size_t i = 0; i < field.size(); ++i) {
+      const double off = (data[i] - guide[i]).dot(field.normal(i)) - field.height(i) + double(p.height[i]);
+      square += off * off / double(field.size());
+    }
+    return square;
+  };
+  EXPECT_LT(left(128), 0.25);
 }
 
 /// Heights of a flat field: white noise of one, and as much as `moved` says, along z.
