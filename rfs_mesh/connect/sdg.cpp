@@ -219,8 +219,8 @@ void fill_gaps(const Rules& rules, Adjacency& graph, const Context& context) {
   }
 }
 
-std::vector<Edge> pick(const std::vector<Edge>& edges, const Context& context, const std::vector<char>& flag,
-                       char wanted) {
+std::vector<Edge> flagged(const std::vector<Edge>& edges, const Context& context,
+                          const std::vector<char>& flag, char wanted) {
   return collect<Edge>(context, edges.size(), [&](std::size_t e, auto&& emit) {
     if (flag[e] == wanted) emit(edges[e]);
   });
@@ -239,9 +239,9 @@ Sdg make_sdg(const Terrain& terrain, const std::vector<Edge>& tree, const SdgOpt
   std::vector<char> bridge(tree.size());
   for_each_index(context, tree.size(),
                  [&](std::size_t e) { bridge[e] = rules.is_bridge(tree[e][0], tree[e][1]); });
-  sdg.bridges = pick(tree, context, bridge, 1);
+  sdg.bridges = flagged(tree, context, bridge, 1);
   parallel_sort(context, sdg.bridges, std::less<Edge>());
-  if (!sdg.bridges.empty()) graph = make_adjacency(n, pick(tree, context, bridge, 0), context);
+  if (!sdg.bridges.empty()) graph = make_adjacency(n, flagged(tree, context, bridge, 0), context);
 
   graph = joined(graph, make_adjacency(n, extend_leaves(rules, n, context), context), context);
   fill_gaps(rules, graph, context);

@@ -25,7 +25,7 @@ constexpr double kOfScatter = 230;  // radians per (r / R)^2
 constexpr double kCalmest = 0.02, kWildest = 0.5;
 
 constexpr std::size_t kNormalLanes = 8;  // numbers side by side in registers
-using Lanes = Eigen::Array<float, int(kNormalLanes), 1>;
+using NormalLanes = Eigen::Array<float, int(kNormalLanes), 1>;
 
 /// A point and its normal, side by side in memory. Single precision is far finer than the calmest angle.
 struct Oriented {
@@ -39,7 +39,7 @@ float apart(const Eigen::Vector3f& n, const Eigen::Vector3f& m) {
 }
 
 /// exp(-x) but for its far end: (1 - x / 16)^16, which needs no library and ends at 16.
-Lanes fading(const Lanes& x) {
+NormalLanes fading(const NormalLanes& x) {
   return (1 - x / 16).max(0).square().square().square().square();
 }
 
@@ -87,22 +87,22 @@ struct Ring {
 
 /// The weighted sum of the ring's normals, each turned to the side of n. Lanes are added up in one order.
 Vector3d weighted_sum(const Ring& ring, const Eigen::Vector3f& n, float per_unlike) {
-  Lanes x = Lanes::Zero(), y = x, z = x;
+  NormalLanes x = NormalLanes::Zero(), y = x, z = x;
   for (std::size_t first = 0; first < ring.d.size(); first += kNormalLanes) {
     const auto at = [first](const std::vector<float>& of) {
-      return Eigen::Map<const Lanes>(of.data() + first);
+      return Eigen::Map<const NormalLanes>(of.data() + first);
     };
-    const Lanes a = at(ring.nx), b = at(ring.ny), c = at(ring.nz);
-    const Lanes cosine = n[0] * a + n[1] * b + n[2] * c;
-    const Lanes turn = (cosine < 0).select(Lanes::Constant(-1), Lanes::Ones());
-    const Lanes unlike =
+    const NormalLanes a = at(ring.nx), b = at(ring.ny), c = at(ring.nz);
+    const NormalLanes cosine = n[0] * a + n[1] * b + n[2] * c;
+    const NormalLanes turn = (cosine < 0).select(NormalLanes::Constant(-1), NormalLanes::Ones());
+    const NormalLanes unlike =
         per_unlike * ((n[0] - turn * a).square() + (n[1] - turn * b).square() + (n[2] - turn * c).square());
-    const Lanes weight = turn * (1 - at(ring.d)).square() * fading(unlike);
+    const NormalLanes weight = turn * (1 - at(ring.d)).square() * fading(unlike);
     x += weight * a;
     y += weight * b;
     z += weight * c;
   }
-  const auto total = [](const Lanes& lanes) {
+  const auto total = [](const NormalLanes& lanes) {
     double sum = 0;
     for (const float lane : lanes) sum += double(lane);
     return sum;

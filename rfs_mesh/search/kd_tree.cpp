@@ -119,14 +119,14 @@ class Builder {
     KdTree::Leaf& leaf = leaves_[c.first];
     KdTree::Node& node = nodes_[c.node];
     const std::size_t count = count_of(c);
-    constexpr double kFar = std::numeric_limits<double>::infinity();
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
     node.low = node.high = Eigen::Vector3d(items[0].at[0], items[0].at[1], items[0].at[2]);
     node.least_id = items[0].id;
     for (std::size_t i = 0; i < KdTree::kLeaf; ++i) {
       const bool there = i < count;
-      leaf.x[i] = there ? items[i].at[0] : kFar;
-      leaf.y[i] = there ? items[i].at[1] : kFar;
-      leaf.z[i] = there ? items[i].at[2] : kFar;
+      leaf.x[i] = there ? items[i].at[0] : kInfinity;
+      leaf.y[i] = there ? items[i].at[1] : kInfinity;
+      leaf.z[i] = there ? items[i].at[2] : kInfinity;
       leaf.id[i] = there ? items[i].id : kNone;
       if (!there) continue;
       const Eigen::Vector3d p(items[i].at[0], items[i].at[1], items[i].at[2]);
@@ -207,10 +207,10 @@ void KdTree::follow(const Positions& points, const Context& context) {
 }
 
 void KdTree::leave_out(const std::vector<char>& gone, const Context& context) {
-  constexpr double kFar = std::numeric_limits<double>::infinity();
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   enclose_all(context, [&](Leaf& leaf, Node& box) {
-    box.low.setConstant(kFar);  // of a leaf without points: infinitely far from everything
-    box.high.setConstant(-kFar);
+    box.low.setConstant(kInfinity);  // of a leaf without points: infinitely far from everything
+    box.high.setConstant(-kInfinity);
     std::size_t to = 0;
     for (std::size_t i = 0; i < kLeaf && leaf.id[i] != kNone; ++i) {
       if (gone[leaf.id[i]] != 0) continue;
@@ -223,7 +223,7 @@ void KdTree::leave_out(const std::vector<char>& gone, const Context& context) {
       leaf.id[to++] = leaf.id[i];
     }
     for (; to < kLeaf; ++to) {
-      leaf.x[to] = leaf.y[to] = leaf.z[to] = kFar;
+      leaf.x[to] = leaf.y[to] = leaf.z[to] = kInfinity;
       leaf.id[to] = kNone;
     }
   });

@@ -10,7 +10,7 @@ namespace rfsmooth::rfs_mesh {
 
 namespace {
 
-enum class State : unsigned char { open, kept, dropped };
+enum class Fate : unsigned char { open, kept, dropped };
 
 /// Marks that several threads set, none takes back.
 using Marks = std::vector<std::atomic<char>>;
@@ -27,7 +27,7 @@ class Thinning {
         k_(std::min(k, std::size_t(near.k))),
         context_(context),
         priority_(at.size()),
-        state_(at.size(), State::open),
+        state_(at.size(), Fate::open),
         blocked_(at.size()),
         covered_(at.size()),
         open_(at.size()) {
@@ -45,28 +45,28 @@ class Thinning {
       // Open ones before all their open neighbours are kept, then the neighbours of kept ones are dropped.
       for_open([&](Index s) {
         for (const Index t : row(s))
-          if (state_[t] == State::open) mark(blocked_[before(t, s) ? s : t]);
+          if (state_[t] == Fate::open) mark(blocked_[before(t, s) ? s : t]);
       });
       for_open([&](Index s) {
-        if (blocked_[s] == 0) state_[s] = State::kept;
+        if (blocked_[s] == 0) state_[s] = Fate::kept;
       });
       for_open([&](Index s) {
         for (const Index t : row(s)) {
-          if (state_[s] == State::kept) mark(covered_[t]);
-          if (state_[t] == State::kept) mark(covered_[s]);
+          if (state_[s] == Fate::kept) mark(covered_[t]);
+          if (state_[t] == Fate::kept) mark(covered_[s]);
         }
       });
       for_open([&](Index s) {
         blocked_[s].store(0, std::memory_order_relaxed);
-        if (state_[s] == State::open && covered_[s] != 0) state_[s] = State::dropped;
+        if (state_[s] == Fate::open && covered_[s] != 0) state_[s] = Fate::dropped;
       });
       const std::vector<Index> all = std::move(open_);
       open_ = rfsmooth::collect<Index>(context_, all.size(), [&](std::size_t i, auto&& emit) {
-        if (state_[all[i]] == State::open) emit(all[i]);
+        if (state_[all[i]] == Fate::open) emit(all[i]);
       });
     }
     return rfsmooth::collect<Index>(context_, state_.size(), [&](std::size_t s, auto&& emit) {
-      if (state_[s] == State::kept) emit(Index(s));
+      if (state_[s] == Fate::kept) emit(Index(s));
     });
   }
 
@@ -87,7 +87,7 @@ class Thinning {
   std::size_t k_;
   const Context& context_;
   std::vector<double> priority_;
-  std::vector<State> state_;
+  std::vector<Fate> state_;
   Marks blocked_, covered_;
   std::vector<Index> open_;
 };

@@ -68,7 +68,7 @@ TEST(Sides, InBlocksPointsFindTheSameSideAsAllAtOnce) {
 
 TEST(Orient, DoesNotDependOnTheSideTheNormalsCameWith) {
   const Positions points = test::poisson_points(test::cube(), 2000, 1);
-  const Connection c = connect(points, {}, {}).value();
+  const Connection c = rfsmooth::connect(points, {}, {}).value();
   std::mt19937 engine(3);
   Positions one, other;
   for (const auto& s : c.surfaces) {
