@@ -103,12 +103,12 @@ std::optional<Error> error_of(const Result<T>& result) {
 }
 
 /// Makes the call fail at its 1st, 2nd, ... allocation (about a hundred of them, evenly, if there are more;
-/// forty with the sanitizers) and calls `untouched` each time. Then the same with a stop at that place.
+/// twenty with the sanitizers) and calls `untouched` each time. Then the same with a stop at that place.
 /// `restore` brings the data back before each. `polls`: whether the call looks again after some allocation;
 /// over one block of a small file it may not.
 void expect_all_or_nothing(const Call& call, const std::function<void()>& restore,
                            const std::function<bool()>& untouched, bool polls = true) {
-  constexpr long kTries = test::kSanitized ? 40 : 100;
+  constexpr long kTries = test::kSanitized ? 20 : 100;
   Context context;
   context.threads = 1;  // the k-th allocation is the same one every time
   context.stop = &stop;

@@ -22,10 +22,10 @@ TEST_F(Tiles, DenoiseTakesTilesWhereTheMemoryIsLess) {
   const auto how = pipeline::tiles::plan_within(80'000'000, false).plan;
   EXPECT_GT(how.sample_points, 50'000U);
   EXPECT_THAT(ran.err, HasSubstr(fmt::format("in tiles of {} points", how.tile_points)));
-  EXPECT_TRUE(take("out.ply") == joined({"in.ply"}, "job", "steps.ply", std::to_string(how.tile_points),
-                                        std::to_string(how.sample_points)));
   EXPECT_LT(how.tile_points, pipeline::tiles::plan_within(800'000'000, false).plan.tile_points / 10);
-  if (!kSanitized) {  // two more runs of the whole cloud
+  if (!kSanitized) {  // three more runs of the whole cloud
+    EXPECT_TRUE(take("out.ply") == joined({"in.ply"}, "job", "steps.ply", std::to_string(how.tile_points),
+                                          std::to_string(how.sample_points)));
     EXPECT_EQ(run({"denoise", "--memory", "1T", "in.ply", "whole.ply"}).code, 0);
     EXPECT_EQ(run({"denoise", "in.ply", "plain.ply"}).code, 0);
     EXPECT_TRUE(take("whole.ply") == take("plain.ply"));
