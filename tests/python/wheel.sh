@@ -6,10 +6,13 @@ source=$1 work=$2 python=$3
 rm -rf "$work"
 mkdir -p "$work"
 export CCACHE_BASEDIR=${CCACHE_BASEDIR:-$source} CCACHE_NOHASHDIR=1  # as the tests were compiled: see tests/run.sh
-# Compiled as the tests are: ccache has the library already, and nanobind where it stays in one place. What pyproject.toml wants
-# for a build is checked to be there.
+export CC=${CC:-cc} CXX=${CXX:-c++}  # as the dev build calls them: by the name that Python was built with, ccache would have nothing
+# Compiled as the tests are (the dev preset, with as many sources as one): ccache has the library already, and nanobind where it
+# stays in one place. What pyproject.toml wants for a build is checked to be there.
+unity=$(sed -n '/"name": "dev"/,/}}/s/.*"CMAKE_UNITY_BUILD_BATCH_SIZE": "\([0-9]*\)".*/\1/p' "$source/CMakePresets.json" | head -n 1)
 PATH="$(dirname "$python"):$PATH" "$python" -m pip wheel -q --no-deps --no-build-isolation --check-build-dependencies -w "$work/built" "$source" --config-settings build-dir="$source/build/wheel" \
   --config-settings cmake.build-type=RelWithDebInfo --config-settings cmake.define.CMAKE_CXX_FLAGS_RELWITHDEBINFO="-O2 -g1" --config-settings cmake.define.RFSMOOTH_WARNINGS_AS_ERRORS=ON \
+  --config-settings cmake.define.CMAKE_UNITY_BUILD=ON --config-settings cmake.define.CMAKE_UNITY_BUILD_BATCH_SIZE="$unity" --config-settings cmake.define.RFSMOOTH_UNITY_TESTS=ON \
   > "$work/build.log" 2>&1 || { tail -n 40 "$work/build.log"; exit 1; }
 PATH="$(dirname "$python"):$PATH" "$python" -m auditwheel -v repair -w "$work/repaired" "$work"/built/*.whl > "$work/repair.log" 2>&1 ||
   { cat "$work/repair.log"; exit 1; }
