@@ -1,5 +1,4 @@
-/// Splits items into the lower and the upper half along an axis: the step that builds the kd-tree. Internal
-/// to kd_tree.cpp.
+/// Splits items into the lower and the upper half along an axis: the step that builds the kd-tree.
 ///
 /// The coordinates become 31-bit integers, a histogram of these finds the median, and one pass distributes
 /// the items. No loop has an unpredictable branch; selection by comparison has one per comparison and takes
@@ -20,7 +19,7 @@ class Halving {
   /// Writes the `half` items of the least coordinates to `to` and the others behind them; both halves keep
   /// the order of `items`. Of equal coordinates the first count as lower. Coordinates are equal if they fall
   /// into the same of the 2^31 cells of [low, low + extent]; beyond an end they count as that end.
-  /// `coordinate(item)` must be finite.
+  /// `coordinate(item)` must be finite. \param half less than `count`. \param to not among `items`.
   template <class Item, class Coordinate>
   void operator()(const Item* items, std::size_t count, std::size_t half, double low, double extent, Item* to,
                   Coordinate&& coordinate) {

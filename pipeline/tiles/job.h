@@ -130,7 +130,7 @@ struct Settled {
   double radii = 0;                         ///< the same in radii of the widest patch
   std::size_t widest = 0;                   ///< points of that
   double noise = 0, noise_left = 0;         ///< as in DenoiseReport
-  NoiseSummary shows;                       ///< the same
+  NoiseSummary measured;                    ///< the same
   std::optional<NotSmoothed> not_smoothed;  ///< the same
   double guide_strength = 0, tail_times = 1, spacing = 0;  ///< the same
 };

@@ -176,6 +176,7 @@ void find_halo(const DenoiseOptions& options, const Positions& sample, const Con
   settled.widest = std::size_t(options.connect.neighbours);
   const Statistics& found = settled.statistics;
   if (found.scale) settled.widest = std::max(settled.widest, found.scale->neighbours);
+  if (found.noise && found.noise->across) settled.widest = std::max(settled.widest, *found.noise->across);
   for (const auto& pass : found.passes)
     for (const auto& scale : pass.scales) settled.widest = std::max(settled.widest, scale.members);
   const double radius = typical_radius(sample, settled.widest, context);
@@ -483,7 +484,7 @@ DenoiseReport report_of(const Job& job, const DenoiseOptions& options) {
   report.finite = std::size_t(job.points);
   report.spacing = settled.spacing;
   report.noise = settled.noise;
-  report.measured = settled.shows;
+  report.measured = settled.measured;
   report.not_smoothed = settled.not_smoothed;
   report.noise_left = settled.noise_left;
   report.guide_strength = settled.guide_strength;

@@ -76,7 +76,7 @@ class ScatterFit {
   };
 
   double err_together(const Vector6& c);             ///< Scatter::together of a quadric
-  void look_at(const Vector6& c, Scatter& s) const;  ///< Scatter::flatness and middle of a quadric
+  void look_at(const Vector6& c, Scatter& s) const;  ///< Scatter::flatness, lean and middle
   /// Fills `local_` and `weight_` with the points of `near_` about the place: u and v over r flat, z over r
   /// along the axes from most to least spread (no v on a line). Returns the sum of the weights.
   double gather(const Positions& points, const Eigen::Vector3d& place, const Eigen::Matrix3d& axes, double r,

@@ -144,9 +144,10 @@ void sum_up(const NoiseSites& sites, const NoiseStart& start, NoiseModel& noise)
 void measure(const SpatialIndex& index, const DepthSteps* steps, NoiseModel& noise, const Context& context) {
   const Positions places = search_places(index.points());
   NoiseStart start = search_noise(index, places, steps, context);
+  // Terraces of depths in steps look like lines, too; there the noise is shared.
   if (start.on_lines && steps == nullptr)
     noise.across = start.narrowest;
-  else  // terraces are of one depth
+  else
     noise.shared = double(start.narrowest) / double(kNarrowestPatch);
   if (!(start.least > 0)) return;
   const SharedNoise shared = find_shared_noise(index, places, start, steps, context);

@@ -97,8 +97,10 @@ void find_surface(const SpatialIndex& index, const Positions& places, std::vecto
   while (2 * m <= widest && breadth() < kSurface) {
     m *= 2;
     all = fits(index, places, m, std::vector<double>(places.size(), 0), context);
+    // Lines that are nearer to each other than that are connected across, and a surface to every stage.
     if (m == 2 * kNarrowestPatch) start.on_lines = breadth() < kSurface / 2;
   }
+  start.on_lines = start.on_lines && breadth() >= kSurface;  // a lone line has no other to reach across to
 }
 
 }  // namespace

@@ -66,6 +66,7 @@ class Listener {
         sheet_(at.size(), std::numeric_limits<double>::infinity()),
         widest_(widest_scatter(cloud)),
         start_(start.sigma),
+        on_lines_(start.on_lines),
         m(at.size(), start.m),
         sigma(at.size(), std::max(start.sigma, start.least)),
         most(at.size(), std::numeric_limits<double>::infinity()),
@@ -100,7 +101,7 @@ class Listener {
             look_for_sheets(s, many, steps, middle[s]);
             find_floor(s, few, many, steps);
           }
-          look_for_layers(s, few);
+          if (!on_lines_) look_for_layers(s, few, steps);
           sigma[s] = std::max(sigma[s], floor[s]);
         },
         64);
@@ -201,6 +202,13 @@ class Listener {
     return quantile(sigma_of, 0.5);
   }
 
+  /// Whether that is more than two depths in steps that follow each other scatter by.
+  bool exceeds_rounding(double variance, std::size_t s, const std::vector<Scatter>& open,
+                        const DepthSteps* steps) const {
+    const double rounding = steps == nullptr ? 0 : rounding_around(s, open, *steps);
+    return variance > kTwoDepths * rounding * rounding;
+  }
+
   /// Lowers `sheet_`, and `middle` to their Scatter::middle, where fits without windows show two sheets
   /// around, farther apart than two depths that follow each other.
   void look_for_sheets(std::size_t s, const std::vector<Scatter>& open, const DepthSteps* steps,
@@ -215,8 +223,7 @@ class Listener {
     }
     if (!(flatness < kFlatnessOfSheets * saying)) return;
     const double variance = mean_variance(near, kTypical, kTypicalDeviate);
-    const double rounding = steps == nullptr ? 0 : rounding_around(s, open, *steps);
-    if (!(variance > kTwoDepths * rounding * rounding)) return;
+    if (!exceeds_rounding(variance, s, open, steps)) return;
     sheet_[s] = std::min(sheet_[s], std::sqrt(variance * share_of_sheet(flatness / saying)));
     middle = std::min(middle, full / saying);
   }
@@ -234,8 +241,8 @@ class Listener {
   }
 
   /// Raises `floor` where fits without windows show two layers around that are no sheets.
-  void look_for_layers(std::size_t s, const std::vector<Scatter>& open) {
-    constexpr double kLeanByChance = 6 / double(kNeighbourhood);  // lean of so many normal values
+  void look_for_layers(std::size_t s, const std::vector<Scatter>& open, const DepthSteps* steps) {
+    constexpr double kLeanByChance = 6 / double(kNeighbourhood);  // of so many normal values, unweighted
     constexpr double kNormalFlatness = 3;
     const std::vector<Scatter> near = fits_around(s, open, kNeighbourhood);
     std::vector<double> radius;
@@ -253,6 +260,7 @@ class Listener {
     const double variance = mean_variance(near, kTypical, kTypicalDeviate), wide = quantile(radius, 0.5),
                  square_of_point = M_PI * wide * wide / double(kNeighbourhood);
     if (!(squared_gap(of_sheet, lean / saying) * variance < square_of_point)) return;
+    if (!exceeds_rounding(variance, s, open, steps)) return;
     sheet_[s] = std::numeric_limits<double>::infinity();
     floor[s] = std::max(floor[s], std::sqrt(variance));
   }
@@ -294,6 +302,7 @@ class Listener {
   std::vector<double> sheet_;   ///< what each of two sheets shows at most; infinite: there is one
   std::size_t widest_;
   double start_;  ///< world units
+  bool on_lines_;
 
  public:
   std::vector<std::size_t> m;

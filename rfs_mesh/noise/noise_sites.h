@@ -53,7 +53,7 @@ struct NoiseSites {
   std::vector<char> speaks;   ///< whether sigma is of this place; else it is what came nearest to it
   std::vector<char> cut;      ///< whether the site's own fit fills its window, which is its neighbours'
   std::vector<double> most;   ///< what is seen without windows around it, world units; infinite: not known
-  std::vector<double> floor;  ///< what depths in steps or shared noise make sure of, world units; 0: nothing
+  std::vector<double> floor;  ///< what steps, shared noise or layers make sure of, world units; 0: nothing
   std::vector<Scatter> fits;  ///< to the m nearest of the site by itself, more where it is far louder
 };
 

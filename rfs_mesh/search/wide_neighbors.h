@@ -8,6 +8,8 @@
 /// taken.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "rfs_mesh/search/neighbors.h"

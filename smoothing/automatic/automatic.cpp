@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
+#include "base/collect.h"
 #include "base/parallel.h"
 #include "rfs_mesh/levels.h"
 #include "smoothing/automatic/hidden_sheets.h"
@@ -26,14 +28,14 @@ using rfs_mesh::kStray;
 // Chosen on the development shapes (tests/bench/quality) at 10,000 and 50,000 points, noise of 1 to 3 %.
 constexpr double kGuide = 10;  // c = kGuide (sigma/h)^2, to the fourth power above h
 
-/// Rings of the nearest points along the lines that the cloud lies on: an RFS-mesh has hardly a face there,
-/// and where it has one it leads to another line, far away.
+/// Rings of the nearest points along the lines that the cloud lies on, two to either side: an RFS-mesh has
+/// hardly a face there, and where it has one it leads to another line, far away.
 Adjacency along_lines(const Positions& points, const Context& context) {
   const rfs_mesh::NeighborTable near =
       rfs_mesh::SpatialIndex(points, context).nearest(int(rfs_mesh::kRing) / 2, context);
-  std::vector<Edge> edges;
-  for (std::size_t i = 0; i < points.size(); ++i)
-    for (const Index j : near[i]) edges.push_back({Index(i), j});
+  const auto edges = rfsmooth::collect<Edge>(context, points.size(), [&](std::size_t i, auto&& emit) {
+    for (const Index j : near[i]) emit(Edge{Index(i), j});
+  });
   return make_adjacency(points.size(), edges, context);
 }
 
@@ -59,6 +61,20 @@ std::unique_ptr<HeightField> raise_field(const Mesh& mesh, const rfs_mesh::Noise
   return std::make_unique<HeightField>(std::move(guide), std::move(landed.tree), std::move(landed.near),
                                        mesh.positions, noise.across, context);
 }
+
+/// Gives a mesh other rings until it goes out of scope, whatever is thrown.
+class LentRings {
+ public:
+  LentRings(Mesh& mesh, Adjacency rings)
+      : mesh_(mesh), own_(std::exchange(mesh.one_ring, std::move(rings))) {}
+  ~LentRings() { mesh_.one_ring = std::move(own_); }
+  LentRings(const LentRings&) = delete;
+  LentRings& operator=(const LentRings&) = delete;
+
+ private:
+  Mesh& mesh_;
+  Adjacency own_;
+};
 
 /// What is left between the data and the surface. With tails of the data as they came, for
 /// pseudo-observations of one sheet are flatter than a normal distribution, as if of two.
@@ -92,8 +108,8 @@ Positions automatic_smoothing(Mesh& mesh, bool keep_rings, rfs_mesh::NoiseField 
     return kGuide * share * share * std::max(1.0, share * share) * noise.shared;
   };
   report.guide_strength = guide_strength();
-  Adjacency rings_of_mesh;
-  if (noise.across) rings_of_mesh = std::exchange(mesh.one_ring, along_lines(mesh.positions, context));
+  std::optional<LentRings> lent;
+  if (noise.across) lent.emplace(mesh, along_lines(mesh.positions, context));
   whole.passes.resize(std::max<std::size_t>(1, whole.passes.size()));
   auto field = raise_field(mesh, noise, report, whole.passes[0], context);
   context.report("smooth", 0.1);
@@ -113,7 +129,7 @@ Positions automatic_smoothing(Mesh& mesh, bool keep_rings, rfs_mesh::NoiseField 
     pass = smooth_heights(*field, noise, spacing, learned, whole.passes[1], context);
     mesh.positions.swap(data);
   }
-  if (noise.across) mesh.one_ring = std::move(rings_of_mesh);
+  lent.reset();
   if (!keep_rings) mesh.one_ring = {};
   const double of_whole = whole.points ? double(*whole.points) / double(n) : 1;
   const std::vector<float> mixed = learned ? pass.height : std::vector<float>();
@@ -130,7 +146,7 @@ Positions automatic_smoothing(Mesh& mesh, bool keep_rings, rfs_mesh::NoiseField 
   Positions smooth(n);
   for_each_index(context, n, [&](std::size_t i) {
     const Eigen::Vector3d& from = mesh.positions[i];
-    // Along lines the guide is of no surface: points go along their normals only.
+    // On lines the fairing moved guide points beside their line, too: what counts is the height alone.
     const Eigen::Vector3d foot =
         field->on_lines() ? Eigen::Vector3d(from - field->height(i) * field->normal(i)) : field->guide()[i];
     const Eigen::Vector3d move = foot + double(pass.height[i]) * field->normal(i) - from;

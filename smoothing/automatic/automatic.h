@@ -47,7 +47,7 @@
 ///
 /// One strength for the whole cloud cannot do this: on the development shapes the best single c differs by
 /// 100 times between the flat and the thin parts of one cloud. Points move along the guide's normals from the
-/// guide's places; those that would move more than 5 sigma are strays and stay.
+/// guide's places, on lines from their own; those that would move more than 5 sigma are strays and stay.
 #pragma once
 
 #include <rfsmooth/flow.h>

@@ -10,6 +10,7 @@
 #include <functional>
 #include <mutex>
 #include <new>
+#include <random>
 #include <set>
 #include <thread>
 
@@ -189,6 +190,28 @@ TEST_P(DenoiseFailure, OfAFlowLeavesTheMeshAsItWas) {
       [&](const Context& context) { return error_of(rfsmooth::smooth(mesh, options, context)); },
       [&] { mesh = original; },
       [&] { return mesh.positions == original.positions && mesh.faces == original.faces; });
+}
+
+// The automatic flow works on other rings there for a while.
+TEST(Failure, OfPointsOnLinesLeavesTheMeshAsItWas) {
+  std::mt19937_64 engine(3);
+  std::normal_distribution<double> noise(0, 0.4);
+  Positions points;
+  for (int line = 0; line < 12; ++line)
+    for (int i = 0; i < 80; ++i) points.emplace_back(i, 20 * line, noise(engine));
+  Context one;
+  one.threads = 1;
+  const Mesh original = rfsmooth::connect(points, {}, one).value().mesh;
+  Mesh mesh;
+  expect_all_or_nothing(
+      [&](const Context& context) {
+        return error_of(rfsmooth::smooth(mesh, FlowOptions{AutomaticOptions()}, context));
+      },
+      [&] { mesh = original; },
+      [&] {
+        return mesh.positions == original.positions && mesh.one_ring.start == original.one_ring.start &&
+               mesh.one_ring.items == original.one_ring.items;
+      });
 }
 
 INSTANTIATE_TEST_SUITE_P(Flows, DenoiseFailure, ::testing::ValuesIn(rfsmooth::flows()), [](const auto& test) {

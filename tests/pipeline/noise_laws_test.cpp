@@ -241,10 +241,17 @@ Positions rings_on_sphere(double noise, unsigned seed) {
   return points;
 }
 
+/// Whether the points of a cloud are seen to lie along lines.
+bool on_lines(Positions points) {
+  const auto report = rfsmooth::denoise(points.front().data(), points.size(), {}, {});
+  return report && report.value().measured.on_lines;
+}
+
 TEST(NoiseLaws, RingsOfALaserAreSmoothedAlongThemAndAcross) {
   constexpr double kStep = M_PI / 60 / 20;
   for (const unsigned seed : {1U, 2U}) {
     const Positions scan = rings_on_sphere(0.4 * kStep, seed);
+    EXPECT_TRUE(on_lines(scan)) << seed;
     EXPECT_LT(rms_off(denoised(scan), everywhere), 0.35 * rms_off(scan, everywhere)) << seed;
   }
 }

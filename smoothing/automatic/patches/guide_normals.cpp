@@ -57,9 +57,12 @@ std::vector<Eigen::Vector3f> surface_normals(const Positions& points, const Neig
 
 std::vector<Eigen::Vector3f> normals_across_lines(const Positions& guide, const NeighborTable& near,
                                                   std::size_t across, const Context& context) {
+  // How often is told by `across` alone, so that all parts of a cloud are thinned alike. Of the points on a
+  // line a thinning leaves about a third: to either side of one that is kept the nearest goes.
+  constexpr double kLeft = 1.0 / 3;
   std::vector<Index> kept = rfs_mesh::thin_all(guide, near, context);
-  while (kept.size() > 2 * kRing && kept.size() * across > rfs_mesh::kNarrowestPatch * guide.size())
-    kept = rfs_mesh::thin(guide, kept, context);
+  for (double left = kLeft; left * double(across) > double(rfs_mesh::kNarrowestPatch); left *= kLeft)
+    if (kept.size() > 2 * kRing) kept = rfs_mesh::thin(guide, kept, context);
   Positions at(kept.size());
   for_each_index(context, kept.size(), [&](std::size_t k) { at[k] = guide[kept[k]]; });
   const rfs_mesh::SpatialIndex index(at, context);

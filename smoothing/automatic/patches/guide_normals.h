@@ -13,8 +13,9 @@
 
 namespace rfsmooth::smoothing {
 
-/// n: of the planes through the kNeighbourhood nearest, unit. \param near of the points, at least kRing each,
-/// all of them where there are fewer. O(n log n), parallel, deterministic.
+/// n: of the planes through the kNeighbourhood nearest or all of `near`, if these are fewer, unit. \param
+/// near of the points, at least kRing each, all of them where there are fewer. O(n log n), parallel,
+/// deterministic.
 std::vector<Eigen::Vector3f> surface_normals(const Positions& points, const rfs_mesh::NeighborTable& near,
                                              const Context& context);
 

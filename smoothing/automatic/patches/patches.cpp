@@ -46,19 +46,19 @@ float total(const Floats& f) {
 }
 
 /// The directions of a patch's u and v, unit; v zero where only u is fitted over.
-struct Across {
+struct PatchAxes {
   Eigen::Vector3d u, v;
 };
 
-Across across(const Eigen::Vector3d& axis) {
+PatchAxes patch_axes(const Eigen::Vector3d& axis) {
   const Eigen::Vector3d u = axis.unitOrthogonal();
   return {u, axis.cross(u)};
 }
 
 /// u along the line that the members lie on, if they do. The v of such members would only tell how far noise
 /// carried each of them, as their heights do: a fit over it would follow the noise.
-Across along_line(const rfs_mesh::WideNeighbors& near, const Eigen::Vector3d& axis, float square) {
-  const auto [u, v] = across(axis);
+PatchAxes along_line(const rfs_mesh::WideNeighbors& near, const Eigen::Vector3d& axis, float square) {
+  const auto [u, v] = patch_axes(axis);
   const Eigen::Vector3f first = u.cast<float>(), second = v.cast<float>();
   float uu = 0, uv = 0, vv = 0;
   for (std::size_t k = 0; k < near.size(); ++k) {
@@ -183,7 +183,7 @@ Patches::Members Patches::gather(std::size_t s, Workspace& work, Index* member, 
   const Eigen::Vector3d axis = axis_at(seeds_[s]);
   // A little beyond the farthest point, so that it counts.
   const float square = std::max(1.1F * near.farthest(), std::numeric_limits<float>::min());
-  const Across flat = field_.on_lines() ? along_line(near, axis, square) : across(axis);
+  const PatchAxes flat = field_.on_lines() ? along_line(near, axis, square) : patch_axes(axis);
   const float shrink = 1 / std::sqrt(square);  // from the lengths of `near` to radii
   Members all;
   all.radius = near.unit() / double(shrink);

@@ -425,7 +425,20 @@ TEST(Noise, OfRingsIsThatAcrossThem) {
       for (double x = 0; x < 2; x += kStep) points.emplace_back(x, y, 0.1 * x * x + sigma * normal(engine));
     const NoiseField noise = measured(points);
     EXPECT_NEAR(noise.sigma, sigma, 0.2 * sigma + 1e-6);
+    ASSERT_TRUE(noise.across);
+    EXPECT_GE(*noise.across, 64u) << "20 steps to the next ring on either side";
+    EXPECT_EQ(noise.shared, 1);
   }
+}
+
+TEST(Noise, OnlyPointsOnSeveralLinesLieAlongLines) {
+  EXPECT_FALSE(measured(noisy_plane([](double) { return 0.002; })).across);
+  EXPECT_FALSE(measured(noisy_sphere([](const auto&) { return 0.01; }, true)).across);
+  std::mt19937_64 engine(4);
+  std::normal_distribution<double> normal(0, 0.002);
+  Positions line;
+  for (double x = 0; x < 20; x += 0.005) line.emplace_back(x, normal(engine), normal(engine));
+  EXPECT_FALSE(measured(line).across) << "there is no other";
 }
 
 TEST(Spacing, FollowsTheDensityAndIsExactOnAGrid) {

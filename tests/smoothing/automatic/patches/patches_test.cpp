@@ -142,6 +142,7 @@ TEST(Patches, OnLinesDoNotFollowNoiseThatMovesPointsAcrossThem) {
     return square;
   };
   EXPECT_LT(left(128), 0.25);
+  EXPECT_LT(left(128), 0.5 * left({}));
 }
 
 /// Heights of a flat field: white noise of one, and as much as `moved` says, along z.
