@@ -20,9 +20,10 @@ nlohmann::ordered_json json_of(const Statistics& statistics);
 /// \throw nlohmann::json::exception where something is missing or of another kind.
 Statistics statistics_of(const nlohmann::ordered_json& json);
 
+/// As reports tell it: lengths in world units.
 nlohmann::ordered_json json_of(const NoiseSummary& noise);
 
-/// \throw nlohmann::json::exception where something is missing or of another kind.
+/// The same read back. \throw nlohmann::json::exception where something is missing or of another kind.
 NoiseSummary summary_of(const nlohmann::ordered_json& json);
 
 /// A word; null for none.
