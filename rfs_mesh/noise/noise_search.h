@@ -33,7 +33,7 @@ struct NoiseStart {
   std::size_t m = kNarrowestPatch;
   double shape_grows = 2;  ///< variance that is shape, from m to 2 m points: at least so many times
   std::size_t narrowest = kNarrowestPatch;  ///< least m that is a piece of surface and not of a line
-  bool on_lines = false;                    ///< whether even twice kNarrowestPatch points lie along a line
+  bool on_lines = false;  ///< whether twice kNarrowestPatch points lie along a line, and `narrowest` do not
 };
 
 /// Most neighbours of a fit in a cloud.

@@ -4,11 +4,12 @@
 /// A patch is a seed point, its m nearest guide points and the quadric z = c0 + c1 u + ... + c5 v^2 fitted to
 /// their heights above the seed's tangent plane, with weights (1 - d^2/r^2)^2 and the cosine squared between
 /// normals. Points on the two sides of an edge take part in different patches; a patch that bridges one has
-/// residuals above the noise and weighs less wherever another covers the point. Members along a line, as on a
-/// laser's ring, get the parabola over u alone:
+/// residuals above the noise and weighs less wherever another covers the point:
 ///
 ///     weight = v / (v + max(0, excess)),  excess = RSS / sigma^2 - degrees of freedom per unit of weight,
 ///                                          v = 6 / (effective number of points)
+///
+/// Members along a line, as on a laser's ring, get the parabola over u alone; it weighs as a quadric does.
 ///
 /// Source: aggregation of overlapping local estimates as in image denoising (Katkovnik et al. 2010, "From
 /// local kernel to nonlocal multiple-model image denoising", section 6); the constants are ours.
