@@ -39,42 +39,28 @@ Adjacency along_lines(const Positions& points, const Context& context) {
   return make_adjacency(points.size(), edges, context);
 }
 
-Positions fair(const Mesh& mesh, double strength, std::vector<double>& reductions, const Context& context) {
-  const Operator op = umbrella(mesh, context);
+Positions fair(const Positions& points, const Adjacency& rings, double strength,
+               std::vector<double>& reductions, const Context& context) {
+  const Operator op = umbrella(rings, context);
   SolverOptions options;
   options.tolerance = 1e-4;
   options.reductions = reductions;
   Positions x;
-  reductions = solve({mesh.one_ring, op, {0, strength, 0, 0}, {}, {}}, mesh.positions, x, AllowedMoves(),
-                     options, context)
-                   .reductions;
+  reductions =
+      solve({rings, op, {0, strength, 0, 0}, {}, {}}, points, x, AllowedMoves(), options, context).reductions;
   return x;
 }
 
-/// The guide of mesh.positions and the heights over it.
-std::unique_ptr<HeightField> raise_field(const Mesh& mesh, const rfs_mesh::NoiseField& noise,
-                                         AutomaticReport& report, Statistics::Pass& whole,
-                                         const Context& context) {
-  Positions guide = fair(mesh, report.guide_strength, whole.reductions, context);
-  Landed landed = land_stranded(mesh, kStray * noise.sigma, guide, context);
+/// The guide of the points, faired over their rings, and the heights over it.
+std::unique_ptr<HeightField> raise_field(const Positions& points, const Adjacency& rings,
+                                         const rfs_mesh::NoiseField& noise, AutomaticReport& report,
+                                         Statistics::Pass& whole, const Context& context) {
+  Positions guide = fair(points, rings, report.guide_strength, whole.reductions, context);
+  Landed landed = land_stranded(points, rings, kStray * noise.sigma, guide, context);
   report.stranded = landed.stranded;
   return std::make_unique<HeightField>(std::move(guide), std::move(landed.tree), std::move(landed.near),
-                                       mesh.positions, noise.across, context);
+                                       points, noise.across, context);
 }
-
-/// Gives a mesh other rings until it goes out of scope, whatever is thrown.
-class LentRings {
- public:
-  LentRings(Mesh& mesh, Adjacency rings)
-      : mesh_(mesh), own_(std::exchange(mesh.one_ring, std::move(rings))) {}
-  ~LentRings() { mesh_.one_ring = std::move(own_); }
-  LentRings(const LentRings&) = delete;
-  LentRings& operator=(const LentRings&) = delete;
-
- private:
-  Mesh& mesh_;
-  Adjacency own_;
-};
 
 /// What is left between the data and the surface. With tails of the data as they came, for
 /// pseudo-observations of one sheet are flatter than a normal distribution, as if of two.
@@ -108,10 +94,11 @@ Positions automatic_smoothing(Mesh& mesh, bool keep_rings, rfs_mesh::NoiseField 
     return kGuide * share * share * std::max(1.0, share * share) * noise.shared;
   };
   report.guide_strength = guide_strength();
-  std::optional<LentRings> lent;
-  if (noise.across) lent.emplace(mesh, along_lines(mesh.positions, context));
+  std::optional<Adjacency> lines;
+  if (noise.across) lines = along_lines(mesh.positions, context);
+  const Adjacency& rings = lines ? *lines : mesh.one_ring;
   whole.passes.resize(std::max<std::size_t>(1, whole.passes.size()));
-  auto field = raise_field(mesh, noise, report, whole.passes[0], context);
+  auto field = raise_field(mesh.positions, rings, noise, report, whole.passes[0], context);
   context.report("smooth", 0.1);
   MixedScales pass = smooth_heights(*field, noise, spacing, learned, whole.passes[0], context);
   Positions data = mesh.positions;  // as tamed
@@ -123,13 +110,11 @@ Positions automatic_smoothing(Mesh& mesh, bool keep_rings, rfs_mesh::NoiseField 
     report.tail_times = tails.times;
     for (double& limit : most) limit *= tails.times;
     report.guide_strength = guide_strength();
-    mesh.positions.swap(data);
     whole.passes.resize(2);
-    field = raise_field(mesh, noise, report, whole.passes[1], context);
+    field = raise_field(data, rings, noise, report, whole.passes[1], context);
     pass = smooth_heights(*field, noise, spacing, learned, whole.passes[1], context);
-    mesh.positions.swap(data);
   }
-  lent.reset();
+  lines.reset();
   if (!keep_rings) mesh.one_ring = {};
   const double of_whole = whole.points ? double(*whole.points) / double(n) : 1;
   const std::vector<float> mixed = learned ? pass.height : std::vector<float>();

@@ -112,11 +112,11 @@ class MovingGuide {
   std::optional<rfs_mesh::SpatialIndex> moved_index_;
 };
 
-std::vector<Index> find_stranded(const Mesh& mesh, const Positions& guide, const NeighborTable& near,
+std::vector<Index> find_stranded(const Adjacency& rings, const Positions& guide, const NeighborTable& near,
                                  const Context& context) {
   const std::size_t n = guide.size();
   std::vector<char> stranded(n);
-  for_each_index(context, n, [&](std::size_t i) { stranded[i] = mesh.one_ring.degree(i) == 0; });
+  for_each_index(context, n, [&](std::size_t i) { stranded[i] = rings.degree(i) == 0; });
   using Distances = std::array<float, 2>;  // to the tenth and to the last
   std::vector<Distances> distance(n);
   for_each_index(context, n, [&](std::size_t i) {
@@ -158,14 +158,14 @@ Eigen::Vector3d project(const Positions& guide, const std::vector<Neighbor>& nea
 }
 
 /// Lands the points `stranded`; returns which found a place. The others stay.
-std::vector<Index> land(const Mesh& mesh, const std::vector<Index>& stranded, double most,
+std::vector<Index> land(const Positions& points, const std::vector<Index>& stranded, double most,
                         const NeighborTable& near, const MovingGuide& surface, Positions& guide,
                         const Context& context) {
   Positions landed(stranded.size());
   for_blocks(context, stranded.size(), 256, [&](std::size_t begin, std::size_t end) {
     MovingGuide::Search search;
     for (std::size_t k = begin; k < end; ++k) {
-      const Eigen::Vector3d& p = mesh.positions[stranded[k]];
+      const Eigen::Vector3d& p = points[stranded[k]];
       const double bound = surface.to_nearest_staying(p, near[stranded[k]]);
       const Index from = surface.nearest(p, 1, search, bound).front().index;
       const std::vector<Neighbor>& found =
@@ -179,7 +179,7 @@ std::vector<Index> land(const Mesh& mesh, const std::vector<Index>& stranded, do
   std::vector<Index> moved;
   for (std::size_t k = 0; k < stranded.size(); ++k) {
     const Index i = stranded[k];
-    if (!landed[k].allFinite() || !((landed[k] - mesh.positions[i]).norm() < most)) continue;
+    if (!landed[k].allFinite() || !((landed[k] - points[i]).norm() < most)) continue;
     guide[i] = landed[k];
     moved.push_back(i);
   }
@@ -210,12 +210,13 @@ std::vector<char> beside_moved(const MovingGuide& surface, const NeighborTable& 
 
 /// Moves the points (stranded.h) and returns which. `near`: of where the guide was; rows of moved points are
 /// no longer right. \param first set to the number of those that were found at first
-std::vector<Index> move_stranded(const Mesh& mesh, double most, MovingGuide& surface, NeighborTable& near,
-                                 Positions& guide, std::size_t& first, const Context& context) {
+std::vector<Index> move_stranded(const Positions& points, const Adjacency& rings, double most,
+                                 MovingGuide& surface, NeighborTable& near, Positions& guide,
+                                 std::size_t& first, const Context& context) {
   std::vector<Index> moved;
   if (near.k < HeightField::kNear) return moved;
   for (int round = 0; round < kStrandedRounds; ++round) {
-    const std::vector<Index> stranded = find_stranded(mesh, guide, near, context);
+    const std::vector<Index> stranded = find_stranded(rings, guide, near, context);
     if (round == 0) first = stranded.size();
     if (stranded.empty() || guide.size() - stranded.size() <= std::size_t(HeightField::kNear)) break;
     // None of them is part of the surface that they are put onto, wherever it was put before.
@@ -224,7 +225,7 @@ std::vector<Index> move_stranded(const Mesh& mesh, double most, MovingGuide& sur
                         std::back_inserter(others));
     for (const Index i : stranded) surface.set_gone(i, true);
     surface.set_moved(others, guide, context);
-    const std::vector<Index> landed = land(mesh, stranded, most, near, surface, guide, context);
+    const std::vector<Index> landed = land(points, stranded, most, near, surface, guide, context);
     for (const Index i : stranded)
       if (!std::binary_search(moved.begin(), moved.end(), i)) surface.set_gone(i, false);
     std::vector<Index> all;
@@ -243,23 +244,25 @@ std::vector<Index> move_stranded(const Mesh& mesh, double most, MovingGuide& sur
 
 }  // namespace
 
-Landed land_stranded(const Mesh& mesh, double most, Positions& guide, const Context& context) {
+Landed land_stranded(const Positions& points, const Adjacency& rings, double most, Positions& guide,
+                     const Context& context) {
   MovingGuide surface(guide, context);
   NeighborTable near = surface.before().nearest(HeightField::kNear, context);
   std::size_t first = 0;
   std::vector<char> beside;
-  if (!move_stranded(mesh, most, surface, near, guide, first, context).empty())
+  if (!move_stranded(points, rings, most, surface, near, guide, first, context).empty())
     beside = beside_moved(surface, near, context);
   rfs_mesh::SpatialIndex index(guide, surface.release_tree(), context);
   if (!beside.empty()) index.renew(near, beside, context);
   return {first, std::move(near), index.release_tree()};
 }
 
-void land_stranded_only(const Mesh& mesh, double most, Positions& guide, const Context& context) {
+void land_stranded_only(const Positions& points, const Adjacency& rings, double most, Positions& guide,
+                        const Context& context) {
   MovingGuide surface(guide, context);
   NeighborTable near = surface.before().nearest(HeightField::kNear, context);
   std::size_t first = 0;
-  move_stranded(mesh, most, surface, near, guide, first, context);
+  move_stranded(points, rings, most, surface, near, guide, first, context);
 }
 
 }  // namespace rfsmooth::smoothing

@@ -4,9 +4,9 @@
 /// the surface like themselves; the fairing, which only knows neighbours, leaves such islands where they are.
 /// They show themselves: the faired points lie densely on the surface and thinly beside it. A point whose
 /// tenth or 32nd neighbour (islands of a dozen points are dense inside) is farther than 1.7 times what is
-/// usual around it (the lower quartile), or that has no neighbours in the mesh, is projected from its noisy
-/// place onto the plane of the others, taken around the one nearest to it: seen from half-way between two
-/// sheets, the nearest of both would make one plane across. Thread safe: no state is kept.
+/// usual around it (the lower quartile), or whose ring is empty, is projected from its noisy place onto the
+/// plane of the others, taken around the one nearest to it: seen from half-way between two sheets, the
+/// nearest of both would make one plane across. Thread safe: no state is kept.
 #pragma once
 
 #include <rfsmooth/mesh.h>
@@ -23,12 +23,14 @@ struct Landed {
   rfs_mesh::KdTree tree;         ///< of the guide points, here or where they were before
 };
 
-/// Moves the stranded points of `guide` (n x 3, the faired mesh.positions), except those farther from the
-/// surface than `most` (world units): they are strays. Then once more: the landed ones make the surface
-/// denser, and smaller islands stand out. O(n log n), parallel, deterministic.
-Landed land_stranded(const Mesh& mesh, double most, Positions& guide, const Context& context);
+/// Moves the stranded points of `guide` (n x 3, the `points` after the fairing over their `rings`), except
+/// those farther from the surface than `most` (world units): they are strays. Then once more: the landed ones
+/// make the surface denser, and smaller islands stand out. O(n log n), parallel, deterministic.
+Landed land_stranded(const Positions& points, const Adjacency& rings, double most, Positions& guide,
+                     const Context& context);
 
 /// The same where nobody needs anything of the guide afterwards.
-void land_stranded_only(const Mesh& mesh, double most, Positions& guide, const Context& context);
+void land_stranded_only(const Positions& points, const Adjacency& rings, double most, Positions& guide,
+                        const Context& context);
 
 }  // namespace rfsmooth::smoothing

@@ -17,7 +17,7 @@ namespace {
 std::size_t land(const Mesh& mesh, double most, Positions& guide) {
   const rfs_mesh::NeighborTable before = rfs_mesh::SpatialIndex(guide, {}).nearest(32, {});
   const Positions start = guide;
-  const auto [found, near, tree] = land_stranded(mesh, most, guide, {});
+  const auto [found, near, tree] = land_stranded(mesh.positions, mesh.one_ring, most, guide, {});
   const rfs_mesh::SpatialIndex index(guide, {});
   const rfs_mesh::NeighborTable exact = index.nearest(32, {});
   for (std::size_t i = 0; i < guide.size(); ++i) {
@@ -94,7 +94,7 @@ TEST(Stranded, FewPointsAreLeftAlone) {
   Mesh mesh = support::grid(5, 5);
   mesh.positions[12].z() = 3;
   Positions guide = mesh.positions;
-  EXPECT_EQ(land_stranded(mesh, 10, guide, {}).stranded, 0u);
+  EXPECT_EQ(land_stranded(mesh.positions, mesh.one_ring, 10, guide, {}).stranded, 0u);
   EXPECT_EQ(guide, mesh.positions);
 }
 
