@@ -75,6 +75,11 @@ Command tiles_command();
 Command man_command();
 Command completion_command();
 
+/// A command that prints the text made of its arguments and is not in the overview: the build runs it and
+/// installs the text.
+Command text_command(std::string name, std::string summary, std::string usage, std::string description,
+                     std::function<std::string(const std::vector<std::string>& arguments)> text);
+
 /// Gives options their one-letter names.
 void polish(Command& command);
 

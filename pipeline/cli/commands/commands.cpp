@@ -1,8 +1,25 @@
+#include <fmt/format.h>
+
 #include "pipeline/cli/commands/command.h"
 #include "pipeline/cli/commands/reconstruct_command.h"
 #include "pipeline/cli/commands/render_command.h"
 
 namespace rfsmooth::cli {
+
+Command text_command(std::string name, std::string summary, std::string usage, std::string description,
+                     std::function<std::string(const std::vector<std::string>& arguments)> text) {
+  Command command;
+  command.name = std::move(name);
+  command.summary = std::move(summary);
+  command.usage = {std::move(usage)};
+  command.description = std::move(description);
+  command.listed = false;
+  command.run = [text = std::move(text)](const Invocation& typed) {
+    fmt::print("{}", text(typed.arguments));
+    return 0;
+  };
+  return command;
+}
 
 void polish(Command& command) {
   for (CommandOption& option : command.options) {

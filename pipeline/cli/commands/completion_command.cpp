@@ -1,7 +1,5 @@
 /// rfsmooth completion: completion scripts for bash and zsh, from the commands' own tables. The build runs it
 /// and installs the scripts.
-#include <cstdio>
-
 #include <fmt/format.h>
 
 #include "pipeline/cli/commands/command.h"
@@ -110,24 +108,19 @@ _rfsmooth "$@"
                      names, cases);
 }
 
+std::string script(const std::vector<std::string>& arguments) {
+  const std::string shell = arguments.size() == 1 ? arguments[0] : "";
+  if (shell != "bash" && shell != "zsh")
+    throw Failure({ErrorCode::usage, "rfsmooth completion takes one argument: bash or zsh"});
+  return shell == "bash" ? bash_script(all_commands()) : zsh_script(all_commands());
+}
+
 }  // namespace
 
 Command completion_command() {
-  Command command;
-  command.name = "completion";
-  command.summary = "print a completion script for bash or zsh";
-  command.usage = {"bash|zsh"};
-  command.description =
-      "Prints the script on standard output; source it, or put it where the shell looks for it.";
-  command.listed = false;
-  command.run = [](const Invocation& typed) {
-    const std::string shell = typed.arguments.size() == 1 ? typed.arguments[0] : "";
-    if (shell != "bash" && shell != "zsh")
-      throw Failure({ErrorCode::usage, "rfsmooth completion takes one argument: bash or zsh"});
-    fmt::print("{}", shell == "bash" ? bash_script(all_commands()) : zsh_script(all_commands()));
-    return 0;
-  };
-  return command;
+  return text_command(
+      "completion", "print a completion script for bash or zsh", "bash|zsh",
+      "Prints the script on standard output; source it, or put it where the shell looks for it.", script);
 }
 
 }  // namespace rfsmooth::cli

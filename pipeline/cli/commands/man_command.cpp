@@ -1,7 +1,5 @@
 /// rfsmooth man: manual pages in roff, from the commands' own tables. The build runs it and installs the
 /// pages.
-#include <cstdio>
-
 #include <fmt/format.h>
 
 #include <rfsmooth/version.h>
@@ -77,34 +75,24 @@ std::string page_of_all(const std::vector<Command>& commands) {
   return out + exit_status();
 }
 
+std::string page(const std::vector<std::string>& arguments) {
+  const std::vector<Command> commands = all_commands();
+  if (arguments.empty()) return page_of_all(commands);
+  std::vector<std::string> names;
+  for (const Command& c : commands) {
+    if (arguments.size() == 1 && arguments[0] == c.name) return page_of(c);
+    names.push_back(c.name);
+  }
+  throw Failure({ErrorCode::usage, fmt::format("no manual page for '{}'{}", fmt::join(arguments, " "),
+                                               did_you_mean(arguments[0], names))});
+}
+
 }  // namespace
 
 Command man_command() {
-  Command command;
-  command.name = "man";
-  command.summary = "print a manual page (roff)";
-  command.usage = {"[COMMAND]"};
-  command.description =
-      "Prints the manual page of rfsmooth, or of one command: rfsmooth man denoise | man -l -";
-  command.listed = false;
-  command.run = [](const Invocation& typed) {
-    const std::vector<Command> commands = all_commands();
-    if (typed.arguments.empty()) {
-      fmt::print("{}", page_of_all(commands));
-      return 0;
-    }
-    std::vector<std::string> names;
-    for (const Command& c : commands) {
-      if (typed.arguments.size() == 1 && typed.arguments[0] == c.name) {
-        fmt::print("{}", page_of(c));
-        return 0;
-      }
-      names.push_back(c.name);
-    }
-    throw Failure({ErrorCode::usage, fmt::format("no manual page for '{}'{}", fmt::join(typed.arguments, " "),
-                                                 did_you_mean(typed.arguments[0], names))});
-  };
-  return command;
+  return text_command(
+      "man", "print a manual page (roff)", "[COMMAND]",
+      "Prints the manual page of rfsmooth, or of one command: rfsmooth man denoise | man -l -", page);
 }
 
 }  // namespace rfsmooth::cli
