@@ -62,8 +62,8 @@ std::unique_ptr<Flow> HcOptions::start(const Mesh& mesh, const Constraints& cons
   if (update == Update::simultaneous && constraints.hard.empty() && constraints.strength.empty())
     return std::make_unique<SimultaneousHc>(mesh, alpha, beta);
   const AllowedMoves allowed(constraints, mesh.positions.size());
-  return make_pushback(make_explicit(make_umbrella_speed(false), 1, update, allowed), mesh, alpha, beta,
-                       allowed);
+  return make_pushback(make_explicit(make_umbrella_speed(UmbrellaWeights::equal), 1, update, allowed), mesh,
+                       alpha, beta, allowed);
 }
 
 }  // namespace rfsmooth

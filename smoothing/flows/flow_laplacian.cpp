@@ -46,7 +46,7 @@ class AnchoredSpeed : public Speed {
 
 std::unique_ptr<Flow> LaplacianOptions::start(const Mesh& mesh, const Constraints& constraints,
                                               const Context&) const {
-  auto speed = make_umbrella_speed(weights == UmbrellaWeights::inverse_distance);
+  auto speed = make_umbrella_speed(weights);
   if (anchor != Anchor::none)
     speed = std::make_unique<AnchoredSpeed>(std::move(speed), alpha,
                                             anchor == Anchor::original ? mesh.positions : Positions{});

@@ -27,7 +27,7 @@ class MedianDirectionSpeed : public Speed {
   explicit MedianDirectionSpeed(const MedianDirectionOptions& options)
       : options_(options),
         curvature_(make_curvature_speed(false, options.lambda, options.scheme)),
-        umbrella_(make_umbrella_speed(false)) {}
+        umbrella_(make_umbrella_speed(UmbrellaWeights::equal)) {}
 
   void evaluate(const Mesh& mesh, Positions& speed, const Context& context) override {
     curvature_->evaluate(mesh, speed, context);

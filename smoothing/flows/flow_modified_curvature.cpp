@@ -22,7 +22,7 @@ class ModifiedCurvatureSpeed : public Speed {
  public:
   ModifiedCurvatureSpeed(double lambda, double tangential, Scheme scheme)
       : curvature_(make_curvature_speed(false, lambda, scheme)),
-        umbrella_(make_umbrella_speed(false)),
+        umbrella_(make_umbrella_speed(UmbrellaWeights::equal)),
         tangential_(tangential) {}
 
   void evaluate(const Mesh& mesh, Positions& speed, const Context& context) override {

@@ -16,9 +16,9 @@ namespace {
 
 class TaubinFlow : public Flow {
  public:
-  TaubinFlow(bool inverse_distance, double lambda, double mu, const AllowedMoves& allowed)
-      : shrink_(make_explicit(make_umbrella_speed(inverse_distance), lambda, Update::simultaneous, allowed)),
-        inflate_(make_explicit(make_umbrella_speed(inverse_distance), -mu, Update::simultaneous, allowed)) {}
+  TaubinFlow(UmbrellaWeights weights, double lambda, double mu, const AllowedMoves& allowed)
+      : shrink_(make_explicit(make_umbrella_speed(weights), lambda, Update::simultaneous, allowed)),
+        inflate_(make_explicit(make_umbrella_speed(weights), -mu, Update::simultaneous, allowed)) {}
 
   void step(Mesh& mesh, const Context& context) override {
     shrink_->step(mesh, context);
@@ -36,8 +36,7 @@ std::unique_ptr<Flow> TaubinOptions::start(const Mesh& mesh, const Constraints& 
                                            const Context&) const {
   if (!(mu > lambda))
     throw Failure({ErrorCode::usage, "`mu` must be greater than `lambda`: the second step inflates"});
-  return std::make_unique<TaubinFlow>(weights == UmbrellaWeights::inverse_distance, lambda, mu,
-                                      AllowedMoves(constraints, mesh.positions.size()));
+  return std::make_unique<TaubinFlow>(weights, lambda, mu, AllowedMoves(constraints, mesh.positions.size()));
 }
 
 }  // namespace rfsmooth

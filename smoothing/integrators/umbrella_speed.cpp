@@ -8,7 +8,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-template <bool kInverseDistance>
+template <UmbrellaWeights kWeights>
 class UmbrellaSpeed : public Speed {
  public:
   void evaluate(const Mesh& mesh, Positions& speed, const Context& context) override {
@@ -26,25 +26,27 @@ class UmbrellaSpeed : public Speed {
     double total = 0;
     for (const Index j : row) {
       const Vector3d& neighbour = mesh.positions[j];
-      if constexpr (kInverseDistance) {
+      if constexpr (kWeights == UmbrellaWeights::inverse_distance) {
         const double length = (neighbour - q).norm();
-        if (length == 0) continue;  // coincident neighbours: no direction, nothing to average
+        if (length == 0) continue;
         sum += (neighbour - q) / length;
         total += 1 / length;
       } else {
         sum += neighbour;
       }
     }
-    if constexpr (kInverseDistance) return total > 0 ? Vector3d(sum / total) : Vector3d::Zero();
+    if constexpr (kWeights == UmbrellaWeights::inverse_distance)
+      return total > 0 ? Vector3d(sum / total) : Vector3d::Zero();
     return row.size() > 0 ? Vector3d((1 / double(row.size())) * sum - q) : Vector3d::Zero();
   }
 };
 
 }  // namespace
 
-std::unique_ptr<Speed> make_umbrella_speed(bool inverse_distance) {
-  if (inverse_distance) return std::make_unique<UmbrellaSpeed<true>>();
-  return std::make_unique<UmbrellaSpeed<false>>();
+std::unique_ptr<Speed> make_umbrella_speed(UmbrellaWeights weights) {
+  if (weights == UmbrellaWeights::inverse_distance)
+    return std::make_unique<UmbrellaSpeed<UmbrellaWeights::inverse_distance>>();
+  return std::make_unique<UmbrellaSpeed<UmbrellaWeights::equal>>();
 }
 
 }  // namespace rfsmooth::smoothing

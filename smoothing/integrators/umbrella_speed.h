@@ -8,11 +8,15 @@
 
 #include <memory>
 
+#include <rfsmooth/flow_options.h>
+
 #include "smoothing/integrators/explicit.h"
 
 namespace rfsmooth::smoothing {
 
-/// Weights are taken from the current positions at every step. Vertices without neighbours stay.
-std::unique_ptr<Speed> make_umbrella_speed(bool inverse_distance);
+/// Weights are taken from the current positions at every step. Vertices without neighbours stay. Neighbours
+/// at the vertex itself have no finite U1: they are left out there, so that they do not hold the vertex where
+/// it is, and a vertex that has no others stays. U0 counts them like all others.
+std::unique_ptr<Speed> make_umbrella_speed(UmbrellaWeights weights);
 
 }  // namespace rfsmooth::smoothing
