@@ -51,6 +51,33 @@ double plateau(double few, double many, double radius) {
   return trust * std::max(few, kSure * many);
 }
 
+/// The fits of the sites nearest to one, without windows, and what they say together.
+struct Around {
+  explicit Around(std::vector<Scatter> of_sites) : fits(std::move(of_sites)) {
+    constexpr double kLeanByChance = 6 / double(kNeighbourhood);  // of so many normal values, unweighted
+    double saying = 0;
+    for (const Scatter& fit : fits) {
+      if (!says(fit)) continue;
+      flatness += fit.flatness;
+      lean += fit.lean - kLeanByChance;
+      middle += fit.middle;
+      ++saying;
+    }
+    for (double* const sum : {&flatness, &lean, &middle}) *sum /= saying;
+  }
+
+  double variance() const { return mean_variance(fits, kTypical, kTypicalDeviate); }
+  /// The median of their balls', world units.
+  double radius() const {
+    std::vector<double> radii;
+    for (const Scatter& fit : fits) radii.push_back(fit.radius);
+    return quantile(radii, 0.5);
+  }
+
+  std::vector<Scatter> fits;
+  double flatness = 0, lean = 0, middle = 0;  ///< means; lean: beyond chance; nan: no fit says a thing
+};
+
 /// Fits at the sites, and what each site's neighbours say together.
 class Listener {
  public:
@@ -96,12 +123,13 @@ class Listener {
           open_[s] =
               std::sqrt(mean_variance(fits_around(s, few, group_[s].size()), kTypical, kTypicalDeviate));
           bound(s, all);
-          look_for_sheets(s, few, steps, middle[s]);
+          const Around nearest(fits_around(s, few, kNeighbourhood));
+          look_for_sheets(s, nearest, few, steps, middle[s]);
           if (n >= 2 * kPlateauTo) {
-            look_for_sheets(s, many, steps, middle[s]);
+            look_for_sheets(s, Around(fits_around(s, many, kNeighbourhood)), many, steps, middle[s]);
             find_floor(s, few, many, steps);
           }
-          if (!on_lines_) look_for_layers(s, few, steps);
+          if (!on_lines_) look_for_layers(s, nearest, few, steps);
           sigma[s] = std::max(sigma[s], floor[s]);
         },
         64);
@@ -210,22 +238,14 @@ class Listener {
   }
 
   /// Lowers `sheet_`, and `middle` to their Scatter::middle, where fits without windows show two sheets
-  /// around, farther apart than two depths that follow each other.
-  void look_for_sheets(std::size_t s, const std::vector<Scatter>& open, const DepthSteps* steps,
-                       double& middle) {
-    const std::vector<Scatter> near = fits_around(s, open, kNeighbourhood);
-    double flatness = 0, full = 0, saying = 0;
-    for (const Scatter& fit : near) {
-      if (!says(fit)) continue;
-      flatness += fit.flatness;
-      full += fit.middle;
-      ++saying;
-    }
-    if (!(flatness < kFlatnessOfSheets * saying)) return;
-    const double variance = mean_variance(near, kTypical, kTypicalDeviate);
+  /// around, farther apart than two depths that follow each other. \param open all of them
+  void look_for_sheets(std::size_t s, const Around& around, const std::vector<Scatter>& open,
+                       const DepthSteps* steps, double& middle) {
+    if (!(around.flatness < kFlatnessOfSheets)) return;
+    const double variance = around.variance();
     if (!exceeds_rounding(variance, s, open, steps)) return;
-    sheet_[s] = std::min(sheet_[s], std::sqrt(variance * share_of_sheet(flatness / saying)));
-    middle = std::min(middle, full / saying);
+    sheet_[s] = std::min(sheet_[s], std::sqrt(variance * share_of_sheet(around.flatness)));
+    middle = std::min(middle, around.middle);
   }
 
   /// Forgets `sheet_` if the noise itself is flat, and not empty in its middle. \param middle of each site
@@ -240,26 +260,17 @@ class Listener {
       std::fill(sheet_.begin(), sheet_.end(), std::numeric_limits<double>::infinity());
   }
 
-  /// Raises `floor` where fits without windows show two layers around that are no sheets.
-  void look_for_layers(std::size_t s, const std::vector<Scatter>& open, const DepthSteps* steps) {
-    constexpr double kLeanByChance = 6 / double(kNeighbourhood);  // of so many normal values, unweighted
+  /// Raises `floor` where fits without windows show two layers around that are no sheets. \param open all of
+  /// them
+  void look_for_layers(std::size_t s, const Around& around, const std::vector<Scatter>& open,
+                       const DepthSteps* steps) {
     constexpr double kNormalFlatness = 3;
-    const std::vector<Scatter> near = fits_around(s, open, kNeighbourhood);
-    std::vector<double> radius;
-    double flatness = 0, lean = 0, saying = 0;
-    for (const Scatter& fit : near) {
-      radius.push_back(fit.radius);
-      if (!says(fit)) continue;
-      flatness += fit.flatness;
-      lean += fit.lean - kLeanByChance;
-      ++saying;
-    }
-    if (!(lean > 0 && flatness < kNormalFlatness * saying)) return;
-    const double of_sheet = share_of_sheet(flatness / saying, lean / saying);
+    if (!(around.lean > 0 && around.flatness < kNormalFlatness)) return;
+    const double of_sheet = share_of_sheet(around.flatness, around.lean);
     if (!(of_sheet < share_of_sheet(kFlatnessOfSheets))) return;
-    const double variance = mean_variance(near, kTypical, kTypicalDeviate), wide = quantile(radius, 0.5),
+    const double variance = around.variance(), wide = around.radius(),
                  square_of_point = M_PI * wide * wide / double(kNeighbourhood);
-    if (!(squared_gap(of_sheet, lean / saying) * variance < square_of_point)) return;
+    if (!(squared_gap(of_sheet, around.lean) * variance < square_of_point)) return;
     if (!exceeds_rounding(variance, s, open, steps)) return;
     sheet_[s] = std::numeric_limits<double>::infinity();
     floor[s] = std::max(floor[s], std::sqrt(variance));
