@@ -27,9 +27,15 @@ double quantile(std::vector<Weighed>& values, double share) {
 }
 
 std::vector<double> areas(const std::vector<Scatter>& all) {
+  std::vector<double> radii;
+  for (const Scatter& s : all) radii.push_back(s.radius);
+  return areas(radii);
+}
+
+std::vector<double> areas(const std::vector<double>& radii) {
   constexpr double kTypicalArea = 0.75;
   std::vector<double> area;
-  for (const Scatter& s : all) area.push_back(s.radius * s.radius);
+  for (const double r : radii) area.push_back(r * r);
   std::vector<double> sorted = area;
   const double typical = quantile(sorted, kTypicalArea);
   for (double& a : area) a = typical > 0 ? std::min(1.0, a / typical) : 1;

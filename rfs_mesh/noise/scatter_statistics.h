@@ -30,6 +30,9 @@ double quantile(std::vector<Weighed>& values, double share);
 /// How much each fit counts: 0 to 1.
 std::vector<double> areas(const std::vector<Scatter>& all);
 
+/// The same of balls of these radii.
+std::vector<double> areas(const std::vector<double>& radii);
+
 /// The variances of the fits that say something, each over the quantile of its own distribution (chi-square
 /// over its degrees of freedom, by Wilson and Hilferty 1931) at a standard normal `deviate`: so that fits of
 /// different freedom compare. \param area of each fit.
