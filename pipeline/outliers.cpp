@@ -37,11 +37,15 @@ constexpr double kFlat = 0.08;       // least variance over the sum; 1/3 = a bal
 
 /// The plane through some points, by its normal, with their variances along the axes, ascending.
 struct Plane {
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero(), normal, variances;
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero(), normal = Eigen::Vector3d::Zero(),
+                  variances = Eigen::Vector3d::Zero();
 };
 
+/// Zero all over if the points are three or fewer, which lie on a plane whatever they are: nothing is off it.
 Plane fit_plane(const Positions& points, const std::vector<Neighbor>& near) {
+  constexpr std::size_t kOnAnyPlane = 3;
   Plane plane;
+  if (near.size() <= kOnAnyPlane) return plane;
   for (const Neighbor& q : near) plane.centre += points[q.index];
   plane.centre /= double(near.size());
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
@@ -49,7 +53,7 @@ Plane fit_plane(const Positions& points, const std::vector<Neighbor>& near) {
     const Eigen::Vector3d d = points[q.index] - plane.centre;
     spread += d * d.transpose();
   }
-  spread /= double(near.size() - 3);
+  spread /= double(near.size() - kOnAnyPlane);
   const SymmetricEigen<3> eigen = symmetric_eigen(spread);
   plane.normal = eigen.vectors.col(0);
   plane.variances = eigen.values.cwiseMax(0);
