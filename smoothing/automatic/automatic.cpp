@@ -80,15 +80,7 @@ Residuals residuals_of(const HeightField& field, const std::vector<float>& heigh
 Positions automatic_smoothing(Mesh& mesh, bool keep_rings, rfs_mesh::NoiseField noise, double spacing,
                               bool learned, AutomaticReport& report, rfs_mesh::NeighborTable& near,
                               const Context& context, Statistics& whole, LearnedSites* sites) {
-  near = {};
   const std::size_t n = mesh.positions.size();
-  report = {};
-  report.left = noise.sigma;
-  if (n < std::size_t(HeightField::kNear))
-    report.not_smoothed = NotSmoothed::too_few_points;
-  else if (!(noise.sigma > 0))
-    report.not_smoothed = NotSmoothed::too_little_noise;
-  if (report.not_smoothed) return mesh.positions;
   const auto guide_strength = [&] {
     const double share = noise.sigma / spacing;
     return kGuide * share * share * std::max(1.0, share * share) * noise.shared;

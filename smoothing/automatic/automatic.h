@@ -59,12 +59,12 @@
 
 namespace rfsmooth::smoothing {
 
-/// The smoothed places of mesh.positions (n x 3). `noise`: along the normal; `sigma` zero: the points come
-/// back as they are; `local`: n, positive. `spacing`: h, world units.
+/// The smoothed places of mesh.positions (n x 3), at least HeightField::kNear. `noise`: along the normal, of
+/// positive `sigma`; `local`: n, positive. `spacing`: h, world units.
 /// \param keep_rings false: the mesh is left without its one-rings, as soon as they are read.
-/// \param near out: the nearest of every point on the guide (height_field.h); empty if nothing moved.
+/// \param near out: the nearest of every point on the guide (height_field.h).
 /// O(n log n); about 500 bytes a point beside the mesh. Parallel, the same bits for any number of
-/// threads. Of the report, `noise` and what was equalized are the flow's to enter (flow_auto.cpp).
+/// threads. Of the report, what was measured and what was equalized are the flow's to enter (flow_auto.cpp).
 /// \param whole what is there is taken, the rest entered. \param learned whether the learned step is taken.
 /// \param sites what it would be given, instead of it.
 Positions automatic_smoothing(Mesh& mesh, bool keep_rings, rfs_mesh::NoiseField noise, double spacing,

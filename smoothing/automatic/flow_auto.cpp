@@ -9,6 +9,7 @@
 #include "rfs_mesh/noise/noise.h"
 #include "rfs_mesh/noise/scatter_statistics.h"
 #include "smoothing/automatic/equalize.h"
+#include "smoothing/automatic/patches/height_field.h"
 
 namespace rfsmooth::smoothing {
 
@@ -40,6 +41,14 @@ rfs_mesh::NoiseField scaled(rfs_mesh::NoiseField noise, double sigma, double str
   for (double& local : noise.local)
     local = std::max(of(measured > 0 ? local * sigma / measured : sigma), rfs_mesh::kStays * noise.sigma);
   return noise;
+}
+
+/// Why everything stays; none: there is something to smooth. \param sigma as scaled
+std::optional<NotSmoothed> why_not(std::size_t points, double strength, double sigma) {
+  if (strength == 0) return NotSmoothed::no_strength;
+  if (points < std::size_t(HeightField::kNear)) return NotSmoothed::too_few_points;
+  if (!(sigma > 0)) return NotSmoothed::too_little_noise;
+  return {};
 }
 
 /// Takes back what a move has beyond kNoiseReach. `local`: the noise around each point times `strength`;
@@ -95,15 +104,17 @@ std::optional<AutomaticReport> smooth_automatically(Mesh& mesh, const AutomaticO
   const double sigma = options.noise ? options.noise->resolve(spacing) : measured(noise, spacing);
   noise = scaled(std::move(noise), sigma, options.strength, spacing);
   AutomaticReport report;
+  report.noise = sigma;
+  report.measured = summary;
+  report.left = noise.sigma;
+  report.not_smoothed = why_not(mesh.positions.size(), options.strength, noise.sigma);
+  if (report.not_smoothed) return report;
   rfs_mesh::NeighborTable near;
   Positions smooth = automatic_smoothing(mesh, connectivity == Connectivity::kept, noise, spacing,
                                          options.learned, report, near, context, whole, sites);
   mesh.positions.swap(smooth);
   const Positions before = std::move(smooth);
-  report.noise = sigma;
-  report.measured = summary;
-  if (options.strength == 0) report.not_smoothed = NotSmoothed::no_strength;
-  if (!report.not_smoothed && !noise.across) {  // along lines only the normals are known
+  if (!noise.across) {  // along lines only the normals are known
     if (options.equalize) {
       const Equalized moved = equalize(mesh.positions, before, noise, spacing, std::move(near), context);
       report.equalized = moved.rms;
@@ -112,8 +123,7 @@ std::optional<AutomaticReport> smooth_automatically(Mesh& mesh, const AutomaticO
       slide_back(mesh.positions, before, 1, std::move(near), context);
     }
   }
-  if (options.strength > 0)
-    limit(before, noise.local, options.strength, report.tail_times, mesh.positions, context);
+  limit(before, noise.local, options.strength, report.tail_times, mesh.positions, context);
   return report;
 }
 

@@ -128,8 +128,12 @@ TEST(Automatic, ALoudPartOfACloudThatIsMostlyDetailIsSmoothed) {
 
 TEST(Automatic, NoNoiseIsTheIdentity) {
   const Mesh mesh = support::icosphere(4);
-  AutomaticReport report;
-  EXPECT_EQ(smoothed(mesh, 0, report), mesh.positions);
+  Mesh smooth = mesh;
+  AutomaticOptions options;
+  options.noise = Length{0, false};
+  const auto report = smooth_automatically(smooth, options, {});
+  EXPECT_EQ(smooth.positions, mesh.positions);
+  EXPECT_EQ(report->not_smoothed, NotSmoothed::too_little_noise);
 }
 
 TEST(Automatic, NoPointMovesFartherThanItsShareOfTheNoiseAroundIt) {
