@@ -3,8 +3,9 @@
 /// Only points within 3 sigma of a fitted quadric count (scatter.h), and sigma is what is sought. The window
 /// opens until what the calmer quarter of the places shows in it is as narrow as a normal distribution would
 /// be. Coming from below stops at the noise of one sheet; coming from above would stop at the thickness. m
-/// starts at 16 and grows until the ball holds a patch of 2 sigma in radius with all of the window above and
-/// below it. What the calmer fifth shows without any window is an upper bound.
+/// starts at 16, or where 16 are no piece of a surface at the least number that are, and grows until the ball
+/// holds a patch of 2 sigma in radius with all of the window above and below it. What the calmer fifth shows
+/// without any window is an upper bound.
 #pragma once
 
 #include "rfs_mesh/levels.h"
@@ -27,11 +28,11 @@ constexpr double kNarrowestWindow = 0.125;
 
 /// Where the search for the noise begins.
 struct NoiseStart {
-  double sigma = 0;  ///< world units
-  double least = 0;  ///< what counts as zero; 0: the points coincide
-  double most = 0;   ///< bound
-  std::size_t m = kNarrowestPatch;
-  double shape_grows = 2;  ///< variance that is shape, from m to 2 m points: at least so many times
+  double sigma = 0;                 ///< world units
+  double least = 0;                 ///< what counts as zero; 0: the points coincide
+  double most = 0;                  ///< bound
+  std::size_t m = kNarrowestPatch;  ///< points of a neighbourhood; along lines it follows them
+  double shape_grows = 2;           ///< variance that is shape, from m to 2 m points: at least so many times
   std::size_t narrowest = kNarrowestPatch;  ///< least m that is a piece of surface and not of a line
   bool on_lines = false;  ///< whether twice kNarrowestPatch points lie along a line, and `narrowest` do not
 };
@@ -48,6 +49,11 @@ double scatter_reach(double sigma, double narrow);
 
 /// Places at which the search looks: up to 500 of the given ones, evenly over their order.
 Positions search_places(const Positions& places);
+
+/// By place: start.m; along lines twice kNarrowestPatch where kNarrowestPatch are not on one, since noise
+/// makes a strip of it: twice as many on a line are a quarter as broad. Parallel, deterministic.
+std::vector<std::size_t> points_to_fit(const SpatialIndex& index, const Positions& places,
+                                       const NoiseStart& start, const Context& context);
 
 /// O(log n). Parallel, deterministic. \param index at least 25 points. \param places where it looks, at least
 /// one. \param steps null: depths are not in steps.

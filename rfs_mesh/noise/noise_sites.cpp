@@ -94,7 +94,7 @@ class Listener {
         widest_(widest_scatter(cloud)),
         start_(start.sigma),
         on_lines_(start.on_lines),
-        m(at.size(), start.m),
+        m(points_to_fit(cloud, at, start, context)),
         sigma(at.size(), std::max(start.sigma, start.least)),
         most(at.size(), std::numeric_limits<double>::infinity()),
         floor(at.size(), 0),

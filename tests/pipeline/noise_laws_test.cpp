@@ -256,6 +256,12 @@ TEST(NoiseLaws, RingsOfALaserAreSmoothedAlongThemAndAcross) {
   }
 }
 
+TEST(NoiseLaws, RingsWithNoiseOfSeveralStepsAreSmoothed) {
+  constexpr double kStep = M_PI / 60 / 20;
+  const Positions scan = rings_on_sphere(3 * kStep, 1);
+  EXPECT_LT(rms_off(denoised(scan), everywhere), 0.5 * rms_off(scan, everywhere));
+}
+
 TEST(NoiseLaws, RingsWithoutNoiseStay) {
   const Positions scan = rings_on_sphere(0, 1);
   EXPECT_LT(rms_move(scan, denoised(scan)), 0.02 * M_PI / 60 / 20);

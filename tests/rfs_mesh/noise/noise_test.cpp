@@ -431,6 +431,20 @@ TEST(Noise, OfRingsIsThatAcrossThem) {
   }
 }
 
+// A line of points that noise carries across it looks like a strip of a surface that contains the noise.
+TEST(Noise, OfLinesIsThatAcrossThemWhereItIsSeveralOfTheirSteps) {
+  constexpr double kStep = 0.005;
+  for (const double gap : {9 * kStep, 20 * kStep})
+    for (const double sigma : {2 * kStep, 4 * kStep}) {
+      std::mt19937_64 engine(4);
+      std::normal_distribution<double> normal(0, sigma);
+      Positions points;
+      for (double y = 0; y < 2; y += gap)
+        for (double x = 0; x < 2; x += kStep) points.emplace_back(x, y, normal(engine));
+      EXPECT_NEAR(measured(points).sigma / sigma, 1, 0.2) << gap << ' ' << sigma;
+    }
+}
+
 TEST(Noise, OnlyPointsOnSeveralLinesLieAlongLines) {
   EXPECT_FALSE(measured(noisy_plane([](double) { return 0.002; })).across);
   EXPECT_FALSE(measured(noisy_sphere([](const auto&) { return 0.01; }, true)).across);
