@@ -34,6 +34,8 @@ struct NoiseModel {
   double step = 0;  ///< typical distance between depths that come in steps, world units; 0: none
   std::vector<Eigen::Vector3d> sites;  ///< places, around the middle of the box; one where noise is even
   std::vector<double> at_sites;        ///< sigma there, world units
+  /// `spacing` there where the points are more than twice as dense as on average; empty: nowhere.
+  std::vector<double> spacing_at_sites;
 };
 
 /// What `denoise` measures on a cloud as a whole. Lengths are in world units.

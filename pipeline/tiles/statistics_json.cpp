@@ -34,6 +34,7 @@ ordered_json json_of_noise(const NoiseModel& noise) {
                        {"shared_by", noise.shared}, {"depth_step", noise.step},
                        {"at_sites", noise.at_sites}};
   if (noise.across) json["across"] = *noise.across;
+  if (!noise.spacing_at_sites.empty()) json["spacing_at_sites"] = noise.spacing_at_sites;
   json["sites"] = ordered_json::array();
   for (const auto& p : noise.sites) json["sites"].push_back(json_of_place(p));
   return json;
@@ -49,6 +50,8 @@ NoiseModel noise_of(const ordered_json& json) {
   noise.step = json.at("depth_step");
   if (json.contains("across")) noise.across = json.at("across").get<std::size_t>();
   noise.at_sites = json.at("at_sites").get<std::vector<double>>();
+  if (json.contains("spacing_at_sites"))
+    noise.spacing_at_sites = json.at("spacing_at_sites").get<std::vector<double>>();
   for (const auto& p : json.at("sites")) noise.sites.push_back(place_of(p));
   return noise;
 }

@@ -106,14 +106,24 @@ void bound_sites(double most, NoiseSites& sites) {
     sites.sigma[s] = std::max(sites.floor[s], most / calm * sites.sigma[s]);
 }
 
+/// The spacing at each site, by the mean over all of them: `spacing`, or less where it is not half of that.
+std::vector<double> spacing_around(const NoiseSites& sites, double spacing) {
+  double mean = 0;
+  for (const double reach : sites.reach) mean += reach / double(sites.reach.size());
+  std::vector<double> around(sites.reach.size(), spacing);
+  for (std::size_t s = 0; s < around.size(); ++s)
+    if (kLouder * sites.reach[s] < mean) around[s] = spacing * sites.reach[s] / mean;
+  return around;
+}
+
 /// The figure, and how much of it shape had, from what the sites say. Of places that have noise, where these
 /// are a tenth of the cloud or more: the rest has nothing to smooth. Where hardly a site speaks, most of the
 /// cloud is rough, and what does speak there is half roughness: the calm fifth of it says the figure,
 /// but no more than the start, which all of the cloud says: in clean clouds the loudest are all that speaks.
 /// Loud places, of wider balls, count more than their area: noise read too small leaves more than noise read
 /// too large takes.
-void sum_up(const NoiseSites& sites, const NoiseStart& start, NoiseModel& noise) {
-  const double some = kNoNoise * noise.spacing;
+void sum_up(const NoiseSites& sites, const std::vector<double>& spacing, const NoiseStart& start,
+            NoiseModel& noise) {
   std::vector<Weighed> heard, noisy, shape;
   const std::vector<double> areas_of_balls = areas(sites.fits);
   double all = 0, saying = 0, loud = 0;
@@ -124,7 +134,7 @@ void sum_up(const NoiseSites& sites, const NoiseStart& start, NoiseModel& noise)
     saying += area;
     heard.push_back({sigma, area});
     if (sigma > start.least) shape.push_back({sites.shape[s], area});
-    if (!(sigma > some)) continue;
+    if (!(sigma > kNoNoise * spacing[s])) continue;
     noisy.push_back({sigma, area});
     loud += area;
   }
@@ -161,13 +171,18 @@ void measure(const SpatialIndex& index, const DepthSteps* steps, NoiseModel& noi
   noise.neighbours = start.m;
   NoiseSites sites = listen(index, listening_places(index.points(), start.m), start, steps, context);
   bound_sites(std::max(start.most, kNoNoise * noise.spacing), sites);
-  sum_up(sites, start, noise);
+  std::vector<double> spacing = spacing_around(sites, noise.spacing);
+  sum_up(sites, spacing, start, noise);
   if (!(noise.sigma > 0)) return;
   noise.at_sites = relative_noise(sites, noise.sigma, context);
   for (double& v : noise.at_sites) v = noise.sigma * std::max(v, kStays);
   noise.sites = std::move(sites.at);
-  const double first = noise.at_sites.front();
-  if (std::all_of(noise.at_sites.begin(), noise.at_sites.end(), [&](double v) { return v == first; })) {
+  const auto even = [](const std::vector<double>& values, double value) {
+    return std::all_of(values.begin(), values.end(), [&](double v) { return v == value; });
+  };
+  if (!even(spacing, noise.spacing)) {
+    noise.spacing_at_sites = std::move(spacing);
+  } else if (even(noise.at_sites, noise.at_sites.front())) {
     noise.sites.resize(1);
     noise.at_sites.resize(1);
   }
@@ -195,11 +210,15 @@ const NoiseModel& known_noise(const SpatialIndex& index, Statistics& whole, cons
 }
 
 NoiseField spread_noise(NoiseModel model, const Positions& points, const Context& context) {
-  NoiseField noise{std::move(model), {}};
-  if (noise.sites.empty())
+  NoiseField noise{std::move(model), {}, {}};
+  if (noise.sites.empty()) {
     noise.local.assign(points.size(), 0);
-  else
-    noise.local = blend(SpatialIndex(noise.sites, context), noise.at_sites, points, context);
+    return noise;
+  }
+  const SpatialIndex sites(noise.sites, context);
+  noise.local = blend(sites, noise.at_sites, points, context);
+  if (!noise.spacing_at_sites.empty())
+    noise.local_spacing = blend(sites, noise.spacing_at_sites, points, context);
   return noise;
 }
 

@@ -28,7 +28,8 @@
 
 namespace rfsmooth::rfs_mesh {
 
-/// Spacings: noise below this cannot be told from detail.
+/// Spacings: noise below this cannot be told from detail. Where points are far denser than on average their
+/// own spacing counts: there they show more.
 inline constexpr double kNoNoise = 0.05;
 
 /// Least noise of a place, as a part of the figure. Points with less than twice that are not moved. Not zero,
@@ -42,7 +43,8 @@ inline bool stays(double local, double figure) {
 
 /// The noise of a cloud, at every point.
 struct NoiseField : NoiseModel {
-  std::vector<double> local;  ///< n: sigma near each point, world units
+  std::vector<double> local;          ///< n: sigma near each point, world units
+  std::vector<double> local_spacing;  ///< n: spacing_at_sites near each point; empty: `spacing` everywhere
 };
 
 /// O(log n) after the index. Parallel, deterministic. Zero for fewer than 25 points. \param scanner where it

@@ -342,10 +342,10 @@ NoiseSites listen(const SpatialIndex& index, Positions at, const NoiseStart& sta
   sites.fits = listener.hear(1, false);
   for (std::size_t s = 0; s < windows.size(); ++s)
     sites.cut.push_back(char(sites.fits[s].within > kFilled * windows[s] * windows[s]));
-  std::vector<double> per_point;  // balls of more points are not for that more of the surface
+  // Balls of more points are not for that more of the surface.
   for (std::size_t s = 0; s < sites.fits.size(); ++s)
-    per_point.push_back(sites.fits[s].radius / std::sqrt(double(listener.m[s])));
-  sites.area = areas(per_point);
+    sites.reach.push_back(sites.fits[s].radius / std::sqrt(double(listener.m[s])));
+  sites.area = areas(sites.reach);
   sites.sigma = listener.sigma;
   sites.speaks = listener.speaks;
   sites.floor = listener.floor;

@@ -54,6 +54,7 @@ struct NoiseSites {
   std::vector<char> cut;      ///< whether the site's own fit fills its window, which is its neighbours'
   std::vector<double> most;   ///< what is seen without windows around it, world units; infinite: not known
   std::vector<double> floor;  ///< what steps, shared noise or layers make sure of, world units; 0: nothing
+  std::vector<double> reach;  ///< radius of the ball of a fit there over the root of its points, world units
   std::vector<Scatter> fits;  ///< to the m nearest of the site by itself, more where it is far louder
 };
 

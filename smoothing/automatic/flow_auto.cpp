@@ -31,15 +31,18 @@ double measured(const rfs_mesh::NoiseField& noise, double spacing) {
 /// than kNoNoise stay. A strength above 1 acts everywhere, where next to nothing was measured on as much as
 /// may be hidden there.
 rfs_mesh::NoiseField scaled(rfs_mesh::NoiseField noise, double sigma, double strength, double spacing) {
-  const double hidden = rfs_mesh::kNoNoise * spacing;
-  const auto of = [&](double s) {
+  const auto of = [&](double s, double h) {
+    const double hidden = rfs_mesh::kNoNoise * h;
     if (strength > 1) return strength * std::max(s, hidden);
     return s > hidden ? strength * s : 0.0;
   };
   const double measured = noise.sigma;
-  noise.sigma = of(sigma);
-  for (double& local : noise.local)
-    local = std::max(of(measured > 0 ? local * sigma / measured : sigma), rfs_mesh::kStays * noise.sigma);
+  const std::vector<double>& denser = noise.spacing_at_sites;
+  noise.sigma = of(sigma, denser.empty() ? spacing : *std::min_element(denser.begin(), denser.end()));
+  for (std::size_t i = 0; i < noise.local.size(); ++i)
+    noise.local[i] = std::max(of(measured > 0 ? noise.local[i] * sigma / measured : sigma,
+                                 denser.empty() ? spacing : noise.local_spacing[i]),
+                              rfs_mesh::kStays * noise.sigma);
   return noise;
 }
 

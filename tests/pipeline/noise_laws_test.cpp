@@ -267,6 +267,29 @@ TEST(NoiseLaws, RingsWithoutNoiseStay) {
   EXPECT_LT(rms_move(scan, denoised(scan)), 0.02 * M_PI / 60 / 20);
 }
 
+// What cannot be told from detail by points as far apart as on average can be where they are dense.
+TEST(NoiseLaws, OfDensePartsIsSeenByTheirOwnSpacing) {
+  constexpr double kDense = 0.25, kNoise = 0.03;  // sides of two squares' cells, and noise
+  std::mt19937_64 engine(8);
+  std::normal_distribution<double> normal(0, kNoise);
+  Positions points;
+  const auto add_square = [&](double left, double cell, int count) {
+    for (int i = 0; i < count; ++i)
+      for (int j = 0; j < count; ++j) points.emplace_back(left + cell * i, cell * j, normal(engine));
+  };
+  add_square(0, 1, 100);
+  const std::size_t sparse = points.size();
+  add_square(100 + 20 * kDense, kDense, 50);
+  const auto rms = [&](const Positions& of, std::size_t begin, std::size_t end) {
+    double sum = 0;
+    for (std::size_t i = begin; i < end; ++i) sum += of[i].z() * of[i].z();
+    return std::sqrt(sum / double(end - begin));
+  };
+  const Positions smooth = denoised(points);
+  EXPECT_LT(rms(smooth, sparse, points.size()), 0.3 * rms(points, sparse, points.size()));
+  EXPECT_GT(rms(smooth, 0, sparse), 0.95 * rms(points, 0, sparse));  // all but those beside the others
+}
+
 TEST(NoiseLaws, StrengthActsWhereNextToNothingWasMeasured) {
   std::mt19937_64 engine(6);
   std::normal_distribution<double> normal(0, 0.02 * spacing());
