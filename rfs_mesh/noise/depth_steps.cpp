@@ -34,6 +34,26 @@ bool fill_steps(std::vector<double> depths, double rounding, DepthSteps& steps) 
   return steps.typical > 2 * rounding * steps.depths.back();
 }
 
+/// Whether the values of another coordinate are at the commonest depth, too, as those of a grid are: at least
+/// half of as many as a draw from all of them would show. A camera's columns are at other places at any other
+/// depth.
+bool is_same_at_depths(const Positions& points, const DepthSteps& depth, const DepthSteps& other) {
+  std::vector<std::size_t> count(depth.depths.size(), 0);
+  const auto which = [&](const Eigen::Vector3d& p) {
+    return std::size_t(std::lower_bound(depth.depths.begin(), depth.depths.end(), p[depth.axis]) -
+                       depth.depths.begin());
+  };
+  for (const Eigen::Vector3d& p : points) ++count[which(p)];
+  const auto commonest = std::size_t(std::max_element(count.begin(), count.end()) - count.begin());
+  std::vector<double> there;
+  for (const Eigen::Vector3d& p : points)
+    if (which(p) == commonest) there.push_back(p[other.axis]);
+  const auto values = double(other.depths.size()), drawn = double(there.size());
+  std::sort(there.begin(), there.end());
+  there.erase(std::unique(there.begin(), there.end()), there.end());
+  return 2 * double(there.size()) > values * (1 - std::exp(-drawn / values));
+}
+
 }  // namespace
 
 double rounding_noise(double step) {
@@ -58,15 +78,18 @@ std::optional<DepthSteps> find_depth_steps(const Positions& points,
                                            const std::optional<Eigen::Vector3d>& scanner) {
   const Positions some = pick(points, std::min(points.size(), kLookedAt));
   std::vector<double> depths(some.size());
-  std::optional<DepthSteps> found;
+  std::vector<DepthSteps> all;
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     std::transform(some.begin(), some.end(), depths.begin(), [&](const auto& p) { return p[axis]; });
     DepthSteps steps;
     steps.axis = axis;
-    if (!fill_steps(depths, 0, steps)) continue;
-    if (found) return {};
-    found = std::move(steps);
+    if (fill_steps(depths, 0, steps)) all.push_back(std::move(steps));
   }
+  std::optional<DepthSteps> found;
+  for (const DepthSteps& steps : all)
+    if (!found || steps.typical > found->typical) found = steps;
+  for (const DepthSteps& steps : all)
+    if (steps.axis != found->axis && is_same_at_depths(some, *found, steps)) return {};
   if (found || !scanner) return found;
   std::transform(some.begin(), some.end(), depths.begin(),
                  [&](const auto& p) { return (p - *scanner).norm(); });

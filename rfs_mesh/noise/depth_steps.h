@@ -1,9 +1,12 @@
 /// Depths in steps: a camera that measures by disparity or by time knows few depths, and its points lie on
 /// terraces; a laser scanner that tells whole centimetres puts them on shells around itself.
 ///
-/// Found where one coordinate, and only one, has a tenth as many values as there are points (where two have,
-/// the points are on a grid of their own), or else the distance from the scanner has. Between two steps every
-/// depth is as likely, so a surface of normal n has noise of at least |n . ray| gap / sqrt(12) from them.
+/// Found where a coordinate has a tenth as many values as there are points, or else the distance from the
+/// scanner has. Of several coordinates it is the one with the largest steps: before a wall a camera knows so
+/// few depths that the columns of its image leave few values across, too, other ones at every depth. Where
+/// they are the same at every depth, the points are on a grid of their own, and nothing is said. Between two
+/// steps every depth is as likely, so a surface of normal n has noise of at least |n . ray| gap / sqrt(12)
+/// from them.
 #pragma once
 
 #include <optional>

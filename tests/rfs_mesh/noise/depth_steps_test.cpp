@@ -38,12 +38,30 @@ TEST(DepthSteps, AreFoundInWhicheverCoordinateHasThem) {
   }
 }
 
+TEST(DepthSteps, AreThoseOfTheDepthWhereACameraSeesAWall) {
+  Positions points;
+  for (int u = -160; u < 160; ++u)
+    for (int v = -120; v < 120; ++v) {
+      const double z = 2 + 0.01 * ((u * u + 3 * (v + 120)) % 7);
+      points.emplace_back(u * z / 350, v * z / 350, z);
+    }
+  const auto steps = find_depth_steps(points);
+  ASSERT_TRUE(steps);
+  EXPECT_EQ(steps->axis, 2);
+  EXPECT_EQ(steps->depths.size(), 7);
+  EXPECT_NEAR(steps->typical, 0.01, 1e-12);
+}
+
 TEST(DepthSteps, AreNoneInFreePointsAndOnAGrid) {
   EXPECT_FALSE(find_depth_steps(stepped(0.05, {})));
   EXPECT_FALSE(find_depth_steps(stepped(0.05, {0, 1})));
   EXPECT_FALSE(find_depth_steps(stepped(0.05, {0, 1, 2})));
   EXPECT_FALSE(find_depth_steps(stepped(1e-5, {2})));  // as many values as points
-  EXPECT_FALSE(find_depth_steps(stepped(1, {2})));     // two planes
+  Positions lines;                                     // of which a sample has few points of each
+  for (int i = 0; i < 100; ++i)
+    for (int j = 0; j < 1500; ++j) lines.emplace_back(0.3 * i, 0.01 * j, 1e-3 * std::sin(i + j * j));
+  EXPECT_FALSE(find_depth_steps(lines));
+  EXPECT_FALSE(find_depth_steps(stepped(1, {2})));  // two planes
 }
 
 /// Points all around a scanner at `scanner`, at ranges of 1 to 3 in whole multiples of `step`, as a file of
