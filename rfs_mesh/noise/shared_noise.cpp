@@ -20,6 +20,7 @@ constexpr std::size_t kPointsLooked = 500000;  // at each m: of wide places fewe
 // Of the variance, from m to 2 m: second sheets and detail grow faster than noise, shape at least so.
 constexpr double kMostGrowthOfNoise = 1.8, kLeastGrowthOfShape = 2.38;
 constexpr double kGrowthAcrossEdges = 2;  // 2^p of shape
+constexpr std::size_t kSlowInARow = 2;    // the least that is a row
 constexpr double kTogether = 1.4;         // times that of points on their own; they scatter by a fifth
 constexpr double kFollows = 3;            // patches follow noise of their own by kRing kFollows / m of it
 constexpr std::size_t kDiskPoints = 300;  // of the disk on which g is computed
@@ -173,13 +174,17 @@ SharedNoise find_shared_noise(const SpatialIndex& index, const Positions& places
     sill = sure;
     at = i;
   };
-  bool wide = !terraces;
+  bool wide = !terraces, fast = false;
+  std::size_t slow = 0;  // growths in a row that noise may have
   for (std::size_t i = 0; i < calm.m.size(); ++i) {
     make_sure(i, std::min(calm.steps, calm.seen[i]));
     if (i + 1 == calm.m.size() || calm.m[i + 1] != 2 * calm.m[i] || calm.m[i] < 2 * double(start.m)) continue;
     const double growth = calm.seen[i + 1] / calm.seen[i];
-    if (wide && growth > (terraces ? kGrowthAcrossEdges : kMostGrowthOfNoise)) break;
-    wide = wide || growth < kGrowthAcrossEdges;
+    slow = growth > (terraces ? kGrowthAcrossEdges : kMostGrowthOfNoise) ? 0 : slow + 1;
+    if (slow == 0 && wide && (terraces || surely > 0)) break;
+    fast = fast || slow == 0;
+    // After it grew as shape does, one slow growth may be the end of a bump.
+    wide = terraces ? wide || slow > 0 : slow >= (fast ? kSlowInARow : 1);
     if (!wide) continue;
     if (calm.flatness[i + 1] < kFlatnessOfSheets) continue;
     if (!terraces && !err_together(calm, i + 1)) continue;

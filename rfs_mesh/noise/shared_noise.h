@@ -18,9 +18,10 @@
 ///
 /// or if depths in steps (depth_steps.h) make sure of it. Its variance is then the largest S with p = 3, or
 /// that of the steps as far as it is seen. An m beyond which s^2 grows faster than noise does is the last; on
-/// terraces, which it grows fast within, the first such after one from which it does not. Neighbourhoods
-/// whose residuals are flatter than kFlatnessOfSheets (two_sheets.h) are of two sheets, and tell nothing. k
-/// is the number for which
+/// terraces, which it grows fast within, the first such after one from which it does not. Few points follow
+/// noise all of which neighbours share, as of cameras that match windows, and s^2 grows as fast as that of
+/// shape at first: there it must have grown slowly twice in a row. Neighbourhoods whose residuals are flatter
+/// than kFlatnessOfSheets (two_sheets.h) are of two sheets, and tell nothing. k is the number for which
 ///
 ///     s^2(m) = sigma^2 g(k / m)
 ///
