@@ -32,9 +32,11 @@ struct NoiseModel {
   /// reach across to other lines and are a piece of the surface.
   std::optional<std::size_t> across;
   double step = 0;  ///< typical distance between depths that come in steps, world units; 0: none
-  std::vector<Eigen::Vector3d> sites;  ///< places, around the middle of the box; one where noise is even
-  std::vector<double> at_sites;        ///< sigma there, world units
-  /// `spacing` there where the points are more than twice as dense as on average; empty: nowhere.
+  /// Places, around the middle of the box; one where noise and density are even.
+  std::vector<Eigen::Vector3d> sites;
+  std::vector<double> at_sites;  ///< sigma there, world units
+  /// Mean distance to the nearest neighbour there if it is less than half of `spacing`, else `spacing`;
+  /// empty: it is nowhere less.
   std::vector<double> spacing_at_sites;
 };
 

@@ -34,9 +34,9 @@ bool fill_steps(std::vector<double> depths, double rounding, DepthSteps& steps) 
   return steps.typical > 2 * rounding * steps.depths.back();
 }
 
-/// Whether the values of another coordinate are at the commonest depth, too, as those of a grid are: at least
-/// half of as many as a draw from all of them would show. A camera's columns are at other places at any other
-/// depth.
+/// Whether the values of another coordinate are at the commonest depth, too, as those of a grid are: as many
+/// as a draw from all of them would show. A camera's columns are at other places at any other depth, so there
+/// it shows a kFewestSteps-th (4) or less of these. The limit is twice the one and half of the other.
 bool is_same_at_depths(const Positions& points, const DepthSteps& depth, const DepthSteps& other) {
   std::vector<std::size_t> count(depth.depths.size(), 0);
   const auto which = [&](const Eigen::Vector3d& p) {

@@ -106,7 +106,7 @@ void bound_sites(double most, NoiseSites& sites) {
     sites.sigma[s] = std::max(sites.floor[s], most / calm * sites.sigma[s]);
 }
 
-/// The spacing at each site, by the mean over all of them: `spacing`, or less where it is not half of that.
+/// NoiseModel::spacing_at_sites, also where all are `spacing`.
 std::vector<double> spacing_around(const NoiseSites& sites, double spacing) {
   double mean = 0;
   for (const double reach : sites.reach) mean += reach / double(sites.reach.size());

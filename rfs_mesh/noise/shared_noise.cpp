@@ -174,7 +174,7 @@ SharedNoise find_shared_noise(const SpatialIndex& index, const Positions& places
     sill = sure;
     at = i;
   };
-  bool wide = !terraces, fast = false;
+  bool wide = false, fast = false;
   std::size_t slow = 0;  // growths in a row that noise may have
   for (std::size_t i = 0; i < calm.m.size(); ++i) {
     make_sure(i, std::min(calm.steps, calm.seen[i]));
