@@ -36,6 +36,14 @@ constexpr double kStray = 5;
 /// of it: a radius of 5.5 sigma.
 constexpr double kFlatSlab = 0.18;
 
+/// Times: by so much at most grows what is seen of noise, from m to 2 m points: it does where the ball of
+/// them is inside a slab of noisy points, as the radius does. The cube root of 2; faster growth is shape.
+constexpr double kGrowthOfNoise = 1.26;
+
+/// Most points of a fit: the blotches of depth cameras are that large, and noise of sixteen spacings needs as
+/// many.
+constexpr std::size_t kWidestFit = 4096;
+
 /// Points that stand for all of a cloud in a mean or a median over it, which they give to half a per cent.
 constexpr std::size_t kSampleOfCloud = 50000;
 

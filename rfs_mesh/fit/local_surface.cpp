@@ -123,13 +123,10 @@ Deviation deviation_at(const SpatialIndex& index, std::size_t m, const Context& 
 }  // namespace
 
 NoiseScale noise_scale(const SpatialIndex& index, const Context& context, double known, double louder) {
-  // Up to a radius of eleven spacings.
-  constexpr std::size_t kWidest = 384;
-  constexpr double kGrowthOfNoise = 1.26;  // cube root of 2: a ball inside a slab; faster growth is shape
   const std::size_t n = index.points().size();
   NoiseScale best;
   double least = std::numeric_limits<double>::infinity(), before = known;
-  for (std::size_t m = kNeighbourhood; m <= kWidest && m < n; m *= 2) {
+  for (std::size_t m = kNeighbourhood; m <= kWidestFit && m < n; m *= 2) {
     const Deviation d = deviation_at(index, m, context);
     const double seen = louder * d.sigma;
     if (best.neighbours > 0 && seen > kGrowthOfNoise * before) break;

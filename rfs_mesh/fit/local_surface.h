@@ -61,7 +61,7 @@ double mean_spacing(const SpatialIndex& index, const Context& context);
 /// at which width quadrics show that much of it that their normals are good, on the cloud as they will see
 /// it.
 ///
-/// Quadrics are fitted to m = 24, 48, ... 384 neighbours at up to 1,000 points spread over the cloud; sigma
+/// Quadrics are fitted to m = 24, 48, ... 3,072 neighbours at up to 1,000 points spread over the cloud; sigma
 /// is the lower quartile of their residuals (the flat places), corrected for being a quartile, times
 /// `louder`, or `known` if that is more. A neighbourhood narrower than a few sigma is a ball inside a thick
 /// slab: it shows too little noise and no normal. One that is too wide takes shape for noise: sigma then

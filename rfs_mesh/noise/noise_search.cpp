@@ -12,9 +12,8 @@ namespace {
 // Chosen on the development shapes with noise of 0.1 to 4 spacings, Gaussian and along the ray
 // (tests/bench/noise).
 constexpr std::size_t kSearchSites = 500;
-// m: the blotches of depth cameras are that large; at most n / 12.
-constexpr std::size_t kWidest = 4096, kShareOfCloud = 12;
-constexpr double kFlat = 2;  // sigma: the least radius of a patch
+constexpr std::size_t kShareOfCloud = 12;  // m: at most n / 12
+constexpr double kFlat = 2;                // sigma: the least radius of a patch
 
 double median_radius(const SpatialIndex& index, const Positions& places, std::size_t m) {
   std::vector<Neighbor> near;
@@ -40,11 +39,10 @@ double open_window(double window, double seen) {
 /// points are no piece of a surface.
 double bound(const SpatialIndex& index, const Positions& places, std::size_t narrowest,
              const Context& context) {
-  constexpr double kGrowthOfNoise = 1.26;
   const std::vector<double> none(places.size(), 0);
   double sigma = 0, least = 1;
   const std::size_t first = std::max(narrowest, kNeighbourhood);
-  for (std::size_t m = first; m <= kWidest && m < index.points().size(); m *= 2) {
+  for (std::size_t m = first; m <= kWidestFit && m < index.points().size(); m *= 2) {
     const std::vector<Scatter> all = fits(index, places, m, none, context);
     std::vector<Weighed> seen = comparable(all, areas(all), kCalmFifthDeviate);
     std::vector<double> radii;
@@ -131,7 +129,7 @@ void find_surface(const SpatialIndex& index, const Positions& places, std::vecto
 }  // namespace
 
 std::size_t widest_scatter(const SpatialIndex& index) {
-  return std::clamp(index.points().size() / kShareOfCloud, kNarrowestPatch, kWidest);
+  return std::clamp(index.points().size() / kShareOfCloud, kNarrowestPatch, kWidestFit);
 }
 
 double variance_of_steps(const DepthSteps& steps, const Positions& places, const std::vector<Scatter>& all) {

@@ -98,6 +98,17 @@ TEST(NoiseLaws, ALoudHalfIsSmoothedBesideACalmOneThatIsNoisyToo) {
   }
 }
 
+// As hand-held scanners leave it: the neighbourhoods that tell what is a surface must be as wide as the
+// noise.
+TEST(NoiseLaws, NoiseOfSeveralSpacingsIsSmoothedToATwelfth) {
+  for (const double share : {4, 6}) {
+    std::mt19937_64 engine(3);
+    std::normal_distribution<double> normal(0, share * spacing());
+    const Positions noisy = off_sphere([&](std::size_t) { return normal(engine); });
+    EXPECT_LT(rms_off(denoised(noisy), everywhere), rms_off(noisy, everywhere) / 12) << share;
+  }
+}
+
 TEST(NoiseLaws, PointsThatAreNoisierThanTheirNeighboursComeToTheSurface) {
   for (const double share : {0.05, 0.2}) {
     std::mt19937_64 engine(4);
