@@ -6,6 +6,7 @@
 #include <exception>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -21,7 +22,10 @@ class Binder {
   void operator()(const OptionInfo& info, bool& field) { app_.add_flag(dashed(info), field, help(info)); }
   template <class T>
   void operator()(const OptionInfo& info, T& field) {
-    app_.add_option(dashed(info), field, help(info))->capture_default_str();
+    CLI::Option* const option = app_.add_option(dashed(info), field, help(info))->capture_default_str();
+    if (info.choices.empty()) return;
+    const std::vector<std::string> words(info.choices.begin(), info.choices.end());
+    option->check(CLI::IsMember(words).description(""));  // which the help has
   }
 
  private:
@@ -36,7 +40,8 @@ class Binder {
   CLI::App& app_;
 };
 
-/// Ranges and choices are checked by `validate`, so that the program and the library say the same.
+/// Ranges are checked by `validate`, so that the program and the library say the same; words here, for
+/// `validate` does not know them.
 template <class Options>
 void bind(CLI::App& app, Options& options) {
   Options::describe(options, Binder(app));
