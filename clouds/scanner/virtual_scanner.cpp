@@ -1,4 +1,5 @@
-/// virtual_scanner: raw scans, even clouds and true meshes of shapes that are known exactly.
+/// virtual_scanner: raw scans, even clouds and true meshes of shapes that are known exactly, and what sensors
+/// see of a room.
 #include <cstdio>
 #include <string>
 
@@ -6,6 +7,7 @@
 #include "clouds/scanner/laws.h"
 #include "clouds/scanner/scan_files.h"
 #include "clouds/scanner/scanner.h"
+#include "clouds/scanner/sensors.h"
 #include "clouds/shapes/sampling.h"
 #include "pipeline/io/io.h"
 #include "pipeline/io/mesh_file.h"
@@ -42,6 +44,19 @@ struct LawOptions {
     visit(law, self.law);
     visit(OptionInfo{"points", "how many; of rings about as many", "", 2, 1e7}, self.points);
     visit(OptionInfo{"times", "all of the law's noise is larger by this factor", "", 0, 100}, self.times);
+  }
+};
+
+struct SensorOptions {
+  std::string sensor = "rings16";
+  double times = 1;
+
+  template <class Self, class Visit>
+  static void describe(Self& self, Visit&& visit) {
+    OptionInfo sensor{"sensor", "that looks at the room", "", 0, 0};
+    for (const Sensor& known : sensors()) sensor.choices.push_back(known.name);
+    visit(sensor, self.sensor);
+    visit(OptionInfo{"times", "all of the sensor's noise is larger by this factor", "", 0, 100}, self.times);
   }
 };
 
@@ -126,6 +141,13 @@ void run_law(const Files& files, const LawOptions& options, std::uint64_t seed) 
   if (!files.truth.empty()) files.write(plain_cloud(spots.points), files.truth);
 }
 
+void run_sensor(const Files& files, const SensorOptions& options, std::uint64_t seed) {
+  value_or_throw(validate(options));
+  const Sight sight = look(scaled(*find_sensor(options.sensor), options.times), seed);
+  files.write(plain_cloud(sight.measured), files.out);
+  if (!files.truth.empty()) files.write(plain_cloud(sight.truth), files.truth);
+}
+
 void run_truth(const Files& files, const TruthOptions& options) {
   value_or_throw(validate(options));
   const Mesh mesh = find_shape(files.shape)->mesh(options.edge);
@@ -133,7 +155,7 @@ void run_truth(const Files& files, const TruthOptions& options) {
 }
 
 int run(int argc, char** argv) {
-  CLI::App app("Raw scans, even clouds and true meshes of shapes that are known exactly.");
+  CLI::App app("Raw scans, even clouds and true meshes of shapes and rooms that are known exactly.");
   app.require_subcommand(1);
   Files files;
   std::uint64_t seed = 1;
@@ -141,16 +163,18 @@ int run(int argc, char** argv) {
   ScannerOptions scanner;
   SampleOptions sampler;
   LawOptions law;
+  SensorOptions sensor;
   TruthOptions truth;
 
   const auto command = [&](const std::string& name, const std::string& help, bool cloud) {
     CLI::App* sub = app.add_subcommand(name, help);
-    sub->add_option("SHAPE", files.shape,
-                    name == "sample" || name == "law"
-                        ? "a mesh file (.ply, .off), or sphere, torus, cube, l_part, plate, "
-                          "wavy_sheet, two_density_sphere"
-                        : "sphere, torus, cube, l_part, plate, wavy_sheet or two_density_sphere")
-        ->required();
+    if (name != "sensor")
+      sub->add_option("SHAPE", files.shape,
+                      name == "sample" || name == "law"
+                          ? "a mesh file (.ply, .off), or sphere, torus, cube, l_part, plate, "
+                            "wavy_sheet, two_density_sphere"
+                          : "sphere, torus, cube, l_part, plate, wavy_sheet or two_density_sphere")
+          ->required();
     sub->add_option("OUT", files.out, cloud ? "cloud to write: .ply, .pcd or .xyz" : "mesh to write: .ply")
         ->required();
     sub->add_flag("--force", files.force, "replace existing files");
@@ -170,12 +194,16 @@ int run(int argc, char** argv) {
   CLI::App* law_command =
       command("law", "Points of a shape with the noise of a real scanner, law by law.", true);
   bind(*law_command, law);
+  CLI::App* sensor_command =
+      command("sensor", "What a laser or a depth camera sees of a room, in metres from itself.", true);
+  bind(*sensor_command, sensor);
   CLI::App* truth_command = command("truth", "Write the shape itself as a mesh.", false);
   bind(*truth_command, truth);
   if (const auto ended = clouds::parse(app, argc, argv)) return *ended;
   if (*scan_command) run_scan(files, scanner, seed, organised);
   if (*sample_command) run_sample(files, sampler, seed);
   if (*law_command) run_law(files, law, seed);
+  if (*sensor_command) run_sensor(files, sensor, seed);
   if (*truth_command) run_truth(files, truth);
   return 0;
 }
