@@ -1,0 +1,35 @@
+/// What `denoise` leaves of the noise of whole sensors in a room; the benchmark `sensors` has them all.
+#include <cmath>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include <rfsmooth/denoise.h>
+
+#include "clouds/scanner/sensors.h"
+
+using namespace rfsmooth;
+
+namespace {
+
+double rms_off_room(const clouds::Sensor& sensor, const Positions& points) {
+  double sum = 0;
+  for (const Eigen::Vector3d& p : points) sum += std::pow(clouds::distance(clouds::room_of(sensor), p), 2);
+  return std::sqrt(sum / double(points.size()));
+}
+
+class NoiseOfSensors : public testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Sensors, NoiseOfSensors, testing::Values("rings16", "kinect", "time_of_flight"),
+                         [](const auto& test) { return test.param; });
+
+TEST_P(NoiseOfSensors, AtMostHalfIsLeftOfASmallScan) {
+  clouds::Sensor sensor = *clouds::find_sensor(GetParam());
+  sensor.columns /= 2;
+  if (sensor.rows > 100) sensor.rows /= 2;
+  Positions points = clouds::look(sensor, 11).measured;
+  const double before = rms_off_room(sensor, points);
+  ASSERT_TRUE(rfsmooth::denoise(points.front().data(), points.size(), {}, {}));
+  EXPECT_LT(rms_off_room(sensor, points), 0.5 * before);
+}
+
+}  // namespace
