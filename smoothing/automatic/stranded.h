@@ -4,9 +4,10 @@
 /// the surface like themselves; the fairing, which only knows neighbours, leaves such islands where they are.
 /// They show themselves: the faired points lie densely on the surface and thinly beside it. A point whose
 /// tenth or 32nd neighbour (islands of a dozen points are dense inside) is farther than 1.7 times what is
-/// usual around it (the lower quartile), or whose ring is empty, is projected from its noisy place onto the
-/// plane of the others, taken around the one nearest to it: seen from half-way between two sheets, the
-/// nearest of both would make one plane across. Thread safe: no state is kept.
+/// usual around it (the lower quartile), or whose ring is empty among others that have theirs, is projected
+/// from its noisy place onto the plane of the others, taken around the one nearest to it: seen from half-way
+/// between two sheets, the nearest of both would make one plane across. On lines that are far apart most
+/// points have no ring, and an empty one is no sign. Thread safe: no state is kept.
 #pragma once
 
 #include <rfsmooth/mesh.h>

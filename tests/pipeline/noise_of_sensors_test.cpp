@@ -32,4 +32,22 @@ TEST_P(NoiseOfSensors, AtMostHalfIsLeftOfASmallScan) {
   EXPECT_LT(rms_off_room(sensor, points), 0.5 * before);
 }
 
+// Small round things with few rings on them, most of whose points have no face.
+TEST(NoiseOfSensors, ABallAndAPillarKeepTheirForm) {
+  const clouds::Sight sight = clouds::look(clouds::scaled(*clouds::find_sensor("rings16"), 0.3), 31);
+  const clouds::Room small = {{}, clouds::hall().balls, {clouds::hall().pillars[1]}};
+  Positions points = sight.measured;
+  ASSERT_TRUE(rfsmooth::denoise(points.front().data(), points.size(), {}, {}));
+  double before = 0, after = 0;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (clouds::distance(small, sight.truth[i]) > 1e-6) continue;
+    before += std::pow(clouds::distance(small, sight.measured[i]), 2);
+    after += std::pow(clouds::distance(small, points[i]), 2);
+    ++count;
+  }
+  ASSERT_GT(count, 400U);
+  EXPECT_LT(after, before);
+}
+
 }  // namespace

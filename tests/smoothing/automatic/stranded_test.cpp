@@ -39,6 +39,16 @@ TEST(Stranded, IslandsBesideTheSurfaceAreLanded) {
   for (std::size_t i = 0; i < 2000; i += 100) EXPECT_EQ(guide[i], mesh.positions[i]) << "too far: a stray";
 }
 
+// As on the rings of a laser, where hardly a point has a face.
+TEST(Stranded, AnEmptyRingIsNoSignWhereMostAreEmpty) {
+  Mesh mesh = support::icosphere(4);
+  const std::size_t n = mesh.positions.size();
+  mesh.one_ring = rfsmooth::make_adjacency(n, {{0, 1}}, {});
+  Positions guide = mesh.positions;
+  EXPECT_EQ(land(mesh, 1, guide), 0U);
+  EXPECT_EQ(guide, mesh.positions);
+}
+
 TEST(Stranded, DenseIslandsHalfWayBetweenTwoSheetsAreLandedOnOneOfThem) {
   // Two sheets sixteen apart, hexagonal, and between them clusters of fifteen points, denser than the sheets.
   Mesh mesh;
