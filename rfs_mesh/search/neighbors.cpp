@@ -1,6 +1,7 @@
 #include "rfs_mesh/search/neighbors.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <limits>
 #include <utility>
 
@@ -10,20 +11,37 @@
 
 namespace rfsmooth::rfs_mesh {
 
+namespace {
+
+/// Bins of equal width for squared distances, as many as there are: on a surface they spread evenly.
+class Bins {
+ public:
+  Bins(const Neighbor* list, std::size_t count) {
+    double farthest = 0;
+    for (std::size_t i = 0; i < count; ++i) farthest = std::max(farthest, list[i].squared_distance);
+    if (farthest > kLeast) scale_ = double(count) / farthest;
+  }
+  bool useful() const { return scale_ > 0; }
+  /// Ascending with the distance, up to the count: a product rounded up may fall into one more.
+  std::size_t of(const Neighbor& q) const { return std::size_t(scale_ * q.squared_distance); }
+
+ private:
+  static constexpr double kLeast = 1e-280;  // its inverse is a normal number
+  double scale_ = 0;
+};
+
+constexpr std::size_t kShort = 32;  // so few are kept sorted, or sorted at once
+
+}  // namespace
+
 void sort_neighbors(std::vector<Neighbor>& list) {
-  constexpr std::size_t kShort = 32;  // sorted at once
-  constexpr double kLeast = 1e-280;   // its inverse is a normal number
-  double farthest = 0;
-  for (const Neighbor& q : list) farthest = std::max(farthest, q.squared_distance);
-  if (list.size() <= kShort || !(farthest > kLeast)) return std::sort(list.begin(), list.end());
-  const double scale = double(list.size()) / farthest;
-  // As many bins as points; a product rounded up may fall into one more.
-  const auto bin = [&](const Neighbor& q) { return std::size_t(scale * q.squared_distance); };
+  const Bins bins(list.data(), list.size());
+  if (list.size() <= kShort || !bins.useful()) return std::sort(list.begin(), list.end());
   std::vector<std::size_t> end(list.size() + 3, 0);
-  for (const Neighbor& q : list) ++end[bin(q) + 2];
+  for (const Neighbor& q : list) ++end[bins.of(q) + 2];
   for (std::size_t b = 2; b < end.size(); ++b) end[b] += end[b - 1];
   std::vector<Neighbor> sorted(list.size());
-  for (const Neighbor& q : list) sorted[end[bin(q) + 1]++] = q;
+  for (const Neighbor& q : list) sorted[end[bins.of(q) + 1]++] = q;
   for (std::size_t b = 0; b + 1 < end.size(); ++b)
     if (end[b + 1] - end[b] > 1)
       std::sort(sorted.begin() + std::ptrdiff_t(end[b]), sorted.begin() + std::ptrdiff_t(end[b + 1]));
@@ -48,14 +66,21 @@ class Nearest {
     list_.assign(k, Neighbor{kNone, bound});
   }
   const Neighbor& worst() const { return list_.back(); }
-  void offer(const Neighbor& candidate) {
+  /// The points of a leaf at these squared distances, except `self`.
+  void offer(const KdTree::Leaf& leaf, const double* squared, Index self) {
+    for (std::uint32_t i = 0; i < KdTree::kLeaf; ++i)
+      if (const Neighbor candidate = {leaf.id[i], squared[i]}; candidate < worst() && candidate.index != self)
+        insert(candidate);
+  }
+
+ private:
+  void insert(const Neighbor& candidate) {
     if (found_ < list_.size()) ++found_;
     std::size_t i = found_ - 1;
     for (; i > 0 && candidate < list_[i - 1]; --i) list_[i] = list_[i - 1];
     list_[i] = candidate;
   }
 
- private:
   std::vector<Neighbor>& list_;
   std::size_t found_ = 0;  ///< behind them are none yet
 };
@@ -66,29 +91,52 @@ class NearestMany {
  public:
   NearestMany(std::size_t k, double bound, std::vector<Neighbor>& storage)
       : list_(storage), k_(k), worst_{kNone, bound} {
-    list_.clear();
-    list_.reserve(2 * k);
+    list_.resize(2 * k + KdTree::kLeaf);
   }
   const Neighbor& worst() const { return worst_; }
-  void offer(const Neighbor& candidate) {
-    list_.push_back(candidate);
-    if (list_.size() == 2 * k_) drop_farther();
+  /// As above. Without a branch for each: about every other point of a leaf is a candidate.
+  void offer(const KdTree::Leaf& leaf, const double* squared, Index self) {
+    for (std::uint32_t i = 0; i < KdTree::kLeaf; ++i) {
+      const Neighbor candidate = {leaf.id[i], squared[i]};
+      list_[found_] = candidate;
+      found_ += std::size_t(candidate < worst_) & std::size_t(candidate.index != self);
+    }
+    if (found_ >= 2 * k_) drop_farther();
   }
   void finish() {
-    if (list_.size() > k_) drop_farther();
+    if (found_ > k_) drop_farther();
+    list_.resize(found_);
     sort_neighbors(list_);
   }
 
  private:
   void drop_farther() {
-    const auto last = list_.begin() + std::ptrdiff_t(k_ - 1);
-    std::nth_element(list_.begin(), last, list_.end());
-    worst_ = *last;
-    list_.resize(k_);
+    const Bins bins(list_.data(), found_);
+    std::size_t below = 0, last = 0;  // the bin of the k-th, and how many are in those below
+    if (bins.useful()) {
+      count_.assign(found_ + 1, 0);
+      for (std::size_t i = 0; i < found_; ++i) ++count_[bins.of(list_[i])];
+      while (below + count_[last] < k_) below += count_[last++];
+    }
+    std::size_t kept = 0;
+    same_.clear();
+    for (std::size_t i = 0; i < found_; ++i) {
+      const std::size_t bin = bins.of(list_[i]);
+      if (bin == last) same_.push_back(list_[i]);
+      list_[kept] = list_[i];
+      kept += std::size_t(bin < last);
+    }
+    const auto nth = same_.begin() + std::ptrdiff_t(k_ - below - 1);
+    std::nth_element(same_.begin(), nth, same_.end());
+    worst_ = *nth;
+    std::copy(same_.begin(), nth + 1, list_.begin() + std::ptrdiff_t(below));
+    found_ = k_;
   }
 
+  std::vector<std::uint32_t> count_;
+  std::vector<Neighbor> same_;
   std::vector<Neighbor>& list_;
-  std::size_t k_;
+  std::size_t k_, found_ = 0;
   Neighbor worst_;
 };
 
@@ -126,43 +174,33 @@ inline void squared_distances(const KdTree::Leaf& leaf, const Vector3d& q, doubl
   }
 }
 
-/// Offers the points near q, except those that `skip`, to `best`.
-template <class Skip, class Best>
-void gather_nearest(const KdTree& tree, const Vector3d& q, Skip&& skip, Best& best) {
+/// Offers the points near q, except `self`, to `best`.
+template <class Best>
+void gather_nearest(const KdTree& tree, const Vector3d& q, Index self, Best& best) {
   search(
       tree, q, [&]() -> const Neighbor& { return best.worst(); },
       [&](const KdTree::Leaf& leaf) {
         double d2[KdTree::kLeaf];
         squared_distances(leaf, q, d2);
-        for (std::uint32_t i = 0; i < KdTree::kLeaf; ++i)
-          if (const Neighbor candidate = {leaf.id[i], d2[i]}; candidate < best.worst() && !skip(leaf.id[i]))
-            best.offer(candidate);
+        best.offer(leaf, d2, self);
       });
-}
-
-/// The k nearest of q within sqrt(bound) except those that `skip`; rows of up to 64 end in kNone where there
-/// are fewer.
-template <class Skip>
-void find_nearest_but(const KdTree& tree, const Vector3d& q, Skip&& skip, double bound, std::size_t k,
-                      std::vector<Neighbor>& out) {
-  constexpr std::size_t kMany = 64;
-  if (k <= kMany) {
-    Nearest best(k, bound, out);
-    gather_nearest(tree, q, skip, best);
-  } else {
-    NearestMany best(k, bound, out);
-    gather_nearest(tree, q, skip, best);
-    best.finish();
-  }
 }
 
 constexpr double kNoBound = std::numeric_limits<double>::infinity();
 
-/// The k nearest of q except the point `self`.
-void find_nearest(const KdTree& tree, const Vector3d& q, Index self, std::size_t k,
-                  std::vector<Neighbor>& out) {
-  find_nearest_but(
-      tree, q, [self](Index i) { return i == self; }, kNoBound, k, out);
+/// The k nearest of q within sqrt(bound) except the point `self`; rows of up to kShort end in kNone where
+/// there are fewer.
+RFSMOOTH_AVX2 __attribute__((flatten)) void find_nearest(const KdTree& tree, const Vector3d& q, Index self,
+                                                         std::size_t k, std::vector<Neighbor>& out,
+                                                         double bound = kNoBound) {
+  if (k <= kShort) {
+    Nearest best(k, bound, out);
+    gather_nearest(tree, q, self, best);
+  } else {
+    NearestMany best(k, bound, out);
+    gather_nearest(tree, q, self, best);
+    best.finish();
+  }
 }
 
 }  // namespace
@@ -254,8 +292,7 @@ void SpatialIndex::nearest_within(const Vector3d& query, int k, double bound,
                                   std::vector<Neighbor>& out) const {
   out.clear();
   if (k < 1 || points_.empty()) return;
-  find_nearest_but(
-      tree_, query, [](Index) { return false; }, bound, std::min(std::size_t(k), points_.size()), out);
+  find_nearest(tree_, query, kNone, std::min(std::size_t(k), points_.size()), out, bound);
   while (!out.empty() && out.back().index == kNone) out.pop_back();
 }
 
