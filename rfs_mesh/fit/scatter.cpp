@@ -21,31 +21,9 @@ constexpr int kScatterRounds = 3;     // the first without a window
 
 typedef double FourSums __attribute__((vector_size(4 * sizeof(double))));
 
-/// Axes of least to most spread of the points about `place`, nearer ones weighing more. `breadth`: as in
-/// Scatter.
-Eigen::Matrix3d axes_of(const Positions& points, const std::vector<Neighbor>& near,
-                        const Eigen::Vector3d& place, double r, double& breadth) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-  double weights = 0;
-  for (const Neighbor& q : near) {
-    const Eigen::Vector3d d = (points[q.index] - place) / r;
-    const double inside = 1 - d.squaredNorm(), w = inside * inside;
-    sum += w * d;
-    spread += w * d * d.transpose();
-    weights += w;
-  }
-  spread -= sum * sum.transpose() / weights;
-  const SymmetricEigen<3> eigen = symmetric_eigen(spread);
-  breadth = eigen.values[2] > 0 ? std::max(0.0, eigen.values[1]) / eigen.values[2] : 0;
-  return eigen.vectors;
-}
-
-/// How far u, v, z lies above the quadric c.
-double residual(const Eigen::Vector3d& x, const Eigen::Matrix<double, 6, 1>& c) {
-  const double u = x.x(), v = x.y();
-  const Eigen::Matrix<double, 6, 1> f(1, u, v, u * u, u * v, v * v);
-  return x.z() - f.dot(c);
+/// The quadric q at u, v.
+inline double height_at(const double* q, double u, double v) {
+  return (q[0] + (v * q[2] + u * v * q[4])) + (u * q[1] + (u * u * q[3] + v * v * q[5]));
 }
 
 }  // namespace
@@ -54,70 +32,118 @@ double variance_inside(double c) {
   return 1 - 2 * c * std::exp(-c * c / 2) / std::sqrt(2 * M_PI) / std::erf(c / std::sqrt(2));
 }
 
-double ScatterFit::err_together(const Vector6& c) {
+RFSMOOTH_AVX2
+void ScatterFit::find_residuals(const Vector6& c) {
+  const Vector6 q = c;
+  residual_.resize(u_.size());
+  for (std::size_t i = 0; i < u_.size(); ++i) residual_[i] = z_[i] - height_at(q.data(), u_[i], v_[i]);
+}
+
+double ScatterFit::err_together() {
   // Along the patch, not in space: beside a point far above the others its nearest are above, too.
-  nearest_ = local_;
+  nearest_.clear();
+  for (std::size_t i = 0; i < u_.size(); ++i)
+    nearest_.emplace_back(u_[i] * u_[i] + v_[i] * v_[i], residual_[i] > 0);
   std::nth_element(nearest_.begin(), nearest_.begin() + kRing, nearest_.end(),
-                   [](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-                     return a.head<2>().squaredNorm() < b.head<2>().squaredNorm();
-                   });
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
   int sum = 0;
-  for (std::size_t i = 0; i < kRing; ++i) {
-    sum += residual(nearest_[i], c) > 0 ? 1 : -1;
-  }
+  for (std::size_t i = 0; i < kRing; ++i) sum += nearest_[i].second ? 1 : -1;
   return double(sum * sum) / double(kRing);
 }
 
-void ScatterFit::look_at(const Vector6& c, Scatter& s) const {
+void ScatterFit::look_at_residuals(Scatter& s) const {
   double weights = 0, second = 0, third = 0, fourth = 0, middle = 0;
-  for (std::size_t i = 0; i < local_.size(); ++i) {
-    const double e = residual(local_[i], c), w = weight_[i];
+  for (std::size_t i = 0; i < residual_.size(); ++i) {
+    const double e = residual_[i], w = weight_[i];
     weights += w;
     second += w * e * e;
     third += w * e * e * e;
     fourth += w * e * e * e * e;
   }
   if (!(second > 0)) return;
-  for (std::size_t i = 0; i < local_.size(); ++i) {
-    const double e = 2 * residual(local_[i], c);
-    if (e * e * weights < second) middle += weight_[i];
+  for (std::size_t i = 0; i < residual_.size(); ++i) {
+    const double e = 2 * residual_[i];
+    middle += e * e * weights < second ? weight_[i] : 0;
   }
   s.flatness = fourth * weights / (second * second);
   s.lean = third * third * weights / (second * second * second);
   s.middle = middle / weights;
 }
 
-double ScatterFit::gather(const Positions& points, const Eigen::Vector3d& place, const Eigen::Matrix3d& axes,
-                          double r, double flat, bool line) {
-  local_.clear();
-  weight_.clear();
+RFSMOOTH_AVX2
+void ScatterFit::scale(const Positions& points, const Eigen::Vector3d& place, double r) {
+  for (std::vector<double>* const values : {&x_, &y_, &z_, &u_, &v_, &weight_}) values->resize(near_.size());
+  for (std::size_t i = 0; i < near_.size(); ++i) {
+    const Eigen::Vector3d& p = points[near_[i].index];
+    x_[i] = p[0] - place[0], y_[i] = p[1] - place[1], z_[i] = p[2] - place[2];
+  }
+  for (std::vector<double>* const values : {&x_, &y_, &z_})
+    for (double& value : *values) value /= r;
+}
+
+Eigen::Matrix3d ScatterFit::find_axes(double& breadth) const {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();  // the lower triangle
+  double weights = 0;
+  for (std::size_t i = 0; i < x_.size(); ++i) {
+    const double x = x_[i], y = y_[i], z = z_[i], inside = 1 - ((x * x + y * y) + z * z), w = inside * inside;
+    const Eigen::Vector3d once = {w * x, w * y, w * z};
+    sum += once;
+    spread.col(0) += x * once;
+    spread(1, 1) += y * once[1];
+    spread(2, 1) += y * once[2];
+    spread(2, 2) += z * once[2];
+    weights += w;
+  }
+  spread -= sum * sum.transpose() / weights;
+  const SymmetricEigen<3> eigen = symmetric_eigen(spread);
+  breadth = eigen.values[2] > 0 ? std::max(0.0, eigen.values[1]) / eigen.values[2] : 0;
+  return eigen.vectors;
+}
+
+RFSMOOTH_AVX2
+void ScatterFit::turn(const Eigen::Matrix3d& axes, double flat, bool line) {
+  const auto along = [](const double* axis, double x, double y, double z) {
+    return (axis[0] * x + axis[1] * y) + axis[2] * z;
+  };
+  const double* const from = axes.data();
+  const double least[3] = {from[0], from[1], from[2]}, middle[3] = {from[3], from[4], from[5]},
+               most[3] = {from[6], from[7], from[8]};
+  for (std::size_t i = 0; i < x_.size(); ++i) {
+    const double x = x_[i], y = y_[i], z = z_[i];
+    u_[i] = along(most, x, y, z) / flat;
+    v_[i] = line ? 0 : along(middle, x, y, z) / flat;
+    z_[i] = along(least, x, y, z);
+    weight_[i] = 1 - (u_[i] * u_[i] + v_[i] * v_[i]);
+  }
+}
+
+double ScatterFit::keep_inside() {
+  std::size_t count = 0;
   double all = 0;
-  for (const Neighbor& q : near_) {
-    const Eigen::Vector3d d = (points[q.index] - place) / r;
-    const Eigen::Vector3d x(axes.col(2).dot(d) / flat, line ? 0 : axes.col(1).dot(d) / flat,
-                            axes.col(0).dot(d));
-    const double inside = 1 - x.head<2>().squaredNorm();
+  for (std::size_t i = 0; i < x_.size(); ++i) {
+    const double inside = weight_[i];
     if (inside <= 0) continue;
-    local_.push_back(x);
-    weight_.push_back(inside * inside);
+    u_[count] = u_[i], v_[count] = v_[i], z_[count] = z_[i];
+    weight_[count++] = inside * inside;
     all += inside * inside;
   }
+  for (std::vector<double>* const values : {&u_, &v_, &z_, &weight_}) values->resize(count);
   return all;
 }
 
 RFSMOOTH_AVX2
 void ScatterFit::sum_within(double window, const Vector6& c, bool first, bool last, Sums& sums) const {
-  const double q[6] = {c[0], c[1], c[2], c[3], c[4], c[5]};
+  const Vector6 q = c;
   // Of the columns of a and b: the first four rows, and of both together the last two.
   FourSums a[4] = {}, b[4] = {}, ends[6] = {}, right = {}, right_end = {};
-  for (std::size_t i = 0; i < local_.size(); ++i) {
-    const double u = local_[i].x(), v = local_[i].y(), z = local_[i].z();
+  for (std::size_t i = 0; i < u_.size(); ++i) {
+    const double u = u_[i], v = v_[i], z = z_[i];
     // Before there is a window, height weighs too: a second sheet at the rim of the ball must not pull.
     const double low = 1 - z * z;
     const double w = first ? weight_[i] * (last ? low * low : low) : weight_[i];
     const double f[6] = {1, u, v, u * u, u * v, v * v};
-    const double height = (q[0] + (f[2] * q[2] + f[4] * q[4])) + (f[1] * q[1] + (f[3] * q[3] + f[5] * q[5]));
-    if (std::abs(z - height) > window) continue;
+    if (std::abs(z - height_at(q.data(), u, v)) > window) continue;
     const FourSums start = {f[0], f[1], f[2], f[3]}, end = {f[4], f[5], f[4], f[5]};
     for (int column = 0; column < 6; ++column) {
       const double once = w * f[column], twice = w * w * f[column];
@@ -144,7 +170,6 @@ void ScatterFit::sum_within(double window, const Vector6& c, bool first, bool la
 Scatter ScatterFit::operator()(const SpatialIndex& index, const Eigen::Vector3d& place, std::size_t m,
                                double sigma, KeptNeighbors* kept) {
   static const double kInside = variance_inside(kScatterWindow);
-  const Positions& points = index.points();
   if (kept != nullptr)
     kept->nearest(index, place, m, near_);
   else
@@ -154,12 +179,14 @@ Scatter ScatterFit::operator()(const SpatialIndex& index, const Eigen::Vector3d&
   s.radius = std::sqrt(near_.back().squared_distance);
   if (!(s.radius > 0)) return s;
   const double r = 1.1 * s.radius;  // the farthest neighbour keeps a little weight
-  Eigen::Matrix3d axes = axes_of(points, near_, place, r, s.breadth);
+  scale(index.points(), place, r);
+  Eigen::Matrix3d axes = find_axes(s.breadth);
   const bool line = s.breadth < kLine;
   if (line) axes.col(0).swap(axes.col(1));
   const double high = kScatterWindow * sigma / r;
   const double flat = std::sqrt(std::max(kLeastFlat * kLeastFlat, 1 - high * high));
-  const double all = gather(points, place, axes, r, flat, line);
+  turn(axes, flat, line);
+  const double all = keep_inside();
   Vector6 c = Vector6::Zero();
   double window = std::numeric_limits<double>::infinity();
   bool silent = false;
@@ -178,9 +205,10 @@ Scatter ScatterFit::operator()(const SpatialIndex& index, const Eigen::Vector3d&
     const double left = sums.kept - solver.solve(full).trace();
     const double squares = sums.heights - sums.right.dot(c);
     if (!(left > 0.02 * sums.kept) || !std::isfinite(squares)) return s;
-    if (!(sigma > 0) && local_.size() > kRing) {
-      s.together = err_together(c);
-      look_at(c, s);
+    if (!(sigma > 0) && u_.size() > kRing) {
+      find_residuals(c);
+      s.together = err_together();
+      look_at_residuals(s);
     }
     s.variance = r * r * std::max(0.0, squares) / left / (round > 0 ? kInside : 1);
     s.freedom = left * left / sums.squares;

@@ -15,6 +15,7 @@
 /// window does not count. A place where the window would cut off a quarter of the weight says nothing.
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -52,7 +53,8 @@ struct Scatter {
 };
 
 /// Whether a fit has degrees of freedom enough to say anything.
-inline bool says(const Scatter& fit) {
+template <class Fit>
+bool says(const Fit& fit) {
   return fit.freedom > 0.5;
 }
 
@@ -75,20 +77,27 @@ class ScatterFit {
     double heights = 0, kept = 0, squares = 0;
   };
 
-  double err_together(const Vector6& c);             ///< Scatter::together of a quadric
-  void look_at(const Vector6& c, Scatter& s) const;  ///< Scatter::flatness, lean and middle
-  /// Fills `local_` and `weight_` with the points of `near_` about the place: u and v over r flat, z over r
-  /// along the axes from most to least spread (no v on a line). Returns the sum of the weights.
-  double gather(const Positions& points, const Eigen::Vector3d& place, const Eigen::Matrix3d& axes, double r,
-                double flat, bool line);
+  void find_residuals(const Vector6& c);     ///< from a quadric
+  double err_together();                     ///< Scatter::together of the residuals
+  void look_at_residuals(Scatter& s) const;  ///< Scatter::flatness, lean and middle
+  /// Fills `x_`, `y_` and `z_` with the points of `near_` from the place, over r.
+  void scale(const Positions& points, const Eigen::Vector3d& place, double r);
+  /// Axes of least to most spread of these, nearer ones weighing more. `breadth`: as in Scatter.
+  Eigen::Matrix3d find_axes(double& breadth) const;
+  /// Turns them: `u_` and `v_` over the radius `flat` and `z_`, along the axes from most to least spread (no
+  /// v on a line). `weight_`: 1 less the square of u and v.
+  void turn(const Eigen::Matrix3d& axes, double flat, bool line);
+  /// Drops those of no weight, and squares the others' weights. Returns the sum.
+  double keep_inside();
   /// Over the points within the window of the quadric c. \param first, last which of the rounds it is.
   /// \param sums zero
   void sum_within(double window, const Vector6& c, bool first, bool last, Sums& sums) const;
 
   std::vector<Neighbor> near_;
-  std::vector<Eigen::Vector3d> local_;  ///< u, v, z; u and v over the patch's radius, z over the ball's
-  std::vector<Eigen::Vector3d> nearest_;
-  std::vector<double> weight_;
+  std::vector<double> x_, y_, z_;  ///< of each point, over the ball's radius; then z_ is along the normal
+  std::vector<double> u_, v_;      ///< along the patch, over its radius
+  std::vector<double> weight_, residual_;
+  std::vector<std::pair<double, bool>> nearest_;  ///< squared distance along the patch, whether it lies above
 };
 
 }  // namespace rfsmooth::rfs_mesh

@@ -153,14 +153,15 @@ void sum_up(const NoiseSites& sites, const std::vector<double>& spacing, const N
 /// Fills the model's figures and sites.
 void measure(const SpatialIndex& index, const DepthSteps* steps, NoiseModel& noise, const Context& context) {
   const Positions places = search_places(index.points());
-  NoiseStart start = search_noise(index, places, steps, context);
+  std::vector<KeptNeighbors> kept(places.size(), KeptNeighbors(2 * kNarrowestPatch));
+  NoiseStart start = search_noise(index, places, steps, context, &kept);
   // Terraces of depths in steps look like lines, too; there the noise is shared.
   if (start.on_lines && steps == nullptr)
     noise.across = start.narrowest;
   else
     noise.shared = double(start.narrowest) / double(kNarrowestPatch);
   if (!(start.least > 0)) return;
-  const SharedNoise shared = find_shared_noise(index, places, start, steps, context);
+  const SharedNoise shared = find_shared_noise(index, places, start, steps, context, &kept);
   if (shared.points > 1) {
     start.sigma = shared.sigma;
     start.m = shared.m;

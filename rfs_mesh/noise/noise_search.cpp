@@ -37,13 +37,13 @@ double open_window(double window, double seen) {
 /// What the calmer fifth of the places shows without a window: more than the noise where there is shape, so a
 /// bound. The neighbourhood doubles until the slab is flat in it, or until shape shows. `narrowest`: fewer
 /// points are no piece of a surface.
-double bound(const SpatialIndex& index, const Positions& places, std::size_t narrowest,
-             const Context& context) {
+double bound(const SpatialIndex& index, const Positions& places, std::vector<KeptNeighbors>* kept,
+             std::size_t narrowest, const Context& context) {
   const std::vector<double> none(places.size(), 0);
   double sigma = 0, least = 1;
   const std::size_t first = std::max(narrowest, kNeighbourhood);
   for (std::size_t m = first; m <= kWidestFit && m < index.points().size(); m *= 2) {
-    const std::vector<Scatter> all = fits(index, places, m, none, context);
+    const std::vector<Scatter> all = fits(index, places, m, none, context, kept);
     std::vector<Weighed> seen = comparable(all, areas(all), kCalmFifthDeviate);
     std::vector<double> radii;
     for (const Scatter& s : all) radii.push_back(s.radius);
@@ -62,12 +62,12 @@ double bound(const SpatialIndex& index, const Positions& places, std::size_t nar
 /// Where second sheets are as near as the neighbours nearly everywhere, fits without a window tell their
 /// distance. So windows from an eighth of that on are tried: the first that a calm quarter of the cloud fills
 /// no wider than it is. \param sure no narrower ones.
-double lowest(const SpatialIndex& index, const Positions& places, std::size_t m, double sigma, double sure,
-              const Context& context) {
+double lowest(const SpatialIndex& index, const Positions& places, std::vector<KeptNeighbors>* kept,
+              std::size_t m, double sigma, double sure, const Context& context) {
   constexpr double kStep = 1.3;
   for (double window = std::max(sure, kNarrowestWindow * sigma); window < 0.8 * sigma; window *= kStep) {
     const std::vector<Scatter> all =
-        fits(index, places, m, std::vector<double>(places.size(), window), context);
+        fits(index, places, m, std::vector<double>(places.size(), window), context, kept);
     const std::vector<double> area = areas(all);
     double saying = 0, whole = 0;
     for (std::size_t i = 0; i < all.size(); ++i) {
@@ -84,13 +84,13 @@ double lowest(const SpatialIndex& index, const Positions& places, std::size_t m,
 
 /// Whether planes through m points are those through four times as many, around which a ball is twice as
 /// wide. \param all the fits to m points, without windows.
-bool same_planes(const SpatialIndex& index, const Positions& places, const std::vector<Scatter>& all,
-                 std::size_t m, const Context& context) {
+bool same_planes(const SpatialIndex& index, const Positions& places, std::vector<KeptNeighbors>* kept,
+                 const std::vector<Scatter>& all, std::size_t m, const Context& context) {
   constexpr std::size_t kTwiceAsWide = 4;
   constexpr double kByChance = 0.5;  // the median cosine of the angle between two random lines
   if (kTwiceAsWide * m > index.points().size()) return true;
   const std::vector<Scatter> wide =
-      fits(index, places, kTwiceAsWide * m, std::vector<double>(places.size(), 0), context);
+      fits(index, places, kTwiceAsWide * m, std::vector<double>(places.size(), 0), context, kept);
   std::vector<double> cosines;
   for (std::size_t s = 0; s < all.size(); ++s) cosines.push_back(std::abs(all[s].normal.dot(wide[s].normal)));
   return quantile(cosines, 0.5) >= kByChance;
@@ -102,8 +102,9 @@ bool same_planes(const SpatialIndex& index, const Positions& places, const std::
 /// other makes a broad strip of it, that nothing scatters about; but the next lines lie on another plane.
 /// Terraces only tell how far points share their rounding: there the search starts from few.
 /// `all`: the fits at the narrowest m, without windows.
-void find_surface(const SpatialIndex& index, const Positions& places, std::vector<Scatter> all,
-                  std::size_t widest, bool terraces, NoiseStart& start, const Context& context) {
+void find_surface(const SpatialIndex& index, const Positions& places, std::vector<KeptNeighbors>* kept,
+                  std::vector<Scatter> all, std::size_t widest, bool terraces, NoiseStart& start,
+                  const Context& context) {
   // Of the breadth: 1 in a disk, a quarter in a strip twice as long as wide. Scans have 0.56 and more.
   constexpr double kSurface = 0.4;
   const auto breadth = [&] {
@@ -114,9 +115,9 @@ void find_surface(const SpatialIndex& index, const Positions& places, std::vecto
   std::size_t& m = start.narrowest;
   bool lines = breadth() < kLine;
   while (2 * m <= widest &&
-         (breadth() < kSurface || !(terraces || same_planes(index, places, all, m, context)))) {
+         (breadth() < kSurface || !(terraces || same_planes(index, places, kept, all, m, context)))) {
     m *= 2;
-    all = fits(index, places, m, std::vector<double>(places.size(), 0), context);
+    all = fits(index, places, m, std::vector<double>(places.size(), 0), context, kept);
     // Twice as many are nearer to a line than to a surface. Lines that are closer to each other are connected
     // across, and a surface to every stage.
     if (m == 2 * kNarrowestPatch) lines = lines && breadth() * breadth() < kLine * kSurface;
@@ -149,27 +150,29 @@ Positions search_places(const Positions& places) {
 }
 
 std::vector<std::size_t> points_to_fit(const SpatialIndex& index, const Positions& places,
-                                       const NoiseStart& start, const Context& context) {
+                                       const NoiseStart& start, const Context& context,
+                                       std::vector<KeptNeighbors>* kept) {
   std::vector<std::size_t> points(places.size(), start.m);
   if (!start.on_lines) return points;
   const std::vector<Scatter> few =
-      fits(index, places, kNarrowestPatch, std::vector<double>(places.size(), 0), context);
+      fits(index, places, kNarrowestPatch, std::vector<double>(places.size(), 0), context, kept);
   for (std::size_t s = 0; s < points.size(); ++s)
     if (!(few[s].breadth < kLine)) points[s] = std::max(points[s], 2 * kNarrowestPatch);
   return points;
 }
 
 NoiseStart search_noise(const SpatialIndex& index, Positions places, const DepthSteps* steps,
-                        const Context& context) {
+                        const Context& context, std::vector<KeptNeighbors>* kept) {
   constexpr double kTooNarrow = 1.35;  // a window this much smaller than what it shows shows too little
   constexpr double kSettled = 1.03;
   const std::size_t widest = widest_scatter(index);
   NoiseStart start;
-  std::vector<Scatter> all = fits(index, places, start.m, std::vector<double>(places.size(), 0), context);
-  find_surface(index, places, all, widest, steps != nullptr && !steps->scanner, start, context);
+  std::vector<Scatter> all =
+      fits(index, places, start.m, std::vector<double>(places.size(), 0), context, kept);
+  find_surface(index, places, kept, all, widest, steps != nullptr && !steps->scanner, start, context);
   if (start.m > kNarrowestPatch || start.on_lines)
-    all = fits(index, places, points_to_fit(index, places, start, context),
-               std::vector<double>(places.size(), 0), context);
+    all = fits(index, places, points_to_fit(index, places, start, context, kept),
+               std::vector<double>(places.size(), 0), context, kept);
   const double narrow = median_radius(index, places, start.m);
   start.least = 1e-9 * narrow;
   start.sigma = std::sqrt(mean_variance(all, kCalmPlaces, kCalmDeviate));
@@ -177,15 +180,15 @@ NoiseStart search_noise(const SpatialIndex& index, Positions places, const Depth
       steps == nullptr ? 0 : std::min(start.sigma, std::sqrt(variance_of_steps(*steps, places, all)));
   // Lines are no sheets, and a window narrow enough finds some that are exact.
   if (start.narrowest == kNarrowestPatch)
-    start.sigma = lowest(index, places, start.m, start.sigma, sure, context);
-  start.most = kSameNoise * bound(index, places, start.m, context);
+    start.sigma = lowest(index, places, kept, start.m, start.sigma, sure, context);
+  start.most = kSameNoise * bound(index, places, kept, start.m, context);
   double said = 0;
   while (start.sigma > start.least) {  // ever wider windows, up to the bound
     const double reach = scatter_reach(start.sigma, narrow);
     while (5 * start.m / 4 <= widest && median_radius(index, places, start.m) < 0.97 * reach)
       start.m = 5 * start.m / 4;
-    all = fits(index, places, points_to_fit(index, places, start, context),
-               std::vector<double>(places.size(), start.sigma), context);
+    all = fits(index, places, points_to_fit(index, places, start, context, kept),
+               std::vector<double>(places.size(), start.sigma), context, kept);
     for (std::size_t s = 0; s < places.size(); ++s) places[s] = all[s].foot;
     const double seen = std::sqrt(mean_variance(all, kCalmPlaces, kCalmDeviate)), ratio = seen / start.sigma;
     if (said > 0 && seen > kSameNoise * said) {  // it grows with the neighbourhood: that is shape

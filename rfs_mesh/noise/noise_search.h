@@ -51,13 +51,15 @@ double scatter_reach(double sigma, double narrow);
 Positions search_places(const Positions& places);
 
 /// By place: start.m; along lines twice kNarrowestPatch where kNarrowestPatch are not on one, since noise
-/// makes a strip of it: twice as many on a line are a quarter as broad. Parallel, deterministic.
+/// makes a strip of it: twice as many on a line are a quarter as broad. Parallel, deterministic. \param kept
+/// of each place, or null.
 std::vector<std::size_t> points_to_fit(const SpatialIndex& index, const Positions& places,
-                                       const NoiseStart& start, const Context& context);
+                                       const NoiseStart& start, const Context& context,
+                                       std::vector<KeptNeighbors>* kept = nullptr);
 
 /// O(log n). Parallel, deterministic. \param index at least 25 points. \param places where it looks, at least
-/// one. \param steps null: depths are not in steps.
+/// one. \param kept of each place, or null. \param steps null: depths are not in steps.
 NoiseStart search_noise(const SpatialIndex& index, Positions places, const DepthSteps* steps,
-                        const Context& context);
+                        const Context& context, std::vector<KeptNeighbors>* kept = nullptr);
 
 }  // namespace rfsmooth::rfs_mesh

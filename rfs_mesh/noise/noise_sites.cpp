@@ -117,16 +117,16 @@ class Listener {
     const std::vector<Scatter> few = fits(cloud_, at_, few_points, open, context_, &kept_);
     const std::vector<Scatter> all =
         wide == few_points ? few : fits(cloud_, at_, wide, open, context_, &kept_);
+    const std::vector<Said> said = what_they_say(few, kTypicalDeviate);
     for_each_index(
         context_, at_.size(),
         [&](std::size_t s) {
-          open_[s] =
-              std::sqrt(mean_variance(fits_around(s, few, group_[s].size()), kTypical, kTypicalDeviate));
+          open_[s] = std::sqrt(mean_variance(around(s, said, group_[s].size()), kTypical));
           bound(s, all);
-          const Around nearest(fits_around(s, few, kNeighbourhood));
+          const Around nearest(around(s, few, kNeighbourhood));
           look_for_sheets(s, nearest, few, steps, middle[s]);
           if (n >= 2 * kPlateauTo) {
-            look_for_sheets(s, Around(fits_around(s, many, kNeighbourhood)), many, steps, middle[s]);
+            look_for_sheets(s, Around(around(s, many, kNeighbourhood)), many, steps, middle[s]);
             find_floor(s, few, many, steps);
           }
           if (!on_lines_) look_for_layers(s, nearest, few, steps);
@@ -141,6 +141,7 @@ class Listener {
   /// anything. Where the second sheet of a wall is cut off, no more does, but the window is not full.
   bool open_windows() {
     const std::vector<Scatter> all = fits(cloud_, centre_, m, sigma, context_, &kept_);
+    const std::vector<Said> said = what_they_say(all, kTypicalDeviate);
     const std::vector<double> before = sigma;
     std::vector<char> opened(at_.size(), 0);
     for_each_index(
@@ -152,7 +153,7 @@ class Listener {
             radius.push_back(all[q.index].radius);
             if (all[q.index].within > 0) full.push_back(all[q.index].within / (window * window));
           }
-          if (!hear_at(s, all)) {
+          if (!hear_at(s, said)) {
             // Nearly nothing around is left within windows made for far calmer places.
             const bool empty = double(full.size()) < (1 - kMostSpeak) * double(group_[s].size());
             const double typical = empty ? kEven : quantile(full, 0.5);
@@ -174,27 +175,25 @@ class Listener {
     std::vector<std::size_t> points = m;
     for (std::size_t& count : points) count = std::min(times * count, cloud_.points().size());
     std::vector<Scatter> all = fits(cloud_, centre_, points, sigma, context_, &kept_);
+    const std::vector<Said> said = what_they_say(all, kTypicalDeviate);
     for_each_index(
-        context_, at_.size(), [&](std::size_t s) { hear_at(s, all); }, 64);
+        context_, at_.size(), [&](std::size_t s) { hear_at(s, said); }, 64);
     if (move) for_each_index(context_, at_.size(), [&](std::size_t s) { centre_[s] = all[s].foot; });
     return all;
   }
 
  private:
   /// Sets sigma and whether it is of this place; returns that.
-  bool hear_at(std::size_t s, const std::vector<Scatter>& all) {
-    std::vector<Scatter> around;
-    std::size_t saying = 0;
-    double near = 0;
-    for (const Neighbor& q : group_[s]) {
-      if (around.size() == kSmallestGroup && double(saying) >= kMostSpeak * double(kSmallestGroup))
-        near = mean_variance(around, kTypical, kTypicalDeviate);
-      around.push_back(all[q.index]);
-      if (around.back().freedom > 0) ++saying;
-    }
-    double variance = mean_variance(around, kTypical, kTypicalDeviate);
-    speaks[s] = char(variance > 0 && double(saying) >= kMostSpeak * double(around.size()));
-    if (near > kDiffers * variance) variance = near;
+  bool hear_at(std::size_t s, const std::vector<Said>& all) {
+    const std::vector<Said> near = around(s, all, kSmallestGroup), wide = around(s, all, group_[s].size());
+    const auto saying = [](const std::vector<Said>& fits) {
+      return double(std::count_if(fits.begin(), fits.end(), [](const Said& fit) { return fit.freedom > 0; }));
+    };
+    double variance = mean_variance(wide, kTypical);
+    speaks[s] = char(variance > 0 && saying(wide) >= kMostSpeak * double(wide.size()));
+    if (wide.size() > kSmallestGroup && saying(near) >= kMostSpeak * double(kSmallestGroup))
+      if (const double of_near = mean_variance(near, kTypical); of_near > kDiffers * variance)
+        variance = of_near;
     if (speaks[s] != 0) sigma[s] = std::min(at_most(s), std::sqrt(variance));
     return speaks[s] != 0;
   }
@@ -215,9 +214,11 @@ class Listener {
     if (seen < kFlatSlab * quantile(radius, 0.5)) most[s] = seen;
   }
 
-  /// The fits of the site's nearest, `count` of them at most.
-  std::vector<Scatter> fits_around(std::size_t s, const std::vector<Scatter>& all, std::size_t count) const {
-    std::vector<Scatter> near;
+  /// Those of the site's nearest, `count` of them at most.
+  template <class T>
+  std::vector<T> around(std::size_t s, const std::vector<T>& all, std::size_t count) const {
+    std::vector<T> near;
+    near.reserve(count);
     for (std::size_t k = 0; k < std::min(count, group_[s].size()); ++k)
       near.push_back(all[group_[s][k].index]);
     return near;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/parallel.h"
 
@@ -12,6 +13,15 @@ namespace {
 double chi_square(double freedom, double deviate) {
   const double v = 2 / (9 * freedom);
   return std::pow(std::max(0.1, 1 - v + deviate * std::sqrt(v)), 3);
+}
+
+/// How much balls of these squared radii count.
+std::vector<double> areas_of_squares(std::vector<double> squares) {
+  constexpr double kTypicalArea = 0.75;
+  std::vector<double> sorted = squares;
+  const double typical = quantile(sorted, kTypicalArea);
+  for (double& a : squares) a = typical > 0 ? std::min(1.0, a / typical) : 1;
+  return squares;
 }
 
 }  // namespace
@@ -33,13 +43,9 @@ std::vector<double> areas(const std::vector<Scatter>& all) {
 }
 
 std::vector<double> areas(const std::vector<double>& radii) {
-  constexpr double kTypicalArea = 0.75;
-  std::vector<double> area;
-  for (const double r : radii) area.push_back(r * r);
-  std::vector<double> sorted = area;
-  const double typical = quantile(sorted, kTypicalArea);
-  for (double& a : area) a = typical > 0 ? std::min(1.0, a / typical) : 1;
-  return area;
+  std::vector<double> squares;
+  for (const double r : radii) squares.push_back(r * r);
+  return areas_of_squares(std::move(squares));
 }
 
 std::vector<Weighed> comparable(const std::vector<Scatter>& all, const std::vector<double>& area,
@@ -50,19 +56,37 @@ std::vector<Weighed> comparable(const std::vector<Scatter>& all, const std::vect
   return variances;
 }
 
-double mean_variance(const std::vector<Scatter>& all, double share, double deviate) {
-  const std::vector<double> area = areas(all);
-  std::vector<Weighed> variances = comparable(all, area, deviate);
+std::vector<Said> what_they_say(const std::vector<Scatter>& all, double deviate) {
+  std::vector<Said> said;
+  said.reserve(all.size());
+  for (const Scatter& s : all)
+    said.push_back({s.radius * s.radius, s.variance, s.freedom,
+                    says(s) ? s.variance / chi_square(s.freedom, deviate) : 0});
+  return said;
+}
+
+double mean_variance(const std::vector<Said>& all, double share) {
+  std::vector<double> squares(all.size());
+  std::transform(all.begin(), all.end(), squares.begin(), [](const Said& s) { return s.square; });
+  const std::vector<double> area = areas_of_squares(std::move(squares));
+  std::vector<Weighed> variances;
+  variances.reserve(all.size());
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (says(all[i])) variances.push_back({all[i].comparable, area[i]});
   if (variances.empty()) return 0;
   const double typical = quantile(variances, share);
   double sum = 0, weights = 0;
   for (std::size_t i = 0; i < all.size(); ++i) {
-    const Scatter& s = all[i];
+    const Said& s = all[i];
     if (!says(s) || s.variance > kLouder * kLouder * typical) continue;
     sum += area[i] * s.freedom * s.variance;
     weights += area[i] * s.freedom;
   }
   return weights > 0 ? sum / weights : typical;
+}
+
+double mean_variance(const std::vector<Scatter>& all, double share, double deviate) {
+  return mean_variance(what_they_say(all, deviate), share);
 }
 
 Positions pick(const Positions& points, std::size_t count) {

@@ -44,6 +44,19 @@ std::vector<Weighed> comparable(const std::vector<Scatter>& all, const std::vect
 /// distribution. Zero if no fit says anything.
 double mean_variance(const std::vector<Scatter>& all, double share, double deviate);
 
+/// What of a fit counts in such a mean: for means over many groups of the same fits.
+struct Said {
+  double square;             ///< of the ball's radius, world units squared
+  double variance, freedom;  ///< of Scatter
+  double comparable;         ///< the variance over the quantile (comparable()); 0: it says nothing
+};
+
+/// By fit; `deviate` as for mean_variance.
+std::vector<Said> what_they_say(const std::vector<Scatter>& all, double deviate);
+
+/// The mean variance of fits that say this.
+double mean_variance(const std::vector<Said>& all, double share);
+
 /// `count` points of the cloud, evenly over the indices.
 Positions pick(const Positions& points, std::size_t count);
 

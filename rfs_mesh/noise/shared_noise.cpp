@@ -124,13 +124,14 @@ void enter(const std::vector<Scatter>& all, double variance, Calm& calm) {
   calm.flatness.push_back(count > 0 ? flatness / count : 0);
 }
 
-Calm look(const SpatialIndex& index, const Positions& places, const NoiseStart& start,
-          const DepthSteps* steps, const Context& context) {
+Calm look(const SpatialIndex& index, const Positions& places, std::vector<KeptNeighbors>* kept,
+          const NoiseStart& start, const DepthSteps* steps, const Context& context) {
   Calm calm;
   const std::size_t last = std::min(widest_scatter(index), index.points().size() / kMostOfCloud);
   for (std::size_t m = std::max(start.m, start.narrowest); m <= last; m *= 2) {
     const Positions some = pick(places, std::min(places.size(), kPointsLooked / m));
-    const std::vector<Scatter> all = fits(index, some, m, std::vector<double>(some.size(), 0), context);
+    const std::vector<Scatter> all = fits(index, some, m, std::vector<double>(some.size(), 0), context,
+                                          some.size() == places.size() ? kept : nullptr);
     const std::vector<double> area = areas(all);
     std::vector<Weighed> variances = comparable(all, area, kCalmDeviate);
     if (variances.empty()) continue;
@@ -158,9 +159,10 @@ double without_shape(const Calm& calm, std::size_t i, double growth) {
 }  // namespace
 
 SharedNoise find_shared_noise(const SpatialIndex& index, const Positions& places, const NoiseStart& start,
-                              const DepthSteps* steps, const Context& context) {
+                              const DepthSteps* steps, const Context& context,
+                              std::vector<KeptNeighbors>* kept) {
   SharedNoise found;
-  const Calm calm = look(index, places, start, steps, context);
+  const Calm calm = look(index, places, kept, start, steps, context);
   if (calm.m.empty()) return found;  // nothing scatters, or too few points to tell
   // A neighbourhood within one terrace sees nothing of the steps, so the noise may grow steeply. The shells
   // of a laser scanner are finer than its noise.

@@ -47,10 +47,11 @@ struct SharedNoise {
   std::size_t m = 0;  ///< points of a neighbourhood that is wide enough to show it
 };
 
-/// \param places where to look, at least one. \param start of the noise that points have of their own
-/// (noise_search.h). \param steps null: depths are not in steps. O(log n). Parallel, deterministic. \param
-/// index at least 25 points.
+/// \param places where to look, at least one. \param kept of each place, or null. \param start of the noise
+/// that points have of their own (noise_search.h). \param steps null: depths are not in steps. O(log n).
+/// Parallel, deterministic. \param index at least 25 points.
 SharedNoise find_shared_noise(const SpatialIndex& index, const Positions& places, const NoiseStart& start,
-                              const DepthSteps* steps, const Context& context);
+                              const DepthSteps* steps, const Context& context,
+                              std::vector<KeptNeighbors>* kept = nullptr);
 
 }  // namespace rfsmooth::rfs_mesh

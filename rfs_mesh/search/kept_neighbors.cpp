@@ -8,7 +8,9 @@ namespace rfsmooth::rfs_mesh {
 void KeptNeighbors::nearest(const SpatialIndex& index, const Eigen::Vector3d& place, std::size_t m,
                             std::vector<Neighbor>& out) {
   if (find(index, place, m, out)) return;
-  index.nearest(place, int(std::max(m, most_)), kept_);
+  // Who asks for more than before will do so again.
+  const std::size_t wanted = !kept_.empty() && kept_.size() < m ? 2 * m : m;
+  index.nearest(place, int(std::max(wanted, most_)), kept_);
   at_ = place;
   out.assign(kept_.begin(), kept_.begin() + std::ptrdiff_t(std::min(m, kept_.size())));
 }
