@@ -81,6 +81,7 @@ class Search {
       reach = rfsmooth::median(all);
     }
     median_reach_ = *reach;
+    for_each_index(context, points_.size(), [&](std::size_t i) { measure_isolation(i); });
   }
 
   std::vector<char> run() {
@@ -99,21 +100,19 @@ class Search {
  private:
   void measure_reach(std::size_t i) { reach_[i] = (points_[near_[i][kRing - 1]] - points_[i]).norm(); }
 
-  void measure_isolation() {
-    for_each_index(context_, points_.size(), [&](std::size_t i) {
-      std::array<double, kRing / 4 + 1> least = {};
-      least.fill(std::numeric_limits<double>::infinity());
-      for (std::size_t k = 0; k < kRing; ++k) {
-        double reach = reach_[near_[i][k]];
-        for (double& kept : least) {  // no branches: which is less is anyone's guess
-          const double lower = reach < kept ? reach : kept;
-          reach = reach < kept ? kept : reach;
-          kept = lower;
-        }
+  void measure_isolation(std::size_t i) {
+    std::array<double, kRing / 4 + 1> least = {};
+    least.fill(std::numeric_limits<double>::infinity());
+    for (std::size_t k = 0; k < kRing; ++k) {
+      double reach = reach_[near_[i][k]];
+      for (double& kept : least) {  // no branches: which is less is anyone's guess
+        const double lower = reach < kept ? reach : kept;
+        reach = reach < kept ? kept : reach;
+        kept = lower;
       }
-      usual_[i] = least.back();
-      isolated_[i] = reach_[i] > kIsolated * usual_[i];
-    });
+    }
+    usual_[i] = least.back();
+    isolated_[i] = reach_[i] > kIsolated * usual_[i];
   }
 
   /// What is not an outlier so far and not isolated is a surface.
@@ -146,7 +145,11 @@ class Search {
         measure_reach(i);
       }
     });
-    measure_isolation();
+    for_each_index(context_, points_.size(), [&](std::size_t i) {
+      const auto row = near_[i];
+      if (look_[i] != 0 || std::any_of(row.begin(), row.end(), [&](Index j) { return look_[j] != 0; }))
+        measure_isolation(i);
+    });
   }
 
   /// For isolated points: who on the surfaces has them among their own.
@@ -162,7 +165,6 @@ class Search {
 
   /// One round; returns whether it found any.
   bool find(bool again) {
-    measure_isolation();
     const auto surface = sum_over(context_, points_.size(), std::size_t{0},
                                   [&](std::size_t i) { return std::size_t(on_surface(Index(i))); });
     if (surface < kRegion) return false;
