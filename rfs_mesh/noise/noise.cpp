@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -61,12 +62,13 @@ class SitesAround {
     if (around_.size() > kMost) {
       sites_.nearest(p, int(kBlend), near_);
     } else {
-      near_.resize(around_.size());
-      for (std::size_t k = 0; k < around_.size(); ++k)
-        near_[k] = {around_[k].index, squared_distance(p, sites_.points()[around_[k].index])};
-      const std::size_t kept = std::min(kBlend, near_.size());
-      std::partial_sort(near_.begin(), near_.begin() + std::ptrdiff_t(kept), near_.end());
-      near_.resize(kept);
+      near_.assign(std::min(kBlend, around_.size()), {kNone, std::numeric_limits<double>::infinity()});
+      for (const Neighbor& q : around_) {
+        Neighbor candidate = {q.index, squared_distance(p, sites_.points()[q.index])};
+        if (!(candidate < near_.back())) continue;
+        for (Neighbor& kept : near_)
+          if (candidate < kept) std::swap(candidate, kept);
+      }
     }
     double sum = 0;
     for (const Neighbor& q : near_) sum += values[q.index];

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "base/parallel.h"
 #include "rfs_mesh/levels.h"
@@ -134,6 +135,32 @@ struct Means {
   double no_say = 0;      ///< as of the reach
 };
 
+/// The sites that have a weight, and what is beside them: eight after the other, and the last fewer than
+/// eight. Sums over them are the same bits as over all, since only zeros are missing and the others keep
+/// their lanes.
+class FewOfAll {
+ public:
+  explicit FewOfAll(Eigen::Index all) : all_(all) {}
+  /// Those above zero.
+  void find(const Eigen::ArrayXf& weight) {
+    eights_.clear();
+    for (Eigen::Index at = 0; at + kEight <= all_; at += kEight)
+      if (weight.segment<kEight>(at).maxCoeff() > 0) eights_.push_back(at);
+  }
+  void pick(const Eigen::ArrayXf& of_all, Eigen::ArrayXf& few) const {
+    const Eigen::Index last = all_ % kEight;
+    few.resize(kEight * Eigen::Index(eights_.size()) + last);
+    for (std::size_t k = 0; k < eights_.size(); ++k)
+      few.segment<kEight>(kEight * Eigen::Index(k)) = of_all.segment<kEight>(eights_[k]);
+    few.tail(last) = of_all.tail(last);
+  }
+
+ private:
+  static constexpr int kEight = 8;
+  Eigen::Index all_;
+  std::vector<Eigen::Index> eights_;
+};
+
 Means around(const Heard& heard, const Reach& reach, const Context& context) {
   const Eigen::Index n = heard.x.size();
   Means means;
@@ -144,12 +171,14 @@ Means around(const Heard& heard, const Reach& reach, const Context& context) {
              alike = float(1 / (reach.direction * reach.direction));
   const float louder = 1 / (std::log(kMuchLouder) * std::log(kMuchLouder));
   for_blocks(context, std::size_t(n), 64, [&](std::size_t begin, std::size_t end) {
-    Eigen::ArrayXf squared(n), like(n), w(n), off(n);
+    Eigen::ArrayXf squared(n), like(n);
+    Eigen::ArrayXf w, off, value, weight, about, radius;  // of few
+    FewOfAll few(n);
     const auto mean_by = [&] {
       const float weights = w.sum() + kCloud;
-      float mean = ((w * heard.value).sum() + kCloud * heard.mean) / weights;
+      float mean = ((w * value).sum() + kCloud * heard.mean) / weights;
       for (int round = 0; round < kFieldRounds; ++round) {
-        off = w * pull(heard.value - mean);
+        off = w * pull(value - mean);
         mean += (off.sum() + kCloud * pull(heard.mean - mean)) / weights;
       }
       return mean;
@@ -159,14 +188,21 @@ Means around(const Heard& heard, const Reach& reach, const Context& context) {
           (heard.x - heard.x[i]).square() + (heard.y - heard.y[i]).square() + (heard.z - heard.z[i]).square();
       like = (heard.nx * heard.nx[i] + heard.ny * heard.ny[i] + heard.nz * heard.nz[i]).square();
       like = 1 - near * squared - alike * (1 - like);
-      w = like.max(0.0F).square() * heard.weight;
+      few.find(like);
+      few.pick(like, off);
+      few.pick(heard.weight, weight);
+      few.pick(heard.value, value);
+      few.pick(heard.about, about);
+      w = off.max(0.0F).square() * weight;
       means.of_all[i] = mean_by();
-      off = (heard.about[i] - heard.about).max(0.0F).square();
-      w = (like - louder * off).max(0.0F).square() * heard.weight;
+      few.pick(like, off);
+      w = (off - louder * (heard.about[i] - about).max(0.0F).square()).max(0.0F).square() * weight;
       const float mean = means.value[i] = mean_by();
       if (!(heard.weight[i] > 0)) continue;
-      w = (squared > (heard.radius + heard.radius[i]).square()).select(w, 0);
-      off = w * pull(heard.value - mean);
+      few.pick(squared, off);
+      few.pick(heard.radius, radius);
+      w = (off > (radius + heard.radius[i]).square()).select(w, 0);
+      off = w * pull(value - mean);
       const float predicted = mean + (off.sum() + kCloud * pull(heard.mean - mean)) / (w.sum() + kCloud);
       gain[i] =
           double(heard.weight[i] * (cost(heard.value[i] - heard.mean) - cost(heard.value[i] - predicted)));
