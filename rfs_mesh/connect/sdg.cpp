@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 
+#include "base/avx2.h"
 #include "base/collect.h"
 #include "base/parallel.h"
 #include "base/quantile.h"
@@ -22,6 +23,7 @@ constexpr std::size_t kMostDirections = 32;  ///< vertices of higher degree have
 /// The median length of the EMST edges within two hops of v: the edges of v, its neighbours and theirs; of
 /// the first of them where there are more than fit (coincident points are joined to one of them). \param
 /// squares their squared lengths, item for item of `tree`
+RFSMOOTH_AVX2
 double local_length(const std::vector<float>& squares, const Adjacency& tree, Index v) {
   constexpr std::size_t kMost = 64;
   std::array<float, kMost> around;

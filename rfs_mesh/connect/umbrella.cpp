@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/avx2.h"
 #include "base/parallel.h"
 #include "base/quantile.h"
 #include "rfs_mesh/fit/tangent_plane.h"
@@ -77,7 +78,7 @@ class Opener {
 
   /// The 90th percentile of the lengths of the SDG edges of v and of its neighbours, of the first of them
   /// where there are more than fit.
-  double long_edge(Index v) const {
+  RFSMOOTH_AVX2 double long_edge(Index v) const {
     std::array<float, kMostCandidates> squares;
     std::size_t count = 0;
     const auto add = [&](Index a, Index b) {
