@@ -97,7 +97,7 @@ class MovingGuide {
       moved_index_->nearest_within(at, int(k), found.size() < k ? bound : found.back().squared_distance,
                                    search.moved);
       for (const Neighbor& q : search.moved) found.push_back({moved_[q.index], q.squared_distance});
-      std::sort(found.begin(), found.end());
+      if (!search.moved.empty()) std::sort(found.begin(), found.end());
     }
     found.resize(std::min(k, found.size()));
     return found;
