@@ -14,7 +14,8 @@ namespace rfsmooth::rfs_mesh {
 /// What was found around one place: 16 bytes a point. Not for several threads at once.
 class KeptNeighbors {
  public:
-  /// \param most points to keep: twice as many as will be asked for after the place has moved.
+  /// \param most points to keep: twice as many as will be asked for after the place has moved. Where more are
+  /// asked for than before, twice as many are kept.
   explicit KeptNeighbors(std::size_t most) : most_(most) {}
 
   /// The same as index.nearest(place, m, out), 1 <= m <= n; always of the same index.

@@ -30,13 +30,13 @@ class Bins {
   double scale_ = 0;
 };
 
-constexpr std::size_t kShort = 32;  // so few are kept sorted, or sorted at once
+constexpr std::size_t kShortList = 32;  // so few are kept sorted, or sorted at once
 
 }  // namespace
 
 void sort_neighbors(std::vector<Neighbor>& list) {
   const Bins bins(list.data(), list.size());
-  if (list.size() <= kShort || !bins.useful()) return std::sort(list.begin(), list.end());
+  if (list.size() <= kShortList || !bins.useful()) return std::sort(list.begin(), list.end());
   std::vector<std::size_t> end(list.size() + 3, 0);
   for (const Neighbor& q : list) ++end[bins.of(q) + 2];
   for (std::size_t b = 2; b < end.size(); ++b) end[b] += end[b - 1];
@@ -188,12 +188,12 @@ void gather_nearest(const KdTree& tree, const Vector3d& q, Index self, Best& bes
 
 constexpr double kNoBound = std::numeric_limits<double>::infinity();
 
-/// The k nearest of q within sqrt(bound) except the point `self`; rows of up to kShort end in kNone where
+/// The k nearest of q within sqrt(bound) except the point `self`; rows of up to kShortList end in kNone where
 /// there are fewer.
 RFSMOOTH_AVX2 __attribute__((flatten)) void find_nearest(const KdTree& tree, const Vector3d& q, Index self,
                                                          std::size_t k, std::vector<Neighbor>& out,
                                                          double bound = kNoBound) {
-  if (k <= kShort) {
+  if (k <= kShortList) {
     Nearest best(k, bound, out);
     gather_nearest(tree, q, self, best);
   } else {
