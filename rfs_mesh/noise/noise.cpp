@@ -164,6 +164,7 @@ void measure(const SpatialIndex& index, const DepthSteps* steps, NoiseModel& noi
     noise.shared = double(start.narrowest) / double(kNarrowestPatch);
   if (!(start.least > 0)) return;
   const SharedNoise shared = find_shared_noise(index, places, start, steps, context, &kept);
+  std::vector<KeptNeighbors>().swap(kept);  // the sites keep their own
   if (shared.points > 1) {
     start.sigma = shared.sigma;
     start.m = shared.m;
