@@ -266,12 +266,14 @@ class Listener {
   void look_for_layers(std::size_t s, const Around& around, const std::vector<Scatter>& open,
                        const DepthSteps* steps) {
     constexpr double kNormalFlatness = 3;
-    if (!(around.lean > 0 && around.flatness < kNormalFlatness)) return;
-    const double of_sheet = share_of_sheet(around.flatness, around.lean);
+    constexpr double kToNearest = 0.25;  // the mean distance from a random point to its nearest, squared
+    if (!(around.flatness < kNormalFlatness)) return;
+    const double lean = std::max(0.0, around.lean), of_sheet = share_of_sheet(around.flatness, lean);
     if (!(of_sheet < share_of_sheet(kFlatnessOfSheets))) return;
     const double variance = around.variance(), wide = around.radius(),
-                 square_of_point = M_PI * wide * wide / double(kNeighbourhood);
-    if (!(squared_gap(of_sheet, around.lean) * variance < square_of_point)) return;
+                 square_of_point = M_PI * wide * wide / double(kNeighbourhood),
+                 nearest = (lean > 0 ? 1 : kToNearest) * square_of_point;
+    if (!(squared_gap(of_sheet, lean) * variance < nearest)) return;
     if (!exceeds_rounding(variance, s, open, steps)) return;
     sheet_[s] = std::numeric_limits<double>::infinity();
     floor[s] = std::max(floor[s], std::sqrt(variance));

@@ -21,7 +21,8 @@
 /// Two scans that do not quite meet leave two layers. Where more points are on one, the residuals lean, too,
 /// and both moments together tell how far apart the layers are. Nearer to each other than the points are to
 /// their neighbours (a square of the cloud's spacing has one point) they cannot both be surfaces, and what is
-/// seen without a window is the noise. Layers with as many points each may be the sides of a plate.
+/// seen without a window is the noise. Layers with as many points each may be the sides of a plate: these
+/// must be nearer than a point is to its nearest neighbour, half a spacing where points lie at random.
 ///
 /// Without a window the scatter is more than the noise, so that of nearly all of the dozen nearest sites is a
 /// bound, where their balls hold the slab. No window shows more: it would take more points, and those more of

@@ -319,6 +319,15 @@ TEST(Noise, OfTwoScansNearerToEachOtherThanTheirPointsIsTheirScatter) {
   }
 }
 
+// As many points on each, as where two strips of a flight overlap; farther apart they may be a plate's sides.
+TEST(Noise, OfTwoScansWithAsManyPointsIsTheirScatterWhereTheyAreNearer) {
+  constexpr double kSigma = 0.05;
+  for (const unsigned seed : {1U, 2U, 3U}) {
+    EXPECT_NEAR(of_two_scans(0.5, 0.35, kSigma, seed)[1] / (0.5 * 0.35), 1, 0.25) << seed;
+    EXPECT_LT(of_two_scans(0.5, 1.5, kSigma, seed)[1], 3 * kSigma) << seed;
+  }
+}
+
 TEST(Noise, OfTwoScansThreeSpacingsApartIsThatOfEach) {
   const auto [one, two] = of_two_scans(0.35, 3, 0.05, 1);
   EXPECT_LT(one, 0.1);

@@ -86,7 +86,7 @@ TEST(LearnedStep, TurnsAndGrowsWithTheCloud) {
   std::size_t off = 0;
   for (std::size_t i = 0; i < here.size(); ++i)
     off += (motion * here[i] - there[i]).norm() > 0.02 * 20 * kSigma;
-  EXPECT_LT(off, here.size() / 500);  // those for which rounding decides which points are theirs
+  EXPECT_LT(off, here.size() / 250);  // those for which rounding decides which points are theirs
 }
 
 TEST(LearnedStep, IsTheSameForAnyNumberOfThreads) {
