@@ -3,12 +3,12 @@
 #include <functional>
 #include <limits>
 #include <stdexcept>
-#include <string>
 
 #include <Eigen/Geometry>
 
 #include <rfsmooth/compare.h>
 
+#include "base/fail.h"
 #include "base/parallel.h"
 #include "pipeline/true_surface.h"
 
@@ -54,8 +54,7 @@ Sphere bounding_sphere(const double* xyz, std::size_t n) {
     }
   };
   each_finite([&](const Vector3d& p) { box.extend(p); });
-  if (box.isEmpty())
-    throw Failure({ErrorCode::no_usable_points, "the truth has no finite point to measure against"});
+  if (box.isEmpty()) fail(ErrorCode::no_usable_points, "the truth has no finite point to measure against");
   Sphere sphere{box.min() + box.sizes() / 2, 0};
   each_finite(
       [&](const Vector3d& p) { sphere.radius = std::max(sphere.radius, (p - sphere.centre).norm()); });
@@ -64,8 +63,7 @@ Sphere bounding_sphere(const double* xyz, std::size_t n) {
 
 TrueSurface true_surface(const MeshView& mesh, const Vector3d& origin) {
   if (mesh.m == 0)
-    throw Failure(
-        {ErrorCode::no_usable_points, "the true mesh has no faces; give a mesh or compare with a cloud"});
+    fail(ErrorCode::no_usable_points, "the true mesh has no faces; give a mesh or compare with a cloud");
   Positions vertices(mesh.n);
   for (std::size_t v = 0; v < mesh.n; ++v)
     vertices[v] = Eigen::Map<const Vector3d>(mesh.xyz + 3 * v) - origin;
@@ -73,9 +71,8 @@ TrueSurface true_surface(const MeshView& mesh, const Vector3d& origin) {
   for (std::size_t f = 0; f < faces.size(); ++f)
     for (const Index v : faces[f])
       if (v >= mesh.n || !vertices[v].allFinite())
-        throw Failure(
-            {ErrorCode::input_unreadable,
-             "face " + std::to_string(f) + " of the true mesh has a corner that is missing or not finite"});
+        fail(ErrorCode::input_unreadable,
+             "face {} of the true mesh has a corner that is missing or not finite", f);
   // Vertices of no face may be NaN in files; they must not reach the welding sort.
   for (Vector3d& v : vertices)
     if (!v.allFinite()) v.setZero();
@@ -224,8 +221,7 @@ Result<CompareReport> compare(const CloudView& cloud, const Truth& truth, const 
       report.points = cloud.n;
       report.finite = points.positions.size();
       report.radius = sphere.radius;
-      if (report.finite == 0)
-        throw Failure({ErrorCode::no_usable_points, "the cloud has no finite point to measure"});
+      if (report.finite == 0) fail(ErrorCode::no_usable_points, "the cloud has no finite point to measure");
       const PointTree tree(points.positions);
       context.report("compare", 0);
       if (truth.mesh) {

@@ -5,10 +5,9 @@
 #include <stdexcept>
 #include <variant>
 
-#include <fmt/format.h>
-
 #include <rfsmooth/denoise.h>
 
+#include "base/fail.h"
 #include "base/parallel.h"
 #include "base/quantile.h"
 #include "base/stopwatch.h"
@@ -110,10 +109,9 @@ std::vector<double> reaches(const Mesh& mesh, const Context& context) {
 void check_finite(const Positions& points, const DenoiseOptions& options, const Context& context) {
   for_each_index(context, points.size(), [&](std::size_t i) {
     if (!points[i].allFinite())
-      throw Failure(
-          {ErrorCode::usage, fmt::format("the flow '{}' diverges with these options; smaller steps or "
-                                         "fewer iterations are needed",
-                                         name_of(options.flow.flow))});
+      fail(ErrorCode::usage,
+           "the flow '{}' diverges with these options; smaller steps or fewer iterations are needed",
+           name_of(options.flow.flow));
   });
 }
 
@@ -205,11 +203,10 @@ void refuse_noise_beyond(const Statistics::Box& box, double spacing, const Denoi
   if (automatic == nullptr || !automatic->noise) return;
   const double noise = automatic->noise->resolve(spacing), size = (box.high - box.low).norm();
   if (noise > size && size > 0)
-    throw Failure(
-        {ErrorCode::usage,
-         fmt::format("`noise` is {:.4g}, more than the whole cloud, which is {:.4g} from corner to "
-                     "corner; it takes the units of the coordinates, or times the spacing as in 0.5x",
-                     noise, size)});
+    fail(ErrorCode::usage,
+         "`noise` is {:.4g}, more than the whole cloud, which is {:.4g} from corner to corner; it takes the "
+         "units of the coordinates, or times the spacing as in 0.5x",
+         noise, size);
 }
 
 /// The points to work on.
@@ -328,15 +325,14 @@ DenoiseReport run(double* xyz, std::size_t n, const DenoiseOptions& options, con
 /// \throw Failure for what needs a surface without the holes that a rough mesh has between its umbrellas.
 void refuse_for_clouds(const Modifiers& modifiers) {
   if (modifiers.boundary != Boundary::free)
-    throw Failure(
-        {ErrorCode::usage,
-         "`boundary` is for meshes: in the rough mesh of a cloud most edges with one face are holes "
-         "between umbrellas, not the rim of the surface; use smooth-mesh, or `strength-field` to "
-         "hold the points of a rim"});
+    fail(ErrorCode::usage,
+         "`boundary` is for meshes: in the rough mesh of a cloud most edges with one face are holes between "
+         "umbrellas, not the rim of the surface; use smooth-mesh, or `strength-field` to hold the points of "
+         "a rim");
   if (modifiers.preserve == Preserve::volume)
-    throw Failure({ErrorCode::usage,
-                   "`preserve` volume is for closed meshes: the rough mesh of a cloud has holes between its "
-                   "umbrellas and encloses nothing; use smooth-mesh, or a flow that keeps size (auto, hc)"});
+    fail(ErrorCode::usage,
+         "`preserve` volume is for closed meshes: the rough mesh of a cloud has holes between its umbrellas "
+         "and encloses nothing; use smooth-mesh, or a flow that keeps size (auto, hc)");
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <rfsmooth/connect.h>
 #include <rfsmooth/normals.h>
 
+#include "base/fail.h"
 #include "base/parallel.h"
 #include "pipeline/normals_by_part.h"
 #include "rfs_mesh/levels.h"
@@ -59,7 +60,7 @@ NormalsReport run(const double* xyz, std::size_t n, const NormalsOptions& option
   NormalsReport report;
   report.points = n;
   if (options.viewpoint && !options.viewpoint->allFinite())
-    throw Failure({ErrorCode::usage, "the viewpoint is not finite"});
+    fail(ErrorCode::usage, "the viewpoint is not finite");
   const rfs_mesh::WorkingCloud cloud = value_or_throw(rfs_mesh::make_working_cloud(xyz, n, context));
   report.finite = cloud.finite();
   const Connection connection = value_or_throw(rfsmooth::connect(cloud.points, {}, context));

@@ -3,6 +3,7 @@
 #include <rfsmooth/normals.h>
 #include <rfsmooth/reconstruct.h>
 
+#include "base/fail.h"
 #include "base/parallel.h"
 #include "base/stopwatch.h"
 #include "pipeline/surface/hole_filling.h"
@@ -78,7 +79,7 @@ Reconstruction run(std::vector<double> xyz, const ReconstructOptions& options, c
     const rfs_mesh::WorkingCloud cloud =
         value_or_throw(rfs_mesh::make_working_cloud(xyz.data(), xyz.size() / 3, context));
     if (cloud.points.size() < 4)
-      throw Failure({ErrorCode::no_usable_points, "a surface needs four distinct points at least"});
+      fail(ErrorCode::no_usable_points, "a surface needs four distinct points at least");
     SurfaceInput input;
     input.points = cloud.points;
     input.normals = working_normals(xyz, cloud, context);
@@ -100,7 +101,7 @@ Reconstruction run(std::vector<double> xyz, const ReconstructOptions& options, c
     });
   }
   if (made.mesh.faces.empty())
-    throw Failure({ErrorCode::no_usable_points, method.name + " finds no surface in these points"});
+    fail(ErrorCode::no_usable_points, "{} finds no surface in these points", method.name);
   return made;
 }
 

@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 
+#include "base/fail.h"
 #include "pipeline/io/io.h"
 
 namespace rfsmooth::render {
@@ -33,14 +34,13 @@ std::vector<double> color_values(const PictureOptions& options, const std::vecto
     for (const Vector3d& p : scene.points) values.push_back(p[2]);
   if (options.color == "field") {
     const auto field = io::find_field(clouds[which], options.field);
-    if (!field) throw Failure({ErrorCode::usage, "the cloud has no field called '" + options.field + "'"});
+    if (!field) fail(ErrorCode::usage, "the cloud has no field called '{}'", options.field);
     const std::vector<double> all = io::field_values(clouds[which], *field);
     for (const Index row : scene.row) values.push_back(all[row]);
   }
   if (options.color == "displacement") {
     if (scenes.size() != 2 || clouds[0].size() != clouds[1].size())
-      throw Failure(
-          {ErrorCode::usage, "--color displacement needs two clouds with the same number of points"});
+      fail(ErrorCode::usage, "--color displacement needs two clouds with the same number of points");
     const std::vector<double> a = io::positions(clouds[0]), b = io::positions(clouds[1]);
     for (const Index row : scene.row)
       values.push_back(
@@ -58,7 +58,7 @@ std::optional<ColorRange> colorize(const PictureOptions& options, const std::vec
     values.push_back(color_values(options, clouds, scenes, i));
     all.insert(all.end(), values.back().begin(), values.back().end());
     if (options.color == "rgb" && !color_by_file(scenes[i], clouds[i]))
-      throw Failure({ErrorCode::usage, "--color rgb: the cloud has no colours"});
+      fail(ErrorCode::usage, "--color rgb: the cloud has no colours");
   }
   if (all.empty()) return std::nullopt;
   ColorRange range = usual_range(std::move(all));
@@ -89,7 +89,7 @@ Image page(const std::vector<Image>& pictures, const PictureOptions& options) {
 
 void check_direction(const std::optional<Vector3d>& v) {
   if (v && (!v->allFinite() || v->squaredNorm() == 0))
-    throw Failure({ErrorCode::usage, "a direction must be three finite numbers, not all zero"});
+    fail(ErrorCode::usage, "a direction must be three finite numbers, not all zero");
 }
 
 CameraOptions camera_options(const PictureOptions& options) {
@@ -102,7 +102,7 @@ CameraOptions camera_options(const PictureOptions& options) {
     look.centre_x = (*options.zoom)[0];
     look.centre_y = (*options.zoom)[1];
     look.zoom = (*options.zoom)[2];
-    if (!(look.zoom > 0)) throw Failure({ErrorCode::usage, "--zoom: the magnification must be positive"});
+    if (!(look.zoom > 0)) fail(ErrorCode::usage, "--zoom: the magnification must be positive");
   }
   return look;
 }

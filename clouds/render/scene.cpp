@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 
+#include "base/fail.h"
 #include "base/linear/symmetric_eigen.h"
 #include "base/parallel.h"
 #include "base/quantile.h"
@@ -37,7 +38,7 @@ Scene make_scene(const io::Cloud& cloud, const Vector3d& origin, const Context& 
     scene.points.push_back(p - origin);
     scene.row.push_back(Index(i));
   }
-  if (scene.points.empty()) throw Failure({ErrorCode::no_usable_points, "there is no finite point to draw"});
+  if (scene.points.empty()) fail(ErrorCode::no_usable_points, "there is no finite point to draw");
   for (const Face& f : io::faces_of(cloud, context))
     if (index[f[0]] != kNone && index[f[1]] != kNone && index[f[2]] != kNone)
       scene.faces.push_back({index[f[0]], index[f[1]], index[f[2]]});

@@ -3,9 +3,9 @@
 #include <cstring>
 #include <filesystem>
 
-#include <fmt/format.h>
 #include <unistd.h>
 
+#include "base/fail.h"
 #include "pipeline/cli/options/text_values.h"
 #include "pipeline/cli/other_program.h"
 
@@ -22,13 +22,9 @@ int become_program(const std::string& name, const std::vector<std::string>& argu
   if (!unknown) execv((self.parent_path() / name).c_str(), argv.data());
   if (unknown || errno == ENOENT) execvp(name.c_str(), argv.data());
   if (errno == ENOENT)
-    throw Failure(
-        {ErrorCode::not_installed,
-         fmt::format("the program {0} is not installed; it comes with the package {1}", name,
-                     name == "rfsmooth-reconstruct" ? name + ", or from a build that finds Open3D or CGAL"
-                                                    : "rfsmooth")});
-  throw Failure({ErrorCode::not_installed,
-                 fmt::format("the program {} cannot be started: {}", name, std::strerror(errno))});
+    fail(ErrorCode::not_installed, "the program {0} is not installed; it comes with the package {1}", name,
+         name == "rfsmooth-reconstruct" ? name + ", or from a build that finds Open3D or CGAL" : "rfsmooth");
+  fail(ErrorCode::not_installed, "the program {} cannot be started: {}", name, std::strerror(errno));
 }
 
 std::vector<std::string> as_typed(const Invocation& typed, const std::vector<CommandOption>& options) {

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "base/fail.h"
 #include "pipeline/cli/exit_code.h"
 #include "pipeline/io/io.h"
 
@@ -15,18 +16,14 @@ namespace fs = std::filesystem;
 
 namespace {
 
-[[noreturn]] void fail(ErrorCode code, const std::string& message) {
-  throw Failure({code, message});
-}
-
 /// Makes the folder if nothing is there; its parent must exist.
 void need_folder(const std::string& folder) {
   std::error_code error;
   const fs::file_status status = fs::status(folder, error);
   if (fs::is_directory(status)) return;
-  if (fs::exists(status)) fail(ErrorCode::cannot_write, fmt::format("{}: is not a folder", folder));
+  if (fs::exists(status)) fail(ErrorCode::cannot_write, "{}: is not a folder", folder);
   if (!fs::create_directory(folder, error))
-    fail(ErrorCode::cannot_write, fmt::format("{}: cannot make the folder: {}", folder, error.message()));
+    fail(ErrorCode::cannot_write, "{}: cannot make the folder: {}", folder, error.message());
 }
 
 std::string joined(const std::string& folder, const std::string& name) {
@@ -43,8 +40,8 @@ std::vector<Job> into_folder(const std::vector<std::string>& inputs, const std::
     const std::string name = fs::path(input).filename().string();
     const auto [it, is_new] = taken.emplace(name, input);
     if (!is_new)
-      fail(ErrorCode::usage,
-           fmt::format("{} and {} would both be written to {}", it->second, input, joined(folder, name)));
+      fail(ErrorCode::usage, "{} and {} would both be written to {}", it->second, input,
+           joined(folder, name));
     jobs.push_back({input, joined(folder, name)});
   }
   need_folder(folder);
@@ -59,12 +56,11 @@ std::vector<Job> plan_jobs(const std::vector<std::string>& arguments,
     if (argument.empty()) fail(ErrorCode::usage, "a file name is empty");
   if (!output) {
     if (arguments.size() == 2) return {{arguments[0], arguments[1]}};
-    fail(
-        ErrorCode::usage,
-        fmt::format("{} given, but without -o exactly two are needed: IN OUT (with -o every one is an input)",
-                    arguments.empty()       ? "no file name"
-                    : arguments.size() == 1 ? "one file name"
-                                            : fmt::format("{} file names", arguments.size())));
+    fail(ErrorCode::usage,
+         "{} given, but without -o exactly two are needed: IN OUT (with -o every one is an input)",
+         arguments.empty()       ? "no file name"
+         : arguments.size() == 1 ? "one file name"
+                                 : fmt::format("{} file names", arguments.size()));
   }
   if (arguments.empty()) fail(ErrorCode::usage, "no input given");
   std::error_code error;
@@ -72,11 +68,11 @@ std::vector<Job> plan_jobs(const std::vector<std::string>& arguments,
   if (*output != "-" && (slash || fs::is_directory(*output, error))) return into_folder(arguments, *output);
   if (arguments.size() == 1) return {{arguments[0], *output}};
   if (fs::exists(*output, error))
-    fail(ErrorCode::cannot_write, fmt::format("{}: is not a folder, and there are several inputs", *output));
+    fail(ErrorCode::cannot_write, "{}: is not a folder, and there are several inputs", *output);
   // The name of a file, or a slip: whoever wants a folder called so writes the slash.
   if (*output == "-" || pipeline::io::format_of_extension(*output))
-    fail(ErrorCode::usage, fmt::format("several inputs need a folder: -o {}",
-                                       *output == "-" ? "FOLDER" : *output + "/ if it is to be called so"));
+    fail(ErrorCode::usage, "several inputs need a folder: -o {}",
+         *output == "-" ? "FOLDER" : *output + "/ if it is to be called so");
   return into_folder(arguments, *output);
 }
 

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "base/fail.h"
 #include "pipeline/cli/options/suggest.h"
 #include "pipeline/io/io.h"
 
@@ -70,9 +71,8 @@ void refuse_words_without_command(const std::vector<std::string>& words,
     hint = asked(other->command, words.begin() + 1, words.end());
   else if (words.size() > 1 && std::any_of(words.begin() + 1, words.end(), names_a_file))
     hint = asked("denoise", words.begin() + 1, words.end());
-  throw Failure(
-      {ErrorCode::usage, option ? fmt::format("unknown option {}{}", word.substr(0, word.find('=')), hint)
-                                : fmt::format("unknown command '{}'{}", word, hint)});
+  if (option) fail(ErrorCode::usage, "unknown option {}{}", word.substr(0, word.find('=')), hint);
+  fail(ErrorCode::usage, "unknown command '{}'{}", word, hint);
 }
 
 }  // namespace rfsmooth::cli

@@ -8,6 +8,7 @@
 #include <sys/xattr.h>
 #include <unistd.h>
 
+#include "base/fail.h"
 #include "pipeline/io/detect.h"
 #include "pipeline/io/io.h"
 
@@ -63,32 +64,28 @@ void need_own_target(const Job& job, const std::optional<std::string>& named) {
   const bool meant =
       named ? !std::filesystem::equivalent(job.input, job.output, unknown) : job.output == job.input;
   if (meant || is_own(job.output) || !holds_cloud(job.output)) return;
-  throw Failure({ErrorCode::cannot_write,
-                 named
-                     ? fmt::format("{0}: is the scan itself; it stays as it is. Name another folder, or to "
-                                   "replace it: --force {0} -o {0}",
-                                   job.input)
-                     : fmt::format("{1}: {2}; it stays as it is. To replace it: --force {0} -o {1}; to work "
-                                   "on both: {0} {1} -o FOLDER",
-                                   job.input, job.output,
-                                   is_unreadable(job.output) ? "cannot be read and may be a cloud"
-                                                             : "is a cloud that rfsmooth did not write")});
+  if (named)
+    fail(ErrorCode::cannot_write,
+         "{0}: is the scan itself; it stays as it is. Name another folder, or to replace it: --force {0} -o "
+         "{0}",
+         job.input);
+  fail(ErrorCode::cannot_write,
+       "{1}: {2}; it stays as it is. To replace it: --force {0} -o {1}; to work on both: {0} {1} -o FOLDER",
+       job.input, job.output,
+       is_unreadable(job.output) ? "cannot be read and may be a cloud"
+                                 : "is a cloud that rfsmooth did not write");
 }
 
 void check_no_cloud_target(const std::string& path, bool force, const char* what) {
   if (path == "-")
-    throw Failure(
-        {ErrorCode::usage,
-         fmt::format("standard output (-) does not take the {}; it needs the name of a file", what)});
+    fail(ErrorCode::usage, "standard output (-) does not take the {}; it needs the name of a file", what);
   pipeline::io::WriteOptions options;
   options.force = force;
   options.format = pipeline::io::Format::ply;  // any: the extension of a report stands for no cloud
   value_or_throw(pipeline::io::check_output(path, options));
   if (holds_cloud(path))
-    throw Failure(
-        {ErrorCode::cannot_write,
-         fmt::format("{}: {}, which no {} replaces; remove it yourself", path,
-                     is_unreadable(path) ? "cannot be read and may be a cloud" : "is a cloud", what)});
+    fail(ErrorCode::cannot_write, "{}: {}, which no {} replaces; remove it yourself", path,
+         is_unreadable(path) ? "cannot be read and may be a cloud" : "is a cloud", what);
 }
 
 }  // namespace rfsmooth::cli

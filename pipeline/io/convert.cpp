@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "base/fail.h"
 #include "pipeline/io/formats/header_lines.h"
 #include "pipeline/io/formats/las/las_plain.h"
 #include "pipeline/io/formats/off.h"
@@ -239,8 +240,7 @@ Encoding target_encoding(const Cloud& cloud, Format format, std::optional<Encodi
                      (format == Format::ply && e == Encoding::binary_big_endian) ||
                      (format == Format::pcd && e == Encoding::binary_compressed);
   if (known) return e;
-  if (wanted)
-    throw Failure({ErrorCode::usage, fmt::format("{} has no encoding {}", name_of(format), name_of(e))});
+  if (wanted) fail(ErrorCode::usage, "{} has no encoding {}", name_of(format), name_of(e));
   return text_only ? Encoding::ascii : Encoding::binary_little_endian;
 }
 

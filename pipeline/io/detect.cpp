@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include <fmt/format.h>
-
 #include "pipeline/io/formats/header_lines.h"
 #include "pipeline/io/formats/off.h"
 #include "pipeline/io/other_formats.h"
@@ -22,7 +20,7 @@ bool is_obj_word(std::string_view word) {
 }
 
 void refuse(const Source& source, const OtherFormat* other) {
-  if (other != nullptr) source.fail(fmt::format("{} is not read; {}", other->name, other->advice));
+  if (other != nullptr) source.fail("{} is not read; {}", other->name, other->advice);
 }
 
 // Refuses by name a text or unknown bytes in a file that is called as somebody else's are, or an OBJ file.
@@ -54,7 +52,7 @@ Format detect_format(const Source& source, const Context& context) {
     if (std::any_of(line.begin(), line.end(),
                     [](char c) { return (c >= 0 && c < ' ' && c != '\t' && c != '\r') || c == 127; })) {
       refuse_other_name(source, word);
-      lines.fail(fmt::format("expected a PLY, PCD, XYZ, OFF or LAS file, found {}", in_quotes(line)));
+      lines.fail("expected a PLY, PCD, XYZ, OFF or LAS file, found {}", in_quotes(line));
     }
     if (word.empty() || word.front() == '#') continue;
     refuse_other_name(source, word);

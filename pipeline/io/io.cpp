@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cctype>
 
-#include <fmt/format.h>
-
+#include "base/fail.h"
 #include "pipeline/io/convert.h"
 #include "pipeline/io/detect.h"
 #include "pipeline/io/formats/las/las.h"
@@ -57,9 +56,8 @@ void write(const Cloud& cloud, Format format, const WriteOptions& options, Sink&
     std::string list;
     for (const std::string& loss : losses) list += (list.empty() ? "" : ", ") + loss;
     if (!losses.empty())
-      throw Failure(
-          {ErrorCode::usage, fmt::format("{} ({}) cannot carry {}; `drop-unsupported` leaves that out",
-                                         name_of(format), name_of(encoding), list)});
+      fail(ErrorCode::usage, "{} ({}) cannot carry {}; `drop-unsupported` leaves that out", name_of(format),
+           name_of(encoding), list);
   }
   if (is_writable_as_is(cloud, format)) return write_as_is(cloud, encoding, sink, context);
   write_as_is(convert(cloud, format, context), encoding, sink, context);
@@ -70,13 +68,11 @@ Format target_format(const Cloud& cloud, const std::filesystem::path& path, cons
   if (const auto format = format_of_extension(path)) return *format;
   if (!path.has_extension()) return cloud.format;
   if (const OtherFormat* other = other_format_of_extension(path))
-    throw Failure({ErrorCode::usage,
-                   fmt::format("{}: {} is not written; {}", path.string(), other->name, other->instead)});
-  throw Failure(
-      {ErrorCode::usage,
-       fmt::format("{}: the extension '{}' stands for no format we write (ply, pcd, xyz, off, las); "
-                   "choose one with `format`",
-                   path.string(), path.extension().string())});
+    fail(ErrorCode::usage, "{}: {} is not written; {}", path.string(), other->name, other->instead);
+  fail(ErrorCode::usage,
+       "{}: the extension '{}' stands for no format we write (ply, pcd, xyz, off, las); choose one with "
+       "`format`",
+       path.string(), path.extension().string());
 }
 
 }  // namespace

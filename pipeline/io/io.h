@@ -18,6 +18,7 @@
 
 #include <rfsmooth/result.h>
 
+#include "base/fail.h"
 #include "pipeline/io/table/cloud.h"
 
 namespace rfsmooth::pipeline::io {
@@ -55,7 +56,7 @@ std::optional<Format> format_of_extension(const std::filesystem::path& path);
 /// name.
 template <class T>
 T value_or_fail(Result<T> result, const std::string& file) {
-  if (!result.ok()) throw Failure({result.error().code, file + ": " + result.error().message});
+  if (!result.ok()) fail(result.error().code, "{}: {}", file, result.error().message);
   return std::move(result).value();
 }
 

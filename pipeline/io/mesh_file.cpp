@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "base/fail.h"
+
 namespace rfsmooth::pipeline::io {
 namespace {
 
@@ -17,8 +19,8 @@ std::optional<std::size_t> polygon_field(const Table& table) {
 
 Index point(double value, const Cloud& cloud, const char* what, std::size_t row) {
   if (!(value >= 0 && value < double(cloud.size())))
-    throw Failure({ErrorCode::input_unreadable,
-                   fmt::format("{} {}: expected points below {}, found {}", what, row, cloud.size(), value)});
+    fail(ErrorCode::input_unreadable, "{} {}: expected points below {}, found {}", what, row, cloud.size(),
+         value);
   return Index(value);
 }
 

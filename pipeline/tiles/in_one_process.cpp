@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "base/fail.h"
 #include "pipeline/io/stream/atomic_file.h"
 #include "pipeline/io/table/cloud.h"
 #include "pipeline/tiles/row_file.h"
@@ -22,8 +23,8 @@ class PassingFolder {
   explicit PassingFolder(fs::path path) : path_(std::move(path)) {
     std::error_code error;
     if (!fs::create_directory(path_, error))
-      throw Failure({ErrorCode::cannot_write, fmt::format("{}: cannot make the folder: {}", path_.string(),
-                                                          error ? error.message() : "it exists")});
+      fail(ErrorCode::cannot_write, "{}: cannot make the folder: {}", path_.string(),
+           error ? error.message() : "it exists");
   }
   ~PassingFolder() {
     std::error_code ignored;
@@ -43,9 +44,8 @@ void check_sizes(const Job& job, const PlanOptions& how) {
   for (const Tile& tile : job.tiles) most = std::max(most, tile.points);
   constexpr std::uint64_t kUneven = 2;
   if (most > kUneven * how.tile_points)
-    throw Failure({ErrorCode::out_of_memory,
-                   fmt::format("not enough memory: {} points are at one place, and tiles may have {}", most,
-                               how.tile_points)});
+    fail(ErrorCode::out_of_memory, "not enough memory: {} points are at one place, and tiles may have {}",
+         most, how.tile_points);
 }
 
 /// A context that reports its stages as the part [from, to] of the stage "tiles".

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include <Eigen/Geometry>
-#include <fmt/format.h>
 
+#include "base/fail.h"
 #include "base/quantile.h"
 #include "pipeline/io/io.h"
 #include "pipeline/tiles/records.h"
@@ -141,15 +141,13 @@ fs::path plan_file(const fs::path& folder) {
 }
 
 [[noreturn]] void refuse_plan(const fs::path& folder, const nlohmann::json::exception& error) {
-  throw Failure({ErrorCode::input_unreadable,
-                 fmt::format("{}: is no plan: {}", plan_file(folder).string(), error.what())});
+  fail(ErrorCode::input_unreadable, "{}: is no plan: {}", plan_file(folder).string(), error.what());
 }
 
 ordered_json read_plan(const fs::path& folder) {
   std::ifstream file(plan_file(folder));
   if (!file)
-    throw Failure({ErrorCode::input_unreadable,
-                   fmt::format("{}: holds no job (rfsmooth tiles plan makes one)", folder.string())});
+    fail(ErrorCode::input_unreadable, "{}: holds no job (rfsmooth tiles plan makes one)", folder.string());
   try {
     return ordered_json::parse(file);
   } catch (const nlohmann::json::exception& error) {
@@ -181,8 +179,8 @@ void make_folders(const Job& job) {
   for (const char* name : {"cut", "sample", "done"}) {
     fs::create_directories(job.folder / name, error);
     if (error)
-      throw Failure({ErrorCode::cannot_write, fmt::format("{}: cannot make the folder '{}': {}",
-                                                          job.folder.string(), name, error.message())});
+      fail(ErrorCode::cannot_write, "{}: cannot make the folder '{}': {}", job.folder.string(), name,
+           error.message());
   }
 }
 
@@ -272,10 +270,8 @@ Job plan_job(const std::vector<std::string>& inputs, const fs::path& folder, con
     same.inputs = job.inputs;
     same.options = options;
     if (plan == json_of_job(same, how)) return there;
-    throw Failure(
-        {ErrorCode::cannot_write,
-         fmt::format("{}: holds a job of other inputs or options; remove it, or name another folder",
-                     folder.string())});
+    fail(ErrorCode::cannot_write,
+         "{}: holds a job of other inputs or options; remove it, or name another folder", folder.string());
   }
   make_folders(job);
   std::uint64_t rows = 0;
@@ -289,7 +285,7 @@ Job plan_job(const std::vector<std::string>& inputs, const fs::path& folder, con
     ++job.points;
     if (number_of(p) % one_in == 0) sample.push_back(p);
   });
-  if (job.points == 0) throw Failure({ErrorCode::no_usable_points, "none of the points is finite"});
+  if (job.points == 0) fail(ErrorCode::no_usable_points, "none of the points is finite");
   job.box = {box.min(), box.max()};
   job.sample = std::min(job.points, how.sample_points);
   job.measured = std::min(job.points, kMeasuredOverSmoothed * how.sample_points);

@@ -5,8 +5,6 @@
 #include <cstring>
 #include <utility>
 
-#include <fmt/format.h>
-
 namespace rfsmooth::pipeline::tiles {
 
 namespace {

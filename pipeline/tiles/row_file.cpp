@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "base/fail.h"
 #include "pipeline/io/detect.h"
 #include "pipeline/io/formats/las/las_fields.h"
 #include "pipeline/io/formats/las/las_header.h"
@@ -19,10 +20,10 @@ namespace rfsmooth::pipeline::tiles {
 namespace {
 
 [[noreturn]] void refuse_pieces(const std::string& name, const std::string& why) {
-  throw Failure({ErrorCode::usage,
-                 fmt::format("{}: {}, so it cannot be read in pieces; write it as binary PLY, binary PCD or "
-                             "LAS, or give the machine the memory for the whole",
-                             name, why)});
+  fail(ErrorCode::usage,
+       "{}: {}, so it cannot be read in pieces; write it as binary PLY, binary PCD or LAS, or give the "
+       "machine the memory for the whole",
+       name, why);
 }
 
 }  // namespace
@@ -60,8 +61,8 @@ RowFile::RowFile(const std::filesystem::path& path, const Context& context) : so
       refuse_pieces(source_.name(), "is text");
   }
   if (row_ == 0 || rows_ > (source_.size() - at_) / row_)
-    source_.fail(fmt::format("byte {}: expected {} points of {} bytes each, found {} bytes", at_, rows_, row_,
-                             source_.size() - at_));
+    source_.fail("byte {}: expected {} points of {} bytes each, found {} bytes", at_, rows_, row_,
+                 source_.size() - at_);
   const io::Bytes head = source_.read(0, std::size_t(at_), context);
   head_.assign(head.data(), head.size());
 }
@@ -119,8 +120,7 @@ bool RowFile::has_normals() const {
 
 void RowFile::need_normals() {
   if (format_ == io::Format::las)
-    throw Failure({ErrorCode::usage,
-                   fmt::format("{}: LAS gets no normals in tiles; write the cloud as PLY", source_.name())});
+    fail(ErrorCode::usage, "{}: LAS gets no normals in tiles; write the cloud as PLY", source_.name());
   io::Table& points = header_.points();
   const auto take = [&](const io::NormalNames& names) {
     std::vector<std::size_t> there;

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
+#include "base/fail.h"
 #include "base/parallel.h"
 #include "base/quantile.h"
 #include "pipeline/io/io.h"
@@ -33,7 +34,7 @@ using nlohmann::ordered_json;
 constexpr int kRingsOfSwaps = 2;  // a swap changes two faces, and needs their four neighbours to itself
 
 [[noreturn]] void refuse_step(const Job& job, const std::string& message) {
-  throw Failure({ErrorCode::usage, fmt::format("{}: {}", job.folder.string(), message)});
+  fail(ErrorCode::usage, "{}: {}", job.folder.string(), message);
 }
 
 void check_tile(const Job& job, std::size_t tile) {
@@ -316,26 +317,24 @@ void check_for_tiles(const DenoiseOptions& options) {
   const FlowOptions& flow = options.flow;
   const auto* automatic = std::get_if<AutomaticOptions>(&flow.flow);
   if (automatic != nullptr && automatic->iterations != 1)
-    throw Failure({ErrorCode::usage, "in tiles the automatic flow takes one iteration"});
+    fail(ErrorCode::usage, "in tiles the automatic flow takes one iteration");
   if (automatic != nullptr && flow.modifiers.any())
-    throw Failure({ErrorCode::usage, "in tiles the automatic flow goes without modifiers"});
+    fail(ErrorCode::usage, "in tiles the automatic flow goes without modifiers");
   if (automatic == nullptr && !support_rings(flow))
-    throw Failure({ErrorCode::usage,
-                   fmt::format("any point of the cloud may have a say in where the flow '{}' moves another "
-                               "with these options, so they do not go in tiles; {} do, all vertices at once "
-                               "and without modifiers but `push-back`",
-                               name_of(flow.flow), fmt::join(flows_in_tiles(), ", "))});
+    fail(ErrorCode::usage,
+         "any point of the cloud may have a say in where the flow '{}' moves another with these options, so "
+         "they do not go in tiles; {} do, all vertices at once and without modifiers but `push-back`",
+         name_of(flow.flow), fmt::join(flows_in_tiles(), ", "));
 }
 
 void check_format(io::Format input, const std::string& output) {
   if (const auto format = io::format_of_extension(output).value_or(input); format != input)
-    throw Failure({ErrorCode::usage,
-                   fmt::format("{}: in tiles a cloud keeps its format, {}", output, io::name_of(input))});
+    fail(ErrorCode::usage, "{}: in tiles a cloud keeps its format, {}", output, io::name_of(input));
 }
 
 Settled read_settled(const std::filesystem::path& path) {
   std::ifstream file(path);
-  if (!file) throw Failure({ErrorCode::input_unreadable, fmt::format("{}: cannot be read", path.string())});
+  if (!file) fail(ErrorCode::input_unreadable, "{}: cannot be read", path.string());
   try {
     const ordered_json json = ordered_json::parse(file);
     return {statistics_of(json.at("statistics")),
@@ -350,7 +349,7 @@ Settled read_settled(const std::filesystem::path& path) {
             json.at("tail_times"),
             json.at("spacing")};
   } catch (const nlohmann::json::exception& error) {
-    throw Failure({ErrorCode::input_unreadable, fmt::format("{}: {}", path.string(), error.what())});
+    fail(ErrorCode::input_unreadable, "{}: {}", path.string(), error.what());
   }
 }
 
@@ -471,8 +470,7 @@ std::vector<Joined> join_job(const Job& job, const std::vector<std::string>& out
     before += file.rows();
   }
   if (patcher.patched() != job.points)
-    throw Failure(
-        {ErrorCode::internal, fmt::format("{} of {} points were written", patcher.patched(), job.points)});
+    fail(ErrorCode::internal, "{} of {} points were written", patcher.patched(), job.points);
   return joined;
 }
 

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include <Eigen/Geometry>
-#include <fmt/format.h>
 
+#include "base/fail.h"
 #include "pipeline/normals_by_part.h"
 #include "rfs_mesh/normals/sides.h"
 
@@ -70,8 +70,7 @@ ordered_json read_pieces(const Job& job, std::size_t tile) {
   std::ifstream file(job.cost(tile));
   ordered_json cost = ordered_json::parse(file, nullptr, false);
   if (!cost.is_object() || !cost.contains("pieces"))
-    throw Failure(
-        {ErrorCode::input_unreadable, fmt::format("{}: tells nothing of normals", job.cost(tile).string())});
+    fail(ErrorCode::input_unreadable, "{}: tells nothing of normals", job.cost(tile).string());
   return cost;
 }
 
@@ -90,7 +89,7 @@ void link_pieces(const Job& job, std::size_t tile, const ordered_json& met, cons
       const NormalRecord* b = there.peek();
       for (; a != nullptr && b != nullptr && b->row < a->row; b = there.peek()) there.next();
       if (a == nullptr || b == nullptr || a->row != b->row)
-        throw Failure({ErrorCode::internal, "normals of a tile and of one beside it are of other points"});
+        fail(ErrorCode::internal, "normals of a tile and of one beside it are of other points");
       const Index p = first[tile] + Index(a->piece), q = first[other] + Index(b->piece);
       rfs_mesh::SideLink& link = links.try_emplace({p, q}, rfs_mesh::SideLink{p, q, 0, 0}).first->second;
       link.agreement += float(a->x * b->x + a->y * b->y + a->z * b->z);

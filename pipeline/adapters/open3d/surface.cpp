@@ -7,6 +7,8 @@
 
 #include <rfsmooth/open3d/surface.h>
 
+#include "base/fail.h"
+
 namespace rfsmooth::open3d {
 
 namespace {
@@ -25,7 +27,7 @@ PointCloud to_open3d(const Positions& points, const Positions& normals, double s
 /// \throw Failure if the method found no surface.
 Mesh from_open3d(const TriangleMesh& surface, const char* method, const Context& context) {
   if (surface.triangles_.empty())
-    throw Failure({ErrorCode::no_usable_points, std::string(method) + " finds no surface in these points"});
+    fail(ErrorCode::no_usable_points, "{} finds no surface in these points", method);
   Mesh mesh;
   mesh.positions = surface.vertices_;
   mesh.faces.reserve(surface.triangles_.size());

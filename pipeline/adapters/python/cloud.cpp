@@ -16,6 +16,7 @@
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
+#include "base/fail.h"
 #include "pipeline/adapters/python/released.h"
 #include "pipeline/cli/files/cloud_files.h"
 #include "pipeline/io/formats/las/las_scale.h"
@@ -154,9 +155,9 @@ void put_rows(io::Cloud& cloud, const std::vector<FieldText>& fields, const Rows
   for (std::size_t f = 0; f < given.fields.size(); ++f) {
     if (f < known && same_column(before, given, f)) continue;
     if (!given.fields[f].is_plain())
-      throw Failure({ErrorCode::usage, "field '" + given.fields[f].name +
-                                           "': several values a row can be changed in binary files only, "
-                                           "and not be added"});
+      fail(ErrorCode::usage,
+           "field '{}': several values a row can be changed in binary files only, and not be added",
+           given.fields[f].name);
     std::vector<double> values = io::gather(given, {f}, {});
     if (f < known) {
       values = changed(io::gather(before, {f}, {}), values, io::gather(table, {fixed[f]}, {}));
@@ -225,9 +226,9 @@ void write_file(const io::Cloud& cloud, const std::string& path, const std::opti
   options.force = force;
   options.drop_unsupported = drop_unsupported;
   if (format && !(options.format = io::format_by_name(*format)))
-    throw Failure({ErrorCode::usage, "`format` is '" + *format + "'; no file is written so"});
+    fail(ErrorCode::usage, "`format` is '{}'; no file is written so", *format);
   if (encoding && !(options.encoding = io::encoding_by_name(*encoding)))
-    throw Failure({ErrorCode::usage, "`encoding` is '" + *encoding + "'; no file is written so"});
+    fail(ErrorCode::usage, "`encoding` is '{}'; no file is written so", *encoding);
   released(nb::none(), 0, {}, [&](const Context& context, cli::Console&) {
     value_or_throw(io::write_cloud(cloud, path, options, context));
   });

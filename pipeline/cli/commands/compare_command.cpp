@@ -5,6 +5,7 @@
 
 #include <rfsmooth/compare.h>
 
+#include "base/fail.h"
 #include "pipeline/cli/commands/command.h"
 #include "pipeline/cli/console/console.h"
 #include "pipeline/cli/console/figures.h"
@@ -101,10 +102,9 @@ void print_text(const CompareReport& report, const Deviation& deviation, const o
 
 int run_compare(const CompareCommandOptions& options, const Invocation& typed) {
   if (typed.arguments.size() != 2)
-    throw Failure(
-        {ErrorCode::usage, "two files are needed: the cloud and the truth (a mesh or a clean cloud)"});
+    fail(ErrorCode::usage, "two files are needed: the cloud and the truth (a mesh or a clean cloud)");
   if (options.files.output == "-")
-    throw Failure({ErrorCode::usage, "-o needs the name of a file: standard output takes the figures"});
+    fail(ErrorCode::usage, "-o needs the name of a file: standard output takes the figures");
   if (options.files.output) check_target(*options.files.output, options.files);
   Console console(options.talk);
   console.progress().plan({{"read", 1}, {"compare", 10}});

@@ -2,6 +2,7 @@
 /// and installs the scripts.
 #include <fmt/format.h>
 
+#include "base/fail.h"
 #include "pipeline/cli/commands/command.h"
 
 namespace rfsmooth::cli {
@@ -111,7 +112,7 @@ _rfsmooth "$@"
 std::string script(const std::vector<std::string>& arguments) {
   const std::string shell = arguments.size() == 1 ? arguments[0] : "";
   if (shell != "bash" && shell != "zsh")
-    throw Failure({ErrorCode::usage, "rfsmooth completion takes one argument: bash or zsh"});
+    fail(ErrorCode::usage, "rfsmooth completion takes one argument: bash or zsh");
   return shell == "bash" ? bash_script(all_commands()) : zsh_script(all_commands());
 }
 

@@ -7,6 +7,7 @@
 
 #include <rfsmooth/flow.h>
 
+#include "base/fail.h"
 #include "pipeline/cli/commands/command.h"
 #include "pipeline/cli/options/json_values.h"
 
@@ -75,9 +76,9 @@ Command flows_command() {
   command.description = "Prints every flow with its source and the options it uses.";
   collect(*options, command.options);
   command.run = [options](const Invocation& typed) {
-    if (!typed.arguments.empty()) throw Failure({ErrorCode::usage, "rfsmooth flows takes no arguments"});
+    if (!typed.arguments.empty()) fail(ErrorCode::usage, "rfsmooth flows takes no arguments");
     if (options->json && options->markdown)
-      throw Failure({ErrorCode::usage, "--json and --markdown exclude each other"});
+      fail(ErrorCode::usage, "--json and --markdown exclude each other");
     options->json ? print_json() : options->markdown ? print_markdown() : print_table();
     return 0;
   };

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "base/fail.h"
 #include "base/parallel.h"
 #include "pipeline/cli/commands/command.h"
 #include "pipeline/cli/console/console.h"
@@ -142,7 +143,7 @@ void print_text(const ordered_json& info) {
 }
 
 int run_info(const InfoCommandOptions& options, const Invocation& typed) {
-  if (typed.arguments.empty()) throw Failure({ErrorCode::usage, "no input given"});
+  if (typed.arguments.empty()) fail(ErrorCode::usage, "no input given");
   Console console(options.talk);
   console.progress().plan({{"read", 1}});
   const Context context = console.context(0);

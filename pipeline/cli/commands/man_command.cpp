@@ -4,6 +4,7 @@
 
 #include <rfsmooth/version.h>
 
+#include "base/fail.h"
 #include "pipeline/cli/commands/command.h"
 #include "pipeline/cli/options/help.h"
 #include "pipeline/cli/options/suggest.h"
@@ -83,8 +84,8 @@ std::string page(const std::vector<std::string>& arguments) {
     if (arguments.size() == 1 && arguments[0] == c.name) return page_of(c);
     names.push_back(c.name);
   }
-  throw Failure({ErrorCode::usage, fmt::format("no manual page for '{}'{}", fmt::join(arguments, " "),
-                                               did_you_mean(arguments[0], names))});
+  fail(ErrorCode::usage, "no manual page for '{}'{}", fmt::join(arguments, " "),
+       did_you_mean(arguments[0], names));
 }
 
 }  // namespace

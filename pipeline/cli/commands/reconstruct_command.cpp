@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "base/fail.h"
 #include "pipeline/cli/files/cloud_jobs.h"
 #include "pipeline/cli/files/memory.h"
 #include "pipeline/cli/files/surface_file.h"
@@ -30,8 +31,8 @@ void check_format(const Job& job, const FileOptions& options) {
     format = pipeline::io::format_of_extension(job.output);
   using pipeline::io::Format;
   if (format && *format != Format::ply && *format != Format::off)
-    throw Failure({ErrorCode::usage, fmt::format("{}: {} cannot hold a surface; use PLY or OFF", job.output,
-                                                 pipeline::io::name_of(*format))});
+    fail(ErrorCode::usage, "{}: {} cannot hold a surface; use PLY or OFF", job.output,
+         pipeline::io::name_of(*format));
 }
 
 std::string text_of(const Topology& found) {
@@ -100,10 +101,9 @@ const SurfaceMethod& find_method(const std::vector<SurfaceMethod>& methods, cons
     if (method.name == name) return method;
     names.push_back(method.name);
   }
-  throw Failure(
-      {ErrorCode::not_installed,
-       fmt::format("--method {} is not in this rfsmooth-reconstruct, which was built without {}; it has {}",
-                   name, name == "advancing-front" ? "CGAL" : "Open3D", fmt::join(names, ", "))});
+  fail(ErrorCode::not_installed,
+       "--method {} is not in this rfsmooth-reconstruct, which was built without {}; it has {}", name,
+       name == "advancing-front" ? "CGAL" : "Open3D", fmt::join(names, ", "));
 }
 
 Command table(const std::shared_ptr<ReconstructCommandOptions>& options) {

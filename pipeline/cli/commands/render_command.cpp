@@ -3,8 +3,7 @@
 #include <filesystem>
 #include <memory>
 
-#include <fmt/format.h>
-
+#include "base/fail.h"
 #include "pipeline/cli/files/file_options.h"
 #include "pipeline/cli/other_program.h"
 #include "pipeline/cli/own_files.h"
@@ -32,12 +31,12 @@ Command render_table(const std::shared_ptr<RenderOptions>& options) {
 
 /// Told before the work. \throw Failure.
 void check_request(const RenderOptions& options, const Invocation& typed) {
-  if (typed.arguments.empty()) throw Failure({ErrorCode::usage, "no input given"});
-  if (!options.output) throw Failure({ErrorCode::usage, "no picture named: -o OUT.png"});
+  if (typed.arguments.empty()) fail(ErrorCode::usage, "no input given");
+  if (!options.output) fail(ErrorCode::usage, "no picture named: -o OUT.png");
   check_no_cloud_target(*options.output, options.force, "picture");
   const std::string extension = std::filesystem::path(*options.output).extension().string();
   if (!extension.empty() && extension != ".png" && extension != ".PNG")
-    throw Failure({ErrorCode::usage, fmt::format("{}: the picture is a PNG; name it .png", *options.output)});
+    fail(ErrorCode::usage, "{}: the picture is a PNG; name it .png", *options.output);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "base/fail.h"
 #include "base/parallel.h"
 #include "pipeline/cli/commands/command.h"
 #include "pipeline/cli/console/console.h"
@@ -48,8 +49,7 @@ std::size_t read_points(const std::string& text) {
   if (text == "all") return pipeline::kAllPoints;
   const auto count = read_count(text);
   if (!count || *count < 1)
-    throw Failure(
-        {ErrorCode::usage, fmt::format("--points is '{}'; it must be 'all' or a number from 1 on", text)});
+    fail(ErrorCode::usage, "--points is '{}'; it must be 'all' or a number from 1 on", text);
   return std::size_t(*count);
 }
 
@@ -105,9 +105,8 @@ pipeline::PageContents contents_of(const pipeline::io::Cloud& before, const pipe
 }
 
 int run_report(const ReportCommandOptions& options, const Invocation& typed, const std::string& line) {
-  if (typed.arguments.size() != 2)
-    throw Failure({ErrorCode::usage, "two files are needed: the cloud before and after"});
-  if (!options.output) throw Failure({ErrorCode::usage, "no page named: -o OUT.html"});
+  if (typed.arguments.size() != 2) fail(ErrorCode::usage, "two files are needed: the cloud before and after");
+  if (!options.output) fail(ErrorCode::usage, "no page named: -o OUT.html");
   const std::size_t points = read_points(options.points);
   check_no_cloud_target(*options.output, options.force, "page");
   Console console(options.talk);

@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
+#include "base/fail.h"
 #include "base/stopwatch.h"
 #include "pipeline/cli/commands/command.h"
 #include "pipeline/cli/console/trace_file.h"
@@ -35,9 +36,9 @@ struct After {
   void check_partners(const Invocation& typed) const {
     for (const auto& [name, text] : typed.options) {
       if (refine.levels == 0 && (name == "refine-chart" || name == "refine-pimple" || name == "sharp-angle"))
-        throw Failure({ErrorCode::usage, fmt::format("--{} has no effect without --refine", name)});
+        fail(ErrorCode::usage, "--{} has no effect without --refine", name);
       if (!ridges && name == "ridge-curvature")
-        throw Failure({ErrorCode::usage, "--ridge-curvature has no effect without --ridges"});
+        fail(ErrorCode::usage, "--ridge-curvature has no effect without --ridges");
     }
   }
 
@@ -119,7 +120,7 @@ void refine_file(const After& after, pipeline::io::Cloud& cloud, FileMesh& file,
 void mark_ridges(const After& after, pipeline::io::Cloud& cloud, FileMesh& file, const Job& job,
                  const Context& context) {
   if (cloud.format == pipeline::io::Format::off)
-    throw Failure({ErrorCode::usage, job.input + ": OFF cannot hold the field of --ridges; use PLY"});
+    fail(ErrorCode::usage, "{}: OFF cannot hold the field of --ridges; use PLY", job.input);
   make_agree(file.mesh);
   const std::vector<int> kind = smoothing::ridges_and_ravines(file.mesh, after.ridge_curvature, context);
   std::vector<double> field(cloud.size(), 0);
@@ -182,8 +183,7 @@ void check_smooth_mesh(const SmoothMeshCommandOptions& options, const Invocation
   options.after.check_partners(typed);
   options.trace.check(options.job.files, typed);
   if (const auto& fields = options.constraints; fields.direction && !fields.axis && !fields.plane)
-    throw Failure(
-        {ErrorCode::usage, "--slide-direction has no effect without --axis-field or --plane-field"});
+    fail(ErrorCode::usage, "--slide-direction has no effect without --axis-field or --plane-field");
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "base/fail.h"
 #include "pipeline/cli/files/cloud_files.h"
 #include "pipeline/cli/own_files.h"
 #include "pipeline/io/io.h"
@@ -11,7 +12,7 @@ namespace rfsmooth::cli {
 void TraceFile::check(const FileOptions& files, const Invocation& typed) const {
   if (!trace) return;
   if (plan_jobs(typed.arguments, files.output).size() > 1)
-    throw Failure({ErrorCode::usage, "--trace is for one input; run the command once for each"});
+    fail(ErrorCode::usage, "--trace is for one input; run the command once for each");
   check_no_cloud_target(*trace, files.force, "trace");
 }
 

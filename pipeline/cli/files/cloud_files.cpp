@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "base/fail.h"
 #include "base/stopwatch.h"
 #include "pipeline/cli/files/memory.h"
 #include "pipeline/cli/own_files.h"
@@ -50,8 +51,7 @@ void check_target(const std::string& output, const FileOptions& options) {
 void need_free_stdout(const std::vector<Job>& jobs, const RunOptions& options) {
   std::size_t uses = options.report == "-" ? 1 : 0;
   for (const Job& job : jobs) uses += job.output == "-";
-  if (uses > 1)
-    throw Failure({ErrorCode::usage, "standard output (-) can take the cloud or the report, not both"});
+  if (uses > 1) fail(ErrorCode::usage, "standard output (-) can take the cloud or the report, not both");
 }
 
 io::Cloud load_cloud(const std::string& input, const Context& context, std::vector<StageTime>& stages) {
@@ -84,7 +84,7 @@ std::vector<std::string> store_cloud(const io::Cloud& cloud, const std::string& 
   if (output == "-") {
     const std::string bytes = value_or_throw(io::serialize_cloud(cloud, write_options(options), context));
     if (std::fwrite(bytes.data(), 1, bytes.size(), stdout) != bytes.size() || std::fflush(stdout) != 0)
-      throw Failure({ErrorCode::cannot_write, "cannot write to standard output"});
+      fail(ErrorCode::cannot_write, "cannot write to standard output");
   } else {
     value_or_throw(io::write_cloud(cloud, output, write_options(options), context));
     mark_as_own(output);

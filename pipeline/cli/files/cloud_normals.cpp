@@ -3,8 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include <fmt/format.h>
-
+#include "base/fail.h"
 #include "base/stopwatch.h"
 #include "pipeline/cli/files/cloud_files.h"
 #include "pipeline/cli/options/text_values.h"
@@ -43,15 +42,13 @@ void put(io::Cloud& cloud, const Names& names, const std::vector<double>& normal
 std::optional<Vector3d> typed_viewpoint(const NormalsFields& options) {
   if (!options.viewpoint) return std::nullopt;
   auto point = read_point(*options.viewpoint);
-  if (!point)
-    throw Failure(
-        {ErrorCode::usage, fmt::format("--viewpoint: expected x,y,z; found '{}'", *options.viewpoint)});
+  if (!point) fail(ErrorCode::usage, "--viewpoint: expected x,y,z; found '{}'", *options.viewpoint);
   return point;
 }
 
 void check(const NormalsFields& options) {
   if (typed_viewpoint(options) && !options.normals)
-    throw Failure({ErrorCode::usage, "--viewpoint says where normals point; it needs --normals"});
+    fail(ErrorCode::usage, "--viewpoint says where normals point; it needs --normals");
 }
 
 std::optional<NormalsOptions> normals_in_tiles(const NormalsFields& options,

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "base/fail.h"
 #include "pipeline/cli/options/text_values.h"
 
 namespace rfsmooth::cli {
@@ -21,9 +22,8 @@ std::vector<double> values_of(const Cloud& cloud, const std::string& name, const
     std::vector<std::string> names;
     for (const auto& present : cloud.points().fields)
       if (present.is_plain()) names.push_back(present.name);
-    throw Failure(
-        {ErrorCode::usage, fmt::format("the points have no field '{}' with one value each; there are: {}",
-                                       name, fmt::join(names, ", "))});
+    fail(ErrorCode::usage, "the points have no field '{}' with one value each; there are: {}", name,
+         fmt::join(names, ", "));
   }
   return pipeline::io::field_values(cloud, *field, context);
 }
@@ -39,16 +39,14 @@ class Directions {
     }
     all_ = read_point(text).value_or(Vector3d::Zero());
     if (all_ == Vector3d::Zero())
-      throw Failure(
-          {ErrorCode::usage,
-           fmt::format("--slide-direction: expected x,y,z, not all zero, or normals; found '{}'", text)});
+      fail(ErrorCode::usage, "--slide-direction: expected x,y,z, not all zero, or normals; found '{}'", text);
   }
 
   Vector3d operator()(std::size_t row) const {
     if (normal_[0].empty()) return all_;
     Vector3d normal(normal_[0][row], normal_[1][row], normal_[2][row]);
     if (!normal.allFinite() || normal == Vector3d::Zero())
-      throw Failure({ErrorCode::usage, fmt::format("point {} is to slide but has no normal", row)});
+      fail(ErrorCode::usage, "point {} is to slide but has no normal", row);
     return normal;
   }
 
@@ -63,9 +61,8 @@ std::vector<double> strengths(const Cloud& cloud, const std::string& field, cons
   std::vector<double> values = values_of(cloud, field, context);
   for (std::size_t i = 0; i < values.size(); ++i)
     if (!(values[i] >= 0 && values[i] <= 1))
-      throw Failure({ErrorCode::usage,
-                     fmt::format("--strength-field {}: expected values from 0 to 1, found {} at point {}",
-                                 field, values[i], i)});
+      fail(ErrorCode::usage, "--strength-field {}: expected values from 0 to 1, found {} at point {}", field,
+           values[i], i);
   return values;
 }
 

@@ -1,5 +1,6 @@
 #include "pipeline/cli/files/file_mesh.h"
 
+#include "base/fail.h"
 #include "pipeline/io/io.h"
 #include "pipeline/io/mesh_file.h"
 
@@ -13,8 +14,8 @@ FileMesh file_mesh(const io::Cloud& cloud, const std::string& name, const Contex
   const std::vector<Face> faces =
       io::value_or_fail(guarded([&] { return io::faces_of(cloud, context); }), name);
   if (faces.empty())
-    throw Failure({ErrorCode::input_unreadable,
-                   name + ": has no faces; expected a mesh (for clouds use: rfsmooth denoise)"});
+    fail(ErrorCode::input_unreadable, "{}: has no faces; expected a mesh (for clouds use: rfsmooth denoise)",
+         name);
   FileMesh out;
   out.xyz = io::positions(cloud, context);
   out.of_row.assign(cloud.size(), kNone);
@@ -25,7 +26,7 @@ FileMesh file_mesh(const io::Cloud& cloud, const std::string& name, const Contex
     out.of_row[i] = Index(points.size());
     points.push_back(p);
   }
-  if (points.empty()) throw Failure({ErrorCode::no_usable_points, name + ": no vertex is finite"});
+  if (points.empty()) fail(ErrorCode::no_usable_points, "{}: no vertex is finite", name);
   out.origin = points.front();
   if (own_heights) out.origin.z() = 0;
   for (Vector3d& p : points) p -= out.origin;

@@ -6,9 +6,9 @@
 #include <fstream>
 #include <iterator>
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "base/fail.h"
 #include "pipeline/cli/options/json_values.h"
 #include "pipeline/cli/options/suggest.h"
 
@@ -18,27 +18,22 @@ namespace {
 
 using nlohmann::json;
 
-[[noreturn]] void fail_config(ErrorCode code, const std::string& message) {
-  throw Failure({code, message});
-}
-
 json parse_file(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
-  if (!file) fail_config(ErrorCode::input_unreadable, fmt::format("{}: {}", path, std::strerror(errno)));
+  if (!file) fail(ErrorCode::input_unreadable, "{}: {}", path, std::strerror(errno));
   const std::string text((std::istreambuf_iterator<char>(file)), {});
-  if (file.bad()) fail_config(ErrorCode::input_unreadable, fmt::format("{}: cannot be read", path));
+  if (file.bad()) fail(ErrorCode::input_unreadable, "{}: cannot be read", path);
   try {
     return json::parse(text);
   } catch (const json::parse_error& error) {
-    fail_config(ErrorCode::input_unreadable, fmt::format("{}: not JSON at byte {}", path, error.byte));
+    fail(ErrorCode::input_unreadable, "{}: not JSON at byte {}", path, error.byte);
   }
 }
 
 /// The value as it would be typed after the option.
 std::string as_typed(const std::string& path, const std::string& name, const json& value) {
   if (const auto text = typed_text(value)) return *text;
-  fail_config(ErrorCode::usage,
-              fmt::format("{}: option '{}' must be a number, a word, true, false or null", path, name));
+  fail(ErrorCode::usage, "{}: option '{}' must be a number, a word, true, false or null", path, name);
 }
 
 std::vector<std::string> names_of(const Command& command) {
@@ -51,28 +46,23 @@ std::vector<std::string> names_of(const Command& command) {
 
 Config read_config(const std::string& path, const Command& command) {
   const json root = parse_file(path);
-  if (!root.is_object()) fail_config(ErrorCode::usage, fmt::format("{}: a JSON object is needed", path));
+  if (!root.is_object()) fail(ErrorCode::usage, "{}: a JSON object is needed", path);
   if (root.contains("files"))
-    fail_config(ErrorCode::usage,
-                fmt::format("{}: a report of several files; run one of them again by giving the "
-                            "object of its options",
-                            path));
+    fail(ErrorCode::usage,
+         "{}: a report of several files; run one of them again by giving the object of its options", path);
   const bool report = root.contains("options");
   if (report && root.contains("command") && root["command"] != command.name)
-    fail_config(ErrorCode::usage,
-                fmt::format("{}: is a report of 'rfsmooth {}'", path,
-                            root["command"].is_string() ? root["command"].get<std::string>() : "?"));
+    fail(ErrorCode::usage, "{}: is a report of 'rfsmooth {}'", path,
+         root["command"].is_string() ? root["command"].get<std::string>() : "?");
   const json& options = report ? root["options"] : root;
-  if (!options.is_object())
-    fail_config(ErrorCode::usage, fmt::format("{}: 'options' must be an object", path));
+  if (!options.is_object()) fail(ErrorCode::usage, "{}: 'options' must be an object", path);
 
   Config config;
   for (const auto& [name, value] : options.items()) {
     const auto option = std::find_if(command.options.begin(), command.options.end(),
                                      [&named = name](const CommandOption& o) { return o.name == named; });
     if (option == command.options.end() || name == "config")
-      fail_config(ErrorCode::usage, fmt::format("{}: unknown option '{}'{}", path, name,
-                                                did_you_mean(name, names_of(command))));
+      fail(ErrorCode::usage, "{}: unknown option '{}'{}", path, name, did_you_mean(name, names_of(command)));
     if (value.is_null() && option->kind == ValueKind::file) continue;  // left out
     config.options.emplace_back(name, as_typed(path, name, value));
   }

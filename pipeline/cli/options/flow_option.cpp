@@ -7,6 +7,7 @@
 
 #include <rfsmooth/flow.h>
 
+#include "base/fail.h"
 #include "pipeline/cli/options/option.h"
 #include "smoothing/partners.h"
 
@@ -37,14 +38,14 @@ FlowOptions read_given(const Given& given) {
     if (option == nullptr) {
       std::vector<std::string> names;
       for (const CommandOption& o : own) names.push_back(o.name);
-      throw Failure({ErrorCode::usage, fmt::format("--{} has no meaning for the flow '{}', which uses: {}",
-                                                   name, given.flow, fmt::join(names, ", "))});
+      fail(ErrorCode::usage, "--{} has no meaning for the flow '{}', which uses: {}", name, given.flow,
+           fmt::join(names, ", "));
     }
     assign(*option, text);
   }
   for (const smoothing::Partner& p : smoothing::partners(fields))
     if (!p.on && given.options.count(std::string(p.option)) > 0)
-      throw Failure({ErrorCode::usage, fmt::format("`{}` has no effect without {}", p.option, p.partner)});
+      fail(ErrorCode::usage, "`{}` has no effect without {}", p.option, p.partner);
   if (given.paper) fields = value_or_throw(rfsmooth::as_printed(fields));
   value_or_throw(rfsmooth::validate(fields));
   return fields;

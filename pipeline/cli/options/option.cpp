@@ -6,16 +6,13 @@
 
 #include <fmt/format.h>
 
+#include "base/fail.h"
 #include "pipeline/cli/options/suggest.h"
 #include "pipeline/cli/options/text_values.h"
 
 namespace rfsmooth::cli {
 
 namespace {
-
-[[noreturn]] void refuse_value(const std::string& message) {
-  throw Failure({ErrorCode::usage, message});
-}
 
 void need(const std::optional<Error>& error) {
   if (error) throw Failure(*error);
@@ -32,8 +29,8 @@ constexpr ValueKind kind_of() {
 
 /// "--alpha is 'x'; it must be WHAT", with "or 'auto'" where auto is legal.
 [[noreturn]] void refuse_value(const CommandOption& option, const std::string& text, const char* what) {
-  refuse_value(fmt::format("--{} is '{}'; it must be {}{}", option.name, text, what,
-                           option.optional ? " or 'auto'" : ""));
+  fail(ErrorCode::usage, "--{} is '{}'; it must be {}{}", option.name, text, what,
+       option.optional ? " or 'auto'" : "");
 }
 
 /// Reads `text` strictly as a T. `info` gives the legal range.
@@ -64,7 +61,7 @@ T parse_as(const CommandOption& option, const OptionInfo& info, const std::strin
     return *value;
   } else {
     if (option.kind == ValueKind::file && text.empty())
-      refuse_value(fmt::format("--{} needs a name", option.name));
+      fail(ErrorCode::usage, "--{} needs a name", option.name);
     return text;
   }
 }
@@ -209,8 +206,8 @@ void assign(const CommandOption& option, const std::string& text) {
   const bool automatic = option.optional && text == "auto";
   if (!automatic && !option.choices.empty() &&
       std::find(option.choices.begin(), option.choices.end(), text) == option.choices.end())
-    refuse_value(fmt::format("--{} is '{}'; it must be one of: {}{}", option.name, text,
-                             fmt::join(option.choices, ", "), did_you_mean(text, option.choices)));
+    fail(ErrorCode::usage, "--{} is '{}'; it must be one of: {}{}", option.name, text,
+         fmt::join(option.choices, ", "), did_you_mean(text, option.choices));
   option.set(option, text);
 }
 

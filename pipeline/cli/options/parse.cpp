@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "base/fail.h"
 #include "pipeline/cli/no_command.h"
 #include "pipeline/cli/options/suggest.h"
 
@@ -44,10 +45,6 @@ std::vector<std::string> option_names(const Command& command) {
   return names;
 }
 
-[[noreturn]] void refuse(const std::string& message) {
-  throw Failure({ErrorCode::usage, message});
-}
-
 std::string in_our_words(const CLI::ParseError& error) {
   std::string what = error.what();
   const std::string first = what.substr(0, what.find_first_of(" :"));
@@ -64,7 +61,7 @@ std::string in_our_words(const CLI::ParseError& error) {
   const std::string hint = std::filesystem::exists(typed, unknown)
                                ? fmt::format("; the file of that name is ./{0}, or {0} behind --", typed)
                                : did_you_mean(name, option_names(command));
-  refuse(fmt::format("unknown option {} for rfsmooth {}{}", name, command.name, hint));
+  fail(ErrorCode::usage, "unknown option {} for rfsmooth {}{}", name, command.name, hint);
 }
 
 /// Whether the word behind `word` is its value.
@@ -125,14 +122,14 @@ Parsed parse(int argc, const char* const* argv, const std::vector<Command>& comm
   try {
     app.parse(options_end, argv);
   } catch (const CLI::ParseError& error) {
-    refuse(in_our_words(error));
+    fail(ErrorCode::usage, "{}", in_our_words(error));
   }
   note_command();
   const std::vector<std::string> before = app.remaining();
   if (parsed.command == nullptr && !before.empty()) refuse_words_without_command(before, commands);
   if (!before.empty())
-    refuse(fmt::format("'{0}' stands before the command; write: rfsmooth {1} {0} ...", before.front(),
-                       parsed.command->name));
+    fail(ErrorCode::usage, "'{0}' stands before the command; write: rfsmooth {1} {0} ...", before.front(),
+         parsed.command->name);
   return parsed;
 }
 

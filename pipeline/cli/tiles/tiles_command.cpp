@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "base/fail.h"
 #include "pipeline/cli/commands/command.h"
 #include "pipeline/cli/console/console.h"
 #include "pipeline/cli/console/scale_said.h"
@@ -64,10 +65,6 @@ struct TilesOptions {
   }
 };
 
-[[noreturn]] void misused(const std::string& message) {
-  throw Failure({ErrorCode::usage, message});
-}
-
 /// The options that the plan was made with.
 PlannedOptions planned_options(const Job& job) {
   PlannedOptions planned;
@@ -86,16 +83,16 @@ PlannedOptions planned_options(const Job& job) {
 
 std::size_t tile_number(const std::string& text) {
   const auto tile = read_integer(text);
-  if (!tile || *tile < 0) misused(fmt::format("'{}' is no number of a tile", text));
+  if (!tile || *tile < 0) fail(ErrorCode::usage, "'{}' is no number of a tile", text);
   return std::size_t(*tile);
 }
 
 void plan_tiles(TilesOptions& options, const std::vector<std::string>& arguments, const Context& context,
                 Console& console) {
-  if (arguments.size() < 2) misused("rfsmooth tiles plan takes IN... JOB");
+  if (arguments.size() < 2) fail(ErrorCode::usage, "rfsmooth tiles plan takes IN... JOB");
   const Outliers outliers = options.planned.denoise.outliers;
   if (outliers == Outliers::mark || outliers == Outliers::remove)
-    misused("in tiles outliers are kept or smoothed: every row stays, and no field is added");
+    fail(ErrorCode::usage, "in tiles outliers are kept or smoothed: every row stays, and no field is added");
   pipeline::tiles::check_for_tiles(options.planned.denoise);
   const std::vector<std::string> inputs(arguments.begin(), arguments.end() - 1);
   NormalsFields& normals = options.planned.normals;
@@ -113,7 +110,7 @@ void plan_tiles(TilesOptions& options, const std::vector<std::string>& arguments
 
 void join_tiles(const TilesOptions& options, const std::vector<std::string>& arguments,
                 const Context& context, Console& console) {
-  if (arguments.size() != 2) misused("rfsmooth tiles join takes JOB OUT");
+  if (arguments.size() != 2) fail(ErrorCode::usage, "rfsmooth tiles join takes JOB OUT");
   const Job job = pipeline::tiles::open_job(arguments[0]);
   std::vector<std::string> inputs, outputs;
   for (const auto& input : job.inputs) inputs.push_back(input.path);
@@ -131,7 +128,7 @@ void join_tiles(const TilesOptions& options, const std::vector<std::string>& arg
 
 void tell_status(const TilesOptions& options, const std::vector<std::string>& arguments,
                  const Context& context) {
-  if (arguments.size() != 1) misused("rfsmooth tiles status takes JOB");
+  if (arguments.size() != 1) fail(ErrorCode::usage, "rfsmooth tiles status takes JOB");
   const auto s = pipeline::tiles::job_status(pipeline::tiles::open_job(arguments[0]), context);
   if (options.json)
     fmt::print("{}\n", ordered_json({{"points", s.points},
@@ -157,7 +154,7 @@ void tell_status(const TilesOptions& options, const std::vector<std::string>& ar
 void work_on_tiles(const std::string& step, const std::vector<std::string>& arguments,
                    const Context& context) {
   if (arguments.empty() || (step == "settle") != (arguments.size() == 1))
-    misused(fmt::format("rfsmooth tiles {} takes JOB{}", step, step == "settle" ? "" : " TILE..."));
+    fail(ErrorCode::usage, "rfsmooth tiles {} takes JOB{}", step, step == "settle" ? "" : " TILE...");
   const Job job = pipeline::tiles::open_job(arguments[0]);
   const PlannedOptions planned = planned_options(job);
   if (step == "settle") return pipeline::tiles::settle_job(job, planned.denoise, context);
@@ -176,14 +173,14 @@ int run_tiles(TilesOptions& options, const Invocation& typed) {
   static const std::vector<std::string> kSteps = {"plan", "measure", "settle", "run", "join", "status"};
   const std::string step = typed.arguments.empty() ? "" : typed.arguments.front();
   if (std::find(kSteps.begin(), kSteps.end(), step) == kSteps.end())
-    misused(fmt::format("rfsmooth tiles takes one of {}", fmt::join(kSteps, ", ")));
+    fail(ErrorCode::usage, "rfsmooth tiles takes one of {}", fmt::join(kSteps, ", "));
   if (step != "plan") {
     std::vector<CommandOption> planned;
     PlannedOptions unused;
     collect(unused, planned);
     for (const auto& [name, text] : typed.options)
       if (std::any_of(planned.begin(), planned.end(), [&n = name](const auto& o) { return o.name == n; }))
-        misused(fmt::format("--{} is for rfsmooth tiles plan; the other steps take it from there", name));
+        fail(ErrorCode::usage, "--{} is for rfsmooth tiles plan; the other steps take it from there", name);
   }
   const std::vector<std::string> arguments(typed.arguments.begin() + 1, typed.arguments.end());
   Console console(options.talk);

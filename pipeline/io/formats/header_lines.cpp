@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cstring>
 
-#include <fmt/format.h>
-
 namespace rfsmooth::pipeline::io {
 
 std::string_view HeaderLines::next(std::string_view expected) {
@@ -24,7 +22,7 @@ std::string_view HeaderLines::next(std::string_view expected) {
     }
     ++line_;
     if (found == nullptr && offset_ == source_.size())
-      fail(fmt::format("expected {}, found the end of the file", expected));
+      fail("expected {}, found the end of the file", expected);
     // The last line of a file may lack its line end.
     const std::size_t end = found == nullptr ? held_.size() : std::size_t(found - held_.data());
     std::string_view line(held_.data() + offset_, end - std::size_t(offset_));
@@ -35,10 +33,6 @@ std::string_view HeaderLines::next(std::string_view expected) {
     }
     return line;
   }
-}
-
-void HeaderLines::fail(const std::string& message) const {
-  source_.fail(fmt::format("line {}: {}", line_, message));
 }
 
 std::string in_quotes(std::string_view word) {

@@ -27,8 +27,11 @@ class HeaderLines {
   bool crlf() const { return crlf_; }  ///< whether the first line ended in CR LF
   bool at_end() const { return offset_ == source_.size(); }
 
-  /// \throw Failure, "NAME: line N: message".
-  [[noreturn]] void fail(const std::string& message) const;
+  /// \throw Failure, "NAME: line N: message", put together as in base/fail.h.
+  template <std::size_t kSize, class... Arguments>
+  [[noreturn]] void fail(const char (&message)[kSize], const Arguments&... arguments) const {
+    source_.fail("line {}: {}", line_, fmt::format(fmt::runtime(message), arguments...));
+  }
 
  private:
   const Source& source_;

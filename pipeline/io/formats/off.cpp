@@ -38,8 +38,8 @@ std::size_t parse_count(std::string_view word, const TextCursor& cursor, const c
   std::size_t value = 0;
   const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), value);
   if (word.empty() || error != std::errc{} || stop != word.data() + word.size())
-    cursor.source.fail(fmt::format("line {}: expected the number of {}, found {}", cursor.lines, what,
-                                   word.empty() ? "the end of the line" : in_quotes(word)));
+    cursor.source.fail("line {}: expected the number of {}, found {}", cursor.lines, what,
+                       word.empty() ? "the end of the line" : in_quotes(word));
   return value;
 }
 
@@ -47,8 +47,7 @@ std::string_view next_content(TextCursor& cursor, const char* expected) {
   for (;;) {
     const std::string_view line = peek_line(cursor);
     if (line.empty())
-      cursor.source.fail(
-          fmt::format("line {}: expected {}, found the end of the file", cursor.lines + 1, expected));
+      cursor.source.fail("line {}: expected {}, found the end of the file", cursor.lines + 1, expected);
     skip_line(cursor);
     if (!is_blank_or_comment(line)) return line.substr(0, line.find('#'));
   }
@@ -60,13 +59,13 @@ Counts read_header(TextCursor& cursor, Kind& kind) {
   const char* end = p + line.size();
   const std::string_view word = next_word(p, end);
   if (!parse_kind(word, kind))
-    cursor.source.fail(fmt::format("line {}: expected 'OFF', found {}", cursor.lines, in_quotes(word)));
+    cursor.source.fail("line {}: expected 'OFF', found {}", cursor.lines, in_quotes(word));
   if (kind.other_dimension)
-    cursor.source.fail(
-        fmt::format("line {}: expected vertices of 3 coordinates, found {}", cursor.lines, in_quotes(word)));
+    cursor.source.fail("line {}: expected vertices of 3 coordinates, found {}", cursor.lines,
+                       in_quotes(word));
   std::string_view first = next_word(p, end);
   if (first == "BINARY")
-    cursor.source.fail(fmt::format("line {}: expected an ascii OFF file, found BINARY", cursor.lines));
+    cursor.source.fail("line {}: expected an ascii OFF file, found BINARY", cursor.lines);
   if (first.empty()) {
     line = next_content(cursor, "the numbers of vertices, faces and edges");
     p = line.data();

@@ -3,8 +3,7 @@
 #include <cstring>
 #include <limits>
 
-#include <fmt/format.h>
-
+#include "base/fail.h"
 #include "base/parallel.h"
 #include "pipeline/io/formats/lzf.h"
 #include "pipeline/io/formats/ply.h"
@@ -72,27 +71,24 @@ void read_compressed(Table& table, BinaryCursor& cursor, const Context& context)
     return;
   }
   if (left < 8)
-    source.fail(fmt::format("byte {}: expected the sizes of the compressed data (8 bytes), found {} bytes",
-                            at, left));
+    source.fail("byte {}: expected the sizes of the compressed data (8 bytes), found {} bytes", at, left);
   const Bytes sizes = source.read(at, 8, context);
   const std::uint64_t packed = read_uint32(sizes.data()), unpacked = read_uint32(sizes.data() + 4);
   if (packed > left - 8)
-    source.fail(
-        fmt::format("byte {}: expected {} bytes of compressed data, found {}", at + 8, packed, left - 8));
+    source.fail("byte {}: expected {} bytes of compressed data, found {}", at + 8, packed, left - 8);
   const std::size_t row = table.row_size();
   if (table.count > std::numeric_limits<std::uint32_t>::max() / row || table.count * row != unpacked)
-    source.fail(fmt::format("byte {}: expected {} points of {} bytes each when unpacked, found {} bytes",
-                            at + 4, table.count, row, unpacked));
+    source.fail("byte {}: expected {} points of {} bytes each when unpacked, found {} bytes", at + 4,
+                table.count, row, unpacked);
   if (unpacked > packed * kLzfMostGain)
-    source.fail(fmt::format(
-        "byte {}: expected compressed data for {} bytes, found {} bytes, which cannot hold as much", at,
-        unpacked, packed));
+    source.fail("byte {}: expected compressed data for {} bytes, found {} bytes, which cannot hold as much",
+                at, unpacked, packed);
   const Bytes stream = source.read(at + 8, std::size_t(packed), context);
   Bytes columns(static_cast<std::size_t>(unpacked));
   const LzfOutcome outcome = lzf_decompress({stream.data(), stream.size()}, columns.data(), columns.size());
   if (!outcome.ok)
-    source.fail(fmt::format("byte {}: expected intact compressed data, found damage: {}", at + 8 + outcome.at,
-                            outcome.what));
+    source.fail("byte {}: expected intact compressed data, found damage: {}", at + 8 + outcome.at,
+                outcome.what);
   table.data.resize(columns.size());
   transpose(table, Direction::to_rows, columns.data(), table.data.data(), context);
   cursor.offset += 8 + packed;
@@ -109,7 +105,7 @@ void write_compressed(const Table& table, Sink& sink, const Context& context) {
   transpose(table, Direction::to_columns, table.data.data(), columns.data(), context);
   const Bytes packed = lzf_compress({columns.data(), columns.size()});
   if (packed.size() > kMost || columns.size() > kMost)
-    throw Failure({ErrorCode::usage, "binary_compressed holds at most 4 GiB; write binary instead"});
+    fail(ErrorCode::usage, "binary_compressed holds at most 4 GiB; write binary instead");
   const std::uint32_t sizes[2] = {std::uint32_t(packed.size()), std::uint32_t(columns.size())};
   sink.write({reinterpret_cast<const char*>(sizes), sizeof sizes});
   sink.write({packed.data(), packed.size()});
@@ -140,8 +136,7 @@ Cloud read_pcd(const Source& source, const Context& context) {
 
 void write_pcd(const Cloud& cloud, Encoding encoding, Sink& sink, const Context& context) {
   if (encoding == Encoding::binary_big_endian)
-    throw Failure(
-        {ErrorCode::usage, "PCD has no big-endian encoding; use ascii, binary or binary_compressed"});
+    fail(ErrorCode::usage, "PCD has no big-endian encoding; use ascii, binary or binary_compressed");
   const std::string header = pcd_header(cloud, encoding);
   sink.write(header == cloud.original_canonical ? cloud.original_header : header);
   if (encoding == Encoding::ascii)

@@ -25,7 +25,7 @@ std::uint64_t parse_count(std::string_view key, std::string_view word, const Hea
   std::uint64_t value = 0;
   const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), value);
   if (word.empty() || error != std::errc{} || stop != word.data() + word.size())
-    lines.fail(fmt::format("expected a whole number after {}, found {}", key, in_quotes(word)));
+    lines.fail("expected a whole number after {}, found {}", key, in_quotes(word));
   return value;
 }
 
@@ -40,9 +40,8 @@ Scalar parse_type(std::string_view type, std::uint64_t size, const HeaderLines& 
   if (type == "U" && size == 8) return Scalar::uint64;
   if (type == "F" && size == 4) return Scalar::float32;
   if (type == "F" && size == 8) return Scalar::float64;
-  lines.fail(
-      fmt::format("expected TYPE I or U of SIZE 1, 2, 4 or 8, or F of SIZE 4 or 8, found TYPE {} of SIZE {}",
-                  in_quotes(type), size));
+  lines.fail("expected TYPE I or U of SIZE 1, 2, 4 or 8, or F of SIZE 4 or 8, found TYPE {} of SIZE {}",
+             in_quotes(type), size);
 }
 
 char type_letter(Scalar type) {
@@ -102,17 +101,16 @@ Entries read_entries(HeaderLines& lines, Cloud& cloud) {
     } else if (key == "VIEWPOINT") {
       e.viewpoint = strings(words);
       if (e.viewpoint.size() != 7)
-        lines.fail(fmt::format("expected 7 numbers after VIEWPOINT, found {}", e.viewpoint.size()));
+        lines.fail("expected 7 numbers after VIEWPOINT, found {}", e.viewpoint.size());
       for (const std::string& word : e.viewpoint)
-        if (!parse_real(word))
-          lines.fail(fmt::format("expected 7 numbers after VIEWPOINT, found {}", in_quotes(word)));
+        if (!parse_real(word)) lines.fail("expected 7 numbers after VIEWPOINT, found {}", in_quotes(word));
     } else if (key == "DATA") {
       e.data = first;
       return e;
     } else {
-      lines.fail(fmt::format(
+      lines.fail(
           "expected VERSION, FIELDS, SIZE, TYPE, COUNT, WIDTH, HEIGHT, VIEWPOINT, POINTS or DATA, found {}",
-          in_quotes(key)));
+          in_quotes(key));
     }
   }
 }
@@ -122,7 +120,7 @@ Table points_of(const Entries& e, const HeaderLines& lines) {
   if (n == 0) lines.fail("expected a FIELDS line with names before DATA, found none");
   const auto need = [&](std::string_view key, const std::vector<std::string>& words) {
     if (words.size() != n)
-      lines.fail(fmt::format("expected {} words after {}, one per field, found {}", n, key, words.size()));
+      lines.fail("expected {} words after {}, one per field, found {}", n, key, words.size());
   };
   need("SIZE", e.size);
   need("TYPE", e.type);
@@ -133,8 +131,8 @@ Table points_of(const Entries& e, const HeaderLines& lines) {
     Field field{e.fields[f], parse_type(e.type[f], parse_count("SIZE", e.size[f], lines), lines)};
     if (!e.count.empty()) field.count = std::size_t(parse_count("COUNT", e.count[f], lines));
     if (field.count == 0 || field.count > kMostCount)
-      lines.fail(fmt::format("expected COUNT from 1 to {} for field {}, found {}", kMostCount,
-                             in_quotes(field.name), field.count));
+      lines.fail("expected COUNT from 1 to {} for field {}, found {}", kMostCount, in_quotes(field.name),
+                 field.count);
     table.fields.push_back(std::move(field));
   }
   return table;
@@ -148,10 +146,10 @@ void set_size(Cloud& cloud, const Entries& e, const HeaderLines& lines) {
     height = 1;
   }
   if (width != 0 && height > std::uint64_t(-1) / width)
-    lines.fail(fmt::format("expected WIDTH x HEIGHT points, found {} x {}", width, height));
+    lines.fail("expected WIDTH x HEIGHT points, found {} x {}", width, height);
   if (e.points && *e.points != width * height)
-    lines.fail(fmt::format("expected POINTS {} = WIDTH {} x HEIGHT {}, found {}", width * height, width,
-                           height, *e.points));
+    lines.fail("expected POINTS {} = WIDTH {} x HEIGHT {}, found {}", width * height, width, height,
+               *e.points);
   cloud.points().count = width * height;
   cloud.width = width;
   cloud.height = height;
@@ -176,7 +174,7 @@ Cloud read_pcd_header(HeaderLines& lines) {
   } else if (e.data == "binary_compressed") {
     cloud.encoding = Encoding::binary_compressed;
   } else {
-    lines.fail(fmt::format("expected DATA ascii, binary or binary_compressed, found {}", in_quotes(e.data)));
+    lines.fail("expected DATA ascii, binary or binary_compressed, found {}", in_quotes(e.data));
   }
   cloud.elements.push_back(points_of(e, lines));
   set_size(cloud, e, lines);

@@ -22,8 +22,8 @@ void find_coordinates(Cloud& cloud, const Source& source, const Context& context
     if (best == fields.size()) {
       std::string there;
       for (const Field& f : fields) there += (there.empty() ? "" : ", ") + in_quotes(f.name);
-      source.fail(fmt::format("expected the coordinate '{}' among the points' fields, found {}",
-                              char('x' + char(axis)), there.empty() ? "none" : there));
+      source.fail("expected the coordinate '{}' among the points' fields, found {}", char('x' + char(axis)),
+                  there.empty() ? "none" : there);
     }
     if (same > 1)
       context.warn(fmt::format("{}: {} fields are called '{}'; the first is the coordinate, all are kept",
@@ -41,7 +41,7 @@ Cloud read_ply(const Source& source, const Context& context) {
   if (cloud.vertex == cloud.elements.size()) {
     std::string there;
     for (const Table& t : cloud.elements) there += (there.empty() ? "" : ", ") + in_quotes(t.name);
-    source.fail(fmt::format("expected an element 'vertex', found {}", there.empty() ? "no element" : there));
+    source.fail("expected an element 'vertex', found {}", there.empty() ? "no element" : there);
   }
   find_coordinates(cloud, source, context);
 

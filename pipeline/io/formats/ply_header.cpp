@@ -27,15 +27,14 @@ std::string_view ply_type(Scalar type) {
 Scalar parse_type(std::string_view word, const HeaderLines& lines) {
   for (const auto& [name, type] : kTypes)
     if (name == word) return type;
-  lines.fail(fmt::format("expected a type (char, uchar, short, ushort, int, uint, float, double), found {}",
-                         in_quotes(word)));
+  lines.fail("expected a type (char, uchar, short, ushort, int, uint, float, double), found {}",
+             in_quotes(word));
 }
 
 Encoding parse_format(std::string_view word, const HeaderLines& lines) {
   for (const Encoding e : {Encoding::ascii, Encoding::binary_little_endian, Encoding::binary_big_endian})
     if (name_of(e) == word) return e;
-  lines.fail(fmt::format("expected format ascii, binary_little_endian or binary_big_endian, found {}",
-                         in_quotes(word)));
+  lines.fail("expected format ascii, binary_little_endian or binary_big_endian, found {}", in_quotes(word));
 }
 
 Table parse_element(std::string_view rest, const HeaderLines& lines) {
@@ -46,7 +45,7 @@ Table parse_element(std::string_view rest, const HeaderLines& lines) {
   const std::string_view count = next_word(p, end);
   const auto [stop, error] = std::from_chars(count.data(), count.data() + count.size(), table.count);
   if (table.name.empty() || count.empty() || error != std::errc{} || stop != count.data() + count.size())
-    lines.fail(fmt::format("expected 'element NAME COUNT', found a count of {}", in_quotes(count)));
+    lines.fail("expected 'element NAME COUNT', found a count of {}", in_quotes(count));
   if (!next_word(p, end).empty()) lines.fail("expected 'element NAME COUNT', found more words");
   return table;
 }
@@ -60,7 +59,7 @@ Field parse_property(std::string_view rest, const HeaderLines& lines) {
     const std::string_view count = next_word(p, end);
     field.list_count = parse_type(count, lines);
     if (is_float(*field.list_count))
-      lines.fail(fmt::format("expected a whole-number type for a list's length, found {}", in_quotes(count)));
+      lines.fail("expected a whole-number type for a list's length, found {}", in_quotes(count));
     const std::string_view type = next_word(p, end);
     field.type = parse_type(type, lines);
     field.spelling = fmt::format("list {} {}", count, type);
@@ -122,14 +121,14 @@ Cloud read_ply_header(HeaderLines& lines) {
       if (cloud.elements.empty()) lines.fail("expected an element line before the first property");
       cloud.elements.back().fields.push_back(parse_property(rest, lines));
     } else {
-      lines.fail(fmt::format("expected format, element, property, comment, obj_info or end_header, found {}",
-                             in_quotes(keyword)));
+      lines.fail("expected format, element, property, comment, obj_info or end_header, found {}",
+                 in_quotes(keyword));
     }
   }
   if (!format_seen) lines.fail("expected a format line before end_header");
   for (const Table& t : cloud.elements)
     if (t.fields.empty() && t.count > 0)
-      lines.fail(fmt::format("expected properties of element '{}', found none", t.name));
+      lines.fail("expected properties of element '{}', found none", t.name);
   cloud.original_header = lines.text();
   cloud.original_canonical = ply_header(cloud, cloud.encoding);
   return cloud;

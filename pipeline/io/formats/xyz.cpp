@@ -145,16 +145,15 @@ Cloud read_xyz(const Source& source, const Context& context) {
   cloud.original_header.assign(cursor.all.data(), cursor.at);
 
   const std::string_view first = peek_line(cursor);
-  if (first.empty())
-    source.fail(fmt::format("line {}: expected points, found the end of the file", cursor.lines + 1));
+  if (first.empty()) source.fail("line {}: expected points, found the end of the file", cursor.lines + 1);
   const auto words = columns_of(first);
   if (words.size() < 3)
-    source.fail(fmt::format("line {}: expected at least 3 columns, found {} in {}", cursor.lines + 1,
-                            words.size(), in_quotes(without_line_end(first))));
+    source.fail("line {}: expected at least 3 columns, found {} in {}", cursor.lines + 1, words.size(),
+                in_quotes(without_line_end(first)));
   if (has_decimal_commas(first))
-    source.fail(fmt::format(
+    source.fail(
         "line {}: expected decimal points and one kind of separator, found commas between digits in {}",
-        cursor.lines + 1, in_quotes(without_line_end(first))));
+        cursor.lines + 1, in_quotes(without_line_end(first)));
 
   if (beginning.names.size() != words.size()) {
     // Not this file's columns: an ordinary comment after all.

@@ -11,6 +11,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/fail.h"
+
 namespace rfsmooth::pipeline::io {
 namespace {
 
@@ -23,7 +25,7 @@ constexpr std::size_t kChunk = std::size_t{16} << 20;
 constexpr std::size_t kReserve = std::size_t{1} << 20;
 
 [[noreturn]] void refuse(const std::filesystem::path& target, const std::string& why) {
-  throw Failure({ErrorCode::cannot_write, fmt::format("{}: {}", target.string(), why)});
+  fail(ErrorCode::cannot_write, "{}: {}", target.string(), why);
 }
 
 // The file that a chain of symbolic links ends at, which need not exist.
@@ -82,7 +84,7 @@ AtomicFile::AtomicFile(const std::filesystem::path& target, bool replace, const 
   const auto present = check(shown_, target_, replace_);
   if (present && !S_ISREG(present->st_mode)) {
     file_ = ::open(target_.c_str(), O_WRONLY | O_CLOEXEC);
-    if (file_ < 0) fail("cannot write", errno);
+    if (file_ < 0) fail(errno);
     return;
   }
   // The name is hidden and tells what it is if a crash leaves it behind.
@@ -94,7 +96,7 @@ AtomicFile::AtomicFile(const std::filesystem::path& target, bool replace, const 
     if (file_ < 0 && errno != EEXIST) {
       const int error = errno;
       temporary_.clear();
-      fail("cannot write", error);
+      fail(error);
     }
   }
   // A file system without permissions keeps its own.
@@ -112,7 +114,7 @@ void AtomicFile::write(std::string_view bytes) {
     context_.check_stop();
     const ssize_t put = ::write(file_, bytes.data(), std::min(bytes.size(), kChunk));
     if (put < 0 && errno == EINTR) continue;
-    if (put < 0) fail("cannot write", errno);
+    if (put < 0) fail(errno);
     bytes.remove_prefix(std::size_t(put));
   }
 }
@@ -120,19 +122,18 @@ void AtomicFile::write(std::string_view bytes) {
 void AtomicFile::reserve(std::size_t size) {
   const off_t end = ::lseek(file_, 0, SEEK_CUR);
   if (end < 0 || ::fallocate(file_, FALLOC_FL_KEEP_SIZE, end, off_t(size)) == 0) return;
-  if (errno == ENOSPC || errno == EDQUOT || errno == EFBIG) fail("cannot write", errno);
+  if (errno == ENOSPC || errno == EDQUOT || errno == EFBIG) fail(errno);
 }
 
 void AtomicFile::commit(bool sync) {
   context_.check_stop();
-  if (sync && !temporary_.empty() && ::fsync(file_) != 0 && errno != EINVAL && errno != ENOTSUP)
-    fail("cannot write", errno);
+  if (sync && !temporary_.empty() && ::fsync(file_) != 0 && errno != EINVAL && errno != ENOTSUP) fail(errno);
   const int closed = ::close(file_);
   file_ = -1;
-  if (closed != 0) fail("cannot write", errno);
+  if (closed != 0) fail(errno);
   if (temporary_.empty()) return;
   if (replace_) {
-    if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail("cannot write", errno);
+    if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail(errno);
     temporary_.clear();
   } else if (::renameat2(AT_FDCWD, temporary_.c_str(), AT_FDCWD, target_.c_str(), RENAME_NOREPLACE) == 0) {
     temporary_.clear();
@@ -143,7 +144,7 @@ void AtomicFile::commit(bool sync) {
     if (::link(temporary_.c_str(), target_.c_str()) != 0) {
       if (errno == EEXIST) refuse(shown_, "exists already; `force` replaces it");
       if (status_of(target_)) refuse(shown_, "exists already; `force` replaces it");
-      if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail("cannot write", errno);
+      if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail(errno);
       temporary_.clear();
     }
   }
@@ -157,8 +158,8 @@ void AtomicFile::commit(bool sync) {
   ::close(folder);
 }
 
-void AtomicFile::fail(const std::string& what, int error) const {
-  refuse(shown_, fmt::format("{}: {}", what, std::strerror(error)));
+void AtomicFile::fail(int error) const {
+  refuse(shown_, fmt::format("cannot write: {}", std::strerror(error)));
 }
 
 }  // namespace rfsmooth::pipeline::io

@@ -31,7 +31,7 @@ class AtomicFile : public Sink {
 
  private:
   void reserve(std::size_t size);
-  [[noreturn]] void fail(const std::string& what, int error) const;
+  [[noreturn]] void fail(int error) const;
 
   std::filesystem::path shown_, target_, temporary_;
   bool replace_;

@@ -5,9 +5,10 @@
 #include <cstring>
 
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+#include "base/fail.h"
 
 namespace rfsmooth::pipeline::io {
 namespace {
@@ -20,7 +21,7 @@ std::size_t read_some(int file, char* out, std::size_t n, const Context& context
     context.check_stop();  // a signal ends the wait for a pipe or a terminal
     const ssize_t got = ::read(file, out, n);
     if (got >= 0) return std::size_t(got);
-    if (errno != EINTR) throw Failure({ErrorCode::input_unreadable, std::strerror(errno)});
+    if (errno != EINTR) fail(ErrorCode::input_unreadable, "{}", std::strerror(errno));
   }
 }
 
@@ -40,10 +41,10 @@ Bytes read_all(int file, const Context& context) {
 
 Source::Source(const std::filesystem::path& path, const Context& context) : name_(path.string()) {
   file_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (file_ < 0) fail(fmt::format("cannot open: {}", std::strerror(errno)));
+  if (file_ < 0) fail("cannot open: {}", std::strerror(errno));
   struct stat info {};
   try {
-    if (::fstat(file_, &info) != 0) fail(std::strerror(errno));
+    if (::fstat(file_, &info) != 0) fail("{}", std::strerror(errno));
     if (S_ISDIR(info.st_mode)) fail("is a directory, expected a file");
     size_ = std::uint64_t(info.st_size);
     if (!S_ISREG(info.st_mode)) {
@@ -75,8 +76,8 @@ void Source::read(std::uint64_t offset, char* out, std::size_t n, const Context&
     context.check_stop();
     const ssize_t got = ::pread(file_, out, std::min(n, kReadChunk), off_t(offset));
     if (got < 0 && errno == EINTR) continue;
-    if (got < 0) fail(fmt::format("byte {}: {}", offset, std::strerror(errno)));
-    if (got == 0) fail(fmt::format("byte {}: the file became shorter while it was read", offset));
+    if (got < 0) fail("byte {}: {}", offset, std::strerror(errno));
+    if (got == 0) fail("byte {}: the file became shorter while it was read", offset);
     offset += std::uint64_t(got);
     out += got;
     n -= std::size_t(got);
@@ -87,10 +88,6 @@ Bytes Source::read(std::uint64_t offset, std::size_t n, const Context& context) 
   Bytes bytes(n);
   read(offset, bytes.data(), n, context);
   return bytes;
-}
-
-void Source::fail(const std::string& message) const {
-  throw Failure({ErrorCode::input_unreadable, fmt::format("{}: {}", name_, message)});
 }
 
 }  // namespace rfsmooth::pipeline::io

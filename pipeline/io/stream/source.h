@@ -9,11 +9,12 @@
 #include <rfsmooth/context.h>
 #include <rfsmooth/result.h>
 
+#include "base/fail.h"
 #include "pipeline/io/table/bytes.h"
 
 namespace rfsmooth::pipeline::io {
 
-/// A file's bytes, mapped where that is possible.
+/// A file's bytes.
 class Source {
  public:
   /// Opens a file; one without a size (a pipe, a terminal) is read into memory. \throw Failure
@@ -34,8 +35,12 @@ class Source {
   void read(std::uint64_t offset, char* out, std::size_t n, const Context& context) const;
   Bytes read(std::uint64_t offset, std::size_t n, const Context& context) const;
 
-  /// \throw Failure (input_unreadable), "NAME: message".
-  [[noreturn]] void fail(const std::string& message) const;
+  /// \throw Failure (input_unreadable), "NAME: message", put together as in base/fail.h.
+  template <std::size_t kSize, class... Arguments>
+  [[noreturn]] void fail(const char (&message)[kSize], const Arguments&... arguments) const {
+    rfsmooth::fail(ErrorCode::input_unreadable, "{}: {}", name_,
+                   fmt::format(fmt::runtime(message), arguments...));
+  }
 
  private:
   std::string name_;

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "base/fail.h"
 #include "base/parallel.h"
 
 namespace rfsmooth::pipeline::io {
@@ -137,15 +138,12 @@ void check_field(const Cloud& cloud, const std::string& name, Scalar type) {
   if (!present) return;
   const Field& field = cloud.points().fields[*present];
   if (!field.is_plain())
-    throw Failure(
-        {ErrorCode::usage,
-         fmt::format("the points have a field '{}' already, a {}; it cannot take one value per point", name,
-                     field.is_list() ? "list" : "row of several values")});
+    fail(ErrorCode::usage, "the points have a field '{}' already, a {}; it cannot take one value per point",
+         name, field.is_list() ? "list" : "row of several values");
   if (is_float(type) && field.is_whole())
-    throw Failure({ErrorCode::usage,
-                   fmt::format("the points have a field '{}' already, of whole numbers ({}); it cannot "
-                               "take values of type {}",
-                               name, name_of(field.type), name_of(type))});
+    fail(ErrorCode::usage,
+         "the points have a field '{}' already, of whole numbers ({}); it cannot take values of type {}",
+         name, name_of(field.type), name_of(type));
 }
 
 void select_points(Cloud& cloud, const std::vector<std::size_t>& rows, const Context& context) {

@@ -1,8 +1,6 @@
 #include <algorithm>
 #include <cstring>
 
-#include <fmt/format.h>
-
 #include "base/parallel.h"
 #include "pipeline/io/table/rows.h"
 
@@ -38,8 +36,8 @@ void read_fixed(Table& table, BinaryCursor& cursor, const Context& context) {
   const std::size_t size = table.row_size();
   const std::uint64_t left = cursor.source.size() - cursor.offset;
   if (size == 0 || table.count > left / size)
-    cursor.source.fail(fmt::format("byte {}: expected {} rows of element '{}', {} bytes each, found {} bytes",
-                                   cursor.offset, table.count, table.name, size, left));
+    cursor.source.fail("byte {}: expected {} rows of element '{}', {} bytes each, found {} bytes",
+                       cursor.offset, table.count, table.name, size, left);
   table.data = cursor.source.read(cursor.offset, table.count * size, context);
   if (cursor.big_endian) swap_fixed(table.fields, size, table.data.data(), table.count, context);
   cursor.offset += table.data.size();
@@ -61,14 +59,13 @@ void read_lists(Table& table, BinaryCursor& cursor, const Context& context) {
   for (const Field& f : table.fields)
     least += f.is_list() ? size_of(*f.list_count) : f.count * size_of(f.type);
   if (least > 0 && table.count > std::size_t(end - p) / least)
-    cursor.source.fail(
-        fmt::format("byte {}: expected {} rows of element '{}', at least {} bytes each, found {} bytes",
-                    cursor.offset, table.count, table.name, least, end - p));
+    cursor.source.fail("byte {}: expected {} rows of element '{}', at least {} bytes each, found {} bytes",
+                       cursor.offset, table.count, table.name, least, end - p);
 
   const auto short_of = [&](std::size_t row, const Field& f, std::size_t need) {
-    cursor.source.fail(fmt::format("byte {}: expected {} bytes of '{}' in row {} of element '{}', found {}",
-                                   cursor.held_from + std::uint64_t(p - cursor.held.data()), need, f.name,
-                                   row, table.name, end - p));
+    cursor.source.fail("byte {}: expected {} bytes of '{}' in row {} of element '{}', found {}",
+                       cursor.held_from + std::uint64_t(p - cursor.held.data()), need, f.name, row,
+                       table.name, end - p);
   };
   table.start.resize(table.count + 1);
   table.start[0] = 0;
@@ -82,9 +79,9 @@ void read_lists(Table& table, BinaryCursor& cursor, const Context& context) {
         if (cursor.big_endian) swap_value(p, size);
         const double length = load(*f.list_count, p);
         if (!(length >= 0) || length > double(std::uint64_t{1} << 40))
-          cursor.source.fail(fmt::format(
-              "byte {}: expected the length of list '{}' in row {} of element '{}', found {}",
-              cursor.held_from + std::uint64_t(p - cursor.held.data()), f.name, i, table.name, length));
+          cursor.source.fail("byte {}: expected the length of list '{}' in row {} of element '{}', found {}",
+                             cursor.held_from + std::uint64_t(p - cursor.held.data()), f.name, i, table.name,
+                             length);
         n = std::size_t(length);
         p += size;
       }

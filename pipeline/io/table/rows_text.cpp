@@ -101,7 +101,7 @@ void check_rows(const Table& table, const Source& source, std::size_t lines_befo
   std::size_t line = lines_before + bad + 1;
   for (const Interlude& note : table.interludes)
     if (note.row <= bad) line += std::size_t(std::count(note.text.begin(), note.text.end(), '\n'));
-  source.fail(fmt::format("line {}: {}", line, problem(table, table.row(bad))));
+  source.fail("line {}: {}", line, problem(table, table.row(bad)));
 }
 
 }  // namespace
@@ -112,8 +112,8 @@ void read_text_rows(Table& table, TextCursor& cursor, const Context& context) {
   // The shortest line holds one character per value, what parts them, and a line end.
   const std::size_t left = cursor.all.size() - cursor.at;
   if (table.count > (left + 1) / 2)
-    cursor.source.fail(fmt::format("line {}: expected {} lines of element '{}', found {} bytes",
-                                   cursor.lines + 1, table.count, table.name, left));
+    cursor.source.fail("line {}: expected {} lines of element '{}', found {} bytes", cursor.lines + 1,
+                       table.count, table.name, left);
 
   const char* const base = cursor.all.data();
   const char* const end = base + cursor.all.size();
@@ -128,10 +128,10 @@ void read_text_rows(Table& table, TextCursor& cursor, const Context& context) {
   while (rows < table.count) {
     if (rows % kTextRowsPerBlock == 0) context.check_stop();
     if (p == end)
-      cursor.source.fail(fmt::format(
+      cursor.source.fail(
           "line {}: expected row {} of {} of element '{}', found the end of the file",
           lines_before + count_lines(cursor.all, cursor.all.size()) - count_lines(cursor.all, first) + 1,
-          rows + 1, table.count, table.name));
+          rows + 1, table.count, table.name);
     const char* newline = static_cast<const char*>(std::memchr(p, '\n', std::size_t(end - p)));
     const char* next = newline == nullptr ? end : newline + 1;
     const std::string_view line(p, std::size_t(next - p));

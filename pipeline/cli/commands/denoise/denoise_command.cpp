@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "base/fail.h"
 #include "pipeline/cli/commands/command.h"
 #include "pipeline/cli/commands/denoise/summary.h"
 #include "pipeline/cli/commands/denoise/within_memory.h"
@@ -200,12 +201,12 @@ void write_beside(const DenoiseCommandOptions& options, const Beside& beside, Co
 
 void check_denoise(const DenoiseCommandOptions& options, const Invocation& typed) {
   if (options.mark_outliers && options.denoise.outliers == Outliers::smooth)
-    throw Failure({ErrorCode::usage, "--mark-outliers has nothing to mark with --outliers smooth"});
+    fail(ErrorCode::usage, "--mark-outliers has nothing to mark with --outliers smooth");
   check(options.normals);
   options.trace.check(options.job.files, typed);
   if (!options.html) return;
   if (plan_jobs(typed.arguments, options.job.files.output).size() > 1)
-    throw Failure({ErrorCode::usage, "--html shows one cloud; several are named"});
+    fail(ErrorCode::usage, "--html shows one cloud; several are named");
   check_no_cloud_target(*options.html, options.job.files.force, "page");
 }
 

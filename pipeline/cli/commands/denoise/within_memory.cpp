@@ -4,8 +4,7 @@
 #include <filesystem>
 #include <utility>
 
-#include <fmt/format.h>
-
+#include "base/fail.h"
 #include "pipeline/cli/files/memory.h"
 #include "pipeline/cli/options/text_values.h"
 #include "pipeline/tiles/in_one_process.h"
@@ -18,7 +17,7 @@ namespace {
 std::uint64_t bytes_of(const std::string& text) {
   const double bytes = read_amount(text).value_or(0);
   if (!(bytes >= 1e6) || !(bytes < 1e18))
-    throw Failure({ErrorCode::usage, fmt::format("--memory takes bytes, 8G or 500M say, not '{}'", text)});
+    fail(ErrorCode::usage, "--memory takes bytes, 8G or 500M say, not '{}'", text);
   return std::uint64_t(bytes);
 }
 
@@ -56,10 +55,10 @@ void check_memory(const DenoiseCommandOptions& options, const Job& job, const st
                       needed = memory_of_whole(pipeline::io::finite_rows(xyz, context), error ? 0 : bytes,
                                                options.normals.normals);
   if (needed <= most) return;
-  throw Failure({ErrorCode::out_of_memory,
-                 fmt::format("{}: needs about {:.0f} MB, --memory allows {:.0f} MB; a single file of binary "
-                             "PLY, binary PCD or LAS would be smoothed in tiles",
-                             job.input, std::ceil(double(needed) / 1e6), double(most) / 1e6)});
+  fail(ErrorCode::out_of_memory,
+       "{}: needs about {:.0f} MB, --memory allows {:.0f} MB; a single file of binary PLY, binary PCD or LAS "
+       "would be smoothed in tiles",
+       job.input, std::ceil(double(needed) / 1e6), double(most) / 1e6);
 }
 
 std::optional<std::uint64_t> memory_of_tiles(const DenoiseCommandOptions& options, const Job& job,
@@ -81,16 +80,15 @@ std::optional<std::uint64_t> memory_of_tiles(const DenoiseCommandOptions& option
   if (memory_of_whole(finite, bytes, normals) <= most) return std::nullopt;
   if (const std::string what = needs_whole_cloud(options); !what.empty()) {
     if (!asked) return std::nullopt;  // refused where the whole cloud is, with both figures
-    throw Failure({ErrorCode::usage,
-                   fmt::format("{}: larger than --memory, and {} needs the whole cloud", job.input, what)});
+    fail(ErrorCode::usage, "{}: larger than --memory, and {} needs the whole cloud", job.input, what);
   }
   if (asked) pipeline::tiles::check_format(file->format, job.output);
   if (pipeline::io::format_of_extension(job.output).value_or(file->format) != file->format)
     return std::nullopt;
   if (const std::uint64_t least = pipeline::tiles::least_memory(finite, normals); most < least) {
     if (!asked) return std::nullopt;
-    throw Failure({ErrorCode::usage, fmt::format("{}: in tiles it takes --memory {:.0f}M or more", job.input,
-                                                 std::ceil(double(least) / 1e6))});
+    fail(ErrorCode::usage, "{}: in tiles it takes --memory {:.0f}M or more", job.input,
+         std::ceil(double(least) / 1e6));
   }
   return most;
 }

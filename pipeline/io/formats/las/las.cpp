@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "base/fail.h"
 #include "base/parallel.h"
 #include "pipeline/io/formats/las/las_fields.h"
 #include "pipeline/io/table/rows.h"
@@ -95,7 +96,7 @@ bool same_bytes(const std::array<T, n>& a, const std::array<T, n>& b) {
 void put_counts(std::string& head, const Header& h, const Facts& now) {
   const bool legacy = h.minor < 4 || h.legacy_count != 0;
   if (h.minor < 4 && now.count > kMostLegacy)
-    throw Failure({ErrorCode::usage, fmt::format("LAS 1.{} holds at most {} points", h.minor, kMostLegacy)});
+    fail(ErrorCode::usage, "LAS 1.{} holds at most {} points", h.minor, kMostLegacy);
   const bool fits = now.count <= kMostLegacy;
   if (legacy) {
     put_number(head, kLegacyCountAt, std::uint32_t(fits ? now.count : 0));

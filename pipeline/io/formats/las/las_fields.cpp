@@ -8,6 +8,8 @@
 
 #include <rfsmooth/result.h>
 
+#include "base/fail.h"
+
 namespace rfsmooth::pipeline::io::las {
 namespace {
 
@@ -181,9 +183,9 @@ void describe_extra_bytes(std::string& head, const std::vector<Field>& fields) {
     const std::string_view body = std::string_view(head).substr(record->body(), record->size);
     for (const Field& field : described_fields(body, undescribed, fits)) undescribed -= bytes_of_field(field);
     if (!fits)
-      throw Failure({ErrorCode::usage,
-                     "LAS: the description of the extra bytes does not fit the points, so no field "
-                     "can be added; write another format"});
+      fail(ErrorCode::usage,
+           "LAS: the description of the extra bytes does not fit the points, so no field can be added; write "
+           "another format");
   }
   std::string more;
   for (std::size_t left = undescribed; left > 0; left -= std::min(left, kMostUnnamed))
@@ -196,7 +198,7 @@ void describe_extra_bytes(std::string& head, const std::vector<Field>& fields) {
   }
   const std::size_t size = (record != nullptr ? record->size : 0) + more.size();
   if (size > kLargest16 || row > kLargest16)
-    throw Failure({ErrorCode::usage, "LAS has no room for so many fields; write another format"});
+    fail(ErrorCode::usage, "LAS has no room for so many fields; write another format");
   put_number(head, kRowSizeAt, std::uint16_t(row));
   if (record == nullptr) return append_record(head, kSpecification, kExtraBytesRecord, more);
   put_number(head, record->at + 20, std::uint16_t(size));

@@ -16,9 +16,11 @@ constexpr const char *kCut = "the file is cut short: copy or download it again",
 constexpr int kNewest = 4;
 constexpr std::uint16_t kInternalWaveforms = 2;  // bit of the global encoding
 
-[[noreturn]] void refuse(const Source& source, std::uint64_t at, const std::string& what,
-                         const char* advice) {
-  source.fail(fmt::format("byte {}: {}; {}", at, what, advice));
+// "NAME: byte N: what; advice", put together as in base/fail.h.
+template <std::size_t kSize, class... Arguments>
+[[noreturn]] void refuse(const Source& source, std::uint64_t at, const char* advice,
+                         const char (&what)[kSize], const Arguments&... arguments) {
+  source.fail("byte {}: {}; {}", at, fmt::format(fmt::runtime(what), arguments...), advice);
 }
 
 std::string text(std::string_view bytes, std::size_t at, std::size_t most) {
@@ -30,50 +32,37 @@ std::string text(std::string_view bytes, std::size_t at, std::size_t most) {
 void check_kind(const Source& source, const Header& h, std::string_view bytes) {
   const int major = number<std::uint8_t>(bytes, kMajorAt);
   if (major != 1 || h.minor > kNewest)
-    refuse(source, kMajorAt,
-           fmt::format("expected LAS 1.0 to 1.{}, found version {}.{}", kNewest, major, h.minor),
-           "convert it to LAS 1.4");
+    refuse(source, kMajorAt, "convert it to LAS 1.4", "expected LAS 1.0 to 1.{}, found version {}.{}",
+           kNewest, major, h.minor);
   if (h.compressed)
-    source.fail(fmt::format("byte {}: LAZ is not read; {}", kPointFormatAt,
-                            other_format_of_extension("any.laz")->advice));
+    source.fail("byte {}: LAZ is not read; {}", kPointFormatAt, other_format_of_extension("any.laz")->advice);
   if (h.point_format > kNewestPoints)
-    refuse(source, kPointFormatAt,
-           fmt::format("expected a point format from 0 to {}, found {}", kNewestPoints, h.point_format),
-           "convert it to one of those");
+    refuse(source, kPointFormatAt, "convert it to one of those",
+           "expected a point format from 0 to {}, found {}", kNewestPoints, h.point_format);
   if (h.size < header_size(h.minor))
-    refuse(source, kHeaderSizeAt,
-           fmt::format("expected a header of at least {} bytes for LAS 1.{}, found {}", header_size(h.minor),
-                       h.minor, h.size),
-           kDamaged);
+    refuse(source, kHeaderSizeAt, kDamaged, "expected a header of at least {} bytes for LAS 1.{}, found {}",
+           header_size(h.minor), h.minor, h.size);
   if (h.points < h.size)
-    refuse(source, kPointsAt,
-           fmt::format("expected the points behind the header of {} bytes, found them at byte {}", h.size,
-                       h.points),
-           kDamaged);
+    refuse(source, kPointsAt, kDamaged,
+           "expected the points behind the header of {} bytes, found them at byte {}", h.size, h.points);
   if (h.row_size < row_size(h.point_format))
-    refuse(source, kRowSizeAt,
-           fmt::format("expected at least {} bytes a point for point format {}, found {}",
-                       row_size(h.point_format), h.point_format, h.row_size),
-           kDamaged);
+    refuse(source, kRowSizeAt, kDamaged, "expected at least {} bytes a point for point format {}, found {}",
+           row_size(h.point_format), h.point_format, h.row_size);
 }
 
 void check_numbers(const Source& source, const Header& h) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (h.scale[axis] == 0 || !std::isfinite(h.scale[axis]))
-      refuse(
-          source, kScaleAt + 8 * axis,
-          fmt::format("expected a scale of {} other than 0, found {}", char('x' + char(axis)), h.scale[axis]),
-          kDamaged);
+      refuse(source, kScaleAt + 8 * axis, kDamaged, "expected a scale of {} other than 0, found {}",
+             char('x' + char(axis)), h.scale[axis]);
     if (!std::isfinite(h.offset[axis]))
-      refuse(source, kOffsetAt + 8 * axis,
-             fmt::format("expected an offset of {}, found {}", char('x' + char(axis)), h.offset[axis]),
-             kDamaged);
+      refuse(source, kOffsetAt + 8 * axis, kDamaged, "expected an offset of {}, found {}",
+             char('x' + char(axis)), h.offset[axis]);
   }
   const std::uint64_t left = source.size() - std::min(source.size(), h.points);
   if (h.points > source.size() || h.count > left / h.row_size)
-    refuse(source, h.points,
-           fmt::format("expected {} points of {} bytes each, found {} bytes", h.count, h.row_size, left),
-           kCut);
+    refuse(source, h.points, kCut, "expected {} points of {} bytes each, found {} bytes", h.count, h.row_size,
+           left);
 }
 
 // LAS 1.3 has the waveforms in an extended record that its header gives the place of; 1.4 counts it with the
@@ -85,12 +74,10 @@ void check_waveforms(const Source& source, const Header& h, std::string_view tai
                       h.waveforms - end <= tail.size() - kExtendedHeader;
   const std::size_t at = begins ? std::size_t(h.waveforms - end) : 0;
   if (!begins || number<std::uint64_t>(tail, at + 20) > tail.size() - at - kExtendedHeader)
-    refuse(source, kWaveformsAt,
-           fmt::format(
-               "expected the waveforms from byte {} on, found the points to end at byte {} and the file at "
-               "byte {}",
-               h.waveforms, end, source.size()),
-           kCut);
+    refuse(source, kWaveformsAt, kCut,
+           "expected the waveforms from byte {} on, found the points to end at byte {} and the file at "
+           "byte {}",
+           h.waveforms, end, source.size());
 }
 
 }  // namespace
@@ -127,8 +114,7 @@ Header read_header(std::string_view bytes) {
 Header read_header(const Source& source, const Context& context) {
   const auto need = [&](std::size_t size, const std::string& what) {
     if (source.size() < size)
-      refuse(source, source.size(),
-             fmt::format("expected {} of {} bytes, found {}", what, size, source.size()), kCut);
+      refuse(source, source.size(), kCut, "expected {} of {} bytes, found {}", what, size, source.size());
   };
   need(kWaveformsAt, "a LAS header");
   const Bytes first = source.read(0, kWaveformsAt, context);
@@ -183,26 +169,22 @@ void check_records(const Source& source, std::string_view head) {
   const std::vector<Record> records = records_of(head);
   if (records.size() == h.records) return;
   const std::size_t at = records.empty() ? h.size : records.back().end();
-  refuse(source, at,
-         fmt::format(
-             "expected variable length record {} of {} to end before the points at byte {}, found it longer",
-             records.size() + 1, h.records, h.points),
-         kDamaged);
+  refuse(source, at, kDamaged,
+         "expected variable length record {} of {} to end before the points at byte {}, found it longer",
+         records.size() + 1, h.records, h.points);
 }
 
 void check_extended(const Source& source, const Header& h, std::string_view tail) {
   const std::uint64_t end = h.end_of_points();
   if (h.extended_count > 0 && h.extended < end)
-    refuse(source, kExtendedAt,
-           fmt::format("expected the extended records behind the points, which end at byte {}, found byte {}",
-                       end, h.extended),
-           kDamaged);
+    refuse(source, kExtendedAt, kDamaged,
+           "expected the extended records behind the points, which end at byte {}, found byte {}", end,
+           h.extended);
   const std::vector<Record> records = extended_records_of(h, tail, end);
   if (records.size() < h.extended_count)
-    refuse(source, records.empty() ? h.extended : end + records.back().end(),
-           fmt::format("expected extended record {} of {}, found the end of the file at byte {}",
-                       records.size() + 1, h.extended_count, source.size()),
-           kCut);
+    refuse(source, records.empty() ? h.extended : end + records.back().end(), kCut,
+           "expected extended record {} of {}, found the end of the file at byte {}", records.size() + 1,
+           h.extended_count, source.size());
   check_waveforms(source, h, tail);
 }
 
