@@ -44,8 +44,8 @@ nb::ndarray<nb::numpy, T, Options...> array_of(Values&& values, std::initializer
 }
 
 io::Scalar scalar_of(const std::string& name) {
-  for (int k = 0; k <= int(io::Scalar::float64); ++k)
-    if (io::name_of(io::Scalar(k)) == name) return io::Scalar(k);
+  for (const io::Scalar type : io::kScalars)
+    if (io::name_of(type) == name) return type;
   throw std::invalid_argument("no file holds fields of type " + name);
 }
 

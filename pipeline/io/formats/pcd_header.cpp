@@ -29,34 +29,16 @@ std::uint64_t parse_count(std::string_view key, std::string_view word, const Hea
   return value;
 }
 
-Scalar parse_type(std::string_view type, std::uint64_t size, const HeaderLines& lines) {
-  if (type == "I" && size == 1) return Scalar::int8;
-  if (type == "U" && size == 1) return Scalar::uint8;
-  if (type == "I" && size == 2) return Scalar::int16;
-  if (type == "U" && size == 2) return Scalar::uint16;
-  if (type == "I" && size == 4) return Scalar::int32;
-  if (type == "U" && size == 4) return Scalar::uint32;
-  if (type == "I" && size == 8) return Scalar::int64;
-  if (type == "U" && size == 8) return Scalar::uint64;
-  if (type == "F" && size == 4) return Scalar::float32;
-  if (type == "F" && size == 8) return Scalar::float64;
-  lines.fail("expected TYPE I or U of SIZE 1, 2, 4 or 8, or F of SIZE 4 or 8, found TYPE {} of SIZE {}",
-             in_quotes(type), size);
+char type_letter(Scalar type) {
+  if (is_float(type)) return 'F';
+  return with_type(type, [](auto value) { return std::is_signed_v<decltype(value)>; }) ? 'I' : 'U';
 }
 
-char type_letter(Scalar type) {
-  switch (type) {
-    case Scalar::int8:
-    case Scalar::int16:
-    case Scalar::int32:
-    case Scalar::int64:
-      return 'I';
-    case Scalar::float32:
-    case Scalar::float64:
-      return 'F';
-    default:
-      return 'U';
-  }
+Scalar parse_type(std::string_view letter, std::uint64_t size, const HeaderLines& lines) {
+  for (const Scalar type : kScalars)
+    if (letter == std::string(1, type_letter(type)) && size == size_of(type)) return type;
+  lines.fail("expected TYPE I or U of SIZE 1, 2, 4 or 8, or F of SIZE 4 or 8, found TYPE {} of SIZE {}",
+             in_quotes(letter), size);
 }
 
 // The header's lines by keyword, before they are put together.

@@ -1,9 +1,11 @@
 /// A property of a point (or of a face, an edge): its name and type as in the file.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 
@@ -11,6 +13,40 @@ namespace rfsmooth::pipeline::io {
 
 /// The number types of PLY and PCD.
 enum class Scalar { int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64 };
+
+/// All of them, in the order of their values.
+inline constexpr std::array kScalars = {Scalar::int8,    Scalar::uint8,  Scalar::int16, Scalar::uint16,
+                                        Scalar::int32,   Scalar::uint32, Scalar::int64, Scalar::uint64,
+                                        Scalar::float32, Scalar::float64};
+
+/// Calls `body` with a zero of the type of C++ that `type` stands for; returns what it returns.
+/// \throw std::invalid_argument if `type` is none.
+template <class Body>
+auto with_type(Scalar type, Body&& body) {
+  switch (type) {
+    case Scalar::int8:
+      return body(std::int8_t{});
+    case Scalar::uint8:
+      return body(std::uint8_t{});
+    case Scalar::int16:
+      return body(std::int16_t{});
+    case Scalar::uint16:
+      return body(std::uint16_t{});
+    case Scalar::int32:
+      return body(std::int32_t{});
+    case Scalar::uint32:
+      return body(std::uint32_t{});
+    case Scalar::int64:
+      return body(std::int64_t{});
+    case Scalar::uint64:
+      return body(std::uint64_t{});
+    case Scalar::float32:
+      return body(float{});
+    case Scalar::float64:
+      return body(double{});
+  }
+  throw std::invalid_argument("with_type: not a Scalar");
+}
 
 std::size_t size_of(Scalar type);       ///< bytes
 bool is_float(Scalar type);             ///< float32 or float64

@@ -64,13 +64,6 @@ void append_whole(std::string& out, T value) {
   out.append(buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr);
 }
 
-template <class T>
-T read_as(const char* p) {
-  T v;
-  std::memcpy(&v, p, sizeof v);
-  return v;
-}
-
 int significant_digits(std::string_view word) {
   int digits = 0;
   for (const char c : word) {
@@ -105,28 +98,12 @@ std::optional<double> parse_real(std::string_view word) {
 
 std::optional<std::uint64_t> parse_integer(std::string_view word, Scalar type) {
   if (word.size() > 1 && word.front() == '+' && word[1] != '-' && word[1] != '+') word.remove_prefix(1);
-  switch (type) {
-    case Scalar::int8:
-      return integer_as<std::int8_t>(word);
-    case Scalar::uint8:
-      return integer_as<std::uint8_t>(word);
-    case Scalar::int16:
-      return integer_as<std::int16_t>(word);
-    case Scalar::uint16:
-      return integer_as<std::uint16_t>(word);
-    case Scalar::int32:
-      return integer_as<std::int32_t>(word);
-    case Scalar::uint32:
-      return integer_as<std::uint32_t>(word);
-    case Scalar::int64:
-      return integer_as<std::int64_t>(word);
-    case Scalar::uint64:
-      return integer_as<std::uint64_t>(word);
-    case Scalar::float32:
-    case Scalar::float64:
-      break;
-  }
-  throw std::invalid_argument("parse_integer: not an integer type");
+  return with_type(type, [word](auto value) -> std::optional<std::uint64_t> {
+    if constexpr (std::numeric_limits<decltype(value)>::is_integer)
+      return integer_as<decltype(value)>(word);
+    else
+      throw std::invalid_argument("parse_integer: not an integer type");
+  });
 }
 
 bool is_value(std::string_view word, Scalar type) {
@@ -153,28 +130,13 @@ void append_number(std::string& out, double value, Scalar type) {
 }
 
 void append_stored(std::string& out, const char* p, Scalar type) {
-  switch (type) {
-    case Scalar::int8:
-      return append_whole(out, int{read_as<std::int8_t>(p)});
-    case Scalar::uint8:
-      return append_whole(out, int{read_as<std::uint8_t>(p)});
-    case Scalar::int16:
-      return append_whole(out, read_as<std::int16_t>(p));
-    case Scalar::uint16:
-      return append_whole(out, read_as<std::uint16_t>(p));
-    case Scalar::int32:
-      return append_whole(out, read_as<std::int32_t>(p));
-    case Scalar::uint32:
-      return append_whole(out, read_as<std::uint32_t>(p));
-    case Scalar::int64:
-      return append_whole(out, read_as<std::int64_t>(p));
-    case Scalar::uint64:
-      return append_whole(out, read_as<std::uint64_t>(p));
-    case Scalar::float32:
-      return append_real(out, read_as<float>(p));
-    case Scalar::float64:
-      return append_real(out, read_as<double>(p));
-  }
+  with_type(type, [&out, p](auto value) {
+    std::memcpy(&value, p, sizeof value);
+    if constexpr (std::numeric_limits<decltype(value)>::is_integer)
+      append_whole(out, value);
+    else
+      append_real(out, value);
+  });
 }
 
 bool fits_float32(std::string_view word) {
