@@ -31,15 +31,10 @@ namespace {
 RowFile::RowFile(const std::filesystem::path& path, const Context& context) : source_(path, context) {
   format_ = io::detect_format(source_, context);
   switch (format_) {
-    case io::Format::ply: {
-      io::HeaderLines lines(source_, context);
-      io::Cloud cloud = io::read_ply_header(lines);
-      open_table(std::move(cloud), lines.offset(), context);
-      break;
-    }
+    case io::Format::ply:
     case io::Format::pcd: {
       io::HeaderLines lines(source_, context);
-      io::Cloud cloud = io::read_pcd_header(lines);
+      io::Cloud cloud = format_ == io::Format::ply ? io::read_ply_header(lines) : io::read_pcd_header(lines);
       open_table(std::move(cloud), lines.offset(), context);
       break;
     }
@@ -85,18 +80,11 @@ void RowFile::open_table(io::Cloud cloud, std::uint64_t at, const Context& conte
   const io::Table& points = header_.points();
   for (std::size_t axis = 0; axis < 3; ++axis) {
     field_[axis] = points.fields[header_.xyz[axis]];
-    offset_[axis] = offset_of(header_.xyz[axis]);
+    offset_[axis] = points.offset_of(header_.xyz[axis]);
   }
   at_ = at;
   rows_ = points.count;
   row_ = points.row_size();
-}
-
-std::size_t RowFile::offset_of(std::size_t field) const {
-  const std::vector<io::Field>& fields = header_.points().fields;
-  std::size_t offset = 0;
-  for (std::size_t f = 0; f < field; ++f) offset += fields[f].count * io::size_of(fields[f].type);
-  return offset;
 }
 
 std::optional<Eigen::Vector3d> RowFile::viewpoint(const Context& context) const {
@@ -129,7 +117,7 @@ void RowFile::need_normals() {
       if (const auto field = io::find_field(header_, name)) there.push_back(*field);
     }
     if (there.size() < names.size()) return;
-    const auto in_row = [&](std::size_t f) { return InRow{points.fields[f], offset_of(f)}; };
+    const auto in_row = [&](std::size_t f) { return InRow{points.fields[f], points.offset_of(f)}; };
     normals_.push_back({in_row(there[0]), in_row(there[1]), in_row(there[2])});
   };
   for (const io::NormalNames& names : {io::kPlyNormal, io::kPcdNormal}) take(names);

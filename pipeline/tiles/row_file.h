@@ -82,8 +82,6 @@ class RowFile {
   io::Bytes read(std::uint64_t first, std::size_t count, const Context& context) const;
   void copy_tail(io::Sink& to, const Context& context) const;
   void open_table(io::Cloud cloud, std::uint64_t at, const Context& context);
-  /// Where a field of the points is in a row.
-  std::size_t offset_of(std::size_t field) const;
 
   /// A field in a row.
   struct InRow {

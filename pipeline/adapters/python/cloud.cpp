@@ -123,9 +123,7 @@ bool same_fields(const io::Table& one, const io::Table& other) {
 
 /// Whether two tables, whose fields up to `field` are the same, have the same bytes in it.
 bool same_column(const io::Table& one, const io::Table& other, std::size_t field) {
-  std::size_t begin = 0;
-  for (std::size_t f = 0; f < field; ++f) begin += io::size_of(one.fields[f].type) * one.fields[f].count;
-  const std::size_t size = io::size_of(one.fields[field].type) * one.fields[field].count;
+  const std::size_t begin = one.offset_of(field), size = one.fields[field].bytes();
   for (std::size_t i = 0; i < one.count; ++i)
     if (one.row(i).substr(begin, size) != other.row(i).substr(begin, size)) return false;
   return true;

@@ -15,8 +15,7 @@ namespace {
 /// The four bytes of a field in each row, as one number: 0xAARRGGBB.
 std::vector<std::uint32_t> packed_values(io::Table& points, std::size_t field, const Context& context) {
   io::make_binary(points, context);
-  std::size_t offset = 0;
-  for (std::size_t f = 0; f < field; ++f) offset += size_of(points.fields[f].type) * points.fields[f].count;
+  const std::size_t offset = points.offset_of(field);
   std::vector<std::uint32_t> values(points.count);
   for (std::size_t i = 0; i < points.count; ++i)
     std::memcpy(&values[i], points.row(i).data() + offset, sizeof values[i]);

@@ -22,7 +22,7 @@ void transpose(const Table& table, Direction direction, const char* in, char* ou
   for_blocks(context, table.count, kColumnRowsPerBlock, [&](std::size_t begin, std::size_t end) {
     std::size_t offset = 0;
     for (const Field& f : table.fields) {
-      const std::size_t size = f.count * size_of(f.type);
+      const std::size_t size = f.bytes();
       const std::size_t column = offset * table.count;
       // Constant sizes let the compiler turn the copies into single moves.
       const auto copy = [&](auto constant) {

@@ -63,6 +63,7 @@ struct Field {
 
   double scale = 1, offset = 0;  ///< a value is what is stored * scale + offset (LAS; 1 and 0 elsewhere)
 
+  std::size_t bytes() const { return count * size_of(type); }  ///< in a row; of a list: of one of its values
   bool is_list() const { return list_count.has_value(); }
   bool is_plain() const { return !is_list() && count == 1; }  ///< one value per row
   bool is_scaled() const { return scale != 1 || offset != 0; }

@@ -26,7 +26,7 @@ void swap_fixed(const std::vector<Field>& fields, std::size_t row_size, char* da
       char* p = data + i * row_size;
       for (const Field& f : fields) {
         swap_values(p, size_of(f.type), f.count);
-        p += f.count * size_of(f.type);
+        p += f.bytes();
       }
     }
   });
@@ -56,8 +56,7 @@ void read_lists(Table& table, BinaryCursor& cursor, const Context& context) {
 
   // Each row needs at least its lists' counts and its plain values.
   std::size_t least = 0;
-  for (const Field& f : table.fields)
-    least += f.is_list() ? size_of(*f.list_count) : f.count * size_of(f.type);
+  for (const Field& f : table.fields) least += f.is_list() ? size_of(*f.list_count) : f.bytes();
   if (least > 0 && table.count > std::size_t(end - p) / least)
     cursor.source.fail("byte {}: expected {} rows of element '{}', at least {} bytes each, found {} bytes",
                        cursor.offset, table.count, table.name, least, end - p);

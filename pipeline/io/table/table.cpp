@@ -92,13 +92,13 @@ bool Table::has_lists() const {
   return false;
 }
 
-std::size_t Table::row_size() const {
-  std::size_t size = 0;
-  for (const Field& f : fields) {
-    if (f.is_list()) throw std::logic_error("rows with lists have no fixed size");
-    size += f.count * size_of(f.type);
+std::size_t Table::offset_of(std::size_t field) const {
+  std::size_t offset = 0;
+  for (std::size_t f = 0; f < field; ++f) {
+    if (fields[f].is_list()) throw std::logic_error("rows with lists have no fixed size");
+    offset += fields[f].bytes();
   }
-  return size;
+  return offset;
 }
 
 std::string_view Table::row(std::size_t i) const {

@@ -39,7 +39,9 @@ struct Table {
 
   bool has_lists() const;
   /// Bytes of a row of fixed size. \throw std::logic_error if a field is a list.
-  std::size_t row_size() const;
+  std::size_t row_size() const { return offset_of(fields.size()); }
+  /// Where a field begins in a row. \throw std::logic_error if one before it is a list.
+  std::size_t offset_of(std::size_t field) const;
   std::string_view row(std::size_t i) const;
 };
 

@@ -19,13 +19,12 @@ inline std::size_t list_size(Scalar type, const char* p) {
 }
 
 /// Finds where a field starts in a binary row; behind a list the offset differs from row to row.
-// row.
 struct Locator {
   explicit Locator(const Table& table) : fields(table.fields), fixed(!table.has_lists()) {
     std::size_t offset = 0;
     for (const Field& f : fields) {
       offsets.push_back(offset);
-      if (fixed) offset += f.count * size_of(f.type);
+      if (fixed) offset += f.bytes();
     }
   }
   const char* operator()(const char* row, std::size_t field) const {
@@ -34,7 +33,7 @@ struct Locator {
     return row;
   }
   static std::size_t bytes_of(const Field& f, const char* p) {
-    if (!f.is_list()) return f.count * size_of(f.type);
+    if (!f.is_list()) return f.bytes();
     return size_of(*f.list_count) + list_size(*f.list_count, p) * size_of(f.type);
   }
   const std::vector<Field>& fields;

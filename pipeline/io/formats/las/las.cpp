@@ -135,7 +135,7 @@ void put_places(std::string& head, const Header& was, std::uint64_t end_now) {
 std::vector<Field> fields_behind(const std::vector<Field>& fields, std::size_t row_size) {
   std::size_t at = 0, first = 0;
   while (first < fields.size() && at < row_size) {
-    at += fields[first].count * size_of(fields[first].type);
+    at += fields[first].bytes();
     ++first;
   }
   return {fields.begin() + std::ptrdiff_t(first), fields.end()};

@@ -25,10 +25,6 @@ constexpr Scalar kExtraTypes[] = {Scalar::uint8,   Scalar::int8,   Scalar::uint1
                                   Scalar::uint32,  Scalar::int32,  Scalar::uint64, Scalar::int64,
                                   Scalar::float32, Scalar::float64};
 
-std::size_t bytes_of_field(const Field& field) {
-  return field.count * size_of(field.type);
-}
-
 // The fields that one description stands for.
 std::vector<Field> fields_of_description(std::string_view d) {
   const auto type = number<std::uint8_t>(d, kTypeAt), options = number<std::uint8_t>(d, kOptionsAt);
@@ -60,7 +56,7 @@ std::vector<Field> described_fields(std::string_view body, std::size_t room, boo
     fits = type <= 30 && (type != 0 || number<std::uint8_t>(d, kOptionsAt) != 0);
     if (!fits) break;
     for (Field& field : fields_of_description(d)) {
-      size += bytes_of_field(field);
+      size += field.bytes();
       out.push_back(std::move(field));
     }
     fits = size <= room;
@@ -136,7 +132,7 @@ std::vector<Field> standard_fields(int point_format) {
 
 std::size_t row_size(int point_format) {
   std::size_t size = 0;
-  for (const Field& field : standard_fields(point_format)) size += bytes_of_field(field);
+  for (const Field& field : standard_fields(point_format)) size += field.bytes();
   return size;
 }
 
@@ -152,7 +148,7 @@ std::vector<Field> fields_of(std::string_view head, bool& described) {
   const std::vector<Record> records = records_of(head);
   if (const Record* r = find_record(records, kSpecification, kExtraBytesRecord)) {
     for (Field& field : described_fields(head.substr(r->body(), r->size), room, described)) {
-      room -= bytes_of_field(field);
+      room -= field.bytes();
       fields.push_back(std::move(field));
     }
   }
@@ -181,7 +177,7 @@ void describe_extra_bytes(std::string& head, const std::vector<Field>& fields) {
   if (record != nullptr) {
     bool fits = true;
     const std::string_view body = std::string_view(head).substr(record->body(), record->size);
-    for (const Field& field : described_fields(body, undescribed, fits)) undescribed -= bytes_of_field(field);
+    for (const Field& field : described_fields(body, undescribed, fits)) undescribed -= field.bytes();
     if (!fits)
       fail(ErrorCode::usage,
            "LAS: the description of the extra bytes does not fit the points, so no field can be added; write "
@@ -194,7 +190,7 @@ void describe_extra_bytes(std::string& head, const std::vector<Field>& fields) {
   for (const Field& field : fields) {
     const auto* type = std::find(std::begin(kExtraTypes), std::end(kExtraTypes), field.type);
     more += description(field.name, std::uint8_t(type - kExtraTypes + 1), 0);
-    row += bytes_of_field(field);
+    row += field.bytes();
   }
   const std::size_t size = (record != nullptr ? record->size : 0) + more.size();
   if (size > kLargest16 || row > kLargest16)

@@ -75,8 +75,7 @@ std::optional<Taken> place_of(const Cloud& plain, std::size_t f, const std::vect
 // Red, green and blue out of PCL's field rgb, 4 bytes.
 void take_packed(const Cloud& plain, std::size_t f, std::vector<Taken>& taken) {
   const Table& points = plain.points();
-  std::size_t at = 0;
-  for (std::size_t k = 0; k < f; ++k) at += points.fields[k].count * size_of(points.fields[k].type);
+  const std::size_t at = points.offset_of(f);
   for (std::size_t c = 0; c < 3; ++c) {
     Taken colour{{kColours[c], kColours[c], 0, 65535}, {}};
     for (std::size_t i = 0; i < points.count; ++i)
@@ -165,10 +164,9 @@ std::vector<Field> new_fields(const std::vector<Field>& from, const Sorted& sort
   return fields;
 }
 
-std::vector<std::size_t> places_in_row(const std::vector<Field>& fields) {
-  std::vector<std::size_t> at(fields.size() + 1, 0);
-  for (std::size_t f = 0; f < fields.size(); ++f)
-    at[f + 1] = at[f] + fields[f].count * size_of(fields[f].type);
+std::vector<std::size_t> offsets_of(const Table& table) {
+  std::vector<std::size_t> at;
+  for (std::size_t f = 0; f <= table.fields.size(); ++f) at.push_back(table.offset_of(f));
   return at;
 }
 
@@ -181,7 +179,7 @@ std::size_t index_of(const std::vector<Field>& fields, std::string_view name) {
 // Fills the rows of `points`, whose fields are set.
 void fill_rows(Table& points, const Table& from, const std::vector<double>& xyz, const Sorted& sorted,
                const Context& context) {
-  const std::vector<std::size_t> at = places_in_row(points.fields), from_at = places_in_row(from.fields);
+  const std::vector<std::size_t> at = offsets_of(points), from_at = offsets_of(from);
   const std::size_t standard = points.fields.size() - sorted.extra.size();
   const std::size_t bit_fields = at[index_of(points.fields, "bit_fields")];
   const bool returns = sorted.has("return_number") || sorted.has("number_of_returns");

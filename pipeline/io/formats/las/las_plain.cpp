@@ -52,7 +52,7 @@ std::vector<Origin> origins_of(const Table& table, int point_format) {
                   field.count};
       out.push_back({std::move(plain), &field, at});
     }
-    at += field.count * size_of(field.type);
+    at += field.bytes();
   }
   return out;
 }
@@ -81,7 +81,7 @@ void put_plain(const Origin& o, const char* row, char* out) {
   } else if (o.field.type != o.stored->type) {
     store(o.field.type, out, load(*o.stored, p) / o.divide);
   } else {
-    std::memcpy(out, p, o.field.count * size_of(o.field.type));
+    std::memcpy(out, p, o.field.bytes());
   }
 }
 
@@ -143,7 +143,7 @@ Cloud plain_of_las(const Cloud& las, const Context& context) {
     char* to = points.data.data() + i * size;
     for (const Origin& o : origins) {
       put_plain(o, from.row(i).data(), to);
-      to += o.field.count * size_of(o.field.type);
+      to += o.field.bytes();
     }
   });
   out.elements.push_back(std::move(points));
