@@ -1,7 +1,6 @@
 #include "pipeline/io/convert.h"
 
 #include <algorithm>
-#include <charconv>
 
 #include <fmt/format.h>
 
@@ -9,6 +8,7 @@
 #include "pipeline/io/formats/header_lines.h"
 #include "pipeline/io/formats/las/las_plain.h"
 #include "pipeline/io/formats/off.h"
+#include "pipeline/io/mesh_file.h"
 
 namespace rfsmooth::pipeline::io {
 namespace {
@@ -103,27 +103,17 @@ std::optional<std::string_view> info_value(std::string_view line, std::string_vi
   return std::string_view(p, std::size_t(end - p));
 }
 
-std::size_t whole(std::string_view word) {
-  std::size_t value = 0;
-  const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  return error == std::errc{} && stop == word.data() + word.size() ? value : 0;
-}
-
-bool is_viewpoint(std::string_view words) {
-  const char* p = words.data();
-  const char* end = p + words.size();
-  int n = 0;
-  for (std::string_view word = next_word(p, end); !word.empty(); word = next_word(p, end), ++n)
-    if (!parse_real(word)) return false;
-  return n == 7;
+bool is_viewpoint(std::string_view text) {
+  const std::vector<std::string_view> words = words_of(text);
+  return words.size() == 7 && std::all_of(words.begin(), words.end(), parse_real);
 }
 
 // PLY's obj_info lines that say what PCD has words for; they leave the notes.
 void take_grid_and_viewpoint(Cloud& cloud) {
   std::size_t columns = 0, rows = 0;
   for (const Note& note : cloud.notes) {
-    if (const auto v = info_value(note.line, "num_cols")) columns = whole(*v);
-    if (const auto v = info_value(note.line, "num_rows")) rows = whole(*v);
+    if (const auto v = info_value(note.line, "num_cols")) columns = parse_count(*v).value_or(0);
+    if (const auto v = info_value(note.line, "num_rows")) rows = parse_count(*v).value_or(0);
     if (const auto v = info_value(note.line, "viewpoint"); v && is_viewpoint(*v)) cloud.viewpoint = *v;
   }
   const bool grid = columns > 0 && rows > 0 && cloud.size() % columns == 0 && cloud.size() / columns == rows;
@@ -207,14 +197,6 @@ void narrow_face_counts(Table& faces, const Context& context) {
   faces.fields[0].list_count = Scalar::uint8;
 }
 
-std::optional<std::size_t> face_list(const Table& table) {
-  for (std::size_t f = 0; f < table.fields.size(); ++f)
-    if (table.fields[f].is_list() &&
-        (table.fields[f].name == "vertex_indices" || table.fields[f].name == "vertex_index"))
-      return f;
-  return std::nullopt;
-}
-
 bool has_ragged_values(const Table& table, const Context& context) {
   if (!table.ragged) return false;
   const Lists lists = gather_lists(table, 0, context);
@@ -282,12 +264,12 @@ std::vector<std::string> what_is_lost(const Cloud& cloud, Format format, Encodin
   for (std::size_t e = 0; e < cloud.elements.size(); ++e) {
     const Table& table = cloud.elements[e];
     if (e == cloud.vertex || table.count == 0) continue;
-    const bool faces = table.name == "face" && face_list(table);
+    const bool faces = table.name == "face" && polygon_field(table);
     if (has_points_only(format) || (format == Format::off && !faces)) {
       lost.push_back(fmt::format("element '{}'", table.name));
     } else if (format == Format::off) {
       for (std::size_t f = 0; f < table.fields.size(); ++f)
-        if (f != *face_list(table))
+        if (f != *polygon_field(table))
           lost.push_back(fmt::format("field '{}' of the faces", table.fields[f].name));
     } else if (has_ragged_values(table, context)) {
       lost.push_back("colours of the faces");
@@ -336,7 +318,7 @@ Cloud convert(const Cloud& cloud, Format format, const Context& context) {
   for (std::size_t e = 0; e < cloud.elements.size(); ++e) {
     if (e == cloud.vertex || has_points_only(format)) continue;
     Table table = cloud.elements[e];
-    const auto list = face_list(table);
+    const auto list = polygon_field(table);
     if (format == Format::off && (table.name != "face" || !list)) continue;
     const bool bare = format == Format::off && cloud.format != Format::off;
     if (bare || (table.ragged && format != Format::off)) project(table, {*list}, context);

@@ -1,8 +1,5 @@
 #include "pipeline/io/io.h"
 
-#include <algorithm>
-#include <cctype>
-
 #include "base/fail.h"
 #include "pipeline/io/convert.h"
 #include "pipeline/io/detect.h"
@@ -53,11 +50,9 @@ void write(const Cloud& cloud, Format format, const WriteOptions& options, Sink&
   const Encoding encoding = target_encoding(cloud, format, options.encoding);
   if (!options.drop_unsupported) {
     const std::vector<std::string> losses = what_is_lost(cloud, format, encoding, context);
-    std::string list;
-    for (const std::string& loss : losses) list += (list.empty() ? "" : ", ") + loss;
     if (!losses.empty())
       fail(ErrorCode::usage, "{} ({}) cannot carry {}; `drop-unsupported` leaves that out", name_of(format),
-           name_of(encoding), list);
+           name_of(encoding), fmt::join(losses, ", "));
   }
   if (is_writable_as_is(cloud, format)) return write_as_is(cloud, encoding, sink, context);
   write_as_is(convert(cloud, format, context), encoding, sink, context);
@@ -125,8 +120,7 @@ Result<Done> write_bytes(std::string_view bytes, const std::filesystem::path& pa
 }
 
 std::optional<Format> format_of_extension(const std::filesystem::path& path) {
-  std::string e = path.extension().string();
-  std::transform(e.begin(), e.end(), e.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  const std::string e = extension_of(path);
   if (e == ".ply") return Format::ply;
   if (e == ".pcd") return Format::pcd;
   if (e == ".off") return Format::off;

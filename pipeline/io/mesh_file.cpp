@@ -9,14 +9,6 @@
 namespace rfsmooth::pipeline::io {
 namespace {
 
-std::optional<std::size_t> polygon_field(const Table& table) {
-  for (std::size_t f = 0; f < table.fields.size(); ++f)
-    if (table.fields[f].is_list() &&
-        (table.fields[f].name == "vertex_indices" || table.fields[f].name == "vertex_index"))
-      return f;
-  return std::nullopt;
-}
-
 Index point(double value, const Cloud& cloud, const char* what, std::size_t row) {
   if (!(value >= 0 && value < double(cloud.size())))
     fail(ErrorCode::input_unreadable, "{} {}: expected points below {}, found {}", what, row, cloud.size(),
@@ -40,6 +32,14 @@ void append(Bytes& data, std::int32_t value) {
 }
 
 }  // namespace
+
+std::optional<std::size_t> polygon_field(const Table& table) {
+  for (std::size_t f = 0; f < table.fields.size(); ++f)
+    if (table.fields[f].is_list() &&
+        (table.fields[f].name == "vertex_indices" || table.fields[f].name == "vertex_index"))
+      return f;
+  return std::nullopt;
+}
 
 std::vector<Face> faces_of(const Cloud& cloud, const Context& context) {
   std::vector<Face> faces;

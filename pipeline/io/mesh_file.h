@@ -9,6 +9,9 @@
 
 namespace rfsmooth::pipeline::io {
 
+/// The field of an element that lists the corners of polygons (vertex_indices or vertex_index), if any.
+std::optional<std::size_t> polygon_field(const Table& table);
+
 /// The triangles of a PLY or OFF file (m x 3), corners as rows of the points; empty if the file has no faces.
 /// Polygons are split into fans: a fan covers a convex polygon; of others, only the connectivity is right.
 /// Polygons with fewer than three corners and triangles with a repeated corner are left out; a warning says

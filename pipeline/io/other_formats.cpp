@@ -61,10 +61,15 @@ bool has_extension(const OtherFormat& format, const std::string& extension) {
 
 }  // namespace
 
-const OtherFormat* other_format_of_extension(const std::filesystem::path& path) {
+std::string extension_of(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return char(std::tolower(c)); });
+  return extension;
+}
+
+const OtherFormat* other_format_of_extension(const std::filesystem::path& path) {
+  const std::string extension = extension_of(path);
   for (const OtherFormat& format : kFormats)
     if (has_extension(format, extension)) return &format;
   return nullptr;

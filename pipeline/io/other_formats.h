@@ -2,7 +2,7 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
+#include <string>
 #include <string_view>
 
 namespace rfsmooth::pipeline::io {
@@ -15,6 +15,9 @@ struct OtherFormat {
   const char* advice;      ///< how to come by a file that is read here
   const char* instead = "write .ply, .pcd, .xyz, .off or .las and convert that";  ///< of writing it
 };
+
+/// The path's extension in lower case, ".ply"; "" if it has none.
+std::string extension_of(const std::filesystem::path& path);
 
 /// The unsupported format of a file that begins with these bytes; null if unknown.
 const OtherFormat* other_format_of_bytes(std::string_view first_bytes);

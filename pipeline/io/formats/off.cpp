@@ -1,7 +1,5 @@
 #include "pipeline/io/formats/off.h"
 
-#include <charconv>
-
 #include <fmt/format.h>
 
 #include "pipeline/io/formats/header_lines.h"
@@ -34,13 +32,12 @@ struct Counts {
   std::size_t vertices = 0, faces = 0;
 };
 
-std::size_t parse_count(std::string_view word, const TextCursor& cursor, const char* what) {
-  std::size_t value = 0;
-  const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (word.empty() || error != std::errc{} || stop != word.data() + word.size())
+std::size_t element_count(std::string_view word, const TextCursor& cursor, const char* what) {
+  const auto value = parse_count(word);
+  if (!value)
     cursor.source.fail("line {}: expected the number of {}, found {}", cursor.lines, what,
                        word.empty() ? "the end of the line" : in_quotes(word));
-  return value;
+  return std::size_t(*value);
 }
 
 std::string_view next_content(TextCursor& cursor, const char* expected) {
@@ -73,10 +70,10 @@ Counts read_header(TextCursor& cursor, Kind& kind) {
     first = next_word(p, end);
   }
   Counts counts;
-  counts.vertices = parse_count(first, cursor, "vertices");
-  counts.faces = parse_count(next_word(p, end), cursor, "faces");
+  counts.vertices = element_count(first, cursor, "vertices");
+  counts.faces = element_count(next_word(p, end), cursor, "faces");
   const std::string_view edges = next_word(p, end);  // often 0, sometimes missing, never used
-  if (!edges.empty()) parse_count(edges, cursor, "edges");
+  if (!edges.empty()) element_count(edges, cursor, "edges");
   return counts;
 }
 
@@ -87,11 +84,7 @@ std::size_t columns_ahead(const TextCursor& cursor) {
     const std::size_t newline = rest.find('\n');
     const std::string_view line = newline == std::string_view::npos ? rest : rest.substr(0, newline + 1);
     rest.remove_prefix(line.size());
-    if (is_blank_or_comment(line)) continue;
-    std::size_t n = 0;
-    const char* p = line.data();
-    while (!next_word(p, line.data() + line.size()).empty()) ++n;
-    return n;
+    if (!is_blank_or_comment(line)) return words_of(line).size();
   }
   return 0;
 }

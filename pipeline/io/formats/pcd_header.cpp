@@ -1,5 +1,3 @@
-#include <charconv>
-
 #include <fmt/format.h>
 
 #include "pipeline/io/formats/pcd.h"
@@ -12,21 +10,10 @@ constexpr std::string_view kFirstLine = "# .PCD v0.7 - Point Cloud Data file for
 // No sensor has fields of so many values; products of counts stay far from the range of 64 bits.
 constexpr std::uint64_t kMostCount = std::uint64_t{1} << 24;
 
-std::vector<std::string_view> words_of(std::string_view line) {
-  std::vector<std::string_view> words;
-  const char* p = line.data();
-  const char* end = p + line.size();
-  for (std::string_view word = next_word(p, end); !word.empty(); word = next_word(p, end))
-    words.push_back(word);
-  return words;
-}
-
-std::uint64_t parse_count(std::string_view key, std::string_view word, const HeaderLines& lines) {
-  std::uint64_t value = 0;
-  const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (word.empty() || error != std::errc{} || stop != word.data() + word.size())
-    lines.fail("expected a whole number after {}, found {}", key, in_quotes(word));
-  return value;
+std::uint64_t count_of(std::string_view key, std::string_view word, const HeaderLines& lines) {
+  const auto value = parse_count(word);
+  if (!value) lines.fail("expected a whole number after {}, found {}", key, in_quotes(word));
+  return *value;
 }
 
 char type_letter(Scalar type) {
@@ -75,11 +62,11 @@ Entries read_entries(HeaderLines& lines, Cloud& cloud) {
     } else if (key == "COUNT") {
       e.count = strings(words);
     } else if (key == "WIDTH") {
-      e.width = parse_count(key, first, lines);
+      e.width = count_of(key, first, lines);
     } else if (key == "HEIGHT") {
-      e.height = parse_count(key, first, lines);
+      e.height = count_of(key, first, lines);
     } else if (key == "POINTS") {
-      e.points = parse_count(key, first, lines);
+      e.points = count_of(key, first, lines);
     } else if (key == "VIEWPOINT") {
       e.viewpoint = strings(words);
       if (e.viewpoint.size() != 7)
@@ -110,8 +97,8 @@ Table points_of(const Entries& e, const HeaderLines& lines) {
   Table table;
   table.name = "vertex";
   for (std::size_t f = 0; f < n; ++f) {
-    Field field{e.fields[f], parse_type(e.type[f], parse_count("SIZE", e.size[f], lines), lines)};
-    if (!e.count.empty()) field.count = std::size_t(parse_count("COUNT", e.count[f], lines));
+    Field field{e.fields[f], parse_type(e.type[f], count_of("SIZE", e.size[f], lines), lines)};
+    if (!e.count.empty()) field.count = std::size_t(count_of("COUNT", e.count[f], lines));
     if (field.count == 0 || field.count > kMostCount)
       lines.fail("expected COUNT from 1 to {} for field {}, found {}", kMostCount, in_quotes(field.name),
                  field.count);
@@ -137,12 +124,6 @@ void set_size(Cloud& cloud, const Entries& e, const HeaderLines& lines) {
   cloud.height = height;
 }
 
-std::string joined(const std::vector<std::string>& words) {
-  std::string out;
-  for (const std::string& word : words) out += (out.empty() ? "" : " ") + word;
-  return out;
-}
-
 }  // namespace
 
 Cloud read_pcd_header(HeaderLines& lines) {
@@ -160,7 +141,7 @@ Cloud read_pcd_header(HeaderLines& lines) {
   }
   cloud.elements.push_back(points_of(e, lines));
   set_size(cloud, e, lines);
-  if (!e.viewpoint.empty()) cloud.viewpoint = joined(e.viewpoint);
+  if (!e.viewpoint.empty()) cloud.viewpoint = fmt::format("{}", fmt::join(e.viewpoint, " "));
   cloud.original_header = lines.text();
   if (cloud.original_header.back() != '\n') cloud.original_header += cloud.newline;  // cut off there
   cloud.original_canonical = pcd_header(cloud, cloud.encoding);

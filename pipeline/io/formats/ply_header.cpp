@@ -1,4 +1,3 @@
-#include <charconv>
 #include <utility>
 
 #include <fmt/format.h>
@@ -43,9 +42,10 @@ Table parse_element(std::string_view rest, const HeaderLines& lines) {
   Table table;
   table.name = next_word(p, end);
   const std::string_view count = next_word(p, end);
-  const auto [stop, error] = std::from_chars(count.data(), count.data() + count.size(), table.count);
-  if (table.name.empty() || count.empty() || error != std::errc{} || stop != count.data() + count.size())
+  const auto rows = parse_count(count);
+  if (table.name.empty() || !rows)
     lines.fail("expected 'element NAME COUNT', found a count of {}", in_quotes(count));
+  table.count = std::size_t(*rows);
   if (!next_word(p, end).empty()) lines.fail("expected 'element NAME COUNT', found more words");
   return table;
 }

@@ -16,16 +16,6 @@ namespace {
 
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
-std::vector<std::string_view> columns_of(std::string_view line) {
-  std::vector<std::string_view> words;
-  const char* p = line.data();
-  const char* end = p + line.size();
-  for (std::string_view word = next_word(p, end, Separators::space_comma); !word.empty();
-       word = next_word(p, end, Separators::space_comma))
-    words.push_back(word);
-  return words;
-}
-
 std::string_view without_line_end(std::string_view line) {
   while (!line.empty() && (line.back() == '\n' || line.back() == '\r')) line.remove_suffix(1);
   return line;
@@ -60,14 +50,10 @@ bool has_decimal_commas(std::string_view line) {
   return inner && other;
 }
 
-struct Beginning {
-  std::vector<std::string> names;  // of the columns, if a line gives them
-};
-
-// Reads up to the first point; names from a comment count only if there are as many as columns.
-Beginning read_beginning(TextCursor& cursor, Cloud& cloud) {
-  Beginning beginning;
-  std::vector<std::pair<std::size_t, std::vector<std::string>>> candidates;  // note, words
+// Reads up to the first point. Returns the names of the columns, if a line gives them; those of a comment
+// count only if there are as many as columns.
+std::vector<std::string> read_beginning(TextCursor& cursor, Cloud& cloud) {
+  std::vector<std::string> names;
   if (cursor.rest().substr(0, kByteOrderMark.size()) == kByteOrderMark) cursor.at += kByteOrderMark.size();
   for (;;) {
     const std::string_view line = peek_line(cursor);
@@ -75,10 +61,10 @@ Beginning read_beginning(TextCursor& cursor, Cloud& cloud) {
     if (cursor.lines == 0 && line.size() > 1 && line[line.size() - 2] == '\r') cloud.newline = "\r\n";
     const std::string_view content = without_line_end(line);
     const std::string_view prefix = prefix_of(content);
-    const auto words = columns_of(content.substr(prefix.size()));
+    const auto words = words_of(content.substr(prefix.size()), Separators::space_comma);
     const bool comment = is_blank_or_comment(line);
     if (names_coordinates(words) && !cloud.xyz_style.names) {
-      beginning.names.assign(words.begin(), words.end());
+      names.assign(words.begin(), words.end());
       cloud.xyz_style.names = std::string(prefix);
       const std::size_t comma = content.find_first_of(",;\t");
       cloud.xyz_style.separator = comma == std::string_view::npos ? ' ' : content[comma];
@@ -92,7 +78,7 @@ Beginning read_beginning(TextCursor& cursor, Cloud& cloud) {
     }
     skip_line(cursor);
   }
-  return beginning;
+  return names;
 }
 
 // What one row says of three columns being a normal: flags, one of them set, have its length, too.
@@ -141,12 +127,12 @@ Cloud read_xyz(const Source& source, const Context& context) {
   cloud.format = Format::xyz;
   cloud.encoding = Encoding::ascii;
   TextCursor cursor(source, 0, 0, context);
-  Beginning beginning = read_beginning(cursor, cloud);
+  std::vector<std::string> names = read_beginning(cursor, cloud);
   cloud.original_header.assign(cursor.all.data(), cursor.at);
 
   const std::string_view first = peek_line(cursor);
   if (first.empty()) source.fail("line {}: expected points, found the end of the file", cursor.lines + 1);
-  const auto words = columns_of(first);
+  const auto words = words_of(first, Separators::space_comma);
   if (words.size() < 3)
     source.fail("line {}: expected at least 3 columns, found {} in {}", cursor.lines + 1, words.size(),
                 in_quotes(without_line_end(first)));
@@ -155,15 +141,15 @@ Cloud read_xyz(const Source& source, const Context& context) {
         "line {}: expected decimal points and one kind of separator, found commas between digits in {}",
         cursor.lines + 1, in_quotes(without_line_end(first)));
 
-  if (beginning.names.size() != words.size()) {
+  if (names.size() != words.size()) {
     // Not this file's columns: an ordinary comment after all.
-    beginning.names.clear();
+    names.clear();
     cloud.xyz_style.names.reset();
   }
   const auto names_line =
       std::find_if(cloud.notes.begin(), cloud.notes.end(), [](const Note& n) { return n.element == 1; });
   if (names_line != cloud.notes.end()) {
-    if (!beginning.names.empty())
+    if (!names.empty())
       cloud.notes.erase(names_line);
     else
       names_line->element = 0;
@@ -173,12 +159,12 @@ Cloud read_xyz(const Source& source, const Context& context) {
   table.separators = Separators::space_comma;
   for (std::size_t k = 0; k < words.size(); ++k) {
     std::string name = k < 3 ? std::string(1, char('x' + char(k))) : fmt::format("column_{}", k + 1);
-    if (!beginning.names.empty()) name = beginning.names[k];
+    if (!names.empty()) name = names[k];
     table.fields.push_back({std::move(name), Scalar::float64});
   }
   count_text_rows(table, cursor);
   read_text_rows(table, cursor, context);
-  if (const std::size_t k = beginning.names.empty() ? unit_columns(table) : 0; k > 0)
+  if (const std::size_t k = names.empty() ? unit_columns(table) : 0; k > 0)
     for (std::size_t axis = 0; axis < 3; ++axis) table.fields[k + axis].name = kPlyNormal[axis];
   cloud.tail = cursor.rest();
   cloud.elements.push_back(std::move(table));

@@ -76,6 +76,22 @@ int significant_digits(std::string_view word) {
 
 }  // namespace
 
+std::vector<std::string_view> words_of(std::string_view line, Separators s) {
+  std::vector<std::string_view> words;
+  const char* p = line.data();
+  const char* const end = p + line.size();
+  for (std::string_view word = next_word(p, end, s); !word.empty(); word = next_word(p, end, s))
+    words.push_back(word);
+  return words;
+}
+
+std::optional<std::uint64_t> parse_count(std::string_view word) {
+  std::uint64_t value = 0;
+  const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (word.empty() || error != std::errc{} || stop != word.data() + word.size()) return std::nullopt;
+  return value;
+}
+
 std::optional<double> parse_real(std::string_view word) {
   if (!word.empty() && word.front() == '+') {
     word.remove_prefix(1);

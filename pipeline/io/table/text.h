@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "pipeline/io/table/field.h"
 
@@ -29,6 +30,12 @@ inline std::string_view next_word(const char*& p, const char* end, Separators s 
   while (p != end && !is_separator(*p, s)) ++p;
   return {first, std::size_t(p - first)};
 }
+
+/// All words of a line.
+std::vector<std::string_view> words_of(std::string_view line, Separators s = Separators::space);
+
+/// A number of rows and the like: digits only. None if it is anything else, or too large.
+std::optional<std::uint64_t> parse_count(std::string_view word);
 
 /// Parses a real number: decimal or scientific, optional sign, nan and inf as spelled by C, C++ and Windows.
 /// Independent of the locale. Values beyond the range of double give infinity or zero. None if it is anything
