@@ -114,8 +114,7 @@ Graph graph_of(const std::string& stage, const Connection& connection) {
 std::string connect_cloud(const MeshCommandOptions& options, pipeline::io::Cloud& cloud, const Job& job,
                           const Context& context, Console& console, std::vector<StageTime>& stages,
                           ordered_json& entry) {
-  if (const auto error = refuse_without_memory(job.input, rfsmooth::denoise_memory(cloud.size())))
-    throw Failure(*error);
+  need_memory(job.input, rfsmooth::denoise_memory(cloud.size()));
   const std::vector<double> xyz = pipeline::io::positions(cloud, context);
   const rfs_mesh::WorkingCloud working =
       value_or_fail(rfs_mesh::make_working_cloud(xyz.data(), cloud.size(), context), job.input);

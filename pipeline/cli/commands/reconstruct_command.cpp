@@ -71,8 +71,7 @@ std::string reconstruct_cloud(const ReconstructCommandOptions& options, const Su
                               pipeline::io::Cloud& cloud, const Job& job, const Context& context,
                               Console& console, std::vector<StageTime>& stages, ordered_json& entry) {
   check_format(job, options.job.files);
-  if (const auto error = refuse_without_memory(job.input, rfsmooth::denoise_memory(cloud.size())))
-    throw Failure(*error);
+  need_memory(job.input, rfsmooth::denoise_memory(cloud.size()));
   const Reconstruction made = value_or_fail(
       rfsmooth::reconstruct(pipeline::io::positions(cloud, context), options.reconstruct, method, context),
       job.input);

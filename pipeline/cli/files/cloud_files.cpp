@@ -60,8 +60,7 @@ io::Cloud load_cloud(const std::string& input, const Context& context, std::vect
   const std::string standard_input = "/dev/stdin", path = input == "-" ? standard_input : input;
   std::error_code unknown;
   // The file's own size is the least that reading it takes.
-  if (const auto bytes = std::filesystem::file_size(path, unknown); !unknown)
-    if (const auto error = refuse_without_memory(input, bytes)) throw Failure(*error);
+  if (const auto bytes = std::filesystem::file_size(path, unknown); !unknown) need_memory(input, bytes);
   auto cloud = io::read_cloud(path, {}, context);
   if (input != "-" || cloud.ok()) return value_or_throw(std::move(cloud));
   Error error = cloud.error();

@@ -11,6 +11,8 @@
 #include <malloc.h>
 #endif
 
+#include "base/fail.h"
+
 namespace rfsmooth::cli {
 
 namespace {
@@ -56,12 +58,11 @@ std::optional<std::size_t> available_memory() {
   return least;
 }
 
-std::optional<Error> refuse_without_memory(std::string_view input, std::size_t needed) {
+void need_memory(std::string_view input, std::size_t needed) {
   const auto available = available_memory();
-  if (!available || needed <= *available) return std::nullopt;
-  return Error{ErrorCode::out_of_memory,
-               fmt::format("{}: needs about {} of memory, {} are available; nothing was started", input,
-                           in_gb(needed), in_gb(*available))};
+  if (!available || needed <= *available) return;
+  fail(ErrorCode::out_of_memory, "{}: needs about {} of memory, {} are available; nothing was started", input,
+       in_gb(needed), in_gb(*available));
 }
 
 void give_memory_back() {

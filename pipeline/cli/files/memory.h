@@ -5,16 +5,14 @@
 #include <optional>
 #include <string_view>
 
-#include <rfsmooth/result.h>
-
 namespace rfsmooth::cli {
 
 /// Bytes that this process may still allocate: the least of the machine's free memory, the limit of its
 /// control group and the limit of its address space. None if none of them is known.
 std::optional<std::size_t> available_memory();
 
-/// An Error (out_of_memory) with both figures if fewer than `needed` bytes are available.
-std::optional<Error> refuse_without_memory(std::string_view input, std::size_t needed);
+/// \throw Failure (out_of_memory) with both figures if fewer than `needed` bytes are available.
+void need_memory(std::string_view input, std::size_t needed);
 
 /// From now on freed arrays return to the system at once. Call it before anything large is allocated.
 void give_memory_back();

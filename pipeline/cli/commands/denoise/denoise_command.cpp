@@ -145,7 +145,7 @@ std::string denoise_cloud(const DenoiseCommandOptions& options, Beside& beside, 
                           std::vector<StageTime>& stages, ordered_json& entry) {
   const std::size_t n = cloud.size();
   check_fields(options, cloud);
-  if (const auto error = refuse_without_memory(job.input, rfsmooth::denoise_memory(n))) throw Failure(*error);
+  need_memory(job.input, rfsmooth::denoise_memory(n));
   std::vector<double> xyz = pipeline::io::positions(cloud, context);
   check_memory(options, job, xyz, context);
   const std::vector<double> strength =
