@@ -80,9 +80,6 @@ Command completion_command();
 Command text_command(std::string name, std::string summary, std::string usage, std::string description,
                      std::function<std::string(const std::vector<std::string>& arguments)> text);
 
-/// Gives options their one-letter names.
-void polish(Command& command);
-
 /// All of them, in the order of the overview.
 std::vector<Command> all_commands();
 

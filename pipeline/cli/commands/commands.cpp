@@ -21,13 +21,6 @@ Command text_command(std::string name, std::string summary, std::string usage, s
   return command;
 }
 
-void polish(Command& command) {
-  for (CommandOption& option : command.options) {
-    for (const auto& [name, letter] : {std::pair("output", 'o'), {"quiet", 'q'}, {"verbose", 'v'}})
-      if (option.name == name) option.short_name = letter;
-  }
-}
-
 std::vector<Command> all_commands() {
   return {denoise_command(),     tiles_command(), mesh_command(),    smooth_mesh_command(),
           reconstruct_command(), info_command(),  compare_command(), render_command(),

@@ -171,7 +171,6 @@ Command compare_command() {
       "surface, P2M, shrinkage; against a cloud: Chamfer distance; evenness of the cloud; the error of its "
       "normals if it has some. Points that are not finite are left out.";
   collect(*options, command.options);
-  polish(command);
   command.run = [options](const Invocation& typed) { return run_compare(*options, typed); };
   return command;
 }

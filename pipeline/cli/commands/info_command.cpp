@@ -195,7 +195,6 @@ Command info_command() {
       "the rings of a spinning laser; smoothing follows the lines. 'depth in steps of S': depths are "
       "rounded, and S is the typical distance from one to the next.";
   collect(*options, command.options);
-  polish(command);
   command.run = [options](const Invocation& typed) { return run_info(*options, typed); };
   return command;
 }

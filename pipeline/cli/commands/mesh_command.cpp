@@ -174,7 +174,6 @@ Command mesh_command() {
   collect(options->mesh, command.options);
   collect(options->job, command.options);
   command.everyday = {"stage", "output", "force", "threads", "report", "quiet", "verbose"};
-  polish(command);
   command.on_cloud = {
       [](const Invocation&) {}, [options] { return stages_up_to(options->mesh.stage); },
       [options](auto&&... all) { return connect_cloud(*options, std::forward<decltype(all)>(all)...); }};

@@ -123,7 +123,6 @@ Command table(const std::shared_ptr<ReconstructCommandOptions>& options) {
   collect(options->job, command.options);
   command.everyday = {"method", "denoise", "trim",   "fill-holes", "strength", "output",
                       "force",  "threads", "report", "quiet",      "verbose"};
-  polish(command);
   return command;
 }
 

@@ -25,7 +25,6 @@ Command render_table(const std::shared_ptr<RenderOptions>& options) {
   collect(*options, command.options);
   command.everyday = {"output", "labels", "title",  "direction", "up",
                       "zoom",   "width",  "height", "color",     "force"};
-  polish(command);
   return command;
 }
 

@@ -140,7 +140,6 @@ Command report_command() {
       "histogram of the displacements. A field 'outlier' of AFTER says which points are outliers; else they "
       "are searched for. rfsmooth denoise --html makes the same page on the way.";
   collect(*options, command.options);
-  polish(command);
   command.run = [options, known = command.options](const Invocation& typed) {
     return run_report(*options, typed, command_line("report", typed, known));
   };

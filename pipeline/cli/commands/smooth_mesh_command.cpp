@@ -205,7 +205,6 @@ Command smooth_mesh_command() {
   collect(options->job, command.options);
   command.everyday = {"flow",  "iterations", "strength-field", "refine", "ridges", "output",
                       "force", "threads",    "report",         "quiet",  "verbose"};
-  polish(command);
   const auto trace = std::make_shared<std::vector<TraceRow>>();
   command.on_cloud = {[options](const Invocation& typed) { check_smooth_mesh(*options, typed); },
                       [options]() -> std::vector<StageShare> {

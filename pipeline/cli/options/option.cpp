@@ -66,25 +66,6 @@ T parse_as(const CommandOption& option, const OptionInfo& info, const std::strin
   }
 }
 
-std::string text_of(bool value) {
-  return value ? "true" : "false";
-}
-std::string text_of(int value) {
-  return std::to_string(value);
-}
-std::string text_of(double value) {
-  return to_text(value);
-}
-std::string text_of(const Length& value) {
-  return to_text(value);
-}
-std::string text_of(const Eigen::Vector3d& value) {
-  return to_text(value);
-}
-std::string text_of(const std::string& value) {
-  return value;
-}
-
 std::string range_text(const OptionInfo& info) {
   const bool below = std::isfinite(info.min), above = std::isfinite(info.max);
   if (below && above) return fmt::format("{} to {}", info.min, info.max);
@@ -103,18 +84,20 @@ CommandOption describe_option(const OptionInfo& info) {
   if (o.kind == ValueKind::file) o.unit.clear();
   o.range = range_text(info);
   o.choices.assign(info.choices.begin(), info.choices.end());
+  for (const auto& [name, letter] : {std::pair("output", 'o'), {"quiet", 'q'}, {"verbose", 'v'}})
+    if (o.name == name) o.short_name = letter;
   return o;
 }
 
 template <class T>
 void add(std::vector<CommandOption>& out, const OptionInfo& info, T& field) {
   CommandOption o = describe_option<T>(info);
-  o.default_text = text_of(field);
+  o.default_text = to_text(field);
   if constexpr (std::is_same_v<T, bool>) o.on_by_default = field;
   o.set = [&field, info](const CommandOption& option, const std::string& text) {
     field = parse_as<T>(option, info, text);
   };
-  o.get = [&field] { return std::optional<std::string>(text_of(field)); };
+  o.get = [&field] { return std::optional<std::string>(to_text(field)); };
   out.push_back(std::move(o));
 }
 
@@ -141,7 +124,7 @@ void OptionCollector::operator()(const OptionInfo& info, std::optional<T>& field
   CommandOption o = describe_option<T>(info);
   o.optional = true;
   const bool file = o.kind == ValueKind::file;
-  o.default_text = field ? text_of(*field) : file ? "" : "auto";
+  o.default_text = field ? to_text(*field) : file ? "" : "auto";
   o.set = [&field, file, info](const CommandOption& option, const std::string& text) {
     if (text == "auto" && !file)
       field.reset();
@@ -150,7 +133,7 @@ void OptionCollector::operator()(const OptionInfo& info, std::optional<T>& field
   };
   o.get = [&field]() -> std::optional<std::string> {
     if (!field) return std::nullopt;
-    return text_of(*field);
+    return to_text(*field);
   };
   out_.push_back(std::move(o));
 }

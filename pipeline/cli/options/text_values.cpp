@@ -66,12 +66,8 @@ std::optional<Eigen::Vector3d> read_point(std::string_view text) {
   return point;
 }
 
-std::string to_text(double value) {
-  return fmt::format("{}", value);  // shortest text that reads back as the same double
-}
-
 std::string to_text(const Length& value) {
-  return to_text(value.value) + (value.times_spacing ? "x" : "");
+  return fmt::format("{}{}", value.value, value.times_spacing ? "x" : "");
 }
 
 std::string to_text(const Eigen::Vector3d& value) {

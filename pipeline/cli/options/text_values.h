@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include <Eigen/Core>
+#include <fmt/format.h>
 
 #include <rfsmooth/options.h>
 
@@ -30,7 +31,11 @@ std::optional<Length> read_length(std::string_view text);
 /// Parses three finite numbers "x,y,z".
 std::optional<Eigen::Vector3d> read_point(std::string_view text);
 
-std::string to_text(double value);
+/// A value as it would be typed; of a number the shortest text that reads back as the same.
+template <class T>
+std::string to_text(const T& value) {
+  return fmt::format("{}", value);
+}
 std::string to_text(const Length& value);
 std::string to_text(const Eigen::Vector3d& value);
 

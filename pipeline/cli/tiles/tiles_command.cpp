@@ -220,7 +220,6 @@ Command tiles_command() {
   collect(*options, command.options);
   command.everyday = {"tile-points", "sample-points", "strength", "noise",
                       "threads",     "json",          "force",    "quiet"};
-  polish(command);
   command.run = [options](const Invocation& typed) { return run_tiles(*options, typed); };
   return command;
 }

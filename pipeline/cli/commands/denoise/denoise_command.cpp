@@ -263,7 +263,6 @@ Command denoise_command() {
   collect(options->job, command.options);
   command.everyday = {"strength", "noise",   "flow",   "outliers", "normals", "output",
                       "force",    "threads", "report", "quiet",    "verbose"};
-  polish(command);
   const auto beside = std::make_shared<Beside>();
   command.on_cloud = {[options](const Invocation& typed) { check_denoise(*options, typed); },
                       [options] { return denoising_stages(options->normals.normals); },
