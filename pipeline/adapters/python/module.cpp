@@ -126,35 +126,11 @@ std::tuple<std::string, std::vector<std::string>, OptionTexts> parse_command(
           std::move(parsed.invocation.options)};
 }
 
-const char* name_of(ErrorCode code) {
-  switch (code) {
-    case ErrorCode::internal:
-      return "internal";
-    case ErrorCode::usage:
-      return "usage";
-    case ErrorCode::input_unreadable:
-      return "input_unreadable";
-    case ErrorCode::no_usable_points:
-      return "no_usable_points";
-    case ErrorCode::cannot_write:
-      return "cannot_write";
-    case ErrorCode::out_of_memory:
-      return "out_of_memory";
-    case ErrorCode::not_installed:
-      return "not_installed";
-    case ErrorCode::cancelled:
-      return "cancelled";
-  }
-  return "internal";
-}
-
 /// The exit code of the command by the name of an error.
 nb::dict exit_codes() {
   nb::dict codes;
-  for (const ErrorCode code :
-       {ErrorCode::internal, ErrorCode::usage, ErrorCode::input_unreadable, ErrorCode::no_usable_points,
-        ErrorCode::cannot_write, ErrorCode::out_of_memory, ErrorCode::not_installed, ErrorCode::cancelled})
-    codes[name_of(code)] = cli::exit_code(code);
+  for (const cli::ExitCode& exit : cli::kExitCodes)
+    if (exit.error) codes[exit.name] = exit.code;
   return codes;
 }
 
@@ -164,7 +140,7 @@ void raise_error(const std::exception_ptr& thrown, void*) {
     std::rethrow_exception(thrown);
   } catch (const Failure& failure) {
     const nb::object type = nb::module_::import_("rfsmooth._error").attr("Error");
-    const nb::tuple arguments = nb::make_tuple(name_of(failure.error.code), failure.error.message);
+    const nb::tuple arguments = nb::make_tuple(cli::exit_of(failure.error.code).name, failure.error.message);
     PyErr_SetObject(type.ptr(), arguments.ptr());
   }
 }

@@ -6,6 +6,7 @@
 
 #include "base/fail.h"
 #include "pipeline/cli/commands/command.h"
+#include "pipeline/cli/exit_code.h"
 #include "pipeline/cli/options/help.h"
 #include "pipeline/cli/options/suggest.h"
 
@@ -47,7 +48,7 @@ std::string tagged(const std::string& heading, const std::string& text) {
 
 std::string exit_status() {
   std::string out = ".SH EXIT STATUS\n";
-  for (const ExitCode& e : exit_codes()) out += tagged(std::to_string(e.code), e.meaning);
+  for (const ExitCode& e : kExitCodes) out += tagged(std::to_string(e.code), e.meaning);
   return out;
 }
 
@@ -57,10 +58,8 @@ std::string page_of(const Command& command) {
     out += fmt::format(".B rfsmooth {}\n{}\n.br\n", escaped(command.name), escaped(form));
   out += ".SH DESCRIPTION\n" + escaped(command.description) + "\n.SH OPTIONS\n";
   for (const CommandOption& o : command.options) {
-    const std::string limits = option_limits(o);
     const std::string heading = option_heading(o);
-    out += tagged(heading.substr(heading.find('-')),
-                  (o.on_by_default ? "do not " : "") + o.help + (limits.empty() ? "" : " (" + limits + ")"));
+    out += tagged(heading.substr(heading.find('-')), option_help(o));
   }
   return out + exit_status() + ".SH SEE ALSO\n.BR rfsmooth (1)\n";
 }

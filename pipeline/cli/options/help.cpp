@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "pipeline/cli/exit_code.h"
+
 namespace rfsmooth::cli {
 
 namespace {
@@ -58,20 +60,6 @@ std::vector<CommandOption> everyday_options(const Command& command) {
 
 }  // namespace
 
-const std::vector<ExitCode>& exit_codes() {
-  static const std::vector<ExitCode> codes = {
-      {0, "done"},
-      {1, "internal error, or (with several inputs) some of them failed for different reasons"},
-      {2, "wrong usage: an unknown option, a value outside its range"},
-      {3, "input cannot be read, or is not what it says it is"},
-      {4, "no usable points in the input"},
-      {5, "output cannot be written, or exists and --force was not given"},
-      {6, "not enough memory (estimated before starting, or met on the way)"},
-      {127, "reconstruct or render needs a program or a library that is not installed"},
-      {130, "cancelled (Ctrl-C); no file is left behind"}};
-  return codes;
-}
-
 std::string option_heading(const CommandOption& option) {
   std::string heading = option.short_name ? fmt::format("-{}, ", option.short_name) : "    ";
   heading += fmt::format("{}", fmt::join(typed_names(option), ", "));
@@ -79,16 +67,15 @@ std::string option_heading(const CommandOption& option) {
   return value.empty() ? heading : heading + ' ' + value;
 }
 
-std::string option_limits(const CommandOption& option) {
-  std::string text;
-  const auto add = [&](const std::string& part) {
-    if (!part.empty()) text += (text.empty() ? "" : "; ") + part;
-  };
-  if (!option.choices.empty()) add(fmt::format("one of {}", fmt::join(option.choices, ", ")));
-  add(option.unit);
-  add(option.range);
-  if (option.kind != ValueKind::flag && !option.default_text.empty()) add("default " + option.default_text);
-  return text;
+std::string option_help(const CommandOption& option) {
+  std::vector<std::string> limits;
+  if (!option.choices.empty()) limits.push_back(fmt::format("one of {}", fmt::join(option.choices, ", ")));
+  if (!option.unit.empty()) limits.push_back(option.unit);
+  if (!option.range.empty()) limits.push_back(option.range);
+  if (option.kind != ValueKind::flag && !option.default_text.empty())
+    limits.push_back("default " + option.default_text);
+  const std::string help = (option.on_by_default ? "do not " : "") + option.help;
+  return limits.empty() ? help : fmt::format("{} ({})", help, fmt::join(limits, "; "));
 }
 
 std::string overview(const std::vector<Command>& commands, bool complete) {
@@ -103,7 +90,7 @@ std::string overview(const std::vector<Command>& commands, bool complete) {
   out += entry("--version", "print the version");
   if (complete) {
     out += "\nexit codes:\n";
-    for (const ExitCode& e : exit_codes()) out += entry(std::to_string(e.code), e.meaning);
+    for (const ExitCode& e : kExitCodes) out += entry(std::to_string(e.code), e.meaning);
   }
   out += "\nFor one command: rfsmooth COMMAND --help\n";
   return out;
@@ -121,10 +108,7 @@ std::string help_of(const Command& command, bool complete) {
   out += "\noptions:\n";
   const std::vector<CommandOption> shown = complete ? command.options : everyday_options(command);
   for (const CommandOption& o : shown) {
-    const std::string limits = option_limits(o);
-    std::string help = o.on_by_default ? "do not " + o.help : o.help;
-    if (!limits.empty()) help += " (" + limits + ")";
-    out += entry(option_heading(o), help);
+    out += entry(option_heading(o), option_help(o));
   }
   out += entry("-h, --help", complete ? "the everyday options" : "this page");
   const std::size_t more = command.options.size() - shown.size();
@@ -133,7 +117,7 @@ std::string help_of(const Command& command, bool complete) {
                                             : std::string("this page and the exit codes"));
   if (!complete) return out;
   out += "\nexit codes:\n";
-  for (const ExitCode& e : exit_codes()) out += entry(std::to_string(e.code), e.meaning);
+  for (const ExitCode& e : kExitCodes) out += entry(std::to_string(e.code), e.meaning);
   return out;
 }
 

@@ -17,13 +17,7 @@ std::string help_of(const Command& command, bool complete);
 /// "-o, --output FILE".
 std::string option_heading(const CommandOption& option);
 
-/// The limits and the default, as in "0 to 1, default auto"; "" if there are none.
-std::string option_limits(const CommandOption& option);
-
-struct ExitCode {
-  int code;
-  const char* meaning;
-};
-const std::vector<ExitCode>& exit_codes();
+/// What it does, its limits and its default.
+std::string option_help(const CommandOption& option);
 
 }  // namespace rfsmooth::cli
