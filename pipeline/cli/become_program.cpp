@@ -30,8 +30,7 @@ int become_program(const std::string& name, const std::vector<std::string>& argu
 std::vector<std::string> as_typed(const Invocation& typed, const std::vector<CommandOption>& options) {
   std::vector<std::string> words;
   for (const auto& [name, text] : typed.options) {
-    bool flag = false;
-    for (const CommandOption& o : options) flag = flag || (o.name == name && o.kind == ValueKind::flag);
+    const bool flag = find_option(options, name)->kind == ValueKind::flag;
     std::string word = flag && text != "true" ? "--no-" : "--";
     word += name;
     if (!flag) word.append("=").append(text);

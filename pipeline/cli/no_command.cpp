@@ -36,12 +36,6 @@ bool has_option(const Command& command, const std::string& typed) {
   });
 }
 
-const Command* find_command(const std::vector<Command>& commands, const std::string& name) {
-  const auto it =
-      std::find_if(commands.begin(), commands.end(), [&](const Command& c) { return c.name == name; });
-  return it == commands.end() ? nullptr : &*it;
-}
-
 std::string asked(const std::string& command, std::vector<std::string>::const_iterator first,
                   std::vector<std::string>::const_iterator last) {
   return fmt::format("; did you mean 'rfsmooth {}{}{}'?", command, first == last ? "" : " ",

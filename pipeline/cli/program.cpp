@@ -31,10 +31,8 @@ int close_stdout(int code) {
 
 /// What shows more of the sub-command that was typed, or of all.
 std::string help_line(int argc, const char* const* argv, const std::vector<Command>& commands) {
-  std::string name;
-  for (const Command& c : commands)
-    if (argc > 1 && c.name == argv[1]) name = c.name + ' ';
-  return fmt::format("see: rfsmooth {}--help\n", name);
+  const Command* const command = argc > 1 ? find_command(commands, argv[1]) : nullptr;
+  return fmt::format("see: rfsmooth {}--help\n", command == nullptr ? "" : command->name + ' ');
 }
 
 int print(const std::string& text) {
@@ -45,9 +43,8 @@ int print(const std::string& text) {
 /// Assigns the options: those of --config first, then what was typed. The files come from the config if none
 /// were typed.
 Invocation with_config(const Command& command, Invocation typed) {
-  std::vector<CommandOption> options = command.options;
   const auto assign_all = [&](const auto& values) {
-    for (const auto& [name, text] : values) assign(*find_option(options, name), text);
+    for (const auto& [name, text] : values) assign(*find_option(command.options, name), text);
   };
   bool output_typed = false;
   for (const auto& [name, text] : typed.options) {
@@ -58,7 +55,7 @@ Invocation with_config(const Command& command, Invocation typed) {
     if (typed.arguments.empty() && !output_typed) typed.arguments = std::move(config.arguments);
   }
   assign_all(typed.options);
-  for (const CommandOption& option : options)
+  for (const CommandOption& option : command.options)
     if (option.finish) option.finish();
   return typed;
 }

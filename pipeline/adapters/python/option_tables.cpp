@@ -65,19 +65,18 @@ const char* name_of(cli::ValueKind kind) {
 }  // namespace
 
 cli::Command command_of(const std::string& name) {
-  for (cli::Command& command : cli::all_commands())
-    if (command.name == name) return std::move(command);
+  const std::vector<cli::Command> commands = cli::all_commands();
+  if (const cli::Command* const command = cli::find_command(commands, name)) return *command;
   throw std::invalid_argument("there is no sub-command " + name);
 }
 
 void assign_all(const cli::Command& command, const OptionTexts& options) {
-  std::vector<cli::CommandOption> known = command.options;
   for (const auto& [name, text] : options) {
-    const cli::CommandOption* const option = cli::find_option(known, name);
+    const cli::CommandOption* const option = cli::find_option(command.options, name);
     if (option == nullptr) throw std::invalid_argument("there is no option " + name);
     cli::assign(*option, text);
   }
-  for (const cli::CommandOption& option : known)
+  for (const cli::CommandOption& option : command.options)
     if (option.finish) option.finish();
   cli::Invocation typed;
   typed.options = options;

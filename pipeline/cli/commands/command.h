@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -82,5 +83,8 @@ Command text_command(std::string name, std::string summary, std::string usage, s
 
 /// All of them, in the order of the overview.
 std::vector<Command> all_commands();
+
+/// The one called `name`; null if there is none.
+const Command* find_command(const std::vector<Command>& commands, std::string_view name);
 
 }  // namespace rfsmooth::cli

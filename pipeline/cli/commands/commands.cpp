@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "pipeline/cli/commands/command.h"
@@ -25,6 +27,12 @@ std::vector<Command> all_commands() {
   return {denoise_command(),     tiles_command(), mesh_command(),    smooth_mesh_command(),
           reconstruct_command(), info_command(),  compare_command(), render_command(),
           report_command(),      flows_command(), man_command(),     completion_command()};
+}
+
+const Command* find_command(const std::vector<Command>& commands, std::string_view name) {
+  const auto it =
+      std::find_if(commands.begin(), commands.end(), [&](const Command& c) { return c.name == name; });
+  return it == commands.end() ? nullptr : &*it;
 }
 
 }  // namespace rfsmooth::cli

@@ -1,6 +1,5 @@
 #include "pipeline/cli/options/config.h"
 
-#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -59,9 +58,8 @@ Config read_config(const std::string& path, const Command& command) {
 
   Config config;
   for (const auto& [name, value] : options.items()) {
-    const auto option = std::find_if(command.options.begin(), command.options.end(),
-                                     [&named = name](const CommandOption& o) { return o.name == named; });
-    if (option == command.options.end() || name == "config")
+    const CommandOption* const option = find_option(command.options, name);
+    if (option == nullptr || name == "config")
       fail(ErrorCode::usage, "{}: unknown option '{}'{}", path, name, did_you_mean(name, names_of(command)));
     if (value.is_null() && option->kind == ValueKind::file) continue;  // left out
     config.options.emplace_back(name, as_typed(path, name, value));

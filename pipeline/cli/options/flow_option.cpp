@@ -32,7 +32,7 @@ std::vector<CommandOption> options_of(FlowOptions& fields, bool modifiers = true
 
 FlowOptions read_given(const Given& given) {
   FlowOptions fields{value_or_throw(rfsmooth::find_flow(given.flow)), {}};
-  std::vector<CommandOption> options = options_of(fields), own = options_of(fields, false);
+  const std::vector<CommandOption> options = options_of(fields), own = options_of(fields, false);
   for (const auto& [name, text] : given.options) {
     const CommandOption* const option = find_option(options, name);
     if (option == nullptr) {
@@ -70,7 +70,7 @@ CommandOption of_any_flow(const CommandOption& example, const std::shared_ptr<Fl
   o.get = [&fields, name = o.name]() -> std::optional<std::string> {
     for (const smoothing::Partner& p : smoothing::partners(fields))
       if (p.option == name && !p.on) return std::nullopt;  // it must not be given
-    std::vector<CommandOption> now = options_of(fields);
+    const std::vector<CommandOption> now = options_of(fields);
     const CommandOption* const option = find_option(now, name);
     return option == nullptr ? std::nullopt : option->get();
   };
@@ -94,7 +94,7 @@ void OptionCollector::operator()(FlowOptions& field) {
   (*this)(OptionInfo{"paper", "exactly the equations that the flow's paper prints: --scheme printed", ""},
           given->paper);
   out_.back().get = [given, &field]() -> std::optional<std::string> {  // given: what `set` is bound to
-    std::vector<CommandOption> now = options_of(field, false);
+    const std::vector<CommandOption> now = options_of(field, false);
     const CommandOption* const scheme = find_option(now, "scheme");
     return scheme != nullptr && scheme->get() == "printed" ? "true" : "false";
   };

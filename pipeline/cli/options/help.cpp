@@ -53,8 +53,7 @@ std::vector<CommandOption> everyday_options(const Command& command) {
   if (command.everyday.empty()) return command.options;
   std::vector<CommandOption> chosen;
   for (const std::string& name : command.everyday)
-    for (const CommandOption& o : command.options)
-      if (o.name == name) chosen.push_back(o);
+    if (const CommandOption* const o = find_option(command.options, name)) chosen.push_back(*o);
   return chosen;
 }
 

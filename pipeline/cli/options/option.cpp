@@ -194,7 +194,7 @@ void assign(const CommandOption& option, const std::string& text) {
   option.set(option, text);
 }
 
-CommandOption* find_option(std::vector<CommandOption>& options, const std::string& name) {
+const CommandOption* find_option(const std::vector<CommandOption>& options, const std::string& name) {
   const auto it = std::find_if(options.begin(), options.end(), [&](const auto& o) { return o.name == name; });
   return it == options.end() ? nullptr : &*it;
 }

@@ -82,6 +82,6 @@ void collect(Options& fields, std::vector<CommandOption>& out) {
 }
 
 /// The option called `name`; null if there is none.
-CommandOption* find_option(std::vector<CommandOption>& options, const std::string& name);
+const CommandOption* find_option(const std::vector<CommandOption>& options, const std::string& name);
 
 }  // namespace rfsmooth::cli

@@ -75,9 +75,8 @@ bool takes_next(const Command& command, const std::string& word) {
 /// Where the options end: at the first "--" that is no option's value; argc if there is none, or no command.
 int end_of_options(int argc, const char* const* argv, const std::vector<Command>& commands) {
   if (argc < 2) return argc;
-  const auto command =
-      std::find_if(commands.begin(), commands.end(), [&](const Command& c) { return c.name == argv[1]; });
-  if (command == commands.end()) return argc;
+  const Command* const command = find_command(commands, argv[1]);
+  if (command == nullptr) return argc;
   for (int k = 2; k < argc; ++k) {
     if (std::string_view(argv[k]) == "--") return k;
     if (takes_next(*command, argv[k])) ++k;

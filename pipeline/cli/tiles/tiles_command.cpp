@@ -179,7 +179,7 @@ int run_tiles(TilesOptions& options, const Invocation& typed) {
     PlannedOptions unused;
     collect(unused, planned);
     for (const auto& [name, text] : typed.options)
-      if (std::any_of(planned.begin(), planned.end(), [&n = name](const auto& o) { return o.name == n; }))
+      if (find_option(planned, name) != nullptr)
         fail(ErrorCode::usage, "--{} is for rfsmooth tiles plan; the other steps take it from there", name);
   }
   const std::vector<std::string> arguments(typed.arguments.begin() + 1, typed.arguments.end());
