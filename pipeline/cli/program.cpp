@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -97,6 +98,13 @@ int run_program(int argc, const char* const* argv, const std::vector<Command>& c
       Console({}).error(fmt::format("internal error, please report it: {}", bug.what()));
   }
   return close_stdout(code);
+}
+
+int run_program(int argc, const char* const* argv, const Command& command) {
+  std::vector<const char*> words(argv, argv + argc);
+  const bool version = argc == 2 && std::string_view(argv[1]) == "--version";
+  if (!version) words.insert(words.begin() + 1, command.name.c_str());
+  return run_program(int(words.size()), words.data(), std::vector<Command>{command});
 }
 
 }  // namespace rfsmooth::cli

@@ -79,9 +79,5 @@ std::vector<rfsmooth::SurfaceMethod> methods() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::vector<const char*> words(argv, argv + argc);
-  const bool version = argc == 2 && std::string_view(argv[1]) == "--version";
-  if (!version) words.insert(words.begin() + 1, "reconstruct");
-  return rfsmooth::cli::run_program(int(words.size()), words.data(),
-                                    {rfsmooth::cli::reconstruct_command(methods())});
+  return rfsmooth::cli::run_program(argc, argv, rfsmooth::cli::reconstruct_command(methods()));
 }

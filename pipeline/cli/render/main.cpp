@@ -1,6 +1,4 @@
 /// rfsmooth-render: what `rfsmooth render` becomes.
-#include <string_view>
-
 #include <fmt/format.h>
 
 #include "clouds/render/picture.h"
@@ -75,8 +73,5 @@ void draw(const RenderOptions& options, const std::vector<std::string>& inputs) 
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::vector<const char*> words(argv, argv + argc);
-  const bool version = argc == 2 && std::string_view(argv[1]) == "--version";
-  if (!version) words.insert(words.begin() + 1, "render");
-  return rfsmooth::cli::run_program(int(words.size()), words.data(), {rfsmooth::cli::render_command(draw)});
+  return rfsmooth::cli::run_program(argc, argv, rfsmooth::cli::render_command(draw));
 }

@@ -1,3 +1,5 @@
+#include "pipeline/cli/other_program.h"
+
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
@@ -7,7 +9,6 @@
 
 #include "base/fail.h"
 #include "pipeline/cli/options/text_values.h"
-#include "pipeline/cli/other_program.h"
 
 namespace rfsmooth::cli {
 
