@@ -58,6 +58,10 @@ std::vector<Rgb> colors_of(const Cloud& cloud, const Context& context) {
   return {};
 }
 
+bool has_normals(const Cloud& cloud) {
+  return find_field(cloud, kPlyNormal[0]) || find_field(cloud, kPcdNormal[0]);
+}
+
 std::vector<double> normals_of(const Cloud& cloud, const Context& context) {
   for (const NormalNames& names : {kPlyNormal, kPcdNormal}) {
     std::vector<double> normals(3 * cloud.size());

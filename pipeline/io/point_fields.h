@@ -18,6 +18,9 @@ inline constexpr NormalNames kPcdNormal = {"normal_x", "normal_y", "normal_z"}; 
 /// Red, green, blue.
 using Rgb = std::array<std::uint8_t, 3>;
 
+/// Whether the points have the fields of a normal, or some of them.
+bool has_normals(const Cloud& cloud);
+
 /// One colour per point; empty if the cloud has none. Colours in floats are from 0 to 1. O(n).
 std::vector<Rgb> colors_of(const Cloud& cloud, const Context& context = {});
 

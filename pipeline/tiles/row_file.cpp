@@ -102,8 +102,7 @@ std::optional<Eigen::Vector3d> RowFile::viewpoint(const Context& context) const 
 }
 
 bool RowFile::has_normals() const {
-  return format_ != io::Format::las &&
-         (io::find_field(header_, io::kPlyNormal[0]) || io::find_field(header_, io::kPcdNormal[0]));
+  return format_ != io::Format::las && io::has_normals(header_);
 }
 
 void RowFile::need_normals() {

@@ -13,6 +13,7 @@
 #include "pipeline/cli/files/cloud_jobs.h"
 #include "pipeline/cli/files/constraint_fields.h"
 #include "pipeline/cli/files/file_mesh.h"
+#include "pipeline/io/point_fields.h"
 #include "rfs_mesh/edge_faces.h"
 #include "rfs_mesh/measure.h"
 #include "smoothing/operators/surface.h"
@@ -157,7 +158,7 @@ std::string smooth_file(const SmoothMeshCommandOptions& options, std::vector<Tra
     refine_file(options.after, cloud, file, rows, job, context, console);
   } else {
     pipeline::io::set_positions(cloud, rows.data(), context);
-    if (moved && has_normals(cloud))
+    if (moved && pipeline::io::has_normals(cloud))
       console.warn(fmt::format("{}: the normals are kept; they now describe the old positions", job.input));
   }
   if (options.after.ridges) {

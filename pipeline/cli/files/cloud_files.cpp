@@ -97,10 +97,6 @@ io::Format output_format(const io::Cloud& cloud, const std::string& output, cons
   return io::format_of_extension(output).value_or(cloud.format);
 }
 
-bool has_normals(const io::Cloud& cloud) {
-  return io::find_field(cloud, "nx") || io::find_field(cloud, "normal_x");
-}
-
 void warn_if_coarse(const io::Cloud& cloud, const std::vector<double>& xyz, double spacing,
                     const std::string& name, Console& console) {
   float largest = 0;

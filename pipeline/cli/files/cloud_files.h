@@ -31,9 +31,6 @@ std::vector<std::string> store_cloud(const pipeline::io::Cloud& cloud, const std
                                      const FileOptions& options, const Context& context,
                                      std::vector<StageTime>& stages);
 
-/// Whether the points have fields nx, ny, nz or normal_x, normal_y, normal_z.
-bool has_normals(const pipeline::io::Cloud& cloud);
-
 /// Warns if rounding the coordinates to float32 has moved them by more than a twentieth of the spacing, noise
 /// that denoise leaves alone. `xyz`: the file's coordinates. `spacing`: 0 if no two points differ, and then
 /// there is nothing to say. O(n).

@@ -4,6 +4,7 @@
 
 #include "pipeline/io/convert.h"
 #include "pipeline/io/mesh_file.h"
+#include "pipeline/io/point_fields.h"
 #include "rfs_mesh/measure.h"
 
 namespace rfsmooth::cli {
@@ -44,14 +45,13 @@ void unpack_colours(io::Cloud& cloud, const Context& context) {
 }
 
 void set_normals(io::Cloud& cloud, const Mesh& mesh, const Context& context) {
-  const bool ply = io::find_field(cloud, "nx").has_value();
-  if (!ply && !io::find_field(cloud, "normal_x")) return;
+  if (!io::has_normals(cloud)) return;
+  const io::NormalNames& names = io::find_field(cloud, io::kPlyNormal[0]) ? io::kPlyNormal : io::kPcdNormal;
   const Positions normals = rfs_mesh::vertex_normals(mesh, context);
   std::vector<double> part(normals.size());
-  for (int axis = 0; axis < 3; ++axis) {
-    for (std::size_t i = 0; i < part.size(); ++i) part[i] = normals[i][axis];
-    io::set_field(cloud, (ply ? "n" : "normal_") + std::string(1, "xyz"[axis]), io::Scalar::float32, part,
-                  context);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t i = 0; i < part.size(); ++i) part[i] = normals[i][Eigen::Index(axis)];
+    io::set_field(cloud, names[axis], io::Scalar::float32, part, context);
   }
 }
 

@@ -17,6 +17,7 @@
 #include "pipeline/cli/other_program.h"
 #include "pipeline/cli/own_files.h"
 #include "pipeline/io/formats/las/las_scale.h"
+#include "pipeline/io/point_fields.h"
 #include "pipeline/page/page.h"
 #include "pipeline/tiles/in_one_process.h"
 #include "pipeline/tiles/statistics_json.h"
@@ -63,7 +64,7 @@ void enter(const DenoiseReport& done, const DenoiseCommandOptions& options, orde
 void tell(const DenoiseReport& done, const DenoiseCommandOptions& options, const pipeline::io::Cloud& cloud,
           const Job& job, Console& console) {
   const bool as_las = output_format(cloud, job.output, options.job.files) == pipeline::io::Format::las;
-  tell_points(done, options, has_normals(cloud), as_las, job, console);
+  tell_points(done, options, pipeline::io::has_normals(cloud), as_las, job, console);
   console.detail(fmt::format("{} faces, {} edges, {} bridges, {} points without a face, {} swaps", done.faces,
                              done.edges, done.bridges, done.faceless, done.swaps));
 }
