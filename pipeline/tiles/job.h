@@ -125,18 +125,17 @@ std::vector<Joined> join_job(const Job& job, const std::vector<std::string>& out
 
 /// What settle found.
 struct Settled {
-  Statistics statistics;
-  double halo = 0;                          ///< typical width of what a tile is smoothed with, world units
-  double radii = 0;                         ///< the same in radii of the widest patch
-  std::size_t widest = 0;                   ///< points of that
-  double noise = 0, noise_left = 0;         ///< as in DenoiseReport
-  NoiseSummary measured;                    ///< the same
-  std::optional<NotSmoothed> not_smoothed;  ///< the same
-  double guide_strength = 0, tail_times = 1, spacing = 0;  ///< the same
+  DenoiseReport report;    ///< of the sample: its statistics, spacing and noise; nothing else is kept
+  double halo = 0;         ///< typical width of what a tile is smoothed with, world units
+  double radii = 0;        ///< the same in radii of the widest patch
+  std::size_t widest = 0;  ///< points of that
 };
 
 /// \throw Failure (input_unreadable).
 Settled read_settled(const std::filesystem::path& path);
+
+/// What running a tile took: an object, which is empty if there is no such file.
+nlohmann::ordered_json read_cost(const Job& job, std::size_t tile);
 
 /// What there is to say of a job whose tiles were run, as of a whole cloud, but for its mesh. Moves are those
 /// before the coordinates were written. \throw Failure.

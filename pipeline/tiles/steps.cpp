@@ -72,6 +72,12 @@ Settled settled_of(const Job& job) {
   return read_settled(job.settled());
 }
 
+/// Whether a tile is smoothed, and has its normals if it is to have some.
+bool is_run(const Job& job, std::size_t tile, bool normals, const Context& context) {
+  const auto there = complete_records(job.done(tile), context);
+  return there && *there == job.tiles[tile].points && (!normals || complete_normals(job, tile, context));
+}
+
 /// The records of all tiles, by rows.
 template <class T>
 class OfAllTiles {
@@ -175,7 +181,7 @@ io::RefinedScale refine_moved(const Job& job, RowFile& file, std::uint64_t befor
 void find_halo(const DenoiseOptions& options, const Positions& sample, const Context& context,
                Settled& settled) {
   settled.widest = std::size_t(options.connect.neighbours);
-  const Statistics& found = settled.statistics;
+  const Statistics& found = settled.report.statistics;
   if (found.scale) settled.widest = std::max(settled.widest, found.scale->neighbours);
   if (found.noise && found.noise->across) settled.widest = std::max(settled.widest, *found.noise->across);
   for (const auto& pass : found.passes)
@@ -201,6 +207,14 @@ void for_each_around(const Job& job, std::size_t tile, const Context& context, M
     for (; const Record* r = reader.peek(); reader.next())
       if (holds(place(*r))) visit(*r, t);
   }
+}
+
+/// Calls `visit(record, tile)` for the points of a tile's halo.
+template <class Visit>
+void for_each_in(const Job& job, std::size_t tile, const Halo& halo, const Context& context, Visit&& visit) {
+  for_each_around(
+      job, tile, context, [&](const AlignedBox3d& other) { return halo.meets(other); },
+      [&](const Vector3d& p) { return halo.holds(p); }, visit);
 }
 
 /// Leaves so many of a tile's points that all tiles have `wanted` together: those nearest to the one in the
@@ -267,9 +281,7 @@ struct Surroundings {
 
 std::uint64_t count_in(const Job& job, std::size_t tile, const Halo& halo, const Context& context) {
   std::uint64_t points = job.tiles[tile].points;
-  for_each_around(
-      job, tile, context, [&](const AlignedBox3d& other) { return halo.meets(other); },
-      [&](const Vector3d& p) { return halo.holds(p); }, [&](const Record&, std::size_t) { ++points; });
+  for_each_in(job, tile, halo, context, [&](const Record&, std::size_t) { ++points; });
   return points;
 }
 
@@ -337,20 +349,26 @@ Settled read_settled(const std::filesystem::path& path) {
   if (!file) fail(ErrorCode::input_unreadable, "{}: cannot be read", path.string());
   try {
     const ordered_json json = ordered_json::parse(file);
-    return {statistics_of(json.at("statistics")),
-            json.at("halo"),
-            json.at("halo_radii"),
-            json.at("widest"),
-            json.at("noise"),
-            json.at("noise_left"),
-            summary_of(json.at("noise_measured")),
-            not_smoothed_of(json.at("not_smoothed")),
-            json.at("guide_strength"),
-            json.at("tail_times"),
-            json.at("spacing")};
+    Settled settled = {{}, json.at("halo"), json.at("halo_radii"), json.at("widest")};
+    DenoiseReport& report = settled.report;
+    report.statistics = statistics_of(json.at("statistics"));
+    report.noise = json.at("noise");
+    report.noise_left = json.at("noise_left");
+    report.measured = summary_of(json.at("noise_measured"));
+    report.not_smoothed = not_smoothed_of(json.at("not_smoothed"));
+    report.guide_strength = json.at("guide_strength");
+    report.tail_times = json.at("tail_times");
+    report.spacing = json.at("spacing");
+    return settled;
   } catch (const nlohmann::json::exception& error) {
     fail(ErrorCode::input_unreadable, "{}: {}", path.string(), error.what());
   }
+}
+
+ordered_json read_cost(const Job& job, std::size_t tile) {
+  std::ifstream file(job.cost(tile));
+  ordered_json cost = ordered_json::parse(file, nullptr, false);
+  return cost.is_object() ? cost : ordered_json::object();
 }
 
 void measure_tile(const Job& job, std::size_t tile, const Context& context) {
@@ -378,9 +396,9 @@ void settle_job(const Job& job, const DenoiseOptions& options, const Context& co
   const std::size_t n = xyz.size() / 3;
   if (n < job.points) how.statistics->points = std::size_t(job.points);
   std::vector<double> smooth = xyz;
-  const DenoiseReport report = value_or_throw(denoise(smooth.data(), n, how, context));
   Settled settled;
-  settled.statistics = report.statistics;
+  settled.report = value_or_throw(denoise(smooth.data(), n, how, context));
+  const DenoiseReport& report = settled.report;
   in_arena(context, [&] { find_halo(options, io::points_of(xyz), context, settled); });
   const ordered_json json = {{"halo", settled.halo},
                              {"halo_radii", settled.radii},
@@ -392,7 +410,7 @@ void settle_job(const Job& job, const DenoiseOptions& options, const Context& co
                              {"guide_strength", report.guide_strength},
                              {"tail_times", report.tail_times},
                              {"spacing", report.spacing},
-                             {"statistics", json_of(settled.statistics)}};
+                             {"statistics", json_of(report.statistics)}};
   value_or_throw(io::write_bytes(json.dump(1) + '\n', job.settled(), true, context));
 }
 
@@ -401,8 +419,7 @@ void run_tile(const Job& job, std::size_t tile, const DenoiseOptions& options,
   check_tile(job, tile);
   check_for_tiles(options);
   const Settled settled = settled_of(job);
-  const auto there = complete_records(job.done(tile), context);
-  if (there && *there == job.tiles[tile].points && (!normals || complete_normals(job, tile, context))) return;
+  if (is_run(job, tile, normals.has_value(), context)) return;
   const double began = processor_seconds();
   std::vector<Record> own = read_records(job.cut(tile), context);
   std::vector<double> xyz;
@@ -410,18 +427,14 @@ void run_tile(const Job& job, std::size_t tile, const DenoiseOptions& options,
   append(own, xyz);
   Surroundings surroundings = surroundings_of(job, tile, own, settled, context);
   narrow(job, tile, most, context, surroundings);
-  const Halo& halo = surroundings.halo;
-  for_each_around(
-      job, tile, context, [&](const AlignedBox3d& other) { return halo.meets(other); },
-      [&](const Vector3d& p) { return halo.holds(p); },
-      [&](const Record& r, std::size_t t) {
-        xyz.insert(xyz.end(), {r.x, r.y, r.z});
-        if (normals) around.push_back({r.row, t});
-      });
+  for_each_in(job, tile, surroundings.halo, context, [&](const Record& r, std::size_t t) {
+    xyz.insert(xyz.end(), {r.x, r.y, r.z});
+    if (normals) around.push_back({r.row, t});
+  });
   std::vector<char> outlier;
   if (!own.empty()) {
     DenoiseOptions how = options;
-    how.statistics = settled.statistics;
+    how.statistics = settled.report.statistics;
     outlier = value_or_throw(denoise(xyz.data(), xyz.size() / 3, how, context)).outlier;
   }
   ordered_json cost = {{"around", xyz.size() / 3 - own.size()}, {"seconds", 0}};
@@ -440,10 +453,8 @@ std::vector<Joined> join_job(const Job& job, const std::vector<std::string>& out
                              bool keep_scale, bool normals, const Context& context) {
   check_inputs(job);
   for (std::size_t t = 0; t < job.tiles.size(); ++t)
-    if (const auto there = complete_records(job.done(t), context);
-        !there || *there != job.tiles[t].points || (normals && !complete_normals(job, t, context)))
-      refuse_step(job, fmt::format("tile {} is not smoothed yet", t));
-  const Settled settled = settled_of(job);
+    if (!is_run(job, t, normals, context)) refuse_step(job, fmt::format("tile {} is not smoothed yet", t));
+  const DenoiseReport settled = settled_of(job).report;
   const double step = io::finest_needed(settled.noise, settled.noise_left);
   std::vector<Joined> joined;
   Patcher patcher(job, context);
@@ -475,24 +486,13 @@ std::vector<Joined> join_job(const Job& job, const std::vector<std::string>& out
 }
 
 DenoiseReport report_of(const Job& job, const DenoiseOptions& options) {
-  const Settled settled = settled_of(job);
-  DenoiseReport report;
+  DenoiseReport report = settled_of(job).report;
   report.effective = options;
   for (const JobInput& input : job.inputs) report.points += std::size_t(input.rows);
   report.finite = std::size_t(job.points);
-  report.spacing = settled.spacing;
-  report.noise = settled.noise;
-  report.measured = settled.measured;
-  report.not_smoothed = settled.not_smoothed;
-  report.noise_left = settled.noise_left;
-  report.guide_strength = settled.guide_strength;
-  report.tail_times = settled.tail_times;
-  report.statistics = settled.statistics;
   double squares = 0;
   for (std::size_t t = 0; t < job.tiles.size(); ++t) {
-    std::ifstream file(job.cost(t));
-    const ordered_json cost = ordered_json::parse(file, nullptr, false);
-    if (!cost.is_object()) continue;
+    const ordered_json cost = read_cost(job, t);
     report.moved += cost.value("moved", std::size_t{0});
     report.outliers += cost.value("outliers", std::size_t{0});
     report.largest_move = std::max(report.largest_move, cost.value("largest", 0.0));
@@ -516,14 +516,13 @@ JobStatus job_status(const Job& job, const Context& context) {
   if (status.settled) status.halo = read_settled(job.settled()).halo;
   for (std::size_t t = 0; t < job.tiles.size(); ++t) {
     status.measured += std::size_t(complete_records(job.sampled(t), context).has_value());
-    if (const auto there = complete_records(job.done(t), context); !there || *there != job.tiles[t].points) {
+    if (!is_run(job, t, false, context)) {
       status.missing.push_back(t);
       continue;
     }
     ++status.run;
-    std::ifstream file(job.cost(t));
-    const ordered_json cost = ordered_json::parse(file, nullptr, false);
-    if (!cost.is_object()) continue;
+    const ordered_json cost = read_cost(job, t);
+    if (cost.empty()) continue;
     around += cost.value("around", 0.0);
     within += double(job.tiles[t].points);
     status.seconds += cost.value("seconds", 0.0);

@@ -1,7 +1,6 @@
 #include "pipeline/tiles/tile_normals.h"
 
 #include <cmath>
-#include <fstream>
 #include <map>
 #include <utility>
 
@@ -67,9 +66,8 @@ Piece piece_of(const ordered_json& json) {
 }
 
 ordered_json read_pieces(const Job& job, std::size_t tile) {
-  std::ifstream file(job.cost(tile));
-  ordered_json cost = ordered_json::parse(file, nullptr, false);
-  if (!cost.is_object() || !cost.contains("pieces"))
+  ordered_json cost = read_cost(job, tile);
+  if (!cost.contains("pieces"))
     fail(ErrorCode::input_unreadable, "{}: tells nothing of normals", job.cost(tile).string());
   return cost;
 }

@@ -155,7 +155,8 @@ std::string denoise_cloud(const DenoiseCommandOptions& options, Beside& beside, 
   if (options.html) page = pipeline::page_before(job.input, cloud, context);
   DenoiseOptions how = options.denoise;
   how.flow.trace = options.trace.trace.has_value();
-  if (options.statistics) how.statistics = pipeline::tiles::read_settled(*options.statistics).statistics;
+  if (options.statistics)
+    how.statistics = pipeline::tiles::read_settled(*options.statistics).report.statistics;
   DenoiseReport done = value_or_fail(rfsmooth::denoise(xyz.data(), n, how, context, strength), job.input);
   beside.trace = std::move(done.trace);
   const bool some_removed = options.removes() && done.outliers > 0,
