@@ -1,7 +1,6 @@
 #include "pipeline/normal_sides.h"
 
 #include <cmath>
-#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -54,18 +53,9 @@ bool keep_sides(const double* xyz, std::size_t n, const double* before, double* 
       most[p] += std::abs(a[q]);
     }
   });
-  const auto sums = reduce_blocks(
-      context, a.size(), std::pair<double, double>(0, 0),
-      [&](std::size_t begin, std::size_t end) {
-        std::pair<double, double> sum(0, 0);
-        for (std::size_t p = begin; p < end; ++p) {
-          sum.first += std::abs(vote[p]);
-          sum.second += most[p];
-        }
-        return sum;
-      },
-      [](const auto& s, const auto& t) { return std::pair(s.first + t.first, s.second + t.second); });
-  if (!(sums.first > 0.5 * sums.second)) return false;
+  const auto sums = sum_over(context, a.size(), Eigen::Vector2d(0, 0),
+                             [&](std::size_t p) { return Eigen::Vector2d(std::abs(vote[p]), most[p]); });
+  if (!(sums[0] > 0.5 * sums[1])) return false;
 
   for_each_index(context, n, [&](std::size_t i) {
     const Index p = cloud.of_input[i];

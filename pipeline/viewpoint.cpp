@@ -16,30 +16,20 @@ using Eigen::Vector3d;
 bool seen_from(const Vector3d& viewpoint, const double* xyz, std::size_t width, std::size_t height,
                const Context& context) {
   constexpr double kShare = 0.9;  // noise and edges of depth turn some triangles over
-  struct Sides {
-    std::size_t one = 0, other = 0;
-  };
   const auto ray = [&](std::size_t row, std::size_t column) {
     const double* p = xyz + 3 * (row * width + column);
     return Vector3d(p[0] - viewpoint[0], p[1] - viewpoint[1], p[2] - viewpoint[2]);
   };
-  const Sides sides = reduce_blocks(
-      context, height > 1 ? height - 1 : 0, Sides{},
-      [&](std::size_t begin, std::size_t end) {
-        Sides s;
-        for (std::size_t row = begin; row < end; ++row)
-          for (std::size_t column = 0; column + 1 < width; ++column) {
-            const double volume = ray(row, column).dot(ray(row, column + 1).cross(ray(row + 1, column)));
-            s.one += volume > 0 ? 1 : 0;
-            s.other += volume < 0 ? 1 : 0;
-          }
-        return s;
-      },
-      [](Sides a, const Sides& b) {
-        return Sides{a.one + b.one, a.other + b.other};
-      },
-      16);
-  return double(std::max(sides.one, sides.other)) > kShare * double(sides.one + sides.other);
+  const auto of_row = [&](std::size_t row) {
+    Eigen::Array2d sides(0, 0);  // triangles seen from one side, and from the other
+    for (std::size_t column = 0; column + 1 < width; ++column) {
+      const double volume = ray(row, column).dot(ray(row, column + 1).cross(ray(row + 1, column)));
+      sides += Eigen::Array2d(volume > 0, volume < 0);
+    }
+    return sides;
+  };
+  const Eigen::Array2d sides = sum_over(context, height > 1 ? height - 1 : 0, Eigen::Array2d(0, 0), of_row);
+  return sides.maxCoeff() > kShare * sides.sum();
 }
 
 std::optional<Vector3d> recorded_viewpoint(const io::Cloud& cloud, const double* xyz,
