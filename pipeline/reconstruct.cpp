@@ -6,12 +6,12 @@
 #include "base/fail.h"
 #include "base/parallel.h"
 #include "base/stopwatch.h"
+#include "pipeline/row_order.h"
 #include "pipeline/surface/hole_filling.h"
 #include "pipeline/surface/pinches.h"
 #include "pipeline/surface/surface_cleanup.h"
 #include "pipeline/surface/topology.h"
 #include "rfs_mesh/fit/local_surface.h"
-#include "rfs_mesh/points.h"
 #include "rfs_mesh/search/neighbors.h"
 
 namespace rfsmooth {
@@ -23,14 +23,6 @@ namespace {
 double spacing_of(const Positions& points, const Context& context) {
   const rfs_mesh::SpatialIndex index(points, context);
   return rfs_mesh::mean_spacing(points, index.nearest(1, context), context);
-}
-
-/// The first row of each working point.
-std::vector<std::size_t> first_rows(const rfs_mesh::WorkingCloud& cloud) {
-  std::vector<std::size_t> row(cloud.points.size());
-  for (std::size_t i = cloud.of_input.size(); i-- > 0;)
-    if (cloud.of_input[i] != kNone) row[cloud.of_input[i]] = i;
-  return row;
 }
 
 /// Takes the noise out of the rows and outliers out of the cloud.
@@ -93,9 +85,9 @@ Reconstruction run(std::vector<double> xyz, const ReconstructOptions& options, c
     watch.next("clean up");
     in_arena(context, [&] {
       clean_up(made.mesh, input, options, method.closes_all, report, context);
-      const std::vector<std::size_t> rows = first_rows(cloud);
+      const auto [row, rank] = row_order(cloud);
       made.row.reserve(made.mesh.positions.size());
-      for (const Index p : nearest_points(made.mesh, cloud.points, context)) made.row.push_back(rows[p]);
+      for (const Index p : nearest_points(made.mesh, cloud.points, context)) made.row.push_back(row[rank[p]]);
       for (Eigen::Vector3d& p : made.mesh.positions) p += cloud.origin;
       report.topology = topology(made.mesh.positions.size(), made.mesh.faces);
     });

@@ -6,9 +6,9 @@
 #include <rfsmooth/open3d/mesh.h>
 
 #include "base/parallel.h"
+#include "pipeline/row_order.h"
 #include "rfs_mesh/measure.h"
 #include "rfs_mesh/normals/orient.h"
-#include "rfs_mesh/points.h"
 
 namespace rfsmooth::open3d {
 
@@ -16,19 +16,6 @@ using ::open3d::geometry::PointCloud;
 using ::open3d::geometry::TriangleMesh;
 
 namespace {
-
-/// The working points in the order in which the cloud has them first: mesh vertex -> row of the cloud.
-std::vector<std::size_t> rows_of(const rfs_mesh::WorkingCloud& working, std::vector<Index>& rank) {
-  std::vector<std::size_t> row;
-  rank.assign(working.points.size(), kNone);
-  for (std::size_t i = 0; i < working.of_input.size(); ++i) {
-    const Index p = working.of_input[i];
-    if (p == kNone || rank[p] != kNone) continue;
-    rank[p] = Index(row.size());
-    row.push_back(i);
-  }
-  return row;
-}
 
 std::shared_ptr<TriangleMesh> make(const PointCloud& cloud, const ConnectOptions& options,
                                    const Context& context) {
@@ -44,8 +31,7 @@ std::shared_ptr<TriangleMesh> make(const PointCloud& cloud, const ConnectOptions
   }
   rfs_mesh::orient(connection.mesh, connection.emst, connection.bridges, {}, sides, context);
 
-  std::vector<Index> rank;
-  const std::vector<std::size_t> row = rows_of(working, rank);
+  const auto [row, rank] = pipeline::row_order(working);
   Mesh mesh;
   Positions normals;
   for (const std::size_t i : row) {

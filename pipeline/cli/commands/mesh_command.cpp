@@ -12,7 +12,7 @@
 #include "pipeline/cli/files/cloud_jobs.h"
 #include "pipeline/cli/files/memory.h"
 #include "pipeline/io/mesh_file.h"
-#include "rfs_mesh/points.h"
+#include "pipeline/row_order.h"
 
 namespace rfsmooth::cli {
 
@@ -41,24 +41,6 @@ struct MeshCommandOptions {
   MeshOptions mesh;
   JobOptions job;
 };
-
-/// The working points in the order in which they first come in the file, at the file's own coordinates.
-struct FileOrder {
-  Positions points;
-  std::vector<Index> rank;  ///< of each working point
-};
-
-FileOrder file_order(const rfs_mesh::WorkingCloud& cloud, const std::vector<double>& xyz) {
-  FileOrder order;
-  order.rank.assign(cloud.points.size(), kNone);
-  for (std::size_t i = 0; i < cloud.of_input.size(); ++i) {
-    const Index p = cloud.of_input[i];
-    if (p == kNone || order.rank[p] != kNone) continue;
-    order.rank[p] = Index(order.points.size());
-    order.points.emplace_back(xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]);
-  }
-  return order;
-}
 
 std::vector<Edge> renumbered(std::vector<Edge> edges, const std::vector<Index>& rank) {
   for (auto& e : edges) e = {std::min(rank[e[0]], rank[e[1]]), std::max(rank[e[0]], rank[e[1]])};
@@ -125,7 +107,9 @@ std::string connect_cloud(const MeshCommandOptions& options, pipeline::io::Cloud
   stages.insert(stages.end(), connection.seconds.begin(), connection.seconds.end());
   warn_if_coarse(cloud, xyz, connection.noise.spacing, job.input, console);
 
-  const FileOrder order = file_order(working, xyz);
+  const pipeline::RowOrder order = pipeline::row_order(working);
+  Positions points;  // at the file's own coordinates
+  for (const std::size_t i : order.row) points.emplace_back(&xyz[3 * i]);
   const std::string& stage = options.mesh.stage;
   Graph graph = graph_of(stage, connection);
   const auto edges = renumbered(std::move(graph.edges), order.rank);
@@ -133,15 +117,14 @@ std::string connect_cloud(const MeshCommandOptions& options, pipeline::io::Cloud
   if (stage == "rfs") faces = connection.mesh.faces;
   for (auto& face : faces)
     for (Index& corner : face) corner = order.rank[corner];
-  cloud = pipeline::io::make_mesh_file(order.points, faces, edges, graph.kind);
+  cloud = pipeline::io::make_mesh_file(points, faces, edges, graph.kind);
 
   entry["options"] = effective_options(options.mesh, options.job.files);
-  entry["counts"] = {{"points", xyz.size() / 3}, {"vertices", order.points.size()}};
+  entry["counts"] = {{"points", xyz.size() / 3}, {"vertices", points.size()}};
   entry["counts"].update(counts_of(connection, stage));
   entry["spacing"] = connection.noise.spacing;
   if (stage != "emst-points") entry["noise"] = connection.noise.sigma;
-  return fmt::format("{}: {} vertices, {} edges, {} faces", stage, order.points.size(), edges.size(),
-                     faces.size());
+  return fmt::format("{}: {} vertices, {} edges, {} faces", stage, points.size(), edges.size(), faces.size());
 }
 
 /// What is reported until the stage that was asked for is made.
