@@ -24,6 +24,8 @@ constexpr std::size_t kChunk = std::size_t{16} << 20;
 // placed).
 constexpr std::size_t kReserve = std::size_t{1} << 20;
 
+constexpr const char* kExists = "exists already; `force` replaces it";
+
 [[noreturn]] void refuse(const std::filesystem::path& target, const std::string& why) {
   fail(ErrorCode::cannot_write, "{}: {}", target.string(), why);
 }
@@ -66,7 +68,7 @@ std::optional<struct stat> check(const std::filesystem::path& shown, const std::
   const auto present = status_of(target);
   if (!present && errno != ENOENT) refuse(shown, fmt::format("cannot write: {}", std::strerror(errno)));
   if (present && S_ISDIR(present->st_mode)) refuse(shown, "cannot write: is a folder, expected a file name");
-  if (present && S_ISREG(present->st_mode) && !replace) refuse(shown, "exists already; `force` replaces it");
+  if (present && S_ISREG(present->st_mode) && !replace) refuse(shown, kExists);
   if ((!present || S_ISREG(present->st_mode)) && ::access(folder_of(target).c_str(), W_OK) != 0)
     refuse(shown, fmt::format("cannot write: the folder '{}': {}", folder_of(target).string(),
                               std::strerror(errno)));
@@ -125,6 +127,20 @@ void AtomicFile::reserve(std::size_t size) {
   if (errno == ENOSPC || errno == EDQUOT || errno == EFBIG) fail(errno);
 }
 
+void AtomicFile::take_name() {
+  const char *const from = temporary_.c_str(), *const to = target_.c_str();
+  if (!replace_) {
+    if (::renameat2(AT_FDCWD, from, AT_FDCWD, to, RENAME_NOREPLACE) == 0) return;
+    // File systems without that call: a hard link refuses an existing name as well; some have neither.
+    if (errno != EEXIST && ::link(from, to) == 0) {
+      ::unlink(from);
+      return;
+    }
+    if (errno == EEXIST || status_of(target_)) refuse(shown_, kExists);
+  }
+  if (::rename(from, to) != 0) fail(errno);
+}
+
 void AtomicFile::commit(bool sync) {
   context_.check_stop();
   if (sync && !temporary_.empty() && ::fsync(file_) != 0 && errno != EINVAL && errno != ENOTSUP) fail(errno);
@@ -132,23 +148,7 @@ void AtomicFile::commit(bool sync) {
   file_ = -1;
   if (closed != 0) fail(errno);
   if (temporary_.empty()) return;
-  if (replace_) {
-    if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail(errno);
-    temporary_.clear();
-  } else if (::renameat2(AT_FDCWD, temporary_.c_str(), AT_FDCWD, target_.c_str(), RENAME_NOREPLACE) == 0) {
-    temporary_.clear();
-  } else if (errno == EEXIST) {
-    refuse(shown_, "exists already; `force` replaces it");
-  } else {
-    // File systems without that call: a hard link refuses an existing name as well; some have neither.
-    if (::link(temporary_.c_str(), target_.c_str()) != 0) {
-      if (errno == EEXIST) refuse(shown_, "exists already; `force` replaces it");
-      if (status_of(target_)) refuse(shown_, "exists already; `force` replaces it");
-      if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail(errno);
-      temporary_.clear();
-    }
-  }
-  if (!temporary_.empty()) ::unlink(temporary_.c_str());
+  take_name();
   temporary_.clear();
   if (!sync) return;
   // The folder's entry is synced too; where that is not possible the file itself is safe already.

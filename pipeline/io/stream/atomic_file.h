@@ -31,6 +31,7 @@ class AtomicFile : public Sink {
 
  private:
   void reserve(std::size_t size);
+  void take_name();
   [[noreturn]] void fail(int error) const;
 
   std::filesystem::path shown_, target_, temporary_;
