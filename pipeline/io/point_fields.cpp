@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "pipeline/io/table/table_walk.h"
+
 namespace rfsmooth::pipeline::io {
 
 namespace {
@@ -22,21 +24,36 @@ double to_levels(Scalar type, const std::array<std::vector<double>, 3>& colors) 
   return type == Scalar::uint16 && std::any_of(colors.begin(), colors.end(), above) ? 255.0 / 65535 : 1;
 }
 
-/// The colours of one field of packed bits, which PCL keeps in a float or a whole number.
+/// The colours of one field of packed bits.
 std::vector<Rgb> unpacked_colors(const Cloud& cloud, std::size_t field, const Context& context) {
-  const bool as_float = cloud.points().fields[field].type == Scalar::float32;
-  const std::vector<double> values = field_values(cloud, field, context);
-  std::vector<Rgb> colors(values.size());
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    auto bits = std::uint32_t(as_float ? 0 : std::int64_t(values[i]));
-    const auto number = float(values[i]);
-    if (as_float) std::memcpy(&bits, &number, sizeof bits);
-    colors[i] = {std::uint8_t(bits >> 16 & 255), std::uint8_t(bits >> 8 & 255), std::uint8_t(bits & 255)};
-  }
+  std::vector<Rgb> colors;
+  for (const std::uint32_t bits : packed_colors(cloud, field, context))
+    colors.push_back(
+        {std::uint8_t(bits >> 16 & 255), std::uint8_t(bits >> 8 & 255), std::uint8_t(bits & 255)});
   return colors;
 }
 
 }  // namespace
+
+std::vector<std::uint32_t> packed_colors(const Cloud& cloud, std::size_t field, const Context& context) {
+  const Table& points = cloud.points();
+  const Scalar type = points.fields[field].type;
+  const bool four = size_of(type) == sizeof(std::uint32_t);
+  std::vector<std::uint32_t> packed(points.count);
+  if (four && !points.text) {  // a colour with alpha is a NaN as a float: a double would not have its bits
+    const Locator locate(points);
+    for (std::size_t i = 0; i < packed.size(); ++i)
+      std::memcpy(&packed[i], locate(points.row(i).data(), field), sizeof packed[i]);
+    return packed;
+  }
+  const std::vector<double> values = field_values(cloud, field, context);
+  for (std::size_t i = 0; i < packed.size(); ++i) {
+    char stored[8];
+    store(four ? type : Scalar::int64, stored, values[i]);
+    std::memcpy(&packed[i], stored, sizeof packed[i]);
+  }
+  return packed;
+}
 
 std::vector<Rgb> colors_of(const Cloud& cloud, const Context& context) {
   const auto plain = [&](const char* name) {

@@ -21,6 +21,10 @@ using Rgb = std::array<std::uint8_t, 3>;
 /// Whether the points have the fields of a normal, or some of them.
 bool has_normals(const Cloud& cloud);
 
+/// The values of a plain field that packs a colour into four bytes, as PCL does in a float or a whole number:
+/// 0xAARRGGBB. O(n).
+std::vector<std::uint32_t> packed_colors(const Cloud& cloud, std::size_t field, const Context& context = {});
+
 /// One colour per point; empty if the cloud has none. Colours in floats are from 0 to 1. O(n).
 std::vector<Rgb> colors_of(const Cloud& cloud, const Context& context = {});
 

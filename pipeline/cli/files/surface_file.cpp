@@ -1,7 +1,5 @@
 #include "pipeline/cli/files/surface_file.h"
 
-#include <cstring>
-
 #include "pipeline/io/convert.h"
 #include "pipeline/io/mesh_file.h"
 #include "pipeline/io/point_fields.h"
@@ -13,16 +11,6 @@ namespace io = pipeline::io;
 
 namespace {
 
-/// The four bytes of a field in each row, as one number: 0xAARRGGBB.
-std::vector<std::uint32_t> packed_values(io::Table& points, std::size_t field, const Context& context) {
-  io::make_binary(points, context);
-  const std::size_t offset = points.offset_of(field);
-  std::vector<std::uint32_t> values(points.count);
-  for (std::size_t i = 0; i < points.count; ++i)
-    std::memcpy(&values[i], points.row(i).data() + offset, sizeof values[i]);
-  return values;
-}
-
 void unpack_colours(io::Cloud& cloud, const Context& context) {
   if (io::find_field(cloud, "red") || cloud.points().has_lists()) return;
   for (const char* name : {"rgb", "rgba"}) {
@@ -30,7 +18,8 @@ void unpack_colours(io::Cloud& cloud, const Context& context) {
     if (!field || !cloud.points().fields[*field].is_plain() ||
         io::size_of(cloud.points().fields[*field].type) != 4)
       continue;
-    const std::vector<std::uint32_t> packed = packed_values(cloud.points(), *field, context);
+    io::make_binary(cloud.points(), context);
+    const std::vector<std::uint32_t> packed = io::packed_colors(cloud, *field, context);
     std::vector<double> part(packed.size());
     const auto add = [&](const char* colour, int shift) {
       for (std::size_t i = 0; i < part.size(); ++i) part[i] = (packed[i] >> shift) & 255;

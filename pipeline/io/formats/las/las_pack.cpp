@@ -9,6 +9,7 @@
 #include "pipeline/io/formats/las/las_parts.h"
 #include "pipeline/io/formats/las/las_plain.h"
 #include "pipeline/io/formats/las/las_scale.h"
+#include "pipeline/io/point_fields.h"
 
 namespace rfsmooth::pipeline::io {
 namespace las {
@@ -73,13 +74,11 @@ std::optional<Taken> place_of(const Cloud& plain, std::size_t f, const std::vect
 }
 
 // Red, green and blue out of PCL's field rgb, 4 bytes.
-void take_packed(const Cloud& plain, std::size_t f, std::vector<Taken>& taken) {
-  const Table& points = plain.points();
-  const std::size_t at = points.offset_of(f);
+void take_packed(const Cloud& plain, std::size_t f, const Context& context, std::vector<Taken>& taken) {
+  const std::vector<std::uint32_t> packed = packed_colors(plain, f, context);
   for (std::size_t c = 0; c < 3; ++c) {
     Taken colour{{kColours[c], kColours[c], 0, 65535}, {}};
-    for (std::size_t i = 0; i < points.count; ++i)
-      colour.values.push_back(256.0 * double(number<std::uint32_t>(points.row(i), at) >> (16 - 8 * c) & 255));
+    for (const std::uint32_t bits : packed) colour.values.push_back(256.0 * (bits >> (16 - 8 * c) & 255));
     taken.push_back(std::move(colour));
   }
 }
@@ -143,7 +142,7 @@ Sorted sort_fields(const Cloud& plain, const Context& context) {
     if (auto place = place_of(plain, f, out.taken, context))
       out.taken.push_back(std::move(*place));
     else if (packed && !find_field(plain, "red") && !out.has("red"))
-      take_packed(plain, f, out.taken);
+      take_packed(plain, f, context, out.taken);
     else
       out.extra.push_back(f);
   }
