@@ -211,10 +211,8 @@ void put_faces(io::Cloud& cloud, const Triples& triples) {
 
 io::Cloud read_file(const std::string& path) {
   io::Cloud cloud;
-  released(nb::none(), 0, {}, [&](const Context& context, cli::Console&) {
-    std::vector<StageTime> unused;
-    cloud = cli::load_cloud(path, context, unused);
-  });
+  released(nb::none(), 0, {},
+           [&](const Context& context, cli::Console&) { cloud = cli::load_cloud(path, context); });
   return cloud;
 }
 

@@ -71,8 +71,7 @@ struct ToText {
 /// The file of the truth: a mesh, or a clean cloud if it has no faces. Keeps what `view` points at.
 struct TruthFile {
   TruthFile(const std::string& path, const Context& context) {
-    std::vector<StageTime> unused;
-    const auto file = load_cloud(path, context, unused);
+    const auto file = load_cloud(path, context);
     xyz = pipeline::io::positions(file, context);
     faces = pipeline::io::value_or_fail(guarded([&] { return pipeline::io::faces_of(file, context); }), path);
     if (faces.empty())
@@ -107,10 +106,8 @@ int run_compare(const CompareCommandOptions& options, const Invocation& typed) {
     fail(ErrorCode::usage, "-o needs the name of a file: standard output takes the figures");
   if (options.files.output) check_target(*options.files.output, options.files);
   Console console(options.talk);
-  console.progress().plan({{"read", 1}, {"compare", 10}});
-  const Context context = console.context(options.threads.value_or(0));
-  std::vector<StageTime> unused;
-  auto cloud = load_cloud(typed.arguments[0], context, unused);
+  const Context context = console.context({{"read", 1}, {"compare", 10}}, options.threads);
+  auto cloud = load_cloud(typed.arguments[0], context);
   const TruthFile truth(typed.arguments[1], context);
   const std::vector<double> xyz = pipeline::io::positions(cloud, context),
                             normals = pipeline::io::normals_of(cloud, context);
@@ -129,7 +126,7 @@ int run_compare(const CompareCommandOptions& options, const Invocation& typed) {
   if (!options.files.output) return 0;
   const double red = options.red_from.value_or(deviation.most);
   color_by_deviation(cloud, report.deviation, red, *options.files.output, context);
-  store_cloud(cloud, *options.files.output, options.files, context, unused);
+  store_cloud(cloud, *options.files.output, options.files, context);
   console.say(
       fmt::format("{}: blue 0, green {:.3g}, red from {:.3g} on", *options.files.output, red / 2, red));
   return 0;

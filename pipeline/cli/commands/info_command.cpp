@@ -145,15 +145,13 @@ void print_text(const ordered_json& info) {
 int run_info(const InfoCommandOptions& options, const Invocation& typed) {
   if (typed.arguments.empty()) fail(ErrorCode::usage, "no input given");
   Console console(options.talk);
-  console.progress().plan({{"read", 1}});
-  const Context context = console.context(0);
+  const Context context = console.context({{"read", 1}});
   auto all = ordered_json::array();
   std::vector<Job> jobs;
   for (const std::string& input : typed.arguments) jobs.push_back({input, ""});
   const int code = run_jobs(jobs, console, [&](const Job& job) -> std::optional<Error> {
     const auto done = guarded([&] {
-      std::vector<StageTime> unused;
-      const pipeline::io::Cloud cloud = load_cloud(job.input, context, unused);
+      const pipeline::io::Cloud cloud = load_cloud(job.input, context);
       ordered_json info = {{"path", job.input}};
       info.update(info_of(cloud, context));
       if (!info["spacing"].is_null())

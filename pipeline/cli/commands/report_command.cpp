@@ -110,11 +110,9 @@ int run_report(const ReportCommandOptions& options, const Invocation& typed, con
   const std::size_t points = read_points(options.points);
   check_no_cloud_target(*options.output, options.force, "page");
   Console console(options.talk);
-  console.progress().plan({{"read", 1}});
-  const Context context = console.context(options.threads.value_or(0));
-  std::vector<StageTime> unused;
-  const auto before = load_cloud(typed.arguments[0], context, unused),
-             after = load_cloud(typed.arguments[1], context, unused);
+  const Context context = console.context({{"read", 1}}, options.threads);
+  const auto before = load_cloud(typed.arguments[0], context),
+             after = load_cloud(typed.arguments[1], context);
   pipeline::need_same_size(typed.arguments[0], before.size(), typed.arguments[1], after.size());
   pipeline::PageContents contents = contents_of(before, after, typed, context);
   contents.points = points;

@@ -61,10 +61,11 @@ void Console::error(const std::string& line) {
   print("\x1b[31m", "error: ", line);
 }
 
-Context Console::context(int threads) {
-  if (threads > 0) limit_.emplace(threads);
+Context Console::context(std::vector<StageShare> stages, std::optional<int> threads) {
+  progress_.plan(std::move(stages));
+  if (threads) limit_.emplace(*threads);
   Context context;
-  context.threads = threads;
+  context.threads = threads.value_or(0);
   context.stop = &stop_flag();
   context.progress = [this](std::string_view stage, double fraction) {
     draw(stage, fraction);

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <rfsmooth/context.h>
 #include <rfsmooth/options.h>
@@ -54,9 +55,9 @@ class Console {
   /// The progress that the bar shows.
   Progress& progress() { return progress_; }
 
-  /// A Context that logs and reports to this console and stops on Ctrl-C. `threads` (0 = all cores) limits
-  /// the whole process while the console exists.
-  Context context(int threads);
+  /// A Context that logs to this console, reports these stages to its bar and stops on Ctrl-C. `threads`
+  /// (none: all cores) limits the whole process while the console exists.
+  Context context(std::vector<StageShare> stages, std::optional<int> threads = {});
 
  private:
   void draw(std::string_view stage, double fraction);

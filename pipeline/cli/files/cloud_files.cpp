@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 
 #include "base/fail.h"
-#include "base/stopwatch.h"
 #include "pipeline/cli/files/memory.h"
 #include "pipeline/cli/own_files.h"
 #include "pipeline/io/convert.h"
@@ -54,8 +53,7 @@ void need_free_stdout(const std::vector<Job>& jobs, const RunOptions& options) {
   if (uses > 1) fail(ErrorCode::usage, "standard output (-) can take the cloud or the report, not both");
 }
 
-io::Cloud load_cloud(const std::string& input, const Context& context, std::vector<StageTime>& stages) {
-  const Stopwatch watch(stages, "read");
+io::Cloud load_cloud(const std::string& input, const Context& context) {
   context.report("read", 0);
   const std::string standard_input = "/dev/stdin", path = input == "-" ? standard_input : input;
   std::error_code unknown;
@@ -70,9 +68,7 @@ io::Cloud load_cloud(const std::string& input, const Context& context, std::vect
 }
 
 std::vector<std::string> store_cloud(const io::Cloud& cloud, const std::string& output,
-                                     const FileOptions& options, const Context& context,
-                                     std::vector<StageTime>& stages) {
-  const Stopwatch watch(stages, "write");
+                                     const FileOptions& options, const Context& context) {
   context.report("write", 0);
   std::vector<std::string> dropped;
   if (options.drop_unsupported) {

@@ -20,16 +20,14 @@ void check_target(const std::string& output, const FileOptions& options);
 /// Refuses two outputs to standard output; --report - counts as one. \throw Failure (usage).
 void need_free_stdout(const std::vector<Job>& jobs, const RunOptions& options);
 
-/// Reads a path, or standard input for "-"; adds a stage "read". \throw Failure, also if the file is larger
-/// than the available memory.
-pipeline::io::Cloud load_cloud(const std::string& input, const Context& context,
-                               std::vector<StageTime>& stages);
+/// Reads a path, or standard input for "-", as stage "read". \throw Failure, also if the file is larger than
+/// the available memory.
+pipeline::io::Cloud load_cloud(const std::string& input, const Context& context);
 
-/// Writes to a path, or to standard output for "-"; adds a stage "write". \return in words what the format
-/// cannot carry and --drop-unsupported left out. \throw Failure.
+/// Writes to a path, or to standard output for "-", as stage "write". \return in words what the format cannot
+/// carry and --drop-unsupported left out. \throw Failure.
 std::vector<std::string> store_cloud(const pipeline::io::Cloud& cloud, const std::string& output,
-                                     const FileOptions& options, const Context& context,
-                                     std::vector<StageTime>& stages);
+                                     const FileOptions& options, const Context& context);
 
 /// Warns if rounding the coordinates to float32 has moved them by more than a twentieth of the spacing, noise
 /// that denoise leaves alone. `xyz`: the file's coordinates. `spacing`: 0 if no two points differ, and then

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "base/stopwatch.h"
 #include "pipeline/cli/console/report.h"
 #include "pipeline/cli/exit_code.h"
 #include "pipeline/cli/options/text_values.h"
@@ -28,12 +29,20 @@ void run_one(const Job& job, const JobOptions& options, const OnCloud& on_cloud,
   need_own_target(job, options.files.output);
   check_target(job.output, options.files);
   std::vector<StageTime> stages;
-  pipeline::io::Cloud cloud = load_cloud(job.input, context, stages);
+  pipeline::io::Cloud cloud;
+  {
+    const Stopwatch watch(stages, "read");
+    cloud = load_cloud(job.input, context);
+  }
   entry["input"].update(describe(cloud));
   console.set_points(cloud.size());
   const std::string summary = on_cloud.work(cloud, job, context, console, stages, entry);
   const pipeline::io::Format format = output_format(cloud, job.output, options.files);
-  const std::vector<std::string> dropped = store_cloud(cloud, job.output, options.files, context, stages);
+  std::vector<std::string> dropped;
+  {
+    const Stopwatch watch(stages, "write");
+    dropped = store_cloud(cloud, job.output, options.files, context);
+  }
   if (!dropped.empty()) {
     console.warn(fmt::format("{}: left out, as {} cannot carry them: {}", job.output,
                              pipeline::io::name_of(format), fmt::join(dropped, ", ")));
@@ -64,8 +73,7 @@ int run_cloud_jobs(const std::string& command, const JobOptions& options, const 
   need_free_stdout(jobs, options.run);
   Report report(command, options.run.report, options.files.force);
   Console console(options.talk);
-  console.progress().plan(on_cloud.stages());
-  const Context context = console.context(options.run.threads.value_or(0));
+  const Context context = console.context(on_cloud.stages(), options.run.threads);
   bool any_done = false;
   const int code = run_jobs(jobs, console, [&](const Job& job) {
     ordered_json entry = {{"input", {{"path", job.input}}}, {"output", {{"path", job.output}}}};

@@ -187,8 +187,7 @@ int run_tiles(TilesOptions& options, const Invocation& typed) {
   std::vector<StageShare> stages = denoising_stages(false);
   if (step == "plan") stages = {{"plan", 1}};
   if (step == "join") stages = {{"join", 1}};
-  console.progress().plan(stages);
-  const Context context = console.context(options.threads.value_or(0));
+  const Context context = console.context(stages, options.threads);
   if (step == "plan")
     plan_tiles(options, arguments, context, console);
   else if (step == "join")

@@ -218,8 +218,7 @@ std::optional<int> denoise_in_tiles(const DenoiseCommandOptions& options, const 
   if (jobs.size() != 1) return std::nullopt;
   const Job& job = jobs.front();
   Console console(options.job.talk);
-  console.progress().plan({{"tiles", 1}});
-  const Context context = console.context(options.job.run.threads.value_or(0));
+  const Context context = console.context({{"tiles", 1}}, options.job.run.threads);
   const auto memory = memory_of_tiles(options, job, context);
   if (!memory) return std::nullopt;
   need_own_target(job, options.job.files.output);
