@@ -1,5 +1,6 @@
 #include "pipeline/adapters/python/option_tables.h"
 
+#include <array>
 #include <map>
 #include <set>
 #include <stdexcept>
@@ -45,21 +46,8 @@ std::set<std::string> names_for_files() {
 }
 
 const char* name_of(cli::ValueKind kind) {
-  switch (kind) {
-    case cli::ValueKind::flag:
-      return "flag";
-    case cli::ValueKind::integer:
-      return "integer";
-    case cli::ValueKind::number:
-      return "number";
-    case cli::ValueKind::word:
-      return "word";
-    case cli::ValueKind::length:
-      return "length";
-    case cli::ValueKind::file:
-      return "file";
-  }
-  return "";
+  constexpr std::array kNames = {"flag", "integer", "number", "word", "length", "file"};
+  return kNames.at(std::size_t(kind));
 }
 
 }  // namespace

@@ -16,10 +16,7 @@ nlohmann::ordered_json json_object(const std::vector<CommandOption>& options) {
   auto object = nlohmann::ordered_json::object();
   for (const CommandOption& o : options) {
     const auto text = o.get();
-    if (text)
-      object[o.name] = json_value(*text);
-    else
-      object[o.name] = nullptr;
+    object[o.name] = text ? json_value(*text) : nlohmann::ordered_json();
   }
   return object;
 }

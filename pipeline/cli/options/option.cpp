@@ -1,6 +1,7 @@
 #include "pipeline/cli/options/option.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <type_traits>
 
@@ -157,21 +158,9 @@ void OptionCollector::add_words(const OptionInfo& info, const std::function<std:
 }
 
 std::string value_name(const CommandOption& option) {
-  switch (option.kind) {
-    case ValueKind::flag:
-      return "";
-    case ValueKind::integer:
-      return "COUNT";
-    case ValueKind::number:
-      return "NUMBER";
-    case ValueKind::word:
-      return "WORD";
-    case ValueKind::length:
-      return "LENGTH";
-    case ValueKind::file:
-      return "FILE";
-  }
-  return "";
+  constexpr std::array kNames = {"",     "COUNT",  "NUMBER",
+                                 "WORD", "LENGTH", "FILE"};  // in the order of ValueKind
+  return kNames.at(std::size_t(option.kind));
 }
 
 bool has_no_form(const CommandOption& option) {

@@ -49,33 +49,14 @@ void warn_of_range(const Cloud& cloud, const double* xyz, const Context& context
 }  // namespace
 
 std::string_view name_of(Format format) {
-  switch (format) {
-    case Format::ply:
-      return "ply";
-    case Format::pcd:
-      return "pcd";
-    case Format::xyz:
-      return "xyz";
-    case Format::off:
-      return "off";
-    case Format::las:
-      return "las";
-  }
-  throw std::invalid_argument("name_of: not a Format");
+  constexpr std::array<std::string_view, 5> kNames = {"ply", "pcd", "xyz", "off", "las"};
+  return kNames.at(std::size_t(format));
 }
 
 std::string_view name_of(Encoding encoding) {
-  switch (encoding) {
-    case Encoding::ascii:
-      return "ascii";
-    case Encoding::binary_little_endian:
-      return "binary_little_endian";
-    case Encoding::binary_big_endian:
-      return "binary_big_endian";
-    case Encoding::binary_compressed:
-      return "binary_compressed";
-  }
-  throw std::invalid_argument("name_of: not an Encoding");
+  constexpr std::array<std::string_view, 4> kNames = {"ascii", "binary_little_endian", "binary_big_endian",
+                                                      "binary_compressed"};
+  return kNames.at(std::size_t(encoding));
 }
 
 const Table* Cloud::element(std::string_view name) const {
