@@ -62,12 +62,12 @@ void Rasterizer::triangle(const Vector3d& a, const Vector3d& b, const Vector3d& 
     }
 }
 
-void Rasterizer::line(const Vector3d& a, const Vector3d& b, double thickness, const Color& color) {
+void Rasterizer::line(const Vector3d& a, const Vector3d& b, int thickness, const Color& color) {
   const double reach = 10.0 * (image_.width + image_.height);
   for (const Vector3d& end : {a, b})
     if (!(std::abs(end[0]) < reach && std::abs(end[1]) < reach)) return;  // far outside the picture
   const int steps = std::max(1, int(std::ceil(2 * std::max(std::abs(b[0] - a[0]), std::abs(b[1] - a[1])))));
-  const int half = int(thickness / 2);
+  const int half = thickness / 2;
   for (int k = 0; k <= steps; ++k) {
     const Vector3d p = a + (b - a) * (double(k) / steps);
     for (int dy = -half; dy <= half; ++dy)

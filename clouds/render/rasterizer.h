@@ -21,7 +21,7 @@ class Rasterizer {
   void triangle(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
                 const Color& color);
   /// `thickness` pixels wide; drawn a little in front of surfaces at the same depth.
-  void line(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double thickness, const Color& color);
+  void line(const Eigen::Vector3d& a, const Eigen::Vector3d& b, int thickness, const Color& color);
 
   const Image& image() const { return image_; }
 

@@ -119,7 +119,7 @@ Image draw(const Scene& scene, const Camera& camera, int width, int height, cons
   Positions at(scene.points.size());
   for (std::size_t i = 0; i < at.size(); ++i) at[i] = kSuper * camera.project(scene.points[i]);
   const auto segment = [&](Index a, Index b, const Color& color) {
-    raster.line(at[a], at[b], kSuper * options.thickness, color);
+    raster.line(at[a], at[b], kSuper, color);
   };
   for (const Face& f : scene.faces) {
     const Vector3d normal =

@@ -54,7 +54,6 @@ bool color_by_file(Scene& scene, const pipeline::io::Cloud& cloud);
 struct DrawOptions {
   bool edges = false;      ///< draw the edges of faces too
   double splat_scale = 1;  ///< of every splat's radius
-  double thickness = 1;    ///< of lines, pixels
 };
 
 /// Draws the scene as seen by `camera` in a picture of width x height.

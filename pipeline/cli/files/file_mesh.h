@@ -27,7 +27,7 @@ struct FileMesh {
 /// heights above it. \throw Failure naming the file if it has no faces, no finite vertex, or a face with a
 /// point that does not exist.
 FileMesh file_mesh(const pipeline::io::Cloud& cloud, const std::string& name, const Context& context,
-                   bool own_heights = false);
+                   bool own_heights);
 
 /// Replaces the cloud by a refined mesh: first its rows, at `rows`, then the new vertices of `fine`, whose
 /// first vertices are those of `file`. Other fields and elements are dropped.

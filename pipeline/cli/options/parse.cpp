@@ -108,22 +108,19 @@ Parsed parse(int argc, const char* const* argv, const std::vector<Command>& comm
   }
 
   const int options_end = end_of_options(argc, argv, commands);
-  const auto note_command = [&] {
-    for (std::size_t i = 0; i < commands.size(); ++i)
-      if (subs[i]->parsed()) {
-        parsed.command = &commands[i];
-        into.arguments = positional[i];
-        for (int k = options_end + 1; k < argc; ++k) into.arguments.emplace_back(argv[k]);
-        for (const std::string& extra : subs[i]->remaining())
-          if (extra.size() > 1 && extra[0] == '-') refuse_unknown_option(extra, commands[i]);
-      }
-  };
   try {
     app.parse(options_end, argv);
   } catch (const CLI::ParseError& error) {
     fail(ErrorCode::usage, "{}", in_our_words(error));
   }
-  note_command();
+  for (std::size_t i = 0; i < commands.size(); ++i) {
+    if (!subs[i]->parsed()) continue;
+    parsed.command = &commands[i];
+    into.arguments = positional[i];
+    for (int k = options_end + 1; k < argc; ++k) into.arguments.emplace_back(argv[k]);
+    for (const std::string& extra : subs[i]->remaining())
+      if (extra.size() > 1 && extra[0] == '-') refuse_unknown_option(extra, commands[i]);
+  }
   const std::vector<std::string> before = app.remaining();
   if (parsed.command == nullptr && !before.empty()) refuse_words_without_command(before, commands);
   if (!before.empty())
