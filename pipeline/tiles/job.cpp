@@ -225,28 +225,6 @@ void cut_rows(Job& job, const Cuts& cuts, const Context& context) {
 
 }  // namespace
 
-fs::path Job::cut(std::size_t tile) const {
-  return folder / "cut" / std::to_string(tile);
-}
-fs::path Job::sampled(std::size_t tile) const {
-  return folder / "sample" / std::to_string(tile);
-}
-fs::path Job::done(std::size_t tile) const {
-  return folder / "done" / std::to_string(tile);
-}
-fs::path Job::normals(std::size_t tile) const {
-  return folder / "done" / (std::to_string(tile) + ".normals");
-}
-fs::path Job::around(std::size_t tile) const {
-  return folder / "done" / (std::to_string(tile) + ".around");
-}
-fs::path Job::cost(std::size_t tile) const {
-  return folder / "done" / (std::to_string(tile) + ".json");
-}
-fs::path Job::settled() const {
-  return folder / "statistics.json";
-}
-
 std::optional<Vector3d> common_viewpoint(const std::vector<std::string>& inputs, const Context& context) {
   std::optional<Vector3d> common;
   for (std::size_t i = 0; i < inputs.size(); ++i) {

@@ -55,13 +55,17 @@ struct Job {
   std::vector<Tile> tiles;
   nlohmann::ordered_json options;  ///< of denoise, as the command keeps them
 
-  std::filesystem::path cut(std::size_t tile) const;      ///< its points
-  std::filesystem::path sampled(std::size_t tile) const;  ///< its part of the sample
-  std::filesystem::path done(std::size_t tile) const;     ///< its points, smoothed
-  std::filesystem::path normals(std::size_t tile) const;  ///< theirs, where they were asked for
-  std::filesystem::path around(std::size_t tile) const;   ///< and those of points around the tile
-  std::filesystem::path cost(std::size_t tile) const;     ///< what that took, and of normals, JSON
-  std::filesystem::path settled() const;                  ///< the statistics and the halo, JSON
+  using Path = std::filesystem::path;
+  Path settled() const { return folder / "statistics.json"; }         ///< the statistics and the halo
+  Path cut(std::size_t t) const { return of_tile("cut", t); }         ///< the points of tile t
+  Path sampled(std::size_t t) const { return of_tile("sample", t); }  ///< its part of the sample
+  Path done(std::size_t t) const { return of_tile("done", t); }       ///< its points, smoothed
+  Path normals(std::size_t t) const { return of_tile("done", t, ".normals"); }  ///< theirs, if asked for
+  Path around(std::size_t t) const { return of_tile("done", t, ".around"); }    ///< of points around it
+  Path cost(std::size_t t) const { return of_tile("done", t, ".json"); }        ///< what all that took
+  Path of_tile(const char* kind, std::size_t t, const char* ending = "") const {
+    return folder / kind / (std::to_string(t) + ending);
+  }
 };
 
 /// The halo is this many radii of the widest patch. What a point becomes passes through such patches six
