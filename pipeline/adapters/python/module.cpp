@@ -54,7 +54,7 @@ std::string run_on_cloud(const std::string& name, const OptionTexts& options, pi
   released(progress, threads, command.on_cloud.stages(), [&](const Context& context, cli::Console& console) {
     std::vector<StageTime> stages;
     value_or_throw(guarded([&] {
-      command.on_cloud.work(cloud, {input, ""}, context, console, stages, report);
+      command.on_cloud.work(cloud, {{input, ""}, context, console, stages, report});
       return Done{};
     }));
     report["threads"] = threads > 0 ? ordered_json(threads) : ordered_json(nullptr);

@@ -33,12 +33,18 @@ struct Invocation {
   bool version = false;
 };
 
-/// What a sub-command does with one cloud: changes it (or puts another in its place), adds to the report's
-/// entry ("options", "counts", ...) and to the stages, and returns what it did in at most three short lines,
-/// the most telling ones first. \throw Failure.
-using CloudWork = std::function<std::string(pipeline::io::Cloud& cloud, const Job& job,
-                                            const Context& context, Console& console,
-                                            std::vector<StageTime>& stages, nlohmann::ordered_json& entry)>;
+/// What goes with a cloud that is worked on: where it comes from and goes to, and where to say what is done.
+struct CloudTask {
+  const Job& job;
+  const Context& context;
+  Console& console;
+  std::vector<StageTime>& stages;  ///< gets those of the work
+  nlohmann::ordered_json& entry;   ///< of the report: gets "options", "counts", ...
+};
+
+/// What a sub-command does with one cloud: changes it, or puts another in its place. \return what it did in
+/// at most three short lines, the most telling ones first. \throw Failure.
+using CloudWork = std::function<std::string(pipeline::io::Cloud& cloud, const CloudTask& task)>;
 
 /// A sub-command that turns one cloud into another, wherever that comes from: a file, or an array in Python.
 /// To be called once every option has its value.

@@ -93,16 +93,17 @@ Graph graph_of(const std::string& stage, const Connection& connection) {
   return graph;
 }
 
-std::string connect_cloud(const MeshCommandOptions& options, pipeline::io::Cloud& cloud, const Job& job,
-                          const Context& context, Console& console, std::vector<StageTime>& stages,
-                          ordered_json& entry) {
+std::string connect_cloud(const MeshCommandOptions& options, pipeline::io::Cloud& cloud,
+                          const CloudTask& task) {
+  const auto& [job, context, console, stages, entry] = task;
   need_memory(job.input, rfsmooth::denoise_memory(cloud.size()));
   const std::vector<double> xyz = pipeline::io::positions(cloud, context);
   const rfs_mesh::WorkingCloud working =
       value_or_fail(rfs_mesh::make_working_cloud(xyz.data(), cloud.size(), context), job.input);
   Connection connection;
   in_arena(context, [&] {
-    connection = value_or_throw(rfsmooth::connect(working.points, connect_options(options.mesh), context));
+    connection =
+        value_or_throw(rfsmooth::connect(working.points, connect_options(options.mesh), task.context));
   });
   stages.insert(stages.end(), connection.seconds.begin(), connection.seconds.end());
   warn_if_coarse(cloud, xyz, connection.noise.spacing, job.input, console);
@@ -159,7 +160,7 @@ Command mesh_command() {
   command.everyday = {"stage", "output", "force", "threads", "report", "quiet", "verbose"};
   command.on_cloud = {
       [](const Invocation&) {}, [options] { return stages_up_to(options->mesh.stage); },
-      [options](auto&&... all) { return connect_cloud(*options, std::forward<decltype(all)>(all)...); }};
+      [options](auto& cloud, const CloudTask& task) { return connect_cloud(*options, cloud, task); }};
   command.run = [options, on_cloud = command.on_cloud](const Invocation& typed) {
     return run_cloud_jobs("mesh", options->job, typed, on_cloud);
   };

@@ -68,8 +68,8 @@ void enter(const Reconstruction& made, const ReconstructCommandOptions& options,
 }
 
 std::string reconstruct_cloud(const ReconstructCommandOptions& options, const SurfaceMethod& method,
-                              pipeline::io::Cloud& cloud, const Job& job, const Context& context,
-                              Console& console, std::vector<StageTime>& stages, ordered_json& entry) {
+                              pipeline::io::Cloud& cloud, const CloudTask& task) {
+  const auto& [job, context, console, stages, entry] = task;
   check_format(job, options.job.files);
   need_memory(job.input, rfsmooth::denoise_memory(cloud.size()));
   const Reconstruction made = value_or_fail(
@@ -144,8 +144,8 @@ Command reconstruct_command(std::vector<SurfaceMethod> methods) {
     const SurfaceMethod& method = find_method(methods, options->reconstruct.method);
     return run_cloud_jobs("reconstruct", options->job, typed,
                           {[](const Invocation&) {}, [&] { return reconstructing_stages(*options); },
-                           [&](auto&&... all) {
-                             return reconstruct_cloud(*options, method, std::forward<decltype(all)>(all)...);
+                           [&](auto& cloud, const CloudTask& task) {
+                             return reconstruct_cloud(*options, method, cloud, task);
                            }});
   };
   return command;

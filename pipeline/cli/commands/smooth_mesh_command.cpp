@@ -107,14 +107,15 @@ void make_agree(Mesh& mesh) {
 
 /// Writes the refined mesh into the cloud.
 void refine_file(const After& after, pipeline::io::Cloud& cloud, FileMesh& file,
-                 const std::vector<double>& rows, const Job& job, const Context& context, Console& console) {
+                 const std::vector<double>& rows, const CloudTask& task) {
   const auto sharp = after.sharp_angle ? sharp_edges(file.mesh, *after.sharp_angle) : std::vector<Edge>{};
-  Mesh fine = value_or_fail(smoothing::refine(file.mesh, after.refine, context, sharp), job.input);
+  Mesh fine = value_or_fail(smoothing::refine(file.mesh, after.refine, task.context, sharp), task.job.input);
   const bool more = cloud.points().fields.size() > 3;
   put_refined(cloud, file, rows, fine);
   file.mesh = std::move(fine);
   if (more)
-    console.warn(job.input + ": a refined mesh has new points; only x, y, z and triangles are written");
+    task.console.warn(task.job.input +
+                      ": a refined mesh has new points; only x, y, z and triangles are written");
 }
 
 /// Adds the field of ridges and ravines. \throw Failure for OFF, which cannot hold it.
@@ -135,14 +136,14 @@ void mark_ridges(const After& after, pipeline::io::Cloud& cloud, FileMesh& file,
 }
 
 std::string smooth_file(const SmoothMeshCommandOptions& options, std::vector<TraceRow>& trace,
-                        pipeline::io::Cloud& cloud, const Job& job, const Context& context, Console& console,
-                        std::vector<StageTime>& stages, ordered_json& entry) {
+                        pipeline::io::Cloud& cloud, const CloudTask& task) {
+  const auto& [job, context, console, stages, entry] = task;
   Stopwatch watch(stages, "connect");
   FileMesh file =
       file_mesh(cloud, job.input, context, options.flow.modifiers.preserve == Preserve::height_field);
   const auto constraints = value_or_fail(guarded([&] {
                                            return constraints_of(options.constraints, cloud, file.of_row,
-                                                                 file.before.size(), context);
+                                                                 file.before.size(), task.context);
                                          }),
                                          job.input);
   watch.next("smooth");
@@ -155,7 +156,7 @@ std::string smooth_file(const SmoothMeshCommandOptions& options, std::vector<Tra
   const std::size_t points = cloud.size(), faces = file.mesh.faces.size();
   if (options.after.refine.levels > 0) {
     watch.next("refine");
-    refine_file(options.after, cloud, file, rows, job, context, console);
+    refine_file(options.after, cloud, file, rows, task);
   } else {
     pipeline::io::set_positions(cloud, rows.data(), context);
     if (moved && pipeline::io::has_normals(cloud))
@@ -212,8 +213,8 @@ Command smooth_mesh_command() {
                         const double refining = options->after.refine.levels > 0 ? 20 : 0;
                         return {{"read", 1}, {"smooth", 10}, {"refine", refining}};
                       },
-                      [options, trace](auto&&... all) {
-                        return smooth_file(*options, *trace, std::forward<decltype(all)>(all)...);
+                      [options, trace](auto& cloud, const CloudTask& task) {
+                        return smooth_file(*options, *trace, cloud, task);
                       },
                       [options, trace](Console&) { options->trace.write(*trace, options->job.files); }};
   command.run = [options, on_cloud = command.on_cloud](const Invocation& typed) {

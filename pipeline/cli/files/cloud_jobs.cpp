@@ -36,7 +36,7 @@ void run_one(const Job& job, const JobOptions& options, const OnCloud& on_cloud,
   }
   entry["input"].update(describe(cloud));
   console.set_points(cloud.size());
-  const std::string summary = on_cloud.work(cloud, job, context, console, stages, entry);
+  const std::string summary = on_cloud.work(cloud, {job, context, console, stages, entry});
   const pipeline::io::Format format = output_format(cloud, job.output, options.files);
   std::vector<std::string> dropped;
   {

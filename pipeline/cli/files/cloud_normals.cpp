@@ -68,9 +68,9 @@ void check_normals(const NormalsFields& options, const io::Cloud& cloud) {
 }
 
 void write_normals(const NormalsFields& options, io::Cloud& cloud, const double* xyz,
-                   const std::string& output, const FileOptions& files, const Context& context,
-                   std::vector<StageTime>& stages, nlohmann::ordered_json& entry) {
+                   const FileOptions& files, const CloudTask& task) {
   if (!options.normals) return;
+  const auto& [job, context, console, stages, entry] = task;
   const Stopwatch watch(stages, "normals");
   NormalsOptions wanted;
   wanted.viewpoint = typed_viewpoint(options);
@@ -84,7 +84,7 @@ void write_normals(const NormalsFields& options, io::Cloud& cloud, const double*
     written = true;
   }
   if (!written)
-    put(cloud, output_format(cloud, output, files) == io::Format::pcd ? io::kPcdNormal : io::kPlyNormal,
+    put(cloud, output_format(cloud, job.output, files) == io::Format::pcd ? io::kPcdNormal : io::kPlyNormal,
         normals, context);
   auto& viewpoint = entry["normals"]["viewpoint"];
   viewpoint = nullptr;

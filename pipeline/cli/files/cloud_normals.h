@@ -6,11 +6,11 @@
 #include <vector>
 
 #include <Eigen/Core>
-#include <nlohmann/json.hpp>
 
 #include <rfsmooth/denoise.h>
 #include <rfsmooth/normals.h>
 
+#include "pipeline/cli/commands/command.h"
 #include "pipeline/cli/files/file_options.h"
 #include "pipeline/io/io.h"
 
@@ -47,10 +47,9 @@ void check_normals(const NormalsFields& options, const pipeline::io::Cloud& clou
 
 /// Estimates the normals at the coordinates `xyz` (those of the cloud, smoothed) and writes them into every
 /// complete triple nx, ny, nz or normal_x, normal_y, normal_z, in its own type. Without such a triple, new
-/// float32 fields are added, named as `output`'s format does. Rows that are not finite keep their values; in
-/// new fields they get NaN. Adds a stage, and the viewpoint to `entry`. \throw Failure.
+/// float32 fields are added, named as the output's format does. Rows that are not finite keep their values;
+/// in new fields they get NaN. Adds a stage, and the viewpoint to the report. \throw Failure.
 void write_normals(const NormalsFields& options, pipeline::io::Cloud& cloud, const double* xyz,
-                   const std::string& output, const FileOptions& files, const Context& context,
-                   std::vector<StageTime>& stages, nlohmann::ordered_json& entry);
+                   const FileOptions& files, const CloudTask& task);
 
 }  // namespace rfsmooth::cli

@@ -62,11 +62,11 @@ void enter(const DenoiseReport& done, const DenoiseCommandOptions& options, orde
 }
 
 void tell(const DenoiseReport& done, const DenoiseCommandOptions& options, const pipeline::io::Cloud& cloud,
-          const Job& job, Console& console) {
-  const bool as_las = output_format(cloud, job.output, options.job.files) == pipeline::io::Format::las;
-  tell_points(done, options, pipeline::io::has_normals(cloud), as_las, job, console);
-  console.detail(fmt::format("{} faces, {} edges, {} bridges, {} points without a face, {} swaps", done.faces,
-                             done.edges, done.bridges, done.faceless, done.swaps));
+          const CloudTask& task) {
+  const bool as_las = output_format(cloud, task.job.output, options.job.files) == pipeline::io::Format::las;
+  tell_points(done, options, pipeline::io::has_normals(cloud), as_las, task.job, task.console);
+  task.console.detail(fmt::format("{} faces, {} edges, {} bridges, {} points without a face, {} swaps",
+                                  done.faces, done.edges, done.bridges, done.faceless, done.swaps));
 }
 
 /// Fields that could not be added, told before the work. \throw Failure.
@@ -103,9 +103,9 @@ void remove_outliers(pipeline::io::Cloud& cloud, const std::vector<char>& outlie
 /// Refines the scale of a LAS cloud. For LAS to be written as far as it is coarse for what is left of the
 /// noise. For other formats, which have no steps, as far as 32 bits go.
 void refine_scale(const DenoiseCommandOptions& options, const DenoiseReport& done, pipeline::io::Cloud& cloud,
-                  const double* xyz, const Job& job, const Context& context, Console& console,
-                  ordered_json& entry) {
+                  const double* xyz, const CloudTask& task) {
   using pipeline::io::Format;
+  const auto& [job, context, console, stages, entry] = task;
   if (done.moved == 0 || cloud.format != Format::las) return;
   if (output_format(cloud, job.output, options.job.files) != Format::las) {
     pipeline::io::refine_scale(cloud, std::numeric_limits<double>::min(), xyz, context);
@@ -142,8 +142,8 @@ void page_after(const DenoiseReport& done, const DenoiseCommandOptions& options,
 }
 
 std::string denoise_cloud(const DenoiseCommandOptions& options, Beside& beside, pipeline::io::Cloud& cloud,
-                          const Job& job, const Context& context, Console& console,
-                          std::vector<StageTime>& stages, ordered_json& entry) {
+                          const CloudTask& task) {
+  const auto& [job, context, console, stages, entry] = task;
   const std::size_t n = cloud.size();
   check_fields(options, cloud);
   need_memory(job.input, rfsmooth::denoise_memory(n));
@@ -167,7 +167,7 @@ std::string denoise_cloud(const DenoiseCommandOptions& options, Beside& beside, 
   };
   warn_if_coarse(cloud, pipeline::io::positions(cloud, context), done.spacing, job.input, console);
   if (as_nan) blank_outliers();
-  refine_scale(options, done, cloud, xyz.data(), job, context, console, entry);
+  refine_scale(options, done, cloud, xyz.data(), task);
   if (output_format(cloud, job.output, options.job.files) == pipeline::io::Format::las)
     warn_of_index(job.output, console);
   const std::vector<double> before =
@@ -180,10 +180,10 @@ std::string denoise_cloud(const DenoiseCommandOptions& options, Beside& beside, 
     pipeline::io::set_field(cloud, kOutlier, pipeline::io::Scalar::uint8, flags, context);
   }
   stages.insert(stages.end(), done.seconds.begin(), done.seconds.end());
-  tell(done, options, cloud, job, console);
+  tell(done, options, cloud, task);
   enter(done, options, entry);
   if (some_removed) blank_outliers();  // normals are of the points that stay
-  write_normals(options.normals, cloud, xyz.data(), job.output, options.job.files, context, stages, entry);
+  write_normals(options.normals, cloud, xyz.data(), options.job.files, task);
   if (options.html) {
     page_after(done, options, cloud, job, context, page);
     page.command = beside.command;
@@ -267,8 +267,8 @@ Command denoise_command() {
   const auto beside = std::make_shared<Beside>();
   command.on_cloud = {[options](const Invocation& typed) { check_denoise(*options, typed); },
                       [options] { return denoising_stages(options->normals.normals); },
-                      [options, beside](auto&&... all) {
-                        return denoise_cloud(*options, *beside, std::forward<decltype(all)>(all)...);
+                      [options, beside](auto& cloud, const CloudTask& task) {
+                        return denoise_cloud(*options, *beside, cloud, task);
                       },
                       [options, beside](Console& console) { write_beside(*options, *beside, console); }};
   command.run = [options, beside, on_cloud = command.on_cloud,
