@@ -140,7 +140,7 @@ NoiseScale scale_for(const SpatialIndex& index, const NoiseModel& noise, const C
   std::vector<double> sigma = at_sites(noise);
   const double loud = loudness(noise), calm = quantile(sigma, 0.25);
   const bool understated = noise.shared > 1 || noise.step > 0 || noise.across;
-  NoiseScale scale = noise_scale(index, context, understated ? loud : 0, std::max(1.0, loud / calm));
+  NoiseScale scale = noise_scale(index, context, loud, std::max(1.0, loud / calm), understated);
   scale.sigma = std::min(scale.sigma, loud);
   return scale;
 }

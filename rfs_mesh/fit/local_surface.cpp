@@ -122,7 +122,10 @@ Deviation deviation_at(const SpatialIndex& index, std::size_t m, const Context& 
 
 }  // namespace
 
-NoiseScale noise_scale(const SpatialIndex& index, const Context& context, double known, double louder) {
+NoiseScale noise_scale(const SpatialIndex& index, const Context& context, double measured, double louder,
+                       bool understated) {
+  constexpr std::size_t kUsual = 384;  // radius of eleven spacings; wider ones blur detail
+  const double known = understated ? measured : 0;
   const std::size_t n = index.points().size();
   NoiseScale best;
   double least = std::numeric_limits<double>::infinity(), before = known;
@@ -136,7 +139,7 @@ NoiseScale noise_scale(const SpatialIndex& index, const Context& context, double
       least = share;
       best = {before, m, d.radius};
     }
-    if (share <= kFlatSlab) break;
+    if (share <= kFlatSlab || (m >= kUsual && kGrowthOfNoise * before >= measured)) break;
   }
   return best;
 }

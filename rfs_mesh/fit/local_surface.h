@@ -63,16 +63,17 @@ double mean_spacing(const SpatialIndex& index, const Context& context);
 ///
 /// Quadrics are fitted to m = 24, 48, ... 3,072 neighbours at up to 1,000 points spread over the cloud; sigma
 /// is the lower quartile of their residuals (the flat places), corrected for being a quartile, times
-/// `louder`, or `known` if that is more. A neighbourhood narrower than a few sigma is a ball inside a thick
-/// slab: it shows too little noise and no normal. One that is too wide takes shape for noise: sigma then
-/// grows faster than the cube root of m, which noise never does, and the search stops. m is the first at
-/// which sigma is at most 0.18 of the radius, else the one at which that share is least. O(1) in n after the
-/// index.
+/// `louder`. A neighbourhood narrower than a few sigma is a ball inside a thick slab: it shows too little
+/// noise and no normal. One that is too wide takes shape for noise: sigma then grows faster than the cube
+/// root of m, which noise never does, and the search stops. m is the first at which sigma is at most 0.18 of
+/// the radius, else the one at which that share is least. More than 384 points are only tried while they show
+/// so much less than the model that not even twice as many could show all of it. O(1) in n after the index.
 ///
-/// \param known world units, of the model, where narrow neighbourhoods cannot show it: of noise that
-/// neighbours share they show less, of depths in steps nothing; 0: they can. \param louder the model's noise
-/// of the cloud over its calm quarter, 1 or more
-NoiseScale noise_scale(const SpatialIndex& index, const Context& context, double known = 0,
-                       double louder = 1);
+/// \param measured world units, noise of the model; 0: not known. \param louder the model's noise of the
+/// cloud over its calm quarter, 1 or more. \param understated whether narrow neighbourhoods cannot show it:
+/// of noise that neighbours share they show less, of depths in steps nothing. Then sigma is at least
+/// `measured`
+NoiseScale noise_scale(const SpatialIndex& index, const Context& context, double measured = 0,
+                       double louder = 1, bool understated = false);
 
 }  // namespace rfsmooth::rfs_mesh
