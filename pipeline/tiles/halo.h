@@ -16,6 +16,12 @@
 
 namespace rfsmooth::pipeline::tiles {
 
+/// The halo is this many radii of the widest patch. What a point becomes passes through such patches six
+/// times: from their members to them and from them to the point, for the heights and twice more for the means
+/// of the evidence. The weights (1 - d^2)^2 have a standard deviation of 0.35 radii, six in a row 0.87, and
+/// this is 3.5 of those.
+constexpr double kHaloRadii = 3;
+
 /// The median distance to the m-th neighbour, of up to 1,000 points. O(m) after the index.
 double typical_radius(const Positions& points, std::size_t m, const Context& context);
 

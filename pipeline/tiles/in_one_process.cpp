@@ -9,7 +9,14 @@
 #include "base/fail.h"
 #include "pipeline/io/stream/atomic_file.h"
 #include "pipeline/io/table/cloud.h"
-#include "pipeline/tiles/row_file.h"
+#include "pipeline/tiles/allowed.h"
+#include "pipeline/tiles/files/row_file.h"
+#include "pipeline/tiles/halo.h"
+#include "pipeline/tiles/steps/measure.h"
+#include "pipeline/tiles/steps/plan.h"
+#include "pipeline/tiles/steps/run.h"
+#include "pipeline/tiles/steps/settle.h"
+#include "pipeline/tiles/steps/status.h"
 
 namespace rfsmooth::pipeline::tiles {
 

@@ -5,7 +5,12 @@
 #include <optional>
 #include <string>
 
+#include <rfsmooth/denoise.h>
+#include <rfsmooth/normals.h>
+
+#include "pipeline/io/table/cloud.h"
 #include "pipeline/tiles/job.h"
+#include "pipeline/tiles/steps/join.h"
 
 namespace rfsmooth::pipeline::tiles {
 

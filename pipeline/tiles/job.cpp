@@ -1,298 +1,32 @@
 #include "pipeline/tiles/job.h"
 
-#include <algorithm>
-#include <chrono>
-#include <cmath>
-#include <cstring>
 #include <fstream>
-#include <memory>
-#include <utility>
 
-#include <Eigen/Geometry>
+#include <fmt/format.h>
 
 #include "base/fail.h"
-#include "base/quantile.h"
-#include "pipeline/io/io.h"
-#include "pipeline/tiles/records.h"
-#include "pipeline/tiles/row_file.h"
-#include "pipeline/tiles/statistics_json.h"
+#include "pipeline/tiles/files/job_json.h"
 
 namespace rfsmooth::pipeline::tiles {
 
-namespace fs = std::filesystem;
-using Eigen::AlignedBox3d;
-using Eigen::Vector3d;
-using nlohmann::ordered_json;
-
-namespace {
-
-constexpr std::uint64_t kPlanned = 250'000;  // points that the cuts are found among, to twice as many
-constexpr std::size_t kOpen = 500;           // files that are written at once
-
-/// A number that a place has, whatever its row: the finaliser of splitmix64 (Steele et al. 2014) of its bits.
-std::uint64_t number_of(const Vector3d& p) {
-  std::uint64_t hash = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    std::uint64_t bits;
-    const double value = p[axis];
-    std::memcpy(&bits, &value, sizeof bits);
-    hash = (hash ^ bits) + 0x9e3779b97f4a7c15;
-    hash = (hash ^ (hash >> 30)) * 0xbf58476d1ce4e5b9;
-    hash = (hash ^ (hash >> 27)) * 0x94d049bb133111eb;
-    hash ^= hash >> 31;
-  }
-  return hash;
-}
-
-/// Visits every finite row of every input, in order.
-template <class Visit>
-void for_each_point(const std::vector<JobInput>& inputs, const char* stage, double from, double to,
-                    const Context& context, Visit&& visit) {
-  std::uint64_t all = 0, row = 0;
-  for (const JobInput& input : inputs) all += input.rows;
-  for (const JobInput& input : inputs) {
-    const RowFile file(input.path, context);
-    file.for_each_piece(context, [&](std::uint64_t, std::size_t count, const io::Bytes& rows) {
-      context.report(stage, from + (to - from) * double(row) / double(all));
-      for (std::size_t i = 0; i < count; ++i, ++row) {
-        const std::array<double, 3> xyz = file.get(rows, i);
-        if (const Vector3d p(xyz[0], xyz[1], xyz[2]); p.allFinite()) visit(row, p);
-      }
-    });
-  }
-}
-
-/// A tree of cuts: inner nodes have an axis and a place, leaves the number of a tile.
-class Cuts {
- public:
-  /// Halves the sample at the median of its widest axis until no part has more than `most`.
-  Cuts(std::vector<Vector3d> sample, std::size_t most) : sample_(std::move(sample)), most_(most) {
-    cut(0, sample_.size());
-    std::vector<Vector3d>().swap(sample_);
-  }
-  std::size_t tiles() const { return tiles_; }
-  std::size_t tile_of(const Vector3d& p) const {
-    std::size_t at = 0;
-    while (nodes_[at].axis >= 0) at = p[nodes_[at].axis] < nodes_[at].place ? at + 1 : nodes_[at].other;
-    return nodes_[at].other;
-  }
-
- private:
-  struct Node {
-    int axis = -1;          // -1: a leaf
-    double place = 0;       // what is below goes to the next node, the rest to `other`
-    std::size_t other = 0;  // of a leaf: the tile
-  };
-
-  void cut(std::size_t first, std::size_t last) {
-    const std::size_t at = nodes_.size();
-    nodes_.emplace_back();
-    AlignedBox3d box;
-    for (std::size_t i = first; i < last; ++i) box.extend(sample_[i]);
-    Eigen::Index axis = 0;
-    if (last - first <= most_ || !(box.sizes().maxCoeff(&axis) > 0)) {
-      nodes_[at].other = tiles_++;
-      return;
-    }
-    const auto begin = sample_.begin() + std::ptrdiff_t(first), end = sample_.begin() + std::ptrdiff_t(last),
-               middle = begin + std::ptrdiff_t((last - first) / 2);
-    std::nth_element(begin, middle, end,
-                     [&](const Vector3d& a, const Vector3d& b) { return a[axis] < b[axis]; });
-    double place = (*middle)[axis];
-    if (place == box.min()[axis])  // half of them are at the end: cut behind these
-      place = std::nextafter(place, box.max()[axis]);
-    const auto upper = std::partition(begin, end, [&](const Vector3d& p) { return p[axis] < place; });
-    const auto half = std::size_t(upper - sample_.begin());
-    nodes_[at].axis = int(axis);
-    nodes_[at].place = place;
-    cut(first, half);
-    nodes_[at].other = nodes_.size();
-    cut(half, last);
-  }
-
-  std::vector<Vector3d> sample_;
-  std::size_t most_, tiles_ = 0;
-  std::vector<Node> nodes_;
-};
-
-JobInput describe_input(const std::string& path, const Context& context) {
-  const RowFile file(path, context);
-  return {fs::absolute(path).lexically_normal().string(), file.rows(), fs::file_size(path),
-          std::int64_t(fs::last_write_time(path).time_since_epoch().count())};
-}
-
-ordered_json json_of_job(const Job& job, const PlanOptions& how) {
-  ordered_json json = {
-      {"rfsmooth_tiles", 1},      {"tile_points", how.tile_points}, {"sample_points", how.sample_points},
-      {"options", job.options},   {"points", job.points},           {"sample", job.sample},
-      {"measured", job.measured}, {"box", json_of(job.box)}};
-  json["inputs"] = ordered_json::array();
-  for (const JobInput& input : job.inputs)
-    json["inputs"].push_back(
-        {{"path", input.path}, {"rows", input.rows}, {"bytes", input.bytes}, {"changed", input.changed}});
-  json["tiles"] = ordered_json::array();
-  for (const Tile& tile : job.tiles)
-    json["tiles"].push_back({{"points", tile.points}, {"box", json_of(tile.box)}});
-  return json;
-}
-
-fs::path plan_file(const fs::path& folder) {
-  return folder / "job.json";
-}
-
-[[noreturn]] void refuse_plan(const fs::path& folder, const nlohmann::json::exception& error) {
-  fail(ErrorCode::input_unreadable, "{}: is no plan: {}", plan_file(folder).string(), error.what());
-}
-
-ordered_json read_plan(const fs::path& folder) {
-  std::ifstream file(plan_file(folder));
-  if (!file)
-    fail(ErrorCode::input_unreadable, "{}: holds no job (rfsmooth tiles plan makes one)", folder.string());
-  try {
-    return ordered_json::parse(file);
-  } catch (const nlohmann::json::exception& error) {
-    refuse_plan(folder, error);
-  }
-}
-
-Job job_of(const ordered_json& json, const fs::path& folder) {
-  Job job;
-  job.folder = folder;
-  try {
-    job.options = json.at("options");
-    job.points = json.at("points");
-    job.sample = json.at("sample");
-    job.measured = json.at("measured");
-    job.box = box_of(json.at("box"));
-    for (const auto& input : json.at("inputs"))
-      job.inputs.push_back({input.at("path"), input.at("rows"), input.at("bytes"), input.at("changed")});
-    for (const auto& tile : json.at("tiles"))
-      job.tiles.push_back({box_of(tile.at("box")), tile.at("points")});
-  } catch (const nlohmann::json::exception& error) {
-    refuse_plan(folder, error);
-  }
-  return job;
-}
-
-void make_folders(const Job& job) {
-  std::error_code error;
-  for (const char* name : {"cut", "sample", "done"}) {
-    fs::create_directories(job.folder / name, error);
-    if (error)
-      fail(ErrorCode::cannot_write, "{}: cannot make the folder '{}': {}", job.folder.string(), name,
-           error.message());
-  }
-}
-
-/// Writes the points of a tile.
-class TileWriter {
- public:
-  TileWriter(const Job& job, std::size_t tile, const Context& context) : writer_(job.cut(tile), context) {}
-  void add(const Record& r) {
-    writer_.add(r);
-    box_.extend(Vector3d(r.x, r.y, r.z));
-    ++tile_.points;
-  }
-  Tile commit() {
-    writer_.commit();
-    if (tile_.points > 0) tile_.box = {box_.min(), box_.max()};
-    return tile_;
-  }
-
- private:
-  RecordWriter writer_;
-  AlignedBox3d box_;
-  Tile tile_;
-};
-
-/// Writes every finite row into the file of its tile. Memory: 32 KB a tile, of at most kOpen.
-void cut_rows(Job& job, const Cuts& cuts, const Context& context) {
-  job.tiles.assign(cuts.tiles(), {});
-  for (std::size_t first = 0; first < cuts.tiles(); first += kOpen) {
-    const std::size_t count = std::min(kOpen, cuts.tiles() - first);
-    std::vector<std::unique_ptr<TileWriter>> writers;
-    for (std::size_t t = first; t < first + count; ++t)
-      writers.push_back(std::make_unique<TileWriter>(job, t, context));
-    const auto done = [&](std::size_t tiles) { return 0.5 + 0.5 * double(tiles) / double(cuts.tiles()); };
-    for_each_point(job.inputs, "plan", done(first), done(first + count), context,
-                   [&](std::uint64_t row, const Vector3d& p) {
-                     const std::size_t t = cuts.tile_of(p);
-                     if (t >= first && t < first + count) writers[t - first]->add({row, p[0], p[1], p[2]});
-                   });
-    for (std::size_t t = 0; t < count; ++t) job.tiles[first + t] = writers[t]->commit();
-  }
-}
-
-}  // namespace
-
-std::optional<Vector3d> common_viewpoint(const std::vector<std::string>& inputs, const Context& context) {
-  std::optional<Vector3d> common;
-  for (std::size_t i = 0; i < inputs.size(); ++i) {
-    const auto of_file = RowFile(inputs[i], context).viewpoint(context);
-    if (i > 0 && of_file != common) return std::nullopt;
-    common = of_file;
-  }
-  return common;
-}
-
-Job plan_job(const std::vector<std::string>& inputs, const fs::path& folder, const PlanOptions& how,
-             const ordered_json& options, const Context& context) {
-  Job job;
-  job.folder = folder;
-  job.options = options;
-  for (const std::string& path : inputs) job.inputs.push_back(describe_input(path, context));
-  if (fs::exists(plan_file(folder))) {
-    const ordered_json plan = read_plan(folder);
-    Job there = job_of(plan, folder);
-    Job same = there;
-    same.inputs = job.inputs;
-    same.options = options;
-    if (plan == json_of_job(same, how)) return there;
-    fail(ErrorCode::cannot_write,
-         "{}: holds a job of other inputs or options; remove it, or name another folder", folder.string());
-  }
-  make_folders(job);
-  std::uint64_t rows = 0;
-  for (const JobInput& input : job.inputs) rows += input.rows;
-  AlignedBox3d box;
-  std::vector<Vector3d> sample;
-  const std::uint64_t one_in = std::max<std::uint64_t>(1, rows / kPlanned);
-  sample.reserve(std::size_t(std::min(rows, 2 * kPlanned)));
-  for_each_point(job.inputs, "plan", 0, 0.5, context, [&](std::uint64_t, const Vector3d& p) {
-    box.extend(p);
-    ++job.points;
-    if (number_of(p) % one_in == 0) sample.push_back(p);
-  });
-  if (job.points == 0) fail(ErrorCode::no_usable_points, "none of the points is finite");
-  job.box = {box.min(), box.max()};
-  job.sample = std::min(job.points, how.sample_points);
-  job.measured = std::min(job.points, kMeasuredOverSmoothed * how.sample_points);
-  const double share = double(sample.size()) / double(job.points);
-  const auto most = std::size_t(std::max(1.0, share * double(how.tile_points)));
-  cut_rows(job, Cuts(std::move(sample), most), context);
-  value_or_throw(io::write_bytes(json_of_job(job, how).dump(1) + '\n', plan_file(folder), true, context));
-  return job;
-}
-
-bool split_tile(Job& job, std::size_t tile, const Context& context) {
-  std::vector<Record> points = read_records(job.cut(tile), context);
-  const Statistics::Box& box = job.tiles[tile].box;
-  Eigen::Index axis = 0;
-  if (points.size() < 2 || !((box.high - box.low).maxCoeff(&axis) > 0)) return false;
-  const auto along = [axis](const Record& r) { return axis == 0 ? r.x : axis == 1 ? r.y : r.z; };
-  std::vector<double> places;
-  for (const Record& r : points) places.push_back(along(r));
-  double place = rfsmooth::median(places);
-  if (place == box.low[axis]) place = std::nextafter(place, box.high[axis]);
-  TileWriter low(job, tile, context), high(job, job.tiles.size(), context);
-  for (const Record& r : points) (along(r) < place ? low : high).add(r);
-  job.tiles[tile] = low.commit();
-  job.tiles.push_back(high.commit());
-  return true;
-}
-
-Job open_job(const fs::path& folder) {
+Job open_job(const std::filesystem::path& folder) {
   return job_of(read_plan(folder), folder);
+}
+
+nlohmann::ordered_json read_cost(const Job& job, std::size_t tile) {
+  using nlohmann::ordered_json;
+  std::ifstream file(job.cost(tile));
+  ordered_json cost = ordered_json::parse(file, nullptr, false);
+  return cost.is_object() ? cost : ordered_json::object();
+}
+
+void refuse_step(const Job& job, const std::string& message) {
+  fail(ErrorCode::usage, "{}: {}", job.folder.string(), message);
+}
+
+void check_tile(const Job& job, std::size_t tile) {
+  if (tile >= job.tiles.size())
+    refuse_step(job, fmt::format("there is no tile {}; they are 0 to {}", tile, job.tiles.size() - 1));
 }
 
 }  // namespace rfsmooth::pipeline::tiles

@@ -17,8 +17,8 @@
 
 #include <rfsmooth/normals.h>
 
+#include "pipeline/tiles/files/records.h"
 #include "pipeline/tiles/job.h"
-#include "pipeline/tiles/records.h"
 
 namespace rfsmooth::pipeline::tiles {
 

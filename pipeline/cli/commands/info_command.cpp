@@ -13,7 +13,7 @@
 #include "pipeline/cli/console/report.h"
 #include "pipeline/cli/files/cloud_files.h"
 #include "pipeline/outliers.h"
-#include "pipeline/tiles/statistics_json.h"
+#include "pipeline/tiles/files/statistics_json.h"
 #include "rfs_mesh/fit/local_surface.h"
 #include "rfs_mesh/noise/noise.h"
 #include "rfs_mesh/points.h"

@@ -8,7 +8,7 @@
 #include "pipeline/cli/files/cloud_files.h"
 #include "pipeline/cli/options/text_values.h"
 #include "pipeline/io/point_fields.h"
-#include "pipeline/tiles/job.h"
+#include "pipeline/tiles/files/row_file.h"
 #include "pipeline/viewpoint.h"
 
 namespace rfsmooth::cli {

@@ -14,7 +14,15 @@
 #include "pipeline/cli/options/json_values.h"
 #include "pipeline/cli/options/text_values.h"
 #include "pipeline/cli/own_files.h"
+#include "pipeline/tiles/allowed.h"
+#include "pipeline/tiles/files/row_file.h"
 #include "pipeline/tiles/job.h"
+#include "pipeline/tiles/steps/join.h"
+#include "pipeline/tiles/steps/measure.h"
+#include "pipeline/tiles/steps/plan.h"
+#include "pipeline/tiles/steps/run.h"
+#include "pipeline/tiles/steps/settle.h"
+#include "pipeline/tiles/steps/status.h"
 
 namespace rfsmooth::cli {
 

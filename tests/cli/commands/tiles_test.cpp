@@ -6,7 +6,7 @@
 
 #include <gmock/gmock.h>
 
-#include "pipeline/tiles/statistics_json.h"
+#include "pipeline/tiles/files/statistics_json.h"
 #include "tests/cli/support/tile_jobs.h"
 
 using ::testing::HasSubstr;

@@ -19,8 +19,9 @@
 #include "pipeline/io/formats/las/las_scale.h"
 #include "pipeline/io/point_fields.h"
 #include "pipeline/page/page.h"
+#include "pipeline/tiles/files/statistics_json.h"
 #include "pipeline/tiles/in_one_process.h"
-#include "pipeline/tiles/statistics_json.h"
+#include "pipeline/tiles/steps/settle.h"
 
 namespace rfsmooth::cli {
 

@@ -7,6 +7,7 @@
 #include "base/fail.h"
 #include "pipeline/cli/files/memory.h"
 #include "pipeline/cli/options/text_values.h"
+#include "pipeline/tiles/allowed.h"
 #include "pipeline/tiles/in_one_process.h"
 
 namespace rfsmooth::cli {

@@ -1,4 +1,4 @@
-#include "pipeline/tiles/statistics_json.h"
+#include "pipeline/tiles/files/statistics_json.h"
 
 #include <array>
 #include <cmath>

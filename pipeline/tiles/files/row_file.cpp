@@ -1,4 +1,4 @@
-#include "pipeline/tiles/row_file.h"
+#include "pipeline/tiles/files/row_file.h"
 
 #include <algorithm>
 #include <cmath>
@@ -201,6 +201,17 @@ void RowFile::copy_tail(io::Sink& to, const Context& context) const {
     const io::Bytes part = source_.read(at, std::size_t(std::min(kBytes, source_.size() - at)), context);
     to.write({part.data(), part.size()});
   }
+}
+
+std::optional<Eigen::Vector3d> common_viewpoint(const std::vector<std::string>& paths,
+                                                const Context& context) {
+  std::optional<Eigen::Vector3d> common;
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    const auto of_file = RowFile(paths[i], context).viewpoint(context);
+    if (i > 0 && of_file != common) return std::nullopt;
+    common = of_file;
+  }
+  return common;
 }
 
 }  // namespace rfsmooth::pipeline::tiles

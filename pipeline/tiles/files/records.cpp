@@ -1,4 +1,4 @@
-#include "pipeline/tiles/records.h"
+#include "pipeline/tiles/files/records.h"
 
 #include <algorithm>
 #include <array>
@@ -42,6 +42,10 @@ std::optional<Trailer> trailer_of(const io::Source& source, const Context& conte
 }
 
 }  // namespace
+
+void append_places(const std::vector<Record>& points, std::vector<double>& xyz) {
+  for (const Record& r : points) xyz.insert(xyz.end(), {r.x, r.y, r.z});
+}
 
 template <class T>
 WriterOf<T>::WriterOf(const std::filesystem::path& path, const Context& context)

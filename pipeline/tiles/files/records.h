@@ -11,6 +11,8 @@
 #include <optional>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include <rfsmooth/context.h>
 
 #include "pipeline/io/stream/atomic_file.h"
@@ -24,6 +26,14 @@ struct Record {
   double x = 0, y = 0, z = 0;
 };
 static_assert(sizeof(Record) == 32);
+
+/// Where the point is.
+inline Eigen::Vector3d place(const Record& r) {
+  return {r.x, r.y, r.z};
+}
+
+/// Adds their places behind `xyz`, n x 3.
+void append_places(const std::vector<Record>& points, std::vector<double>& xyz);
 
 /// A row of the cloud and its normal, which is of a piece of the surface that a tile gave its side.
 struct NormalRecord {

@@ -103,4 +103,8 @@ class RowFile {
   std::string head_;
 };
 
+/// Where the scanner stood, if all files tell the same place. \throw Failure.
+std::optional<Eigen::Vector3d> common_viewpoint(const std::vector<std::string>& paths,
+                                                const Context& context);
+
 }  // namespace rfsmooth::pipeline::tiles

@@ -1,0 +1,192 @@
+#include "pipeline/tiles/steps/join.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "base/fail.h"
+#include "pipeline/io/stream/atomic_file.h"
+#include "pipeline/tiles/allowed.h"
+#include "pipeline/tiles/files/records.h"
+#include "pipeline/tiles/files/row_file.h"
+#include "pipeline/tiles/steps/run.h"
+#include "pipeline/tiles/steps/settle.h"
+#include "pipeline/tiles/tile_normals.h"
+
+namespace rfsmooth::pipeline::tiles {
+
+namespace {
+
+/// The records of all tiles, by rows.
+template <class T>
+class OfAllTiles {
+ public:
+  OfAllTiles(const Job& job, std::filesystem::path (Job::*of_tile)(std::size_t) const, const Context& context)
+      : context_(context) {
+    for (std::size_t t = 0; t < job.tiles.size(); ++t) readers_.emplace_back((job.*of_tile)(t), context_);
+  }
+  /// Calls `visit(row - first, record, tile)` for rows [first, first + count), in no order. Forward only.
+  template <class Visit>
+  void visit(std::uint64_t first, std::uint64_t count, Visit&& visit) {
+    context_.check_stop();
+    for (std::size_t t = 0; t < readers_.size(); ++t)
+      for (const T* r = readers_[t].peek(); r != nullptr && r->row < first + count; r = readers_[t].peek()) {
+        readers_[t].next();
+        if (r->row >= first) visit(std::size_t(r->row - first), *r, t);  // else of an input before this one
+      }
+  }
+
+ private:
+  const Context& context_;
+  std::vector<ReaderOf<T>> readers_;
+};
+
+/// Patches the rows of the inputs with the results of all tiles.
+class Patcher {
+ public:
+  Patcher(const Job& job, const Context& context) : places_(job, &Job::done, context) {}
+  /// With normals, which must be there.
+  void add_normals(const Job& job, const Context& context) {
+    reversed_ = find_sides(job, context);
+    normals_.emplace(job, &Job::normals, context);
+  }
+  /// `first`: the row of the cloud that `rows` begins with.
+  void patch(const RowFile& file, std::uint64_t first, std::uint64_t count, io::Bytes& rows) {
+    places_.visit(first, count, [&](std::size_t row, const Record& r, std::size_t) {
+      file.put(rows, row, {r.x, r.y, r.z});
+      ++patched_;
+    });
+    if (!normals_) return;
+    normals_->visit(first, count, [&](std::size_t row, const NormalRecord& r, std::size_t tile) {
+      const double sign = reversed_[tile][std::size_t(r.piece)] != 0 ? -1 : 1;
+      file.put_normal(rows, row, {sign * r.x, sign * r.y, sign * r.z});
+    });
+  }
+  std::uint64_t patched() const { return patched_; }
+
+ private:
+  OfAllTiles<Record> places_;
+  std::optional<OfAllTiles<NormalRecord>> normals_;
+  std::vector<std::vector<char>> reversed_;  ///< by tile and piece
+  std::uint64_t patched_ = 0;
+};
+
+/// A box of coordinates.
+struct Ends {
+  std::array<double, 3> low, high;
+  Ends() {
+    low.fill(std::numeric_limits<double>::infinity());
+    high.fill(-std::numeric_limits<double>::infinity());
+  }
+  void add(const std::array<double, 3>& xyz) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      low[axis] = std::min(low[axis], xyz[axis]);
+      high[axis] = std::max(high[axis], xyz[axis]);
+    }
+  }
+};
+
+/// An input, open, and its first row's number in the cloud.
+struct OpenInput {
+  RowFile file;
+  std::uint64_t before = 0;
+};
+
+/// Refines the scale of a LAS file to `step`, unless nothing of it moved.
+io::RefinedScale refine_moved(const Job& job, OpenInput& input, double step, const Context& context) {
+  OfAllTiles<Record> places(job, &Job::done, context);
+  Ends ends;
+  bool moved = false;
+  const RowFile& file = input.file;
+  file.for_each_piece(context, [&](std::uint64_t first, std::size_t count, const io::Bytes& rows) {
+    for (std::size_t i = 0; i < count; ++i) ends.add(file.get(rows, i));
+    places.visit(input.before + first, count, [&](std::size_t row, const Record& r, std::size_t) {
+      const std::array<double, 3> now = {r.x, r.y, r.z};
+      moved = moved || now != file.get(rows, row);
+      ends.add(now);
+    });
+  });
+  return moved ? input.file.refine_scale(step, ends.low, ends.high) : io::RefinedScale();
+}
+
+/// The box of the coordinates as they will be written, for the header of a LAS file.
+void find_box(const Job& job, OpenInput& input, const Context& context) {
+  Patcher patcher(job, context);
+  Ends ends;
+  const RowFile& file = input.file;
+  file.for_each_piece(context, [&](std::uint64_t first, std::size_t count, io::Bytes& rows) {
+    patcher.patch(file, input.before + first, count, rows);
+    for (std::size_t i = 0; i < count; ++i) ends.add(file.get(rows, i));
+  });
+  if (file.rows() > 0) input.file.set_box(ends.low, ends.high);
+}
+
+/// Makes the header of a LAS file ready for the new coordinates: first the scale, in steps of which the box
+/// is written.
+io::RefinedScale prepare_las(const Job& job, OpenInput& input, bool keep_scale, const DenoiseReport& settled,
+                             const Context& context) {
+  io::RefinedScale scale;
+  if (!keep_scale && settled.noise > 0)
+    scale = refine_moved(job, input, io::finest_needed(settled.noise, settled.noise_left), context);
+  find_box(job, input, context);
+  return scale;
+}
+
+/// The input, patched, as `output`.
+void write_joined(const Job& job, const OpenInput& input, const std::string& output, bool force,
+                  Patcher& patcher, const Context& context) {
+  io::AtomicFile to(output, force, context);
+  input.file.copy(
+      to,
+      [&](std::uint64_t first, std::size_t count, io::Bytes& rows) {
+        context.report("join", double(input.before + first) / double(job.points + 1));
+        patcher.patch(input.file, input.before + first, count, rows);
+      },
+      context);
+  to.commit(true);
+}
+
+void check_inputs(const Job& job) {
+  for (const JobInput& input : job.inputs) {
+    std::error_code error;
+    if (std::filesystem::file_size(input.path, error) != input.bytes || error ||
+        std::filesystem::last_write_time(input.path, error).time_since_epoch().count() != input.changed)
+      refuse_step(job, fmt::format("{} changed since it was planned; plan again", input.path));
+  }
+}
+
+}  // namespace
+
+std::vector<Joined> join_job(const Job& job, const std::vector<std::string>& outputs, bool force,
+                             bool keep_scale, bool normals, const Context& context) {
+  check_inputs(job);
+  for (std::size_t t = 0; t < job.tiles.size(); ++t)
+    if (!is_run(job, t, normals, context)) refuse_step(job, fmt::format("tile {} is not smoothed yet", t));
+  const DenoiseReport settled = settled_of(job).report;
+  std::vector<Joined> joined;
+  Patcher patcher(job, context);
+  if (normals) patcher.add_normals(job, context);
+  std::uint64_t before = 0;
+  for (std::size_t i = 0; i < job.inputs.size(); ++i) {
+    OpenInput input = {RowFile(job.inputs[i].path, context), before};
+    check_format(input.file.format(), outputs[i]);
+    if (normals) input.file.need_normals();
+    Joined& done = joined.emplace_back();
+    done.las = input.file.format() == io::Format::las;
+    done.noise = settled.noise;
+    done.noise_left = settled.noise_left;
+    if (done.las) done.scale = prepare_las(job, input, keep_scale, settled, context);
+    write_joined(job, input, outputs[i], force, patcher, context);
+    before += input.file.rows();
+  }
+  if (patcher.patched() != job.points)
+    fail(ErrorCode::internal, "{} of {} points were written", patcher.patched(), job.points);
+  return joined;
+}
+
+}  // namespace rfsmooth::pipeline::tiles
