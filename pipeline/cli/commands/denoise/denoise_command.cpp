@@ -1,198 +1,21 @@
 /// rfsmooth denoise: a cloud in, the same cloud without the noise out.
-#include <algorithm>
-#include <cmath>
-#include <limits>
 #include <memory>
 
 #include <fmt/format.h>
 
 #include "base/fail.h"
 #include "pipeline/cli/commands/command.h"
+#include "pipeline/cli/commands/denoise/denoise_cloud.h"
 #include "pipeline/cli/commands/denoise/summary.h"
 #include "pipeline/cli/commands/denoise/within_memory.h"
-#include "pipeline/cli/console/report.h"
 #include "pipeline/cli/console/scale_said.h"
-#include "pipeline/cli/files/constraint_fields.h"
-#include "pipeline/cli/files/memory.h"
 #include "pipeline/cli/other_program.h"
 #include "pipeline/cli/own_files.h"
-#include "pipeline/io/formats/las/las_scale.h"
-#include "pipeline/io/point_fields.h"
-#include "pipeline/page/page.h"
-#include "pipeline/tiles/files/statistics_json.h"
 #include "pipeline/tiles/in_one_process.h"
-#include "pipeline/tiles/steps/settle.h"
 
 namespace rfsmooth::cli {
 
 namespace {
-
-using nlohmann::ordered_json;
-
-constexpr const char *kDisplacement = "displacement", *kOutlier = "outlier";
-
-/// What is written beside the cloud, once that is there.
-struct Beside {
-  std::string command;  ///< that was typed
-  std::string page;
-  std::vector<TraceRow> trace;
-};
-
-void enter(const DenoiseReport& done, const DenoiseCommandOptions& options, ordered_json& entry) {
-  DenoiseCommandOptions used = options;
-  used.denoise = done.effective;
-  used.html.reset();    // what is written beside the cloud is not how it was made
-  used.memory.reset();  // nor is the memory it was made in
-  entry["options"] = effective_options(used, options.job.files);
-  entry["counts"] = {{"points", done.points},       {"finite", done.finite},    {"distinct", done.distinct},
-                     {"moved", done.moved},         {"faces", done.faces},      {"edges", done.edges},
-                     {"sdg_edges", done.sdg_edges}, {"bridges", done.bridges},  {"faceless", done.faceless},
-                     {"swaps", done.swaps},         {"stranded", done.stranded}};
-  entry["counts"]["outliers"] = done.outliers;
-  entry["counts"]["removed"] = options.removes() ? done.outliers : 0;
-  entry["spacing"] = done.spacing;
-  entry["noise"] = done.noise;
-  entry["noise_measured"] = pipeline::tiles::json_of(done.measured);
-  entry["noise_left"] = done.noise_left;
-  entry["not_smoothed"] = pipeline::tiles::json_of(done.not_smoothed);
-  entry["guide_strength"] = done.guide_strength;
-  entry["tail_times"] = done.tail_times;
-  entry["equalized"] = {{"rms", done.equalized_rms}, {"largest", done.equalized_largest}};
-  entry["largest_move"] = done.largest_move;
-  entry["rms_move"] = done.rms_move;
-}
-
-void tell(const DenoiseReport& done, const DenoiseCommandOptions& options, const pipeline::io::Cloud& cloud,
-          const CloudTask& task) {
-  const bool as_las = output_format(cloud, task.job.output, options.job.files) == pipeline::io::Format::las;
-  tell_points(done, options, pipeline::io::has_normals(cloud), as_las, task.job, task.console);
-  task.console.detail(fmt::format("{} faces, {} edges, {} bridges, {} points without a face, {} swaps",
-                                  done.faces, done.edges, done.bridges, done.faceless, done.swaps));
-}
-
-/// Fields that could not be added, told before the work. \throw Failure.
-void check_fields(const DenoiseCommandOptions& options, const pipeline::io::Cloud& cloud) {
-  if (options.write_displacement)
-    pipeline::io::check_field(cloud, kDisplacement, pipeline::io::Scalar::float32);
-  if (options.marks()) pipeline::io::check_field(cloud, kOutlier, pipeline::io::Scalar::uint8);
-  check_normals(options.normals, cloud);
-}
-
-/// How far each point is from `before`, as the file now has it: rounded to the coordinates' own type. 0 for
-/// points that are not finite.
-void write_displacement(pipeline::io::Cloud& cloud, const std::vector<double>& before,
-                        const Context& context) {
-  const std::vector<double> after = pipeline::io::positions(cloud, context);
-  std::vector<double> distance(cloud.size(), 0);
-  for (std::size_t i = 0; i < distance.size(); ++i) {
-    const double moved = std::hypot(after[3 * i] - before[3 * i], after[3 * i + 1] - before[3 * i + 1],
-                                    after[3 * i + 2] - before[3 * i + 2]);
-    if (std::isfinite(moved)) distance[i] = moved;
-  }
-  pipeline::io::set_field(cloud, kDisplacement, pipeline::io::Scalar::float32, distance, context);
-}
-
-/// Drops the outliers, the others in their order. An organised cloud keeps its grid: there they become NaN,
-/// as a sensor writes where it saw nothing (before `set_positions`, in `xyz`).
-void remove_outliers(pipeline::io::Cloud& cloud, const std::vector<char>& outlier, const Context& context) {
-  std::vector<std::size_t> rows;
-  for (std::size_t i = 0; i < outlier.size(); ++i)
-    if (outlier[i] == 0) rows.push_back(i);
-  pipeline::io::select_points(cloud, rows, context);
-}
-
-/// Refines the scale of a LAS cloud. For LAS to be written as far as it is coarse for what is left of the
-/// noise. For other formats, which have no steps, as far as 32 bits go.
-void refine_scale(const DenoiseCommandOptions& options, const DenoiseReport& done, pipeline::io::Cloud& cloud,
-                  const double* xyz, const CloudTask& task) {
-  using pipeline::io::Format;
-  const auto& [job, context, console, stages, entry] = task;
-  if (done.moved == 0 || cloud.format != Format::las) return;
-  if (output_format(cloud, job.output, options.job.files) != Format::las) {
-    pipeline::io::refine_scale(cloud, std::numeric_limits<double>::min(), xyz, context);
-    return;
-  }
-  if (options.keep_scale || done.noise <= 0) return;
-  const double step = pipeline::io::finest_needed(done.noise, done.noise_left);
-  const pipeline::io::RefinedScale scale = pipeline::io::refine_scale(cloud, step, xyz, context);
-  entry["scale"] = {{"before", scale.before}, {"after", scale.after}};
-  tell_scale(job.input, scale, done.noise, done.noise_left, console);
-}
-
-bool keeps_grid(const pipeline::io::Cloud& cloud) {
-  bool has_nan = cloud.organised();
-  for (const std::size_t f : cloud.xyz) has_nan = has_nan && is_float(cloud.points().fields[f].type);
-  return has_nan;
-}
-
-/// What --html shows of what became of the cloud; its normals only if they are of the new surface. Outliers
-/// that are to be removed are still there: the page shows them on one side.
-void page_after(const DenoiseReport& done, const DenoiseCommandOptions& options,
-                const pipeline::io::Cloud& cloud, const Job& job, const Context& context,
-                pipeline::PageContents& contents) {
-  contents.after = pipeline::page_side(job.output, cloud, context);
-  if (!options.normals.normals) contents.after.normals.clear();
-  contents.outlier = done.outlier;
-  for (std::size_t i = 0; options.removes() && i < done.outlier.size(); ++i)
-    if (done.outlier[i] != 0) std::fill_n(&contents.after.xyz[3 * i], 3, std::nan(""));
-  contents.figures = {{"outliers", std::to_string(done.outliers)},
-                      {"spacing", fmt::format("{:.4g}", done.spacing)},
-                      {"noise", fmt::format("{:.3g}", done.noise)}};
-  if (done.noise_left < done.noise)
-    contents.figures.emplace_back("about left of it", fmt::format("{:.3g}", done.noise_left));
-}
-
-std::string denoise_cloud(const DenoiseCommandOptions& options, Beside& beside, pipeline::io::Cloud& cloud,
-                          const CloudTask& task) {
-  const auto& [job, context, console, stages, entry] = task;
-  const std::size_t n = cloud.size();
-  check_fields(options, cloud);
-  need_memory(job.input, rfsmooth::denoise_memory(n));
-  std::vector<double> xyz = pipeline::io::positions(cloud, context);
-  check_memory(options, job, xyz, context);
-  const std::vector<double> strength =
-      options.strength_field ? strengths(cloud, *options.strength_field, context) : std::vector<double>{};
-  pipeline::PageContents page;
-  if (options.html) page = pipeline::page_before(job.input, cloud, context);
-  DenoiseOptions how = options.denoise;
-  how.flow.trace = options.trace.trace.has_value();
-  if (options.statistics)
-    how.statistics = pipeline::tiles::read_settled(*options.statistics).report.statistics;
-  DenoiseReport done = value_or_fail(rfsmooth::denoise(xyz.data(), n, how, context, strength), job.input);
-  beside.trace = std::move(done.trace);
-  const bool some_removed = options.removes() && done.outliers > 0,
-             as_nan = some_removed && keeps_grid(cloud);
-  const auto blank_outliers = [&] {
-    for (std::size_t i = 0; i < n; ++i)
-      if (done.outlier[i] != 0) std::fill_n(&xyz[3 * i], 3, std::numeric_limits<double>::quiet_NaN());
-  };
-  warn_if_coarse(cloud, pipeline::io::positions(cloud, context), done.spacing, job.input, console);
-  if (as_nan) blank_outliers();
-  refine_scale(options, done, cloud, xyz.data(), task);
-  if (output_format(cloud, job.output, options.job.files) == pipeline::io::Format::las)
-    warn_of_index(job.output, console);
-  const std::vector<double> before =
-      options.write_displacement ? pipeline::io::positions(cloud, context) : std::vector<double>{};
-  pipeline::io::set_positions(cloud, xyz.data(), context);
-  if (options.write_displacement) write_displacement(cloud, before, context);
-  if (options.marks()) {
-    std::vector<double> flags(done.outlier.begin(), done.outlier.end());
-    flags.resize(n, 0);
-    pipeline::io::set_field(cloud, kOutlier, pipeline::io::Scalar::uint8, flags, context);
-  }
-  stages.insert(stages.end(), done.seconds.begin(), done.seconds.end());
-  tell(done, options, cloud, task);
-  enter(done, options, entry);
-  if (some_removed) blank_outliers();  // normals are of the points that stay
-  write_normals(options.normals, cloud, xyz.data(), options.job.files, task);
-  if (options.html) {
-    page_after(done, options, cloud, job, context, page);
-    page.command = beside.command;
-    beside.page = pipeline::make_page(page, context);
-  }
-  if (some_removed && !as_nan) remove_outliers(cloud, done.outlier, context);
-  return summary(done, options);
-}
 
 /// \throw Failure.
 void write_beside(const DenoiseCommandOptions& options, const Beside& beside, Console& console) {

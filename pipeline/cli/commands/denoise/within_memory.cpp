@@ -45,6 +45,46 @@ std::string needs_whole_cloud(const DenoiseCommandOptions& options) {
   return "";
 }
 
+/// What --memory says, else what the machine has, if that is known. \throw Failure (usage).
+std::optional<std::uint64_t> memory_to_use(const DenoiseCommandOptions& options) {
+  if (options.memory) return bytes_of(*options.memory);
+  return available_memory();
+}
+
+/// A file that needs more memory than there is.
+struct LargeFile {
+  std::uint64_t finite = 0;  ///< points
+  pipeline::io::Format format{};
+};
+
+/// The file, if it can be read in pieces and its cloud as a whole needs more than `most` bytes. What costs
+/// little is looked at first: its size, then its header, then all of its rows.
+std::optional<LargeFile> too_large(const std::string& input, std::uint64_t most, bool normals,
+                                   const Context& context) {
+  constexpr std::uint64_t kLeastRow = 3;  // bytes: three coordinates
+  std::error_code error;
+  const std::uint64_t bytes = std::filesystem::file_size(input, error);
+  const auto fits = [&](std::uint64_t points) { return memory_of_whole(points, bytes, normals) <= most; };
+  if (error || fits(bytes / kLeastRow)) return std::nullopt;
+  const auto file = pipeline::tiles::in_pieces(input, context);
+  if (!file || fits(file->rows)) return std::nullopt;
+  const std::uint64_t finite = pipeline::tiles::finite_rows(input, context);
+  if (fits(finite)) return std::nullopt;
+  return LargeFile{finite, file->format};
+}
+
+/// Refuses what cannot be done in tiles within `most` bytes. \throw Failure (usage).
+void check_tiles(const DenoiseCommandOptions& options, const Job& job, const LargeFile& file,
+                 std::uint64_t most) {
+  if (const std::string what = needs_whole_cloud(options); !what.empty())
+    fail(ErrorCode::usage, "{}: larger than --memory, and {} needs the whole cloud", job.input, what);
+  pipeline::tiles::check_format(file.format, job.output);
+  if (const std::uint64_t least = pipeline::tiles::least_memory(file.finite, options.normals.normals);
+      most < least)
+    fail(ErrorCode::usage, "{}: in tiles it takes --memory {:.0f}M or more", job.input,
+         std::ceil(double(least) / 1e6));
+}
+
 }  // namespace
 
 void check_memory(const DenoiseCommandOptions& options, const Job& job, const std::vector<double>& xyz,
@@ -64,34 +104,17 @@ void check_memory(const DenoiseCommandOptions& options, const Job& job, const st
 
 std::optional<std::uint64_t> memory_of_tiles(const DenoiseCommandOptions& options, const Job& job,
                                              const Context& context) {
-  const std::optional<std::uint64_t> asked =
-      options.memory ? std::optional(bytes_of(*options.memory)) : std::nullopt;
-  if (job.input == "-" || job.output == "-") return std::nullopt;
-  const std::optional<std::size_t> there = available_memory();
-  if (!asked && !there) return std::nullopt;
-  const std::uint64_t most = asked ? *asked : std::uint64_t(*there);
-  std::error_code error;
-  const std::uint64_t bytes = std::filesystem::file_size(job.input, error);
-  constexpr std::uint64_t kLeastRow = 3;  // bytes: three coordinates
-  const bool normals = options.normals.normals;
-  if (error || memory_of_whole(bytes / kLeastRow, bytes, normals) <= most) return std::nullopt;
-  const auto file = pipeline::tiles::in_pieces(job.input, context);
-  if (!file || memory_of_whole(file->rows, bytes, normals) <= most) return std::nullopt;
-  const std::uint64_t finite = pipeline::tiles::finite_rows(job.input, context);
-  if (memory_of_whole(finite, bytes, normals) <= most) return std::nullopt;
-  if (const std::string what = needs_whole_cloud(options); !what.empty()) {
-    if (!asked) return std::nullopt;  // refused where the whole cloud is, with both figures
-    fail(ErrorCode::usage, "{}: larger than --memory, and {} needs the whole cloud", job.input, what);
-  }
-  if (asked) pipeline::tiles::check_format(file->format, job.output);
-  if (pipeline::io::format_of_extension(job.output).value_or(file->format) != file->format)
-    return std::nullopt;
-  if (const std::uint64_t least = pipeline::tiles::least_memory(finite, normals); most < least) {
-    if (!asked) return std::nullopt;
-    fail(ErrorCode::usage, "{}: in tiles it takes --memory {:.0f}M or more", job.input,
-         std::ceil(double(least) / 1e6));
-  }
-  return most;
+  const auto most = memory_to_use(options);
+  if (!most || job.input == "-" || job.output == "-") return std::nullopt;
+  const auto large = too_large(job.input, *most, options.normals.normals, context);
+  if (!large) return std::nullopt;
+  const auto possible = guarded([&] {
+    check_tiles(options, job, *large, *most);
+    return *most;
+  });
+  // Without --memory nobody asked for tiles: the whole cloud is tried, and refused with both figures.
+  if (!possible.ok() && !options.memory) return std::nullopt;
+  return value_or_throw(possible);
 }
 
 }  // namespace rfsmooth::cli
