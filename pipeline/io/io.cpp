@@ -1,7 +1,8 @@
 #include "pipeline/io/io.h"
 
 #include "base/fail.h"
-#include "pipeline/io/convert.h"
+#include "pipeline/io/convert/capacity.h"
+#include "pipeline/io/convert/convert.h"
 #include "pipeline/io/detect.h"
 #include "pipeline/io/formats/las/las.h"
 #include "pipeline/io/formats/off.h"

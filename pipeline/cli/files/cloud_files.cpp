@@ -11,7 +11,8 @@
 #include "base/fail.h"
 #include "pipeline/cli/files/memory.h"
 #include "pipeline/cli/own_files.h"
-#include "pipeline/io/convert.h"
+#include "pipeline/io/convert/capacity.h"
+#include "pipeline/io/convert/convert.h"
 #include "pipeline/io/formats/las/las.h"
 
 namespace rfsmooth::cli {

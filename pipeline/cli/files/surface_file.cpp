@@ -1,6 +1,6 @@
 #include "pipeline/cli/files/surface_file.h"
 
-#include "pipeline/io/convert.h"
+#include "pipeline/io/convert/convert.h"
 #include "pipeline/io/mesh_file.h"
 #include "pipeline/io/point_fields.h"
 #include "rfs_mesh/measure.h"

@@ -1,3 +1,5 @@
+#include "pipeline/io/formats/las/las_pack.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,7 +9,6 @@
 #include "base/parallel.h"
 #include "pipeline/io/formats/las/las_fields.h"
 #include "pipeline/io/formats/las/las_parts.h"
-#include "pipeline/io/formats/las/las_plain.h"
 #include "pipeline/io/formats/las/las_scale.h"
 #include "pipeline/io/point_fields.h"
 

@@ -1,17 +1,12 @@
-/// Conversion between formats: keeps what the target can carry and names the rest.
+/// Conversion between formats: keeps what the target has room for (capacity.h) and names the rest.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "pipeline/io/table/cloud.h"
 
 namespace rfsmooth::pipeline::io {
-
-/// The encoding to write: `wanted`, or the cloud's own, or the target's nearest to it.
-/// \throw Failure (usage) if `format` has no such encoding.
-Encoding target_encoding(const Cloud& cloud, Format format, std::optional<Encoding> wanted);
 
 /// Whether the cloud's rows can be written as they are: the format is the same, and for OFF, whose columns
 /// have no names, no field stands out of order or is unknown to OFF.
@@ -24,7 +19,7 @@ std::vector<std::string> what_is_lost(const Cloud& cloud, Format format, Encodin
 
 /// The cloud as one of `format`, without what is lost. Arrays (PCD's COUNT) become PLY lists and back; width
 /// x height and viewpoint become obj_info lines (num_cols, num_rows, viewpoint) and back; comments stay
-/// comments. To and from LAS by way of a cloud of plain numbers (las_plain.h).
+/// comments. To and from LAS by way of a cloud of plain numbers (las_plain.h, las_pack.h).
 Cloud convert(const Cloud& cloud, Format format, const Context& context);
 
 }  // namespace rfsmooth::pipeline::io

@@ -1,0 +1,211 @@
+#include "pipeline/io/convert/convert.h"
+
+#include <algorithm>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "pipeline/io/convert/capacity.h"
+#include "pipeline/io/convert/notes.h"
+#include "pipeline/io/formats/las/las_pack.h"
+#include "pipeline/io/formats/las/las_plain.h"
+#include "pipeline/io/formats/off.h"
+
+namespace rfsmooth::pipeline::io {
+namespace {
+
+using Losses = std::vector<std::string>;
+
+// OFF's columns have no names: those of a file that OFF has no word for stay, one that was added is lost.
+bool is_unnamed(const Field& f) {
+  return f.name.rfind("column_", 0) == 0;
+}
+
+bool float_digits_lost(const Table& table, std::size_t field, const Context& context) {
+  if (!table.text || table.fields[field].type != Scalar::float32 || !table.fields[field].is_plain())
+    return false;
+  // Text says what it says; only bytes have a width.
+  return !text_fits_float32(table, {field}, context);
+}
+
+bool has_ragged_values(const Table& table, const Context& context) {
+  if (!table.ragged) return false;
+  const Lists lists = gather_lists(table, 0, context);
+  for (std::size_t i = 0; i < table.count; ++i) {
+    const std::string_view row = table.row(i);
+    const char* p = row.data();
+    for (std::uint64_t k = 0; k <= lists.start[i + 1] - lists.start[i]; ++k)
+      next_word(p, row.data() + row.size());
+    if (!next_word(p, row.data() + row.size()).empty()) return true;
+  }
+  return false;
+}
+
+void add_lost_fields(const Cloud& cloud, Format format, Encoding encoding, const Context& context,
+                     Losses& lost) {
+  const Table& points = cloud.points();
+  const bool as_is = is_writable_as_is(cloud, format);
+  for (std::size_t f = 0; f < points.fields.size(); ++f) {
+    const Field& field = points.fields[f];
+    const bool kept = (as_is && (format != Format::off || is_unnamed(field))) || is_padding(field) ||
+                      capacity_of(format).field(cloud, f, context);
+    if (!kept)
+      lost.push_back(fmt::format("field '{}'", field.name));
+    else if (encoding != Encoding::ascii && !(format == Format::las && is_coordinate(cloud, f)) &&
+             float_digits_lost(points, f, context))
+      lost.push_back(fmt::format("all digits of field '{}' (float32)", field.name));
+  }
+}
+
+void add_lost_elements(const Cloud& cloud, Format format, const Context& context, Losses& lost) {
+  for (std::size_t e = 0; e < cloud.elements.size(); ++e) {
+    const Table& table = cloud.elements[e];
+    if (e == cloud.vertex || table.count == 0) continue;
+    const auto kept = kept_of_element(table, cloud.format, format);
+    if (!kept) {
+      lost.push_back(fmt::format("element '{}'", table.name));
+      continue;
+    }
+    for (std::size_t f = 0; f < table.fields.size(); ++f)
+      if (std::find(kept->begin(), kept->end(), f) == kept->end())
+        lost.push_back(fmt::format("field '{}' of the faces", table.fields[f].name));
+    if (has_ragged_values(table, context)) lost.push_back("colours of the faces");
+  }
+}
+
+// PLY has no 64-bit whole numbers; coordinates of that type, which cannot be left out, become doubles.
+void widen_coordinates(Table& table, const Context& context) {
+  const bool text = table.text;
+  for (Field& field : table.fields) {
+    if (field.type != Scalar::int64 && field.type != Scalar::uint64) continue;
+    make_text(table, context);
+    field.type = Scalar::float64;
+  }
+  if (!text) make_binary(table, context);
+}
+
+// Arrays of a fixed length become lists: each row gets its count in front.
+void arrays_to_lists(Table& table, const Context& context) {
+  for (std::size_t f = 0; f < table.fields.size(); ++f) {
+    Field& field = table.fields[f];
+    if (field.count == 1) continue;
+    const Scalar count_type = field.count < 256 ? Scalar::uint8 : Scalar::uint32;
+    insert_list_counts(table, f, count_type, context);
+  }
+}
+
+void lists_to_arrays(Table& table, const Context& context) {
+  for (std::size_t f = 0; f < table.fields.size(); ++f)
+    if (table.fields[f].is_list())
+      remove_list_counts(table, f, constant_length(table, f, context).value(), context);
+}
+
+// Gives the fields types that the format has.
+void fit_types(Table& points, Format format, const Context& context) {
+  if (format == Format::ply) {
+    widen_coordinates(points, context);
+    arrays_to_lists(points, context);
+  }
+  if (format == Format::pcd) lists_to_arrays(points, context);
+}
+
+// OFF's faces have no type for their counts; PLY's usual one is uchar.
+void narrow_face_counts(Table& faces, const Context& context) {
+  if (!faces.text || faces.fields.empty() || !faces.fields[0].is_list()) return;
+  const Lists lists = gather_lists(faces, 0, context);
+  for (std::size_t i = 0; i < faces.count; ++i)
+    if (lists.start[i + 1] - lists.start[i] > 255) return;
+  faces.fields[0].list_count = Scalar::uint8;
+}
+
+// The elements beside the points, as far as they go along.
+void add_kept_elements(const Cloud& cloud, Format format, const Context& context, Cloud& out) {
+  for (std::size_t e = 0; e < cloud.elements.size(); ++e) {
+    if (e == cloud.vertex) continue;
+    const auto kept = kept_of_element(cloud.elements[e], cloud.format, format);
+    if (!kept) continue;
+    Table table = cloud.elements[e];
+    if (format != cloud.format) project(table, *kept, context);  // without ragged values, too
+    if (cloud.format == Format::off) narrow_face_counts(table, context);
+    out.elements.push_back(std::move(table));
+  }
+}
+
+// The points, as far as they go along; sets the coordinates of `out`.
+void add_kept_points(const Cloud& cloud, Format format, const Context& context, Cloud& out) {
+  Table points = cloud.points();
+  const std::vector<std::size_t> kept = kept_fields(cloud, format, context);
+  const bool same_fields = [&] {
+    for (std::size_t k = 0; k < kept.size(); ++k)
+      if (kept[k] != k) return false;
+    return kept.size() == points.fields.size();
+  }();
+  // Text with commas is written anew as well: only XYZ may have them.
+  if (!same_fields || points.separators != Separators::space) project(points, kept, context);
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    out.xyz[axis] = std::size_t(std::find(kept.begin(), kept.end(), cloud.xyz[axis]) - kept.begin());
+  for (Field& f : points.fields) f.spelling.clear();
+  fit_types(points, format, context);
+  if (format == Format::xyz && points.fields.size() > 3) out.xyz_style.names = "# ";
+  out.elements.push_back(std::move(points));
+}
+
+}  // namespace
+
+bool is_writable_as_is(const Cloud& cloud, Format format) {
+  if (format != cloud.format) return false;
+  if (format != Format::off) return true;
+  const std::vector<std::size_t> in_order = off_fields(cloud);
+  const std::vector<Field>& fields = cloud.points().fields;
+  std::size_t named = 0;  // OFF keeps unnamed columns between the named ones, ahead of texture coordinates
+  for (std::size_t f = 0; f < fields.size(); ++f)
+    if (!is_unnamed(fields[f]) && (named >= in_order.size() || in_order[named++] != f)) return false;
+  return true;
+}
+
+std::vector<std::string> what_is_lost(const Cloud& cloud, Format format, Encoding encoding,
+                                      const Context& context) {
+  Losses lost;
+  if (cloud.format == Format::las && format != Format::las) {
+    Cloud fields = make_cloud(nullptr, 0);
+    fields.points().fields = plain_fields(cloud);
+    lost = what_is_lost(fields, format, encoding, context);
+    const Losses more = las_losses(cloud);
+    lost.insert(lost.end(), more.begin(), more.end());
+    return lost;
+  }
+  add_lost_fields(cloud, format, encoding, context, lost);
+  if (format == cloud.format) return lost;
+  add_lost_elements(cloud, format, context, lost);
+  const Capacity& capacity = capacity_of(format);
+  if (!capacity.not_finite)
+    if (const std::size_t n = cloud.size() - finite_rows(positions(cloud, context), context); n > 0)
+      lost.push_back(fmt::format("{} points that are not finite", n));
+  if (capacity.grid == Capacity::Grid::none) {
+    if (cloud.organised()) lost.push_back(fmt::format("the grid of {} x {}", cloud.width, cloud.height));
+    if (cloud.viewpoint != kNoViewpoint) lost.push_back("the viewpoint");
+  }
+  return lost;
+}
+
+Cloud convert(const Cloud& cloud, Format format, const Context& context) {
+  if (cloud.format == Format::las) return convert(plain_of_las(cloud, context), format, context);
+  Cloud out;
+  out.format = format;
+  out.encoding = cloud.encoding;
+  out.width = cloud.width;
+  out.height = cloud.height;
+  out.viewpoint = cloud.viewpoint;
+  out.notes = cloud.notes;
+  out.newline = cloud.newline;
+  add_kept_points(cloud, format, context, out);
+  add_kept_elements(cloud, format, context, out);
+  rewrite_notes(out, cloud.format, format);
+  if (format != Format::las) return out;
+  make_binary(out.points(), context);  // after the comments between rows of text were taken
+  return las_of_plain(out, positions(cloud, context), context);
+}
+
+}  // namespace rfsmooth::pipeline::io
