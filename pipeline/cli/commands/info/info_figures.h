@@ -1,9 +1,7 @@
-/// The figures that info and compare print, as JSON.
+/// The figures that info prints, as JSON.
 #pragma once
 
 #include <nlohmann/json.hpp>
-
-#include <rfsmooth/compare.h>
 
 #include "pipeline/io/table/cloud.h"
 
@@ -12,8 +10,5 @@ namespace rfsmooth::cli {
 /// Format, encoding, fields, finite and distinct points, bounding box, spacing, noise. O(n log n).
 /// \throw Failure.
 nlohmann::ordered_json info_of(const pipeline::io::Cloud& cloud, const Context& context);
-
-/// A comparison's figures, in own units and on the truth's unit sphere.
-nlohmann::ordered_json figures_of(const CompareReport& report);
 
 }  // namespace rfsmooth::cli

@@ -7,8 +7,8 @@
 
 #include "base/fail.h"
 #include "pipeline/cli/commands/command.h"
+#include "pipeline/cli/commands/compare/compare_figures.h"
 #include "pipeline/cli/console/console.h"
-#include "pipeline/cli/console/figures.h"
 #include "pipeline/cli/deviation.h"
 #include "pipeline/cli/files/cloud_files.h"
 #include "pipeline/io/io.h"
@@ -46,13 +46,6 @@ struct CompareCommandOptions {
     visit(OptionInfo{"threads", "threads to use; auto: all cores; the result is the same", "", 1, 1024},
           self.threads);
     TalkOptions::describe(self.talk, visit);
-  }
-};
-
-struct ToJson {
-  ordered_json& out;
-  void operator()(const MeasureInfo& info, const std::optional<double>& value) {
-    if (value) out[std::string(info.name)] = *value;
   }
 };
 
@@ -133,27 +126,6 @@ int run_compare(const CompareCommandOptions& options, const Invocation& typed) {
 }
 
 }  // namespace
-
-ordered_json figures_of(const CompareReport& report) {
-  const Deviation deviation = summed_up(report.deviation);
-  ordered_json own, unit;
-  Measures::describe(report.own_units, ToJson{own});
-  const Measures scaled = rfsmooth::on_unit_sphere(report.own_units, report.radius);
-  Measures::describe(scaled, ToJson{unit});
-  return {{"points", report.points},
-          {"finite", report.finite},
-          {"truth_points", report.truth_points},
-          {"truth_faces", report.truth_faces},
-          {"truth_closed", report.truth_closed},
-          {"radius", report.radius},
-          {"deviation",
-           {{"rms", deviation.rms},
-            {"median", deviation.median},
-            {"percentile_95", deviation.most},
-            {"largest", deviation.largest}}},
-          {"own_units", own},
-          {"unit_sphere", unit}};
-}
 
 Command compare_command() {
   auto options = std::make_shared<CompareCommandOptions>();
