@@ -7,7 +7,7 @@
 
 #include <Eigen/Geometry>
 
-#include "base/groups.h"
+#include "base/disjoint_sets.h"
 #include "rfs_mesh/edge_faces.h"
 
 namespace rfsmooth::pipeline {
@@ -32,7 +32,7 @@ class Parting {
  private:
   std::vector<Face> rename(std::vector<Index>& copied) const {
     const std::size_t n = mesh_.positions.size();
-    Groups<Index> fans(3 * mesh_.faces.size());
+    DisjointSets<Index> fans(3 * mesh_.faces.size());
     rfs_mesh::for_each_edge(sides_, [&](const rfs_mesh::EdgeFace* first, const rfs_mesh::EdgeFace* last) {
       for_each_pair(first, last, [&](const rfs_mesh::EdgeFace& s, const rfs_mesh::EdgeFace& t) {
         for (const Index v : {s.a, s.b})

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "base/groups.h"
+#include "base/disjoint_sets.h"
 #include "base/parallel.h"
 #include "rfs_mesh/edge_faces.h"
 #include "rfs_mesh/search/neighbors.h"
@@ -23,7 +23,7 @@ std::vector<Index> nearest_points(const Mesh& mesh, const Positions& points, con
 }
 
 void drop_specks(Mesh& mesh, std::size_t least, const Context& context) {
-  Groups<Index> pieces(mesh.positions.size());
+  DisjointSets<Index> pieces(mesh.positions.size());
   for (const Face& f : mesh.faces) {
     pieces.join(f[0], f[1]);
     pieces.join(f[1], f[2]);

@@ -1,6 +1,6 @@
 #include "pipeline/surface/topology.h"
 
-#include "base/groups.h"
+#include "base/disjoint_sets.h"
 #include "rfs_mesh/edge_faces.h"
 
 namespace rfsmooth::pipeline {
@@ -9,7 +9,7 @@ Topology topology(std::size_t n, const std::vector<Face>& faces) {
   Topology found;
   found.faces = faces.size();
   const std::vector<rfs_mesh::EdgeFace> sides = rfs_mesh::edge_faces(faces);
-  Groups<Index> pieces(n), rims(n);
+  DisjointSets<Index> pieces(n), rims(n);
   std::vector<char> used(n, 0), on_rim(n, 0);
   for (const Face& f : faces) {
     for (const Index v : f) used[v] = 1;
@@ -17,7 +17,7 @@ Topology topology(std::size_t n, const std::vector<Face>& faces) {
     pieces.join(f[1], f[2]);
   }
   // Two corners of a vertex belong to one fan if their faces share an edge at it.
-  Groups<Index> fans(3 * faces.size());
+  DisjointSets<Index> fans(3 * faces.size());
   rfs_mesh::for_each_edge(sides, [&](const rfs_mesh::EdgeFace* first, const rfs_mesh::EdgeFace* last) {
     ++found.edges;
     const auto count = last - first;

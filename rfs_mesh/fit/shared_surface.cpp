@@ -83,7 +83,7 @@ class SharedQuadrics {
                  const std::vector<double>& noise, std::size_t least, const Context& context)
       : index_(index), noise_(noise), group_(index.points().size()) {
     const auto members = std::max(kFewestInGroup, std::size_t(kPointsPerSeed * double(scale.neighbours)));
-    const Groups groups = group_around_kept(index.points(), near, members, context);
+    const Adjacency groups = group_around_kept(index.points(), near, members, context);
     quadrics_.resize(groups.size());
     curvature_.resize(groups.size());
     for_blocks(context, groups.size(), 16, [&](std::size_t begin, std::size_t end) {

@@ -43,21 +43,21 @@ std::vector<Index> nearest_kept(const Positions& points, const NeighborTable& ne
 }
 
 /// The members by the groups that they are in. O(n), one thread.
-Groups members_of(const std::vector<Index>& group, std::size_t count) {
-  Groups groups;
+Adjacency members_of(const std::vector<Index>& group, std::size_t count) {
+  Adjacency groups;
   groups.start.resize(count + 1);
   for (const Index g : group) ++groups.start[g + 1];
   for (std::size_t g = 0; g < count; ++g) groups.start[g + 1] += groups.start[g];
-  groups.member.resize(group.size());
+  groups.items.resize(group.size());
   std::vector<Index> to(groups.start.begin(), groups.start.end() - 1);
-  for (std::size_t i = 0; i < group.size(); ++i) groups.member[to[group[i]]++] = Index(i);
+  for (std::size_t i = 0; i < group.size(); ++i) groups.items[to[group[i]]++] = Index(i);
   return groups;
 }
 
 }  // namespace
 
-Groups group_around_kept(const Positions& points, const NeighborTable& near, std::size_t members,
-                         const Context& context) {
+Adjacency group_around_kept(const Positions& points, const NeighborTable& near, std::size_t members,
+                            const Context& context) {
   // Steps of the same size, as few as the table allows; the smallest thinning is by kThinNear.
   const double most = std::max(double(near.k), double(kThinNear));
   double steps = 1;

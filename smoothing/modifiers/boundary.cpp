@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <variant>
 
+#include "base/disjoint_sets.h"
 #include "base/parallel.h"
 #include "rfs_mesh/edge_faces.h"
 #include "smoothing/integrators/explicit.h"
@@ -208,16 +209,8 @@ class VirtualVertices : public WrappedFlow {
   void close(const Mesh& mesh, const Context& context) {
     const std::size_t n = mesh.positions.size();
     const std::vector<Edge> edges = boundary_edges(mesh);
-    std::vector<Index> root(n);
-    for (Index i = 0; i < n; ++i) root[i] = i;
-    const auto find = [&](Index i) {
-      while (root[i] != i) i = root[i] = root[root[i]];
-      return i;
-    };
-    for (const Edge& e : edges) {
-      const Index a = find(e[0]), b = find(e[1]);
-      root[std::max(a, b)] = std::min(a, b);
-    }
+    DisjointSets<Index> rims(n);
+    for (const Edge& e : edges) rims.join(e[0], e[1]);
     const std::size_t room = inner_ ? loops_.size() : edges.size();
     loops_.assign(inner_ ? room : 0, {});
     std::vector<Index> loop_of(n, kNone);
@@ -225,7 +218,7 @@ class VirtualVertices : public WrappedFlow {
     closed_.loose_edges = mesh.loose_edges;
     std::size_t used = 0;
     for (const Edge& e : edges) {
-      const Index r = find(e[0]);
+      const Index r = rims.of(e[0]);
       if (loop_of[r] == kNone) {
         if (used == room) continue;
         loop_of[r] = Index(used++);

@@ -6,7 +6,7 @@
 
 #include <rfsmooth/cgal/advancing_front.h>
 
-#include "base/groups.h"
+#include "base/disjoint_sets.h"
 #include "pipeline/adapters/cgal/front_types.h"
 #include "pipeline/adapters/cgal/solid.h"
 #include "pipeline/surface/pinches.h"
@@ -75,7 +75,7 @@ void drop_long(std::vector<FrontFace>& front, const Positions& points, double lo
 /// Turns each piece of the front to the side of the normals; without normals, so that the least of its faces
 /// (by sorted corners) has its corners ascending: CGAL's side depends on where its nodes lie in memory.
 void turn(std::vector<FrontFace>& front, const Positions& points, const Positions& normals) {
-  Groups<Index> pieces(points.size());
+  DisjointSets<Index> pieces(points.size());
   for (const FrontFace& f : front) {
     pieces.join(f.corners[0], f.corners[1]);
     pieces.join(f.corners[1], f.corners[2]);
@@ -109,7 +109,7 @@ double least_invented(const std::vector<FrontFace>& front, const Positions& poin
     whole += 0.5 * (points[b] - points[a]).cross(points[c] - points[a]).norm();
     faces.push_back(f.corners);
   }
-  Groups<Index> rims(points.size());
+  DisjointSets<Index> rims(points.size());
   std::vector<rfs_mesh::EdgeFace> sides;
   rfs_mesh::for_each_edge(rfs_mesh::edge_faces(faces),
                           [&](const rfs_mesh::EdgeFace* first, const rfs_mesh::EdgeFace* last) {

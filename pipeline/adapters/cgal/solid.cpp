@@ -10,7 +10,7 @@
 #include <boost/graph/adjacency_list.hpp>
 #include <boost/graph/boykov_kolmogorov_max_flow.hpp>
 
-#include "base/groups.h"
+#include "base/disjoint_sets.h"
 #include "rfs_mesh/edge_faces.h"
 
 namespace rfsmooth::cgal {
@@ -181,7 +181,7 @@ class Builder {
       if (longest_square(f) > longest * longest) far.push_back(f);
     });
     if (all > 0) solid.disagreeing /= all;
-    Groups<Index> gaps(points_.size());
+    DisjointSets<Index> gaps(points_.size());
     for (const Face& f : far) {
       gaps.join(f[0], f[1]);
       gaps.join(f[1], f[2]);

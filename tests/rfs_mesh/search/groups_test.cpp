@@ -16,12 +16,12 @@ using namespace rfsmooth::rfs_mesh;
 
 namespace {
 
-Groups groups_of(const Positions& points, std::size_t members, int k = 24, const Context& context = {}) {
+Adjacency groups_of(const Positions& points, std::size_t members, int k = 24, const Context& context = {}) {
   return group_around_kept(points, SpatialIndex(points, context).nearest(k, context), members, context);
 }
 
 /// The groups as sets of `name[point]`.
-std::set<std::vector<Index>> named(const Groups& groups, const std::vector<Index>& name) {
+std::set<std::vector<Index>> named(const Adjacency& groups, const std::vector<Index>& name) {
   std::set<std::vector<Index>> all;
   for (std::size_t g = 0; g < groups.size(); ++g) {
     std::vector<Index> group;
@@ -45,8 +45,8 @@ TEST_P(GroupsOf, AreCompactAndOfAboutThisSize) {
   const test::Shape torus = test::torus();
   const Positions points = test::random_points(torus, n, 1);
   for (const int k : {24, 6}) {
-    const Groups groups = groups_of(points, members, k);
-    std::vector<Index> all = groups.member;
+    const Adjacency groups = groups_of(points, members, k);
+    std::vector<Index> all = groups.items;
     std::sort(all.begin(), all.end());
     EXPECT_EQ(all, numbers(n)) << "every point is in one group";
     EXPECT_EQ(groups.start.back(), n);
@@ -98,12 +98,12 @@ TEST_P(GroupsOf, AreTheSameForAnyNumberOfThreads) {
   const auto run = [&](int threads) {
     Context context;
     context.threads = threads;
-    Groups groups;
+    Adjacency groups;
     in_arena(context, [&] { groups = groups_of(points, GetParam(), 24, context); });
     return groups;
   };
-  const Groups one = run(1), four = run(4);
-  EXPECT_EQ(one.member, four.member);
+  const Adjacency one = run(1), four = run(4);
+  EXPECT_EQ(one.items, four.items);
   EXPECT_EQ(one.start, four.start);
 }
 
@@ -112,12 +112,12 @@ INSTANTIATE_TEST_SUITE_P(Sizes, GroupsOf, testing::Values(8, 12, 24, 48));
 TEST(Groups, OfAFewPointsAndOfPointsInOnePlace) {
   for (std::size_t n = 0; n < 8; ++n)
     for (const std::size_t members : {8, 48}) {
-      const Groups groups = groups_of(test::random_points(test::torus(), n, 1), members);
-      EXPECT_EQ(groups.member, numbers(n)) << "one group, in order";
+      const Adjacency groups = groups_of(test::random_points(test::torus(), n, 1), members);
+      EXPECT_EQ(groups.items, numbers(n)) << "one group, in order";
       EXPECT_EQ(groups.size(), n == 0 ? 0u : 1u);
     }
-  const Groups same = groups_of(Positions(1000, Eigen::Vector3d(1, 2, 3)), 48);
-  EXPECT_EQ(same.member.size(), 1000u);
+  const Adjacency same = groups_of(Positions(1000, Eigen::Vector3d(1, 2, 3)), 48);
+  EXPECT_EQ(same.items.size(), 1000u);
 }
 
 }  // namespace

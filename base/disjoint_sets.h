@@ -10,9 +10,9 @@ namespace rfsmooth {
 
 /// Disjoint sets of [0, n), each represented by its least member. Amortised O(log n) an operation.
 template <class Index>
-class Groups {
+class DisjointSets {
  public:
-  explicit Groups(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), Index{0}); }
+  explicit DisjointSets(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), Index{0}); }
   Index of(Index i) {
     while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
     return i;
