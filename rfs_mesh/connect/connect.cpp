@@ -10,7 +10,6 @@
 #include "base/parallel.h"
 #include "base/quantile.h"
 #include "base/stopwatch.h"
-#include "rfs_mesh/connect/emst/boruvka.h"
 #include "rfs_mesh/connect/emst/emst.h"
 #include "rfs_mesh/connect/flattest_pair.h"
 #include "rfs_mesh/connect/part_sheets.h"
@@ -64,7 +63,7 @@ Ground ground_at(const Positions& guide, int k, const Context& context) {
   ground.at = guide;
   const SpatialIndex index(ground.at, context);
   ground.near = index.nearest(k, context);
-  ground.tree = boruvka(index, ground.near, context);
+  ground.tree = emst_unsorted(index, ground.near, context);
   ground.surfaces = local_surfaces(ground.at, ground.near, context);
   return ground;
 }
@@ -83,7 +82,7 @@ Ground shadow_ground(const Positions& points, std::vector<LocalSurface> surfaces
   ground.at = shadows(ground.surfaces, context);
   const SpatialIndex index(ground.at, context);
   ground.near = index.nearest(k, context);
-  ground.tree = boruvka(index, ground.near, context);
+  ground.tree = emst_unsorted(index, ground.near, context);
   if (scale.neighbours <= std::size_t(k)) {
     std::vector<double> left = noise.field;
     for (double& sigma : left) sigma *= kNoiseLeft;

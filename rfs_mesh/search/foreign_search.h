@@ -1,5 +1,5 @@
 /// Searches of the kd-tree for points of other components than one's own. Internal to Boruvka's algorithm
-/// (boruvka.h).
+/// (emst.h).
 ///
 /// `label` stores for each node the component that all its points share, if they do. Searches skip subtrees
 /// inside the own component. Ties go by index.

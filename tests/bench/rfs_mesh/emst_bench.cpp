@@ -78,7 +78,7 @@ void run_one(const std::string& method, std::size_t n, const Context& context) {
     watch.lap("order");
     const SpatialIndex index(cloud.points, context);
     watch.lap("index");
-    const auto edges = emst(index, context);
+    const auto edges = emst(index, index.nearest(6, context), context);
     watch.lap("tree");
     double total = 0;
     for (const auto& e : edges) total += (cloud.points[e[0]] - cloud.points[e[1]]).norm();
