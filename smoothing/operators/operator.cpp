@@ -57,6 +57,69 @@ double length_unit(const Mesh& mesh, const Context& context) {
   return sum[0] > 0 ? sum[0] / sum[1] : 1;
 }
 
+Operator umbrella(const Mesh& mesh, const Context& context) {
+  return umbrella(mesh.one_ring, context);
+}
+
+Operator umbrella(const Adjacency& rows, const Context& context) {
+  Operator op;
+  op.mass.resize(rows.size());
+  for_each_index(context, op.mass.size(),
+                 [&](std::size_t i) { op.mass[i] = double(std::max<std::size_t>(1, rows.degree(i))); });
+  return op;
+}
+
+Operator inverse_distance(const Mesh& mesh, const Context& context) {
+  Operator op;
+  const Adjacency& rows = mesh.one_ring;
+  op.mass.resize(mesh.positions.size());
+  op.weight.resize(rows.items.size());
+  for_each_index(context, op.mass.size(), [&](std::size_t i) {
+    double total = 0;
+    for (Index k = rows.start[i]; k < rows.start[i + 1]; ++k) {
+      const double length = (mesh.positions[i] - mesh.positions[rows.items[k]]).norm();
+      op.weight[k] = length > 0 ? 1 / length : 0;
+      total += op.weight[k];
+    }
+    op.mass[i] = total > 0 ? total : 1;
+  });
+  return op;
+}
+
+Operator scale_dependent(const Mesh& mesh, const Context& context) {
+  constexpr double kShortestEdge = 1e-6;  // x h: shorter edges count as this long; keeps 1 / |e| finite
+  Operator op;
+  const Adjacency& rows = mesh.one_ring;
+  const double h = length_unit(mesh, context);
+  op.unit = h * h;
+  op.mass.resize(mesh.positions.size());
+  op.weight.resize(rows.items.size());
+  for_each_index(context, op.mass.size(), [&](std::size_t i) {
+    double edge_sum = 0;  // E
+    for (Index k = rows.start[i]; k < rows.start[i + 1]; ++k) {
+      const double length =
+          std::max(kShortestEdge * h, (mesh.positions[i] - mesh.positions[rows.items[k]]).norm());
+      op.weight[k] = 1 / length;
+      edge_sum += length;
+    }
+    op.mass[i] = edge_sum > 0 ? 0.5 * edge_sum : h;  // without neighbours: any m > 0
+  });
+  return op;
+}
+
+void apply_thin_plate(const Adjacency& rows, const Operator& op, const Positions& x, Positions& y,
+                      Positions& scratch, const Context& context) {
+  apply(rows, op, x, scratch, context);
+  apply(rows, op, scratch, y, context);
+}
+
+double thin_plate_energy(const Adjacency& rows, const Operator& op, const Positions& x,
+                         const Context& context) {
+  Positions first;
+  apply(rows, op, x, first, context);
+  return sum_over(context, x.size(), 0.0, [&](std::size_t i) { return op.mass[i] * first[i].squaredNorm(); });
+}
+
 OperatorSource::OperatorSource(OperatorKind kind, bool frozen, Scheme scheme)
     : kind_(kind), frozen_(frozen), scheme_(scheme) {}
 
