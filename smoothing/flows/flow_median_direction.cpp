@@ -11,7 +11,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
-#include "smoothing/integrators/curvature_speed.h"
+#include "smoothing/integrators/operator_speed.h"
 #include "smoothing/integrators/umbrella_speed.h"
 
 namespace rfsmooth {
@@ -26,7 +26,7 @@ class MedianDirectionSpeed : public Speed {
  public:
   explicit MedianDirectionSpeed(const MedianDirectionOptions& options)
       : options_(options),
-        curvature_(make_curvature_speed(false, options.lambda, options.scheme)),
+        curvature_(make_operator_speed(OperatorKind::curvature, options.lambda, options.scheme)),
         umbrella_(make_umbrella_speed(UmbrellaWeights::equal)) {}
 
   void evaluate(const Mesh& mesh, Positions& speed, const Context& context) override {

@@ -6,7 +6,7 @@
 /// the paper: it prints (U0 . n) U0; it must be n, since the text calls the bracket the projection of U0 onto
 /// the tangent plane. The bracket does not depend on the sign of n, so faces need not agree in orientation.
 #include "base/parallel.h"
-#include "smoothing/integrators/curvature_speed.h"
+#include "smoothing/integrators/operator_speed.h"
 #include "smoothing/integrators/umbrella_speed.h"
 #include "smoothing/operators/surface.h"
 
@@ -21,7 +21,7 @@ using Eigen::Vector3d;
 class ModifiedCurvatureSpeed : public Speed {
  public:
   ModifiedCurvatureSpeed(double lambda, double tangential, Scheme scheme)
-      : curvature_(make_curvature_speed(false, lambda, scheme)),
+      : curvature_(make_operator_speed(OperatorKind::curvature, lambda, scheme)),
         umbrella_(make_umbrella_speed(UmbrellaWeights::equal)),
         tangential_(tangential) {}
 

@@ -4,13 +4,11 @@
 #include <variant>
 
 #include "base/disjoint_sets.h"
-#include "base/parallel.h"
 #include "rfs_mesh/edge_faces.h"
-#include "smoothing/integrators/explicit.h"
+#include "smoothing/integrators/operator_speed.h"
 #include "smoothing/modifiers/constraint.h"
 #include "smoothing/modifiers/pushback.h"
 #include "smoothing/modifiers/wrapped_flow.h"
-#include "smoothing/operators/operator.h"
 
 namespace rfsmooth::smoothing {
 
@@ -41,25 +39,6 @@ Constraints with_fixed_boundary(const Constraints& constraints, const Adjacency&
       all.hard.push_back({i, HardConstraint::Kind::fixed, Vector3d::Zero()});
   return all;
 }
-
-/// -h^2 L x with L the scale-dependent operator: the speed of flows without an umbrella along a curve.
-class CurveSpeed : public Speed {
- public:
-  explicit CurveSpeed(double lambda) : lambda_(lambda) {}
-
-  /// As in curvature_speed.h, a vertex moves by its own explicit limit where that is below the step.
-  void evaluate(const Mesh& curve, Positions& speed, const Context& context) override {
-    const Operator op = scale_dependent(curve, context);
-    apply(curve.one_ring, op, curve.positions, speed, context);
-    const std::vector<double> sums = weight_sums(curve.one_ring, op, context);
-    for_each_index(context, speed.size(), [&](std::size_t i) {
-      speed[i] *= -op.unit / std::max(1.0, lambda_ * op.unit * sums[i] / op.mass[i]);
-    });
-  }
-
- private:
-  double lambda_;
-};
 
 /// Flows that solve a system for each step.
 bool is_implicit(const AnyFlow& flow) {
@@ -103,9 +82,10 @@ struct AlongCurve {
   std::unique_ptr<Flow> operator()(const Explicit& flow) const {
     return by_speed(flow.lambda);
   }
+  /// Flows without an umbrella: -h^2 L x with L the scale-dependent operator.
   std::unique_ptr<Flow> by_speed(double lambda) const {
-    return make_explicit(std::make_unique<CurveSpeed>(lambda), lambda, Update::simultaneous,
-                         AllowedMoves(constraints, curve.positions.size()));
+    return make_explicit(make_operator_speed(OperatorKind::scale_dependent, lambda, Scheme::safe), lambda,
+                         Update::simultaneous, AllowedMoves(constraints, curve.positions.size()));
   }
 };
 

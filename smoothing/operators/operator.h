@@ -77,7 +77,7 @@ Operator tufted(const Mesh& mesh, const Context& context);
 /// The curvature operator with m = sum of w (Desbrun 5.5), which moves towards the weighted mean of the
 /// neighbours: explicit steps up to 1 are stable while no weight is negative. Where the weights cancel or sum
 /// to less than zero there is no such mean. There m is 1e-9 of the sum of |w|, and explicit flows move the
-/// vertex by its own limit (curvature_speed.h). Unit 1.
+/// vertex by its own limit (operator_speed.h). Unit 1.
 Operator normalised(const Adjacency& rows, Operator op, const Context& context);
 
 /// y = L (L x): the gradient of the discrete thin-plate energy (Kobbelt et al. 1998, Desbrun 2.6). `scratch`

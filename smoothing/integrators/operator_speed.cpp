@@ -1,4 +1,4 @@
-#include "smoothing/integrators/curvature_speed.h"
+#include "smoothing/integrators/operator_speed.h"
 
 #include "base/parallel.h"
 #include "smoothing/operators/operator.h"
@@ -7,12 +7,10 @@ namespace rfsmooth::smoothing {
 
 namespace {
 
-class CurvatureSpeed : public Speed {
+class OperatorSpeed : public Speed {
  public:
-  CurvatureSpeed(bool normalised, double lambda, Scheme scheme)
-      : source_(normalised ? OperatorKind::curvature_normalised : OperatorKind::curvature, false, scheme),
-        lambda_(lambda),
-        scheme_(scheme) {}
+  OperatorSpeed(OperatorKind kind, double lambda, Scheme scheme)
+      : source_(kind, false, scheme), lambda_(lambda), scheme_(scheme) {}
 
   void evaluate(const Mesh& mesh, Positions& speed, const Context& context) override {
     const Operator& op = source_.on(mesh, context);
@@ -34,8 +32,8 @@ class CurvatureSpeed : public Speed {
 
 }  // namespace
 
-std::unique_ptr<Speed> make_curvature_speed(bool normalised, double lambda, Scheme scheme) {
-  return std::make_unique<CurvatureSpeed>(normalised, lambda, scheme);
+std::unique_ptr<Speed> make_operator_speed(OperatorKind kind, double lambda, Scheme scheme) {
+  return std::make_unique<OperatorSpeed>(kind, lambda, scheme);
 }
 
 }  // namespace rfsmooth::smoothing
