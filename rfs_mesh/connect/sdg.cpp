@@ -121,7 +121,8 @@ class Rules {
     if (terrain_.is_between(a) || terrain_.is_between(b)) return true;
     const Vector3d d = at_[b] - at_[a];
     if (d.norm() > options_.bridge * std::max(reach(a), reach(b))) return true;
-    return steep(a, d, options_.bridge_steepness) && steep(b, d, options_.bridge_steepness);
+    const double most = options_.bridge_steepness;
+    return terrain_.is_steep(a, d, most) && terrain_.is_steep(b, d, most);
   }
 
  private:
@@ -137,19 +138,12 @@ class Rules {
   const Vector3d& normal(Index v) const { return terrain_.surfaces[v].normal; }
   double reach(Index v) const { return std::max(length_[v], terrain_.noise); }
 
-  /// Whether d rises more than `most` over its run along the surface at v, beyond what noise explains.
-  bool steep(Index v, const Vector3d& d, double most) const {
-    const double rise = std::abs(normal(v).dot(d)), over = rise - terrain_.noise;
-    const double squared_run = std::max(0.0, d.squaredNorm() - rise * rise);
-    return over > 0 && over * over > most * most * squared_run;
-  }
-
   bool admissible(Index v, Index q, double lune) const {
     const Vector3d d = at_[q] - at_[v];
     const double length = d.norm();
     return !terrain_.is_between(q) && length <= options_.reach * std::max(reach(v), reach(q)) &&
-           std::abs(normal(v).dot(normal(q))) >= cos_normal_ && !steep(v, d, options_.steepness) &&
-           !steep(q, d, options_.steepness) && !within_two_hops(v, q) && !needless(v, q, lune * length);
+           terrain_.is_along(v, q, d, cos_normal_, options_.steepness) && !within_two_hops(v, q) &&
+           !needless(v, q, lune * length);
   }
 
   bool within_two_hops(Index v, Index q) const {

@@ -15,6 +15,8 @@
 /// Thread safe: no state is kept.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include <rfsmooth/connect.h>
@@ -35,6 +37,19 @@ struct Terrain {
 
   /// Whether v lies between two sheets; it gets no neighbours then.
   bool is_between(Index v) const { return !between.empty() && between[v] != 0; }
+
+  /// Whether d rises more than `most` over its run along the surface at v, beyond what noise explains.
+  bool is_steep(Index v, const Eigen::Vector3d& d, double most) const {
+    const double rise = std::abs(surfaces[v].normal.dot(d)), over = rise - noise;
+    const double squared_run = std::max(0.0, d.squaredNorm() - rise * rise);
+    return over > 0 && over * over > most * most * squared_run;
+  }
+  /// Whether v and q may be neighbours along the surface: d = q - v is not steep at either, and the cosine of
+  /// their normals' angle, whatever their sides, is at least `cosine`.
+  bool is_along(Index v, Index q, const Eigen::Vector3d& d, double cosine, double most) const {
+    return std::abs(surfaces[v].normal.dot(surfaces[q].normal)) >= cosine && !is_steep(v, d, most) &&
+           !is_steep(q, d, most);
+  }
 };
 
 /// The graph.

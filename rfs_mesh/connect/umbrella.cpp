@@ -13,34 +13,23 @@ namespace rfsmooth::rfs_mesh {
 
 namespace {
 
-using Eigen::Vector3d;
-
 constexpr std::size_t kMostCandidates = 96;  ///< SDG neighbours and nearest ones together
-
-struct Candidate {
-  Index point;
-  double squared_length;
-  friend bool operator<(const Candidate& a, const Candidate& b) {
-    return a.squared_length != b.squared_length ? a.squared_length < b.squared_length : a.point < b.point;
-  }
-};
 
 /// Kept in order: nearest neighbours come nearest first and find their place at once.
 struct Candidates {
-  std::array<Candidate, kMostCandidates> items;
+  std::array<Neighbor, kMostCandidates> items;
   std::size_t count = 0;
-  void add(Index point, double squared_length) {
+  void add(const Neighbor& candidate) {
     if (count == items.size()) return;
-    const Candidate candidate = {point, squared_length};
     std::size_t at = count;
     for (; at > 0 && candidate < items[at - 1]; --at) items[at] = items[at - 1];
     items[at] = candidate;
     ++count;
   }
-  void add_new(Index point, double squared_length) {
+  void add_new(const Neighbor& candidate) {
     bool known = false;
-    for (std::size_t k = 0; k < count; ++k) known |= items[k].point == point;
-    if (!known) add(point, squared_length);
+    for (std::size_t k = 0; k < count; ++k) known |= items[k].index == candidate.index;
+    if (!known) add(candidate);
   }
   auto begin() const { return items.begin(); }
   auto end() const { return items.begin() + std::ptrdiff_t(count); }
@@ -102,23 +91,15 @@ class Opener {
       if (terrain_.is_between(q)) continue;
       const double d = squared(v, q);
       if (nearest >= options_.most || (nearest >= options_.fewest && d > radius * radius)) break;
-      found.add(q, d);
+      found.add({q, d});
       ++nearest;
     }
-    for (const Index q : graph_[v]) found.add_new(q, squared(v, q));
+    for (const Index q : graph_[v]) found.add_new({q, squared(v, q)});
     return found;
   }
 
-  bool steep(Index v, const Vector3d& d) const {
-    const double rise = std::abs(terrain_.surfaces[v].normal.dot(d)), over = rise - terrain_.noise;
-    const double squared_run = std::max(0.0, d.squaredNorm() - rise * rise);
-    return over > 0 && over * over > options_.steepness * options_.steepness * squared_run;
-  }
-
   bool along_surface(Index v, Index q) const {
-    const Vector3d d = at_[q] - at_[v];
-    return std::abs(terrain_.surfaces[v].normal.dot(terrain_.surfaces[q].normal)) >= cos_normal_ &&
-           !steep(v, d) && !steep(q, d);
+    return terrain_.is_along(v, q, at_[q] - at_[v], cos_normal_, options_.steepness);
   }
 
   /// The ribs of v, by angle; how many.
@@ -126,16 +107,16 @@ class Opener {
     const TangentPlane plane(terrain_.surfaces[v].normal);
     std::size_t count = 0;
     std::array<Eigen::Vector2d, kMostRibs> taken;  // unit directions
-    for (const Candidate& c : candidates(v)) {
+    for (const Neighbor& c : candidates(v)) {
       if (count == ribs.size()) break;
-      if (!(c.squared_length > 0)) continue;
-      const Eigen::Vector2d d = plane.project(at_[c.point] - at_[v]);
+      if (!(c.squared_distance > 0)) continue;
+      const Eigen::Vector2d d = plane.project(at_[c.index] - at_[v]);
       const double length = d.norm(), close = cos_rib_ * length;
       bool free = true;
       for (std::size_t k = 0; k < count; ++k) free = free && !(taken[k].dot(d) > close);
-      if (!free || !along_surface(v, c.point)) continue;
+      if (!free || !along_surface(v, c.index)) continue;
       taken[count] = length > 0 ? Eigen::Vector2d(d / length) : Eigen::Vector2d::UnitX();
-      ribs[count++] = {direction(d[0], d[1]), c.point};
+      ribs[count++] = {direction(d[0], d[1]), c.index};
     }
     std::sort(ribs.begin(), ribs.begin() + std::ptrdiff_t(count), [](const Rib& a, const Rib& b) {
       return a.angle != b.angle ? a.angle < b.angle : a.point < b.point;
