@@ -88,7 +88,7 @@ class ForeignSearch {
     struct Pending {
       Cursor cursor;
       double squared_distance;
-    } stack[64];
+    } stack[KdTree::kMostPending];
     std::size_t top = 0;
     stack[top++] = {tree_.root(), 0};
     while (top > 0) {
@@ -136,20 +136,11 @@ class ForeignSearch {
   template <class See>
   void visit(const Cursor& of, Index own, double bound, See&& see) const {
     const KdTree::Node& box = tree_.node(of.node);
-    Cursor stack[64];
-    std::size_t top = 0;
-    stack[top++] = tree_.root();
-    while (top > 0) {
-      Cursor at = stack[--top];
-      while (shared_[at.node] != own && squared_distance(box, tree_.node(at.node)) <= bound) {
-        if (at.is_leaf()) {
-          if (!see(at)) return;
-          break;
-        }
-        stack[top++] = at.right();
-        at = at.left();
-      }
-    }
+    tree_.for_each_leaf(
+        [&](const Cursor& at) {
+          return shared_[at.node] != own && squared_distance(box, tree_.node(at.node)) <= bound;
+        },
+        see);
   }
 
   void scan(const Cursor& c, const Eigen::Vector3d& q, Index own, Neighbor& best) const {

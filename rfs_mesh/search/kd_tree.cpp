@@ -45,7 +45,17 @@ struct Span {
   }
 };
 
-constexpr double kLargest = 1e150;  // squares stay finite
+void check_size(const Eigen::Vector3d& p) {
+  constexpr double kLargest = 1e150;  // squares stay finite
+  if (!(p.array().abs() < kLargest).all()) throw std::invalid_argument("KdTree: a coordinate is not finite");
+}
+
+/// The box and the least id of a node, from those of its children.
+void join_children(const KdTree::Cursor& c, std::vector<KdTree::Node>& nodes) {
+  const KdTree::Node &left = nodes[c.left().node], &right = nodes[c.right().node];
+  nodes[c.node] = {left.low.cwiseMin(right.low), left.high.cwiseMax(right.high),
+                   std::min(left.least_id, right.least_id)};
+}
 
 class Builder {
  public:
@@ -79,7 +89,7 @@ class Builder {
       }
       build_serial(c, items.data(), spare.data(), halving);
     });
-    for (std::size_t i = upper.size(); i-- > 0;) join_children(upper[i]);
+    for (std::size_t i = upper.size(); i-- > 0;) join_children(upper[i], nodes_);
   }
 
  private:
@@ -105,13 +115,7 @@ class Builder {
             [axis = span.axis](const Item& item) { return item.at[axis]; });
     build_serial(c.left(), spare, items, halving);
     build_serial(c.right(), spare + half, items + half, halving);
-    join_children(c);
-  }
-
-  void join_children(const KdTree::Cursor& c) {
-    const KdTree::Node &left = nodes_[c.left().node], &right = nodes_[c.right().node];
-    nodes_[c.node] = {left.low.cwiseMin(right.low), left.high.cwiseMax(right.high),
-                      std::min(left.least_id, right.least_id)};
+    join_children(c, nodes_);
   }
 
   /// The points ascend by id.
@@ -145,20 +149,10 @@ class Builder {
 
 KdTree::KdTree(const Positions& points, const Context& context) {
   if (points.empty()) return;
-  for_each_index(context, points.size(), [&](std::size_t i) {
-    if (!(points[i].array().abs() < kLargest).all())
-      throw std::invalid_argument("KdTree: a coordinate is not finite");
-  });
+  for_each_index(context, points.size(), [&](std::size_t i) { check_size(points[i]); });
   leaves_.resize((points.size() + kLeaf - 1) / kLeaf);
   nodes_.resize(2 * leaves_.size() - 1);
   Builder(points, nodes_, leaves_).build(root(), context);
-}
-
-/// The box around those of the children.
-void KdTree::enclose_children(const Cursor& c) {
-  const Node &left = nodes_[c.left().node], &right = nodes_[c.right().node];
-  nodes_[c.node].low = left.low.cwiseMin(right.low);
-  nodes_[c.node].high = left.high.cwiseMax(right.high);
 }
 
 /// The nodes of a subtree, from its leaves up.
@@ -167,7 +161,15 @@ void KdTree::enclose(const Cursor& c, const Enclose& enclose_leaf) {
   if (c.is_leaf()) return enclose_leaf(leaves_[c.first], nodes_[c.node]);
   enclose(c.left(), enclose_leaf);
   enclose(c.right(), enclose_leaf);
-  enclose_children(c);
+  join_children(c, nodes_);
+}
+
+/// The nodes above the subtrees that one thread encloses.
+void KdTree::enclose_upper(const Cursor& c) {
+  if (c.last - c.first <= kSerialLeaves) return;
+  enclose_upper(c.left());
+  enclose_upper(c.right());
+  join_children(c, nodes_);
 }
 
 /// All nodes. `enclose_leaf(leaf, node)` changes a leaf and makes its box.
@@ -177,17 +179,7 @@ void KdTree::enclose_all(const Context& context, const Enclose& enclose_leaf) {
   const std::vector<Cursor> small = subtrees(kSerialLeaves);
   for_each_index(
       context, small.size(), [&](std::size_t i) { enclose(small[i], enclose_leaf); }, 1);
-  // The nodes above them: in preorder a node comes before what is below it.
-  std::vector<Cursor> above, stack = {root()};
-  while (!stack.empty()) {
-    const Cursor c = stack.back();
-    stack.pop_back();
-    if (c.last - c.first <= kSerialLeaves) continue;
-    above.push_back(c);
-    stack.push_back(c.left());
-    stack.push_back(c.right());
-  }
-  for (std::size_t i = above.size(); i-- > 0;) enclose_children(above[i]);
+  enclose_upper(root());
 }
 
 void KdTree::follow(const Positions& points, const Context& context) {
@@ -195,8 +187,7 @@ void KdTree::follow(const Positions& points, const Context& context) {
     box.low = box.high = points[leaf.id[0]];
     for (std::size_t i = 0; i < kLeaf && leaf.id[i] != kNone; ++i) {
       const Eigen::Vector3d& p = points[leaf.id[i]];
-      if (!(p.array().abs() < kLargest).all())
-        throw std::invalid_argument("KdTree: a coordinate is not finite");
+      check_size(p);
       leaf.x[i] = p[0];
       leaf.y[i] = p[1];
       leaf.z[i] = p[2];

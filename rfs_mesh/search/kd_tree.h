@@ -68,6 +68,30 @@ class KdTree {
   std::size_t node_count() const { return nodes_.size(); }
   std::size_t leaf_count() const { return leaves_.size(); }
 
+  /// Nodes that a walk from the root may have to come back to: 2^32 points make 29 levels, one node each.
+  static constexpr std::size_t kMostPending = 64;
+
+  /// Calls `see(leaf's cursor)` from left to right, until it returns false, for the leaves all of whose nodes
+  /// from the root down `enter(cursor)` lets in.
+  template <class Enter, class See>
+  void for_each_leaf(Enter&& enter, See&& see) const {
+    if (empty()) return;
+    Cursor stack[kMostPending];
+    std::size_t top = 0;
+    stack[top++] = root();
+    while (top > 0) {
+      Cursor at = stack[--top];
+      while (enter(at)) {
+        if (at.is_leaf()) {
+          if (!see(at)) return;
+          break;
+        }
+        stack[top++] = at.right();
+        at = at.left();
+      }
+    }
+  }
+
   /// The largest subtrees of at most that many leaves, left to right: work for parallel loops.
   std::vector<Cursor> subtrees(std::uint32_t leaves) const;
 
@@ -76,7 +100,7 @@ class KdTree {
   void enclose_all(const Context& context, const Enclose& enclose_leaf);
   template <class Enclose>
   void enclose(const Cursor& c, const Enclose& enclose_leaf);
-  void enclose_children(const Cursor& c);
+  void enclose_upper(const Cursor& c);
 
   std::vector<Node> nodes_;   // preorder
   std::vector<Leaf> leaves_;  // left to right

@@ -108,21 +108,12 @@ std::size_t places_up_to(const float* key, std::size_t count, float most, std::u
 
 void LeafNeighbors::list_leaves(const KdTree::Node& box, double squared_bound) {
   list_.clear();
-  KdTree::Cursor stack[64];
-  std::size_t top = 0;
-  stack[top++] = tree_.root();
-  while (top > 0) {
-    KdTree::Cursor at = stack[--top];
-    while (squared_distance(box, tree_.node(at.node)) <= squared_bound) {
-      if (at.is_leaf()) {
-        list_.push_back(at.first);
-        if (list_.size() > longest_list(k_)) return;
-        break;
-      }
-      stack[top++] = at.right();
-      at = at.left();
-    }
-  }
+  tree_.for_each_leaf(
+      [&](const KdTree::Cursor& at) { return squared_distance(box, tree_.node(at.node)) <= squared_bound; },
+      [&](const KdTree::Cursor& leaf) {
+        list_.push_back(leaf.first);
+        return list_.size() <= longest_list(k_);
+      });
 }
 
 LeafNeighbors::LeafNeighbors(const KdTree& tree, std::size_t k) : tree_(tree), k_(k) {

@@ -57,8 +57,6 @@ struct Pending {
   double squared_distance;
 };
 
-constexpr std::size_t kMaxDepth = 64;  // 2^32 points make 29 levels, one pending node each
-
 /// The k best candidates so far, sorted.
 class Nearest {
  public:
@@ -144,7 +142,7 @@ class NearestMany {
 template <class Worst, class Scan>
 void search(const KdTree& tree, const Vector3d& q, Worst&& worst, Scan&& scan) {
   if (tree.empty()) return;
-  Pending stack[kMaxDepth];
+  Pending stack[KdTree::kMostPending];
   std::size_t top = 0;
   stack[top++] = {tree.root(), squared_distance(q, tree.node(0))};
   while (top > 0) {
@@ -298,23 +296,6 @@ void SpatialIndex::nearest_within(const Vector3d& query, int k, double bound,
 
 namespace {
 
-/// Calls `found(neighbour)` for every point within the limit, which the call may lower.
-template <class Found>
-void for_each_within(const KdTree& tree, const Vector3d& query, const Neighbor& limit, Found&& found) {
-  search(
-      tree, query, [&]() -> const Neighbor& { return limit; },
-      [&](const KdTree::Leaf& leaf) {
-        double d2[KdTree::kLeaf];
-        squared_distances(leaf, query, d2);
-        for (std::uint32_t i = 0; i < KdTree::kLeaf; ++i)
-          if (leaf.id[i] != kNone && d2[i] <= limit.squared_distance) found({leaf.id[i], d2[i]});
-      });
-}
-
-}  // namespace
-
-namespace {
-
 /// Writes the points of a leaf that are within the bound to `out`, which has room for all; returns how many.
 RFSMOOTH_AVX2
 std::size_t write_within(const KdTree::Leaf& leaf, const Vector3d& q, double bound, Neighbor* out) {
@@ -352,7 +333,13 @@ bool SpatialIndex::any_within(const Vector3d& query, double radius) const {
   if (!(radius >= 0)) return false;
   constexpr double kNothingMore = -1;
   Neighbor limit = {kNone, radius * radius};
-  for_each_within(tree_, query, limit, [&](const Neighbor&) { limit.squared_distance = kNothingMore; });
+  search(
+      tree_, query, [&]() -> const Neighbor& { return limit; },
+      [&](const KdTree::Leaf& leaf) {
+        Neighbor found[KdTree::kLeaf];
+        if (write_within(leaf, query, limit.squared_distance, found) > 0)
+          limit.squared_distance = kNothingMore;
+      });
   return limit.squared_distance == kNothingMore;
 }
 

@@ -94,26 +94,17 @@ std::size_t WideNeighbors::gather(const Eigen::Vector3d& place, double squared_b
   std::size_t within = 0;
   const KdTree& tree = index_.tree();
   const double scale = 1 / unit_;
-  KdTree::Cursor stack[64];
-  std::size_t top = 0;
-  stack[top++] = tree.root();
-  while (top > 0) {
-    KdTree::Cursor at = stack[--top];
-    while (squared_distance(place, tree.node(at.node)) <= squared_bound) {
-      if (!at.is_leaf()) {
-        stack[top++] = at.right();
-        at = at.left();
-        continue;
-      }
-      const KdTree::Leaf& leaf = tree.leaf(at.first);
-      if (kept_ + KdTree::kLeaf > x_.size()) make_room(2 * x_.size());
-      within += look(leaf, place, scale, squared_.data() + kept_, x_.data() + kept_, y_.data() + kept_,
-                     z_.data() + kept_);
-      std::copy(leaf.id, leaf.id + KdTree::kLeaf, id_.data() + kept_);
-      kept_ += KdTree::kLeaf;
-      break;
-    }
-  }
+  tree.for_each_leaf(
+      [&](const KdTree::Cursor& at) { return squared_distance(place, tree.node(at.node)) <= squared_bound; },
+      [&](const KdTree::Cursor& at) {
+        const KdTree::Leaf& leaf = tree.leaf(at.first);
+        if (kept_ + KdTree::kLeaf > x_.size()) make_room(2 * x_.size());
+        within += look(leaf, place, scale, squared_.data() + kept_, x_.data() + kept_, y_.data() + kept_,
+                       z_.data() + kept_);
+        std::copy(leaf.id, leaf.id + KdTree::kLeaf, id_.data() + kept_);
+        kept_ += KdTree::kLeaf;
+        return true;
+      });
   return within;
 }
 
