@@ -7,6 +7,7 @@
 
 #include <rfsmooth/mesh.h>
 
+#include "base/parallel.h"
 #include "rfs_mesh/levels.h"
 
 namespace rfsmooth::rfs_mesh {
@@ -17,6 +18,13 @@ inline std::vector<Index> sample_rows(std::size_t n, std::size_t most = kSampleO
   std::vector<Index> rows(std::min(n, most));
   for (std::size_t s = 0; s < rows.size(); ++s) rows[s] = Index(s * n / rows.size());
   return rows;
+}
+
+/// Those rows of `all` (n x 3). Parallel.
+inline Positions at_rows(const Positions& all, const std::vector<Index>& rows, const Context& context) {
+  Positions at(rows.size());
+  for_each_index(context, rows.size(), [&](std::size_t s) { at[s] = all[rows[s]]; });
+  return at;
 }
 
 }  // namespace rfsmooth::rfs_mesh

@@ -4,22 +4,12 @@
 
 #include "base/disjoint_sets.h"
 #include "base/parallel.h"
-#include "rfs_mesh/edge_faces.h"
 #include "rfs_mesh/search/neighbors.h"
 
 namespace rfsmooth::pipeline {
 
 std::vector<Index> nearest_points(const Mesh& mesh, const Positions& points, const Context& context) {
-  const rfs_mesh::SpatialIndex index(points, context);
-  std::vector<Index> nearest(mesh.positions.size());
-  for_blocks(context, nearest.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    std::vector<rfs_mesh::Neighbor> found;
-    for (std::size_t v = begin; v < end; ++v) {
-      index.nearest(mesh.positions[v], 1, found);
-      nearest[v] = found.front().index;
-    }
-  });
-  return nearest;
+  return rfs_mesh::nearest_points(rfs_mesh::SpatialIndex(points, context), mesh.positions, context);
 }
 
 void drop_specks(Mesh& mesh, std::size_t least, const Context& context) {

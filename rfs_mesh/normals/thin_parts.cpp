@@ -52,7 +52,7 @@ class ThinParts {
  public:
   ThinParts(const SpatialIndex& index, const Context& context)
       : index_(index), points_(index.points()), context_(context), row_(sample_rows(points_.size())) {
-    for (const Index i : row_) at_.push_back(points_[i]);
+    at_ = at_rows(points_, row_, context);
     around_ = SpatialIndex(at_, context).nearest(int(kNeighbourhood), context);
     if (around_.k == 0) return;
     area_.resize(row_.size());
@@ -67,8 +67,7 @@ class ThinParts {
     const double area = std::accumulate(area_.begin(), area_.end(), 0.0);
     if (!(area > 0)) return 0;
     const Winding winding(at_, softening_of(area, at_.size()), context_);
-    Positions now(at_.size());
-    for (std::size_t s = 0; s < now.size(); ++s) now[s] = normals[row_[s]];
+    Positions now = at_rows(normals, row_, context_);
     const std::vector<double> w = numbers(winding, now);
     std::vector<double> off = offness(w);
     const auto above = std::count_if(off.begin(), off.end(), [](double e) { return e > kOff; });
@@ -151,16 +150,16 @@ class ThinParts {
   }
 
   /// Turns every point as the sample that stands for it.
-  std::size_t apply(const std::vector<double>& sign, Positions& normals) {
+  std::size_t apply(const std::vector<double>& sign, Positions& normals) const {
     if (std::all_of(sign.begin(), sign.end(), [](double s) { return s == 0; })) return 0;
-    find_samples();
+    const std::vector<Index> of_point = samples();
     for_blocks(context_, points_.size(), 1024, [&](std::size_t begin, std::size_t end) {
       std::vector<Neighbor> near;
       for (std::size_t i = begin; i < end; ++i)
-        if (const double s = sign[of_point_[i]]; s != 0) turn_out(i, s, near, normals[i]);
+        if (const double s = sign[of_point[i]]; s != 0) turn_out(i, s, near, normals[i]);
     });
     return std::size_t(
-        std::count_if(of_point_.begin(), of_point_.end(), [&](Index s) { return sign[s] != 0; }));
+        std::count_if(of_point.begin(), of_point.end(), [&](Index s) { return sign[s] != 0; }));
   }
 
   /// The share of the samples around s that change sides. At the rim of an open sheet w is off, too, but
@@ -173,20 +172,9 @@ class ThinParts {
   }
 
   /// The sample that stands for each point: the nearest.
-  void find_samples() {
-    of_point_.resize(points_.size());
-    if (at_.size() == points_.size()) {
-      std::iota(of_point_.begin(), of_point_.end(), Index{0});
-      return;
-    }
-    const SpatialIndex index(at_, context_);
-    for_blocks(context_, points_.size(), 4096, [&](std::size_t begin, std::size_t end) {
-      std::vector<Neighbor> nearest;
-      for (std::size_t i = begin; i < end; ++i) {
-        index.nearest(points_[i], 1, nearest);
-        of_point_[i] = nearest.front().index;
-      }
-    });
+  std::vector<Index> samples() const {
+    return at_.size() == points_.size() ? row_
+                                        : nearest_points(SpatialIndex(at_, context_), points_, context_);
   }
 
   const SpatialIndex& index_;
@@ -196,7 +184,6 @@ class ThinParts {
   Positions at_;
   NeighborTable around_;  ///< of the samples
   std::vector<double> area_;
-  std::vector<Index> of_point_;
 };
 
 }  // namespace

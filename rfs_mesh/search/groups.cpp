@@ -5,6 +5,7 @@
 
 #include "base/collect.h"
 #include "base/parallel.h"
+#include "rfs_mesh/sample.h"
 #include "rfs_mesh/search/thinning.h"
 
 namespace rfsmooth::rfs_mesh {
@@ -31,14 +32,9 @@ std::vector<Index> nearest_kept(const Positions& points, const NeighborTable& ne
     if (nearest[i] == kNone) emit(Index(i));
   });
   if (left.empty()) return nearest;
-  const SpatialIndex index(at, context);
-  for_blocks(context, left.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    std::vector<Neighbor> found;
-    for (std::size_t l = begin; l < end; ++l) {
-      index.nearest(points[left[l]], 1, found);
-      nearest[left[l]] = found.front().index;
-    }
-  });
+  const std::vector<Index> found =
+      nearest_points(SpatialIndex(at, context), at_rows(points, left, context), context);
+  for (std::size_t l = 0; l < left.size(); ++l) nearest[left[l]] = found[l];
   return nearest;
 }
 
@@ -66,8 +62,7 @@ Adjacency group_around_kept(const Positions& points, const NeighborTable& near, 
 
   const auto step = [&](const Positions& from, const NeighborTable& table, Positions& at) {
     const std::vector<Index> kept = thin_all(from, table, context, k);
-    at.resize(kept.size());
-    for_each_index(context, kept.size(), [&](std::size_t s) { at[s] = from[kept[s]]; });
+    at = at_rows(from, kept, context);
     return nearest_kept(from, table, kept, at, context);
   };
   Positions at;

@@ -250,6 +250,19 @@ void SpatialIndex::fill(NeighborTable& table, const std::vector<char>* wanted, c
   });
 }
 
+std::vector<Index> nearest_points(const SpatialIndex& index, const Positions& places,
+                                  const Context& context) {
+  std::vector<Index> nearest(places.size());
+  for_blocks(context, places.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    std::vector<Neighbor> found;
+    for (std::size_t i = begin; i < end; ++i) {
+      index.nearest(places[i], 1, found);
+      nearest[i] = found.front().index;
+    }
+  });
+  return nearest;
+}
+
 NeighborTable nearest_left(const NeighborTable& near, const std::vector<char>& gone, const SpatialIndex& left,
                            const Context& context) {
   const auto width = std::size_t(near.k);

@@ -105,6 +105,9 @@ class SpatialIndex {
   KdTree tree_;
 };
 
+/// The nearest point of `index`, which has one, to each of n places. O(n log n), parallel.
+std::vector<Index> nearest_points(const SpatialIndex& index, const Positions& places, const Context& context);
+
 /// The table of a cloud without the points flagged in `gone` (n), equal to left.nearest(near.k); only rows
 /// that held one of them are searched again. `near`: of the whole cloud; `left`: of the remaining points, in
 /// their order. Parallel.

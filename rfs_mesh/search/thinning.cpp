@@ -5,6 +5,7 @@
 
 #include "base/collect.h"
 #include "base/parallel.h"
+#include "rfs_mesh/sample.h"
 
 namespace rfsmooth::rfs_mesh {
 
@@ -92,12 +93,6 @@ class Thinning {
   std::vector<Index> open_;
 };
 
-Positions places(const Positions& points, const std::vector<Index>& subset, const Context& context) {
-  Positions at(subset.size());
-  for_each_index(context, subset.size(), [&](std::size_t s) { at[s] = points[subset[s]]; });
-  return at;
-}
-
 /// Those of a set with fewer than four points: one, if there is any.
 std::vector<Index> first_of(const std::vector<Index>& subset) {
   return {subset.begin(), subset.begin() + std::ptrdiff_t(std::min<std::size_t>(subset.size(), 1))};
@@ -112,7 +107,7 @@ std::vector<Index> named(std::vector<Index> kept, const std::vector<Index>& subs
 
 std::vector<Index> thin(const Positions& points, const std::vector<Index>& subset, const Context& context) {
   if (subset.size() <= kThinNear) return first_of(subset);
-  const Positions at = places(points, subset, context);
+  const Positions at = at_rows(points, subset, context);
   const NeighborTable near = SpatialIndex(at, context).nearest(int(kThinNear), context);
   return named(Thinning(at, near, kThinNear, context).run(), subset);
 }
@@ -146,7 +141,7 @@ std::vector<Index> thin_dense(const SpatialIndex& index, const NeighborTable& ne
       }
     }
   });
-  const Positions at = places(points, subset, context);
+  const Positions at = at_rows(points, subset, context);
   return named(Thinning(at, three, kThinNear, context).run(), subset);
 }
 
