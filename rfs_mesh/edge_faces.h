@@ -1,11 +1,11 @@
 /// The faces at every edge of a mesh, as one sorted table. Thread safe: no state is kept.
 #pragma once
 
-#include <algorithm>
-#include <tuple>
 #include <vector>
 
 #include <rfsmooth/mesh.h>
+
+#include "rfs_mesh/corners.h"
 
 namespace rfsmooth::rfs_mesh {
 
@@ -17,22 +17,12 @@ struct EdgeFace {
   bool forward;  ///< the face runs from a to b
 
   bool same_edge(const EdgeFace& other) const { return a == other.a && b == other.b; }
+  /// The corner of the face that is not on the edge.
+  Index opposite(const std::vector<Face>& faces) const { return faces[face][(corner + 2) % 3]; }
 };
 
 /// The 3 m edges of m faces, ascending by (a, b, face, corner). O(m log m), one thread.
-inline std::vector<EdgeFace> edge_faces(const std::vector<Face>& faces) {
-  std::vector<EdgeFace> all;
-  all.reserve(3 * faces.size());
-  for (std::size_t f = 0; f < faces.size(); ++f)
-    for (Index k = 0; k < 3; ++k) {
-      const Index p = faces[f][k], q = faces[f][(k + 1) % 3];
-      all.push_back({std::min(p, q), std::max(p, q), Index(f), k, p < q});
-    }
-  std::sort(all.begin(), all.end(), [](const EdgeFace& p, const EdgeFace& q) {
-    return std::tie(p.a, p.b, p.face, p.corner) < std::tie(q.a, q.b, q.face, q.corner);
-  });
-  return all;
-}
+std::vector<EdgeFace> edge_faces(const std::vector<Face>& faces);
 
 /// Calls visit(first, last) with the rows of each edge, in order of the edges.
 template <class Visit>
@@ -43,11 +33,13 @@ void for_each_edge(const std::vector<EdgeFace>& all, Visit&& visit) {
   }
 }
 
+/// The rows of one edge by the angle at which the faces stand off it, counter-clockwise as seen from b, ties
+/// in the order of the table.
+std::vector<EdgeFace> by_angle(const Mesh& mesh, const EdgeFace* first, const EdgeFace* last);
+
 /// 3 face + k, where corner k of `face` is `vertex`. Precondition: one of its corners is.
-inline Index corner_of(const std::vector<Face>& faces, Index face, Index vertex) {
-  Index k = 0;
-  while (faces[face][k] != vertex) ++k;
-  return 3 * face + k;
+inline Index corner_number(const std::vector<Face>& faces, Index face, Index vertex) {
+  return 3 * face + corner_of(faces[face], vertex);
 }
 
 }  // namespace rfsmooth::rfs_mesh

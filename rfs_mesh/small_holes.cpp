@@ -6,6 +6,7 @@
 
 #include "base/collect.h"
 #include "base/parallel.h"
+#include "rfs_mesh/corners.h"
 #include "rfs_mesh/measure.h"
 
 namespace rfsmooth::rfs_mesh {
@@ -81,15 +82,11 @@ class Holes {
 
   /// Whether a face over pq with the tip r would be folded onto the one that is there.
   bool folded(Index p, Index q, Index r, Index there) const {
-    const Face& v = faces_[there];
-    return dihedral_angle(at_[p], at_[q], at_[r], at_[v[0] ^ v[1] ^ v[2] ^ p ^ q]) < kRightAngle;
+    return dihedral_angle(at_[p], at_[q], at_[r], at_[third_corner(faces_[there], p, q)]) < kRightAngle;
   }
 
-  /// Whether a face runs from a to b.
-  bool runs(Index face, Index a, Index b) const {
-    const Face& v = faces_[face];
-    return (v[0] == a && v[1] == b) || (v[1] == a && v[2] == b) || (v[2] == a && v[0] == b);
-  }
+  /// Whether a face at the edge of a and b runs from a to b.
+  bool runs(Index face, Index a, Index b) const { return other_corners(faces_[face], a).next == b; }
 
   const Positions& at_;
   double quality_;
@@ -111,9 +108,7 @@ void fill_small_holes(const Positions& at, double quality, std::vector<Face>& fa
   std::set<Edge> taken;
   for (const Filling& filling : fillings) {
     std::array<Edge, 3> edges;
-    for (std::size_t k = 0; k < 3; ++k)
-      edges[k] = {std::min(filling.face[k], filling.face[(k + 1) % 3]),
-                  std::max(filling.face[k], filling.face[(k + 1) % 3])};
+    for (std::size_t k = 0; k < 3; ++k) edges[k] = edge_between(filling.face[k], filling.face[(k + 1) % 3]);
     if (std::any_of(edges.begin(), edges.end(), [&](const Edge& e) { return taken.count(e) > 0; })) continue;
     taken.insert(edges.begin(), edges.end());
     faces.push_back(filling.face);

@@ -20,9 +20,7 @@ double roughness(const Mesh& mesh) {
   using rfs_mesh::EdgeFace;
   rfs_mesh::for_each_edge(rfs_mesh::edge_faces(mesh.faces), [&](const EdgeFace* first, const EdgeFace* last) {
     if (last - first != 2) return;
-    const auto opposite = [&](const EdgeFace& at) {
-      return mesh.positions[mesh.faces[at.face][(at.corner + 2) % 3]];
-    };
+    const auto opposite = [&](const EdgeFace& at) { return mesh.positions[at.opposite(mesh.faces)]; };
     const double turn = M_PI - rfs_mesh::dihedral_angle(mesh.positions[first->a], mesh.positions[first->b],
                                                         opposite(first[0]), opposite(first[1]));
     sum += turn * turn;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <limits>
-#include <optional>
+#include <set>
 #include <utility>
 
 #include <Eigen/Geometry>
@@ -50,17 +50,13 @@ class EdgeSet {
   explicit EdgeSet(const Mesh& mesh) : ring_(mesh.one_ring) {}
   bool has(Index a, Index b) const {
     const auto row = ring_[a];
-    return std::binary_search(row.begin(), row.end(), b) ||
-           std::binary_search(added_.begin(), added_.end(), Edge{std::min(a, b), std::max(a, b)});
+    return std::binary_search(row.begin(), row.end(), b) || added_.count(rfs_mesh::edge_between(a, b)) > 0;
   }
-  void add(Index a, Index b) {
-    const Edge edge{std::min(a, b), std::max(a, b)};
-    added_.insert(std::lower_bound(added_.begin(), added_.end(), edge), edge);
-  }
+  void add(Index a, Index b) { added_.insert(rfs_mesh::edge_between(a, b)); }
 
  private:
   const Adjacency& ring_;
-  std::vector<Edge> added_;  ///< ascending
+  std::set<Edge> added_;
 };
 
 /// Least-area triangulations of all stretches of a rim, by dynamic programming.

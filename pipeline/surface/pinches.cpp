@@ -1,11 +1,8 @@
 #include "pipeline/surface/pinches.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 #include <vector>
-
-#include <Eigen/Geometry>
 
 #include "base/disjoint_sets.h"
 #include "rfs_mesh/edge_faces.h"
@@ -36,7 +33,8 @@ class Parting {
     rfs_mesh::for_each_edge(sides_, [&](const rfs_mesh::EdgeFace* first, const rfs_mesh::EdgeFace* last) {
       for_each_pair(first, last, [&](const rfs_mesh::EdgeFace& s, const rfs_mesh::EdgeFace& t) {
         for (const Index v : {s.a, s.b})
-          fans.join(rfs_mesh::corner_of(mesh_.faces, s.face, v), rfs_mesh::corner_of(mesh_.faces, t.face, v));
+          fans.join(rfs_mesh::corner_number(mesh_.faces, s.face, v),
+                    rfs_mesh::corner_number(mesh_.faces, t.face, v));
       });
     });
     copied.clear();
@@ -67,7 +65,7 @@ class Parting {
       return;
     }
     const bool fronts = std::binary_search(fronts_.begin(), fronts_.end(), Edge{first->a, first->b});
-    std::vector<const rfs_mesh::EdgeFace*> turn = around(first, last), open;
+    const std::vector<rfs_mesh::EdgeFace> turn = rfs_mesh::by_angle(mesh_, first, last);
     // Going round, the inside begins at a face that runs backward and ends at one that runs forward. Twice
     // round, because it may begin anywhere.
     const std::size_t count = turn.size();
@@ -76,34 +74,14 @@ class Parting {
     for (std::size_t k = 0; k < 2 * count; ++k) {
       const std::size_t s = k < count ? k : k - count;
       if (paired[s] != 0) continue;
-      if (turn[s]->forward == fronts) {
+      if (turn[s].forward == fronts) {
         if (k < count) begun.push_back(s);
       } else if (!begun.empty()) {
         paired[s] = paired[begun.back()] = 1;
-        visit(*turn[begun.back()], *turn[s]);
+        visit(turn[begun.back()], turn[s]);
         begun.pop_back();
       }
     }
-  }
-
-  /// The faces at an edge by the angle at which they stand off it.
-  std::vector<const rfs_mesh::EdgeFace*> around(const rfs_mesh::EdgeFace* first,
-                                                const rfs_mesh::EdgeFace* last) const {
-    const auto& at = mesh_.positions;
-    const Eigen::Vector3d axis = (at[first->b] - at[first->a]).normalized(), x = axis.unitOrthogonal(),
-                          y = axis.cross(x);
-    std::vector<std::pair<double, const rfs_mesh::EdgeFace*>> turn;
-    for (const rfs_mesh::EdgeFace* s = first; s != last; ++s) {
-      const Face& f = mesh_.faces[s->face];
-      const Index c = f[0] != s->a && f[0] != s->b ? f[0] : f[1] != s->a && f[1] != s->b ? f[1] : f[2];
-      const Eigen::Vector3d d = at[c] - at[s->a];
-      turn.emplace_back(std::atan2(d.dot(y), d.dot(x)), s);
-    }
-    std::stable_sort(turn.begin(), turn.end(),
-                     [](const auto& s, const auto& t) { return s.first < t.first; });
-    std::vector<const rfs_mesh::EdgeFace*> out;
-    for (const auto& t : turn) out.push_back(t.second);
-    return out;
   }
 
   /// Edges that are crowded still take their faces the other way; whether there were any new ones.
@@ -114,7 +92,7 @@ class Parting {
                             [&](const rfs_mesh::EdgeFace* first, const rfs_mesh::EdgeFace* last) {
                               if (last - first < 3) return;
                               const Index a = was(first->a), b = was(first->b);
-                              fronts_.push_back({std::min(a, b), std::max(a, b)});
+                              fronts_.push_back(rfs_mesh::edge_between(a, b));
                             });
     std::sort(fronts_.begin(), fronts_.end());
     fronts_.erase(std::unique(fronts_.begin(), fronts_.end()), fronts_.end());

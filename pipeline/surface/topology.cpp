@@ -32,7 +32,7 @@ Topology topology(std::size_t n, const std::vector<Face>& faces) {
     }
     for (const rfs_mesh::EdgeFace* s = first + 1; s < last; ++s)
       for (const Index v : {s->a, s->b})
-        fans.join(rfs_mesh::corner_of(faces, first->face, v), rfs_mesh::corner_of(faces, s->face, v));
+        fans.join(rfs_mesh::corner_number(faces, first->face, v), rfs_mesh::corner_number(faces, s->face, v));
   });
   std::vector<Index> fan_count(n, 0);
   for (std::size_t f = 0; f < faces.size(); ++f)

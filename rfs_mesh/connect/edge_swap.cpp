@@ -10,6 +10,7 @@
 
 #include "base/collect.h"
 #include "base/parallel.h"
+#include "rfs_mesh/corners.h"
 #include "rfs_mesh/measure.h"
 
 namespace rfsmooth::rfs_mesh {
@@ -33,16 +34,6 @@ std::uint64_t priority(float gain, std::size_t candidate) {
   return std::uint64_t(bits) << 32 | (0xffffffffu - std::uint32_t(candidate));
 }
 
-std::size_t corner_of(const Face& f, Index v) {
-  return std::size_t(std::find(f.begin(), f.end(), v) - f.begin());
-}
-
-Index third(const Face& f, Index a, Index b) {
-  for (const Index v : f)
-    if (v != a && v != b) return v;
-  return kNone;
-}
-
 class Swapper {
  public:
   Swapper(const Mesh& mesh, const std::vector<Face>& faces, const SwapOptions& options,
@@ -64,7 +55,7 @@ class Swapper {
     for (const Index f : around_[a])
       for (const Index b : faces_[f]) {
         if (b <= a) continue;
-        const Index c = third(faces_[f], a, b);
+        const Index c = third_corner(faces_[f], a, b);
         const Flap& flap = flaps_[3 * std::size_t(f) + corner_of(faces_[f], c)];
         if (flap.faces != 2 || flap.across < f) continue;  // each edge once: from its lower face
         if (const auto swap = consider(a, b, f, flap)) emit(*swap);
@@ -84,27 +75,22 @@ class Swapper {
     const Index p = face[(corner + 1) % 3], q = face[(corner + 2) % 3];
     Flap flap;
     for (const Index g : around_[p]) {
-      const Face& v = faces_[g];
-      if (g == f || (v[0] != q && v[1] != q && v[2] != q)) continue;
+      if (g == f || !has_corner(faces_[g], q)) continue;
       flap.across = g;
       ++flap.faces;
     }
-    if (flap.faces == 2) flap.angle = angle(p, q, face[corner], third(faces_[flap.across], p, q));
+    if (flap.faces == 2) flap.angle = angle(p, q, face[corner], third_corner(faces_[flap.across], p, q));
     return flap;
   }
 
   bool connected(Index c, Index d) const {
     return std::any_of(around_[c].begin(), around_[c].end(),
-                       [&](Index f) {
-                         const Face& v = faces_[f];
-                         return v[0] == d || v[1] == d || v[2] == d;
-                       }) ||
+                       [&](Index f) { return has_corner(faces_[f], d); }) ||
            is_loose(c, d);
   }
 
   bool is_loose(Index a, Index b) const {
-    return std::binary_search(mesh_.loose_edges.begin(), mesh_.loose_edges.end(),
-                              Edge{std::min(a, b), std::max(a, b)});
+    return std::binary_search(mesh_.loose_edges.begin(), mesh_.loose_edges.end(), edge_between(a, b));
   }
 
   double angle(Index p, Index q, Index r, Index s) const {
@@ -113,7 +99,7 @@ class Swapper {
 
   std::optional<Swap> consider(Index a, Index b, Index f, const Flap& middle) const {
     const Index g = middle.across;
-    const Index c = third(faces_[f], a, b), d = third(faces_[g], a, b);
+    const Index c = third_corner(faces_[f], a, b), d = third_corner(faces_[g], a, b);
     if (c == d || !keeps_shape(a, b, c, d) || connected(c, d) || is_loose(a, b)) return std::nullopt;
     Swap swap{a, b, c, d, f, g, {}, 0};
     double gain = angle(c, d, a, b) - middle.angle;
@@ -127,7 +113,8 @@ class Swapper {
       const Flap& flap = flaps_[3 * std::size_t(own) + corner_of(faces_[own], before)];
       if (flap.faces > 2) return std::nullopt;
       swap.outer[k] = flap.across;
-      if (flap.across != kNone) gain += angle(p, q, after, third(faces_[flap.across], p, q)) - flap.angle;
+      if (flap.across != kNone)
+        gain += angle(p, q, after, third_corner(faces_[flap.across], p, q)) - flap.angle;
     }
     swap.gain = float(gain);
     if (!(gain > options_.least_gain)) return std::nullopt;
@@ -200,8 +187,7 @@ void drop_repeated_diagonals(std::vector<Swap>& swaps, const Context& context) {
     std::size_t swap;
   };
   std::vector<Diagonal> diagonals(swaps.size());
-  for (std::size_t s = 0; s < swaps.size(); ++s)
-    diagonals[s] = {{std::min(swaps[s].c, swaps[s].d), std::max(swaps[s].c, swaps[s].d)}, s};
+  for (std::size_t s = 0; s < swaps.size(); ++s) diagonals[s] = {edge_between(swaps[s].c, swaps[s].d), s};
   parallel_sort(context, diagonals, [](const Diagonal& x, const Diagonal& y) {
     return x.edge != y.edge ? x.edge < y.edge : x.swap < y.swap;
   });

@@ -11,6 +11,7 @@
 
 #include "base/collect.h"
 #include "base/parallel.h"
+#include "rfs_mesh/corners.h"
 #include "rfs_mesh/fit/tangent_plane.h"
 #include "rfs_mesh/measure.h"
 #include "rfs_mesh/wings.h"
@@ -166,8 +167,7 @@ class Chooser {
       const Index f = faces[i];
       if (state_[f] == State::out) continue;
       if (kept(f)) kept_one = there.size();
-      const Face& v = proposed_.faces[f];
-      const Index opposite = v[0] ^ v[1] ^ v[2] ^ a ^ b;
+      const Index opposite = third_corner(proposed_.faces[f], a, b);
       const Eigen::Vector3d normal = along.cross(at_[opposite] - at_[a]);
       there.push_back({f, {normal, normal.squaredNorm()}});
     }

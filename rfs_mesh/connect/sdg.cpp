@@ -10,6 +10,7 @@
 #include "base/collect.h"
 #include "base/parallel.h"
 #include "base/quantile.h"
+#include "rfs_mesh/corners.h"
 #include "rfs_mesh/fit/tangent_plane.h"
 
 namespace rfsmooth::rfs_mesh {
@@ -180,7 +181,7 @@ std::vector<Edge> granted_edges(const std::vector<Index>& wish, const Context& c
     const Index v = Index(i), q = wish[v];
     if (q == kNone || !granted(v, q)) return;
     if (wish[q] == v && q < v) return;  // q emits it
-    emit({std::min(v, q), std::max(v, q)});
+    emit(edge_between(v, q));
   });
 }
 

@@ -32,6 +32,7 @@
 #include <fmt/format.h>
 
 #include "base/parallel.h"
+#include "rfs_mesh/corners.h"
 #include "smoothing/integrators/explicit.h"
 #include "smoothing/operators/operator.h"
 #include "smoothing/operators/surface.h"
@@ -87,9 +88,8 @@ class DirectionalSpeed : public Speed {
     for_each_index(context, n, [&](std::size_t i) {
       if (!interior_[i]) return;
       for (const Index f : around_[i]) {
-        const Face& face = faces_[f];
-        const int k = face[0] == i ? 0 : face[1] == i ? 1 : 2;
-        const Vector3d p = x[face[(k + 1) % 3]] - x[i], q = x[face[(k + 2) % 3]] - x[i];
+        const rfs_mesh::OtherCorners other = rfs_mesh::other_corners(faces_[f], Index(i));
+        const Vector3d p = x[other.next] - x[i], q = x[other.last] - x[i];
         const Vector3d cross = p.cross(q);
         const double doubled = cross.norm();
         grad.volume[i] += cross / (6 * h * h);

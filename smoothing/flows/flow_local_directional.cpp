@@ -17,6 +17,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "rfs_mesh/corners.h"
 #include "smoothing/integrators/explicit.h"
 #include "smoothing/operators/operator.h"
 #include "smoothing/operators/surface.h"
@@ -70,10 +71,8 @@ class LocalDirectionalSpeed : public Speed {
       b += part(i);
       for (const Index j : mesh.one_ring[i]) {
         const auto row = around[i];  // its side is told by the first face that has both
-        const Index f = *std::find_if(row.begin(), row.end(), [&](Index g) {
-          const Face& face = mesh.faces[g];
-          return face[0] == j || face[1] == j || face[2] == j;
-        });
+        const Index f = *std::find_if(row.begin(), row.end(),
+                                      [&](Index g) { return rfs_mesh::has_corner(mesh.faces[g], j); });
         b += opposed(f, i) == opposed(f, j) ? part(j) : Vector3d(-part(j));
       }
       if (!(b.norm() > 0)) return;

@@ -1,13 +1,13 @@
 #include "smoothing/operators/divided_difference.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
 #include "base/parallel.h"
+#include "rfs_mesh/corners.h"
 #include "smoothing/operators/operator.h"
 #include "smoothing/operators/surface.h"
 
@@ -26,12 +26,8 @@ struct Fan {
 };
 
 Fan fan_of(const Mesh& mesh, const Adjacency& faces, Index i) {
-  std::vector<std::array<Index, 2>> sides;
-  for (const Index f : faces[i]) {
-    const Face& face = mesh.faces[f];
-    const int k = face[0] == i ? 0 : face[1] == i ? 1 : 2;
-    sides.push_back({face[(k + 1) % 3], face[(k + 2) % 3]});
-  }
+  std::vector<rfs_mesh::OtherCorners> sides;
+  for (const Index f : faces[i]) sides.push_back(rfs_mesh::other_corners(mesh.faces[f], i));
   Fan fan;
   const auto row = mesh.one_ring[i];
   if (sides.empty()) return fan;
@@ -39,7 +35,7 @@ Fan fan_of(const Mesh& mesh, const Adjacency& faces, Index i) {
   int ends = 0;
   for (const Index j : row) {
     const auto uses =
-        std::count_if(sides.begin(), sides.end(), [j](const auto& s) { return s[0] == j || s[1] == j; });
+        std::count_if(sides.begin(), sides.end(), [j](const auto& s) { return s.next == j || s.last == j; });
     if (uses == 0 || uses > 2) return fan;
     if (uses == 1 && ends++ == 0) start = j;
   }
@@ -50,9 +46,9 @@ Fan fan_of(const Mesh& mesh, const Adjacency& faces, Index i) {
     for (std::size_t s = 0; s < sides.size(); ++s) {
       if (used[s] != 0) continue;
       const Index at = fan.order.back();
-      if (sides[s][0] != at && sides[s][1] != at) continue;
+      if (sides[s].next != at && sides[s].last != at) continue;
       used[s] = 1;
-      fan.order.push_back(sides[s][0] == at ? sides[s][1] : sides[s][0]);
+      fan.order.push_back(sides[s].next == at ? sides[s].last : sides[s].next);
       break;
     }
   }

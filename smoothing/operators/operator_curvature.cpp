@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 
 #include "base/parallel.h"
+#include "rfs_mesh/corners.h"
 #include "smoothing/operators/operator.h"
 
 namespace rfsmooth::smoothing {
@@ -69,8 +70,7 @@ Operator curvature(const Mesh& mesh, const Adjacency& vertex_faces, const Contex
     double area = 0;
     for (const Index f : vertex_faces[i]) {
       const Face& face = mesh.faces[f];
-      const int k = face[0] == i ? 0 : face[1] == i ? 1 : 2;
-      const int m = (k + 1) % 3, n = (k + 2) % 3;
+      const Index k = rfs_mesh::corner_of(face, Index(i)), m = (k + 1) % 3, n = (k + 2) % 3;
       add(face[m], shape[f].cot[n]);
       add(face[n], shape[f].cot[m]);
       area += shape[f].area[k];

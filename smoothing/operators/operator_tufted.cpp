@@ -2,8 +2,6 @@
 #include <array>
 #include <cmath>
 
-#include <Eigen/Geometry>
-
 #include "base/parallel.h"
 #include "rfs_mesh/edge_faces.h"
 #include "smoothing/operators/operator.h"
@@ -11,8 +9,6 @@
 namespace rfsmooth::smoothing {
 
 namespace {
-
-using Eigen::Vector3d;
 
 /// Half-edge s of triangle t runs from corner s to corner s + 1; opposite is corner s + 2.
 struct HalfEdge {
@@ -101,13 +97,17 @@ class Cover {
   /// side of the next that looks back.
   void glue(const Mesh& mesh) {
     using rfs_mesh::EdgeFace;
-    std::vector<EdgeFace> all = rfs_mesh::edge_faces(mesh.faces);
-    rfs_mesh::for_each_edge(all, [&](const EdgeFace* begin, const EdgeFace* end) {
-      EdgeFace* const first = all.data() + (begin - all.data());
-      const std::ptrdiff_t count = end - begin;
-      if (count > 2) sort_by_angle(mesh, first, first + count);
-      for (std::ptrdiff_t k = 0; k < count; ++k) join(up(first[k]), down(first[(k + 1) % count]));
-    });
+    rfs_mesh::for_each_edge(rfs_mesh::edge_faces(mesh.faces),
+                            [&](const EdgeFace* first, const EdgeFace* end) {
+                              const std::ptrdiff_t count = end - first;
+                              std::vector<EdgeFace> turn;
+                              if (count > 2) {
+                                turn = rfs_mesh::by_angle(mesh, first, end);
+                                first = turn.data();
+                              }
+                              for (std::ptrdiff_t k = 0; k < count; ++k)
+                                join(up(first[k]), down(first[(k + 1) % count]));
+                            });
   }
 
   /// The copy of the face whose side runs from a to b, and the one whose side runs back.
@@ -115,20 +115,6 @@ class Cover {
   static HalfEdge down(const rfs_mesh::EdgeFace& e) { return copy(e, !e.forward); }
   static HalfEdge copy(const rfs_mesh::EdgeFace& e, bool front) {
     return front ? HalfEdge{2 * e.face, int(e.corner)} : HalfEdge{2 * e.face + 1, 2 - int(e.corner)};
-  }
-
-  void sort_by_angle(const Mesh& mesh, rfs_mesh::EdgeFace* first, rfs_mesh::EdgeFace* end) const {
-    const Vector3d from = mesh.positions[first->a];
-    const Vector3d axis = (mesh.positions[first->b] - from).normalized();
-    const Vector3d x = axis.unitOrthogonal(), y = axis.cross(x);
-    const auto angle = [&](const rfs_mesh::EdgeFace& e) {
-      const Vector3d out = mesh.positions[mesh.faces[e.face][(e.corner + 2) % 3]] - from;
-      return std::atan2(y.dot(out), x.dot(out));
-    };
-    std::sort(first, end, [&](const rfs_mesh::EdgeFace& p, const rfs_mesh::EdgeFace& q) {
-      const double at_p = angle(p), at_q = angle(q);
-      return at_p != at_q ? at_p < at_q : p.face < q.face;
-    });
   }
 
   /// Lengthens all sides by the same, so that every triangle has room to spare in its inequality.

@@ -17,21 +17,13 @@ namespace rfsmooth::smoothing {
 
 using Eigen::Vector3d;
 using rfs_mesh::face_cross;
+using rfs_mesh::other_corners;
+using rfs_mesh::OtherCorners;
 
 namespace {
 
-/// The other two corners of a face at one of its vertices, in the face's order.
-struct Corner {
-  Index next, last;
-};
-
-Corner corner_at(const Face& face, Index i) {
-  const int k = face[0] == i ? 0 : face[1] == i ? 1 : 2;
-  return {face[(k + 1) % 3], face[(k + 2) % 3]};
-}
-
 /// Sorts the faces at one vertex into fans; fan and turned have one entry per face.
-void sort_fans(const std::vector<Corner>& corners, Index* fan, char* turned) {
+void sort_fans(const std::vector<OtherCorners>& corners, Index* fan, char* turned) {
   const std::size_t m = corners.size();
   /// The only other face at the edge to v, or m.
   const auto partner = [&](std::size_t k, Index v) {
@@ -73,10 +65,10 @@ Fans fans_of(const Mesh& mesh, const Context& context) {
   fans.fan.resize(fans.faces.items.size());
   fans.turned.resize(fans.faces.items.size());
   for_blocks(context, mesh.positions.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    std::vector<Corner> corners;
+    std::vector<OtherCorners> corners;
     for (std::size_t i = begin; i < end; ++i) {
       corners.clear();
-      for (const Index f : fans.faces[i]) corners.push_back(corner_at(mesh.faces[f], Index(i)));
+      for (const Index f : fans.faces[i]) corners.push_back(other_corners(mesh.faces[f], Index(i)));
       const Index first = fans.faces.start[i];
       sort_fans(corners, fans.fan.data() + first, fans.turned.data() + first);
     }
@@ -124,8 +116,7 @@ std::vector<char> interior_vertices(const Mesh& mesh, const Adjacency& vertex_fa
     bool all = mesh.one_ring.degree(i) > 0;
     for (const Index j : mesh.one_ring[i]) {
       int faces = 0;
-      for (const Index f : vertex_faces[i])
-        faces += std::find(mesh.faces[f].begin(), mesh.faces[f].end(), j) != mesh.faces[f].end() ? 1 : 0;
+      for (const Index f : vertex_faces[i]) faces += rfs_mesh::has_corner(mesh.faces[f], j) ? 1 : 0;
       all = all && faces == 2;
     }
     interior[i] = all ? 1 : 0;
@@ -136,7 +127,7 @@ std::vector<char> interior_vertices(const Mesh& mesh, const Adjacency& vertex_fa
 double angle_deficit(const Mesh& mesh, const Adjacency& vertex_faces, Index i) {
   double deficit = 2 * M_PI;
   for (const Index f : vertex_faces[i]) {
-    const Corner corner = corner_at(mesh.faces[f], i);
+    const OtherCorners corner = other_corners(mesh.faces[f], i);
     const Vector3d u = mesh.positions[corner.next] - mesh.positions[i];
     const Vector3d v = mesh.positions[corner.last] - mesh.positions[i];
     deficit -= std::atan2(u.cross(v).norm(), u.dot(v));

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "base/parallel.h"
+#include "rfs_mesh/corners.h"
 #include "smoothing/integrators/solver.h"
 #include "smoothing/modifiers/boundary.h"
 #include "smoothing/operators/divided_difference.h"
@@ -12,17 +13,14 @@
 namespace rfsmooth::smoothing {
 
 using Eigen::Vector3d;
+using rfs_mesh::edge_between;
 
 namespace {
-
-Edge sorted(Index a, Index b) {
-  return {std::min(a, b), std::max(a, b)};
-}
 
 std::vector<Edge> face_edges(const Mesh& mesh) {
   std::vector<Edge> edges;
   for (const Face& f : mesh.faces)
-    for (int k = 0; k < 3; ++k) edges.push_back(sorted(f[k], f[(k + 1) % 3]));
+    for (int k = 0; k < 3; ++k) edges.push_back(edge_between(f[k], f[(k + 1) % 3]));
   std::sort(edges.begin(), edges.end());
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
   return edges;
@@ -33,7 +31,7 @@ std::vector<Edge> face_edges(const Mesh& mesh) {
 /// behind all others.
 Mesh cut_along(const Mesh& mesh, const std::vector<Edge>& curve, const Context& context) {
   std::vector<Edge> cuts;
-  for (const Edge& e : curve) cuts.push_back(sorted(e[0], e[1]));
+  for (const Edge& e : curve) cuts.push_back(edge_between(e[0], e[1]));
   std::sort(cuts.begin(), cuts.end());
   const Adjacency around = vertex_faces(mesh, context);
   Mesh cut = mesh;
@@ -50,11 +48,9 @@ Mesh cut_along(const Mesh& mesh, const std::vector<Edge>& curve, const Context& 
         left.erase(left.begin());
         for (std::size_t at = 0; at < fan.size(); ++at)
           for (const Index u : mesh.faces[fan[at]]) {
-            if (u == v || std::binary_search(cuts.begin(), cuts.end(), sorted(u, v))) continue;
-            const auto beside = std::stable_partition(left.begin(), left.end(), [&](Index f) {
-              const Face& face = mesh.faces[f];
-              return face[0] != u && face[1] != u && face[2] != u;
-            });
+            if (u == v || std::binary_search(cuts.begin(), cuts.end(), edge_between(u, v))) continue;
+            const auto beside = std::stable_partition(
+                left.begin(), left.end(), [&](Index f) { return !rfs_mesh::has_corner(mesh.faces[f], u); });
             fan.insert(fan.end(), beside, left.end());
             left.erase(beside, left.end());
           }
@@ -133,7 +129,7 @@ Mesh split(const Mesh& mesh, std::vector<Edge>& curve, const Context& context) {
   const auto n = Index(mesh.positions.size());
   const std::vector<Edge> edges = face_edges(mesh);
   const auto middle = [&](Index a, Index b) {
-    const Edge e = sorted(a, b);
+    const Edge e = edge_between(a, b);
     const auto at = std::lower_bound(edges.begin(), edges.end(), e);
     if (at == edges.end() || *at != e) throw std::invalid_argument("a sharp edge is not an edge of a face");
     return n + Index(at - edges.begin());

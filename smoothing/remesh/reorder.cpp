@@ -6,6 +6,7 @@
 
 #include "base/morton.h"
 #include "base/parallel.h"
+#include "rfs_mesh/corners.h"
 
 namespace rfsmooth::smoothing {
 
@@ -88,10 +89,8 @@ Reordered reorder(const Mesh& mesh, const Context& context) {
   for_each_index(context, mesh.faces.size(), [&](std::size_t f) {
     for (std::size_t c = 0; c < 3; ++c) out.mesh.faces[f][c] = out.place[mesh.faces[f][c]];
   });
-  for (const Edge& e : mesh.loose_edges) {
-    const Index a = out.place[e[0]], b = out.place[e[1]];
-    out.mesh.loose_edges.push_back({std::min(a, b), std::max(a, b)});
-  }
+  for (const Edge& e : mesh.loose_edges)
+    out.mesh.loose_edges.push_back(rfs_mesh::edge_between(out.place[e[0]], out.place[e[1]]));
   std::sort(out.mesh.loose_edges.begin(), out.mesh.loose_edges.end());
   out.mesh.one_ring = moved(mesh.one_ring, order, out.place, context);
   return out;

@@ -7,6 +7,7 @@
 
 #include "base/linear/symmetric_eigen.h"
 #include "base/parallel.h"
+#include "rfs_mesh/corners.h"
 #include "rfs_mesh/measure.h"
 #include "smoothing/operators/operator.h"
 
@@ -75,9 +76,7 @@ std::vector<int> ridges_and_ravines(const Mesh& mesh, double least, const Contex
       const Vector3d side = curvature.normal[i].cross(direction);
       bool ahead = false, behind = false;
       for (const Index f : faces[i]) {
-        const Face& face = mesh.faces[f];
-        const int c = face[0] == i ? 0 : face[1] == i ? 1 : 2;
-        const Index a = face[(c + 1) % 3], b = face[(c + 2) % 3];
+        const auto [a, b] = rfs_mesh::other_corners(mesh.faces[f], Index(i));
         const Vector3d p = mesh.positions[a] - mesh.positions[i], q = mesh.positions[b] - mesh.positions[i];
         const double sa = side.dot(p), sb = side.dot(q);
         if ((sa < 0) == (sb < 0) && sa != 0 && sb != 0) continue;
