@@ -1,5 +1,6 @@
 #include "rfs_mesh/measure.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <Eigen/Geometry>
@@ -40,16 +41,18 @@ Positions vertex_normals(const Mesh& mesh, const Context& context) {
   return normals;
 }
 
+Vector3d centroid(const Positions& at, const Context& context) {
+  return sum_over(context, at.size(), Vector3d(Vector3d::Zero()), [&](std::size_t i) { return at[i]; }) /
+         double(std::max<std::size_t>(1, at.size()));
+}
+
 double surface_area(const Mesh& mesh, const Context& context) {
   return sum_over(context, mesh.faces.size(), 0.0,
                   [&](std::size_t f) { return 0.5 * face_cross(mesh.positions, mesh.faces[f]).norm(); });
 }
 
 double signed_volume(const Mesh& mesh, const Context& context) {
-  if (mesh.positions.empty()) return 0;
-  const Vector3d centre = sum_over(context, mesh.positions.size(), Vector3d(Vector3d::Zero()),
-                                   [&](std::size_t i) { return mesh.positions[i]; }) /
-                          double(mesh.positions.size());
+  const Vector3d centre = centroid(mesh.positions, context);
   return sum_over(context, mesh.faces.size(), 0.0,
                   [&](std::size_t f) {
                     const Face& v = mesh.faces[f];

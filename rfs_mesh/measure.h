@@ -30,6 +30,9 @@ double dihedral_angle(const Eigen::Vector3d& p, const Eigen::Vector3d& q, const 
 /// cancel. Neighbours' normals agree only if the faces are oriented alike.
 Positions vertex_normals(const Mesh& mesh, const Context& context);
 
+/// The mean of the positions; zero if there are none.
+Eigen::Vector3d centroid(const Positions& at, const Context& context);
+
 /// The total area of the faces.
 double surface_area(const Mesh& mesh, const Context& context);
 

@@ -7,6 +7,7 @@
 /// of a regular mesh dt E is 16 times the squared umbrella. The interpolating use, with refinement, is
 /// refine.h.
 #include "base/parallel.h"
+#include "rfs_mesh/measure.h"
 #include "smoothing/integrators/solved_flow.h"
 #include "smoothing/operators/divided_difference.h"
 
@@ -34,9 +35,7 @@ class DiscreteFairing : public SolvedFlow {
     const std::vector<double>& w = differences_.weights();
     std::vector<double> data(n), diagonal = differences_.diagonal(context);
     Positions b(n), x(n);
-    const Vector3d centre =
-        sum_over(context, n, Vector3d(Vector3d::Zero()), [&](std::size_t i) { return mesh.positions[i]; }) /
-        double(std::max<std::size_t>(1, n));
+    const Vector3d centre = rfs_mesh::centroid(mesh.positions, context);
     for_each_index(context, n, [&](std::size_t i) {
       const double s = allowed_.strength(i);
       data[i] = s > 0 ? w[i] / s : w[i];

@@ -8,6 +8,7 @@
 /// side gains c (D - W) r with r the fixed neighbours' share of T x. Constraints to an axis or a plane, and
 /// strengths, are HC's own per-step rules and are refused here.
 #include "base/parallel.h"
+#include "rfs_mesh/measure.h"
 #include "smoothing/integrators/solved_flow.h"
 
 namespace rfsmooth {
@@ -32,9 +33,7 @@ class HcLimit : public SolvedFlow {
     const auto degree = [&](std::size_t i) { return double(rows.degree(i)); };
     // Isolated vertices get a unit row, fixed ones too: both keep their place.
     const auto still = [&](std::size_t i) { return fixed_[i] != 0 || rows.degree(i) == 0; };
-    const Vector3d centre =
-        sum_over(context, n, Vector3d(Vector3d::Zero()), [&](std::size_t i) { return original_[i]; }) /
-        double(std::max<std::size_t>(1, n));
+    const Vector3d centre = rfs_mesh::centroid(original_, context);
     // Sum of x over the movable neighbours: (W x)_i.
     const auto movable_sum = [&](const Positions& x, std::size_t i) {
       Vector3d sum = Vector3d::Zero();

@@ -33,9 +33,7 @@ class Preserving : public WrappedFlow {
   void step(Mesh& mesh, const Context& context) override {
     inner_->step(mesh, context);
     const std::size_t n = mesh.positions.size();
-    const Vector3d centre =
-        sum_over(context, n, Vector3d(Vector3d::Zero()), [&](std::size_t i) { return mesh.positions[i]; }) /
-        double(std::max<std::size_t>(1, n));
+    const Vector3d centre = rfs_mesh::centroid(mesh.positions, context);
     Positions direction(n), moved(n);
     for_each_index(context, n, [&](std::size_t i) {
       const Vector3d d =
