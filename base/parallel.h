@@ -6,6 +6,7 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <functional>
 #include <vector>
@@ -54,6 +55,15 @@ T sum_over(const Context& context, std::size_t n, T zero, Term&& term) {
         return s;
       },
       [](T a, const T& b) { return T(a += b); });
+}
+
+/// Replaces `kept` by `value` if that comes before it: the first of all values remains, in whatever order the
+/// threads call. `before(a, b)` must be a total order.
+template <class T, class Before>
+void keep_first(std::atomic<T>& kept, T value, Before&& before) {
+  T seen = kept.load(std::memory_order_relaxed);
+  while (before(value, seen) && !kept.compare_exchange_weak(seen, value, std::memory_order_relaxed)) {
+  }
 }
 
 /// Sorts in parallel: blocks first, then merges. `less` must be a total order: two elements are equivalent

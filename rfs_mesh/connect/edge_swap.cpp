@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <cstring>
+#include <functional>
 #include <optional>
 
 #include <Eigen/Geometry>
@@ -147,12 +148,6 @@ void for_footprint(const Swap& swap, Body&& body) {
     if (o != kNone) body(o);
 }
 
-void raise(std::atomic<std::uint64_t>& best, std::uint64_t to) {
-  std::uint64_t now = best.load(std::memory_order_relaxed);
-  while (now < to && !best.compare_exchange_weak(now, to, std::memory_order_relaxed)) {
-  }
-}
-
 /// All that are worth while, by their lowest vertex. They are dear to find and few: once, in lists by block.
 std::vector<Swap> proposals(const Swapper& swapper, std::size_t n, const Context& context) {
   constexpr std::size_t kGrain = 256;
@@ -171,7 +166,8 @@ std::vector<Swap> proposals(const Swapper& swapper, std::size_t n, const Context
 std::vector<Swap> independent(const std::vector<Swap>& swaps, std::size_t faces, const Context& context) {
   std::vector<std::atomic<std::uint64_t>> best(faces);
   for_each_index(context, swaps.size(), [&](std::size_t s) {
-    for_footprint(swaps[s], [&](Index f) { raise(best[f], priority(swaps[s].gain, s)); });
+    for_footprint(swaps[s],
+                  [&](Index f) { keep_first(best[f], priority(swaps[s].gain, s), std::greater<>()); });
   });
   return collect<Swap>(context, swaps.size(), [&](std::size_t s, auto&& emit) {
     bool wins = true;

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <memory>
 
 #include <Eigen/Geometry>
@@ -180,11 +181,9 @@ class Chooser {
     return true;
   }
 
-  /// Marks only grow, so the order in which threads raise them does not matter.
+  /// Marks only grow.
   static void raise(std::atomic<std::uint8_t>& mark, std::uint8_t to) {
-    std::uint8_t now = mark.load(std::memory_order_relaxed);
-    while (now < to && !mark.compare_exchange_weak(now, to, std::memory_order_relaxed)) {
-    }
+    keep_first(mark, to, std::greater<>());
   }
 
   /// How good it is to have this pair of faces at an edge, larger is better: first the flatter, then the one

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cstring>
+#include <functional>
 #include <limits>
 #include <stdexcept>
 
@@ -35,11 +36,8 @@ double to_length(std::uint64_t bits) {
   return d2;
 }
 
-/// Lowers `target` to `value`: the least value remains, whatever the order of the calls.
-void lower(std::atomic<std::uint64_t>& target, std::uint64_t value) {
-  std::uint64_t seen = target.load(std::memory_order_relaxed);
-  while (value < seen && !target.compare_exchange_weak(seen, value, std::memory_order_relaxed)) {
-  }
+void lower(std::atomic<std::uint64_t>& least, std::uint64_t value) {
+  keep_first(least, value, std::less<>());
 }
 
 std::uint64_t pair_of(Index a, Index b) {
