@@ -45,7 +45,7 @@ class Orienter {
         context_(context) {
     // The side a normal came with must not matter where nothing else decides.
     for_each_index(context_, normals_.size(), [&](std::size_t i) {
-      if (turn_to_positive(normals_[i])) normals_[i] = -normals_[i];
+      if (points_down(normals_[i])) normals_[i] = -normals_[i];
     });
     std::sort(bridges_.begin(), bridges_.end());
     areas_ = areas(calm_);

@@ -11,6 +11,7 @@ namespace rfsmooth::rfs_mesh {
 
 namespace {
 
+/// As in sides.h.
 double clarity(const SideLink& link) {
   return double(link.agreement) * link.agreement / link.count;
 }
@@ -20,28 +21,29 @@ constexpr int kRoundsInBlocks =
     2;  // more, and regions at the block's rim grow astray: they miss half of their links
 constexpr std::size_t kBlock = 4096;  // points
 
+/// Regions that grow. What links points at first links the regions that they have become.
 class Growth {
  public:
   Growth(std::size_t n, std::vector<SideLink> links, const std::vector<double>& votes, const Context& context)
       : context_(context), sides_(n), links_(std::move(links)), votes_(votes), best_(n, kNone) {}
 
+  /// As long as there are links of at least that clarity.
   void grow(double least) {
     do {
       bundle();
     } while (join(least));
   }
 
-  /// So many rounds of it; the links are those of the regions found.
-  Growth& begin(int rounds) {
+  /// So many rounds by the surest links. Afterwards links() are those between the regions found.
+  void grow_a_little(int rounds) {
     for (int round = 0; round < rounds; ++round) {
       bundle();
       join(kSurest);
     }
     bundle();
-    return *this;
   }
 
-  /// What joins the regions found so far: with their lowest points for ends.
+  /// With the lowest points of regions for ends.
   const std::vector<SideLink>& links() const { return links_; }
 
   Regions regions() {
@@ -103,6 +105,7 @@ class Growth {
     links_.swap(sorted);
   }
 
+  /// Whether the votes of two regions speak more against joining them than what links them does for it.
   bool refused(Index a, Index b, float agreement) const {
     if (votes_.empty()) return false;
     const double one = votes_[a], other = agreement < 0 ? -votes_[b] : votes_[b];
@@ -143,7 +146,7 @@ class Growth {
 
 }  // namespace
 
-bool turn_to_positive(const Eigen::Vector3d& v) {
+bool points_down(const Eigen::Vector3d& v) {
   for (const int axis : {2, 1, 0})
     if (v[axis] != 0) return v[axis] < 0;
   return false;
@@ -153,7 +156,7 @@ bool on_wrong_side(double vote, double volume, double extent, const Eigen::Vecto
   constexpr double kFlatPart = 0.01;  // volume / (area x extent) below which a part has no outside
   if (vote != 0) return vote < 0;
   if (std::abs(volume) > kFlatPart * extent) return volume < 0;
-  return turn_to_positive(normals);
+  return points_down(normals);
 }
 
 Regions grow_regions(std::size_t n, std::vector<SideLink> links, const std::vector<double>& votes,
@@ -162,6 +165,38 @@ Regions grow_regions(std::size_t n, std::vector<SideLink> links, const std::vect
   for (const double least : {kSurest, 0.6, 0.4, 0.2, 0.1, 0.0}) growth.grow(least);
   return growth.regions();
 }
+
+namespace {
+
+/// Grows the regions that blocks have found together. They are the points of this second growth, numbered in
+/// the order of their lowest points. \param left by block, what links its regions; emptied
+void join_blocks(Regions& all, std::vector<std::vector<SideLink>>& left, const Context& context) {
+  const std::size_t n = all.of_point.size();
+  std::vector<Index> number(n, kNone), lowest;
+  for (std::size_t i = 0; i < n; ++i)
+    if (all.of_point[i] == i) {
+      number[i] = Index(lowest.size());
+      lowest.push_back(Index(i));
+    }
+  std::vector<SideLink> between;
+  for (std::vector<SideLink>& of_block : left) {
+    for (const SideLink& link : of_block) {
+      const Index a = all.of_point[link.a], b = all.of_point[link.b];
+      const bool turned = all.turned[link.a] != all.turned[link.b];
+      if (a != b)
+        between.push_back({number[a], number[b], turned ? -link.agreement : link.agreement, link.count});
+    }
+    std::vector<SideLink>().swap(of_block);
+  }
+  const Regions joined = grow_regions(lowest.size(), std::move(between), {}, context);
+  for_each_index(context, n, [&](std::size_t i) {
+    const Index r = number[all.of_point[i]];
+    all.turned[i] = char(all.turned[i] ^ joined.turned[r]);
+    all.of_point[i] = lowest[joined.of_point[r]];
+  });
+}
+
+}  // namespace
 
 Regions grow_regions_in_blocks(std::size_t n, const LinksOf& links, const Context& context) {
   Regions all;
@@ -179,7 +214,8 @@ Regions grow_regions_in_blocks(std::size_t n, const LinksOf& links, const Contex
     const auto first = Index(begin);
     for (SideLink& link : inner) link = {link.a - first, link.b - first, link.agreement, link.count};
     Growth growth(end - begin, std::move(inner), {}, context);
-    const Regions own = growth.begin(kRoundsInBlocks).regions();
+    growth.grow_a_little(kRoundsInBlocks);
+    const Regions own = growth.regions();
     for (std::size_t i = begin; i < end; ++i) {
       all.of_point[i] = first + own.of_point[i - begin];
       all.turned[i] = own.turned[i - begin];
@@ -187,31 +223,7 @@ Regions grow_regions_in_blocks(std::size_t n, const LinksOf& links, const Contex
     for (const SideLink& link : growth.links())
       outer.push_back({first + link.a, first + link.b, link.agreement, link.count});
   });
-
-  // The regions of all blocks, numbered, are the points of the rest.
-  std::vector<Index> number(n, kNone);
-  Index count = 0;
-  for (std::size_t i = 0; i < n; ++i)
-    if (all.of_point[i] == i) number[i] = count++;
-  std::vector<SideLink> between;
-  for (std::vector<SideLink>& of_block : left) {
-    for (const SideLink& link : of_block) {
-      const Index a = all.of_point[link.a], b = all.of_point[link.b];
-      const bool turned = all.turned[link.a] != all.turned[link.b];
-      if (a != b)
-        between.push_back({number[a], number[b], turned ? -link.agreement : link.agreement, link.count});
-    }
-    std::vector<SideLink>().swap(of_block);
-  }
-  const Regions joined = grow_regions(count, std::move(between), {}, context);
-  std::vector<Index> lowest(count);
-  for (std::size_t i = 0; i < n; ++i)
-    if (number[i] != kNone) lowest[number[i]] = Index(i);
-  for_each_index(context, n, [&](std::size_t i) {
-    const Index r = number[all.of_point[i]];
-    all.turned[i] = char(all.turned[i] ^ joined.turned[r]);
-    all.of_point[i] = lowest[joined.of_point[r]];
-  });
+  join_blocks(all, left, context);
   return all;
 }
 

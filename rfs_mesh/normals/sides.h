@@ -60,12 +60,13 @@ class Sides {
   std::vector<char> turned_;
 };
 
-/// Whether the last coordinate of v that is not zero is negative.
-bool turn_to_positive(const Eigen::Vector3d& v);
+/// Whether v points down: its last coordinate that is not zero is negative.
+bool points_down(const Eigen::Vector3d& v);
 
 /// Whether a part of the surface is on the wrong side: by its votes where it has any, else by the volume
-/// within it, which is negative inside out, else, where it is flat, by the sum of its normals.
-/// \param extent the sum over its area of the distances from its middle, times as much as the volume is.
+/// within it, which is negative inside out, else, where it is flat, by the sum of its normals. \param volume
+/// the sum of a (p - c) . n over its points p, which have the area a and the normal n; c is their middle.
+/// \param extent the sum of a |p - c|. Both may be in any unit, which must be the same.
 bool on_wrong_side(double vote, double volume, double extent, const Eigen::Vector3d& normals);
 
 /// How well the sides of two points, or of two regions, agree.
