@@ -4,8 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/Geometry>
-
 #include "base/parallel.h"
 #include "base/quantile.h"
 #include "rfs_mesh/fit/quadric.h"
@@ -15,8 +13,6 @@
 namespace rfsmooth::rfs_mesh {
 
 namespace {
-
-using Eigen::Vector3d;
 
 /// The nearest neighbours of one point without itself, in memory that is kept.
 class NearestOthers {
@@ -33,11 +29,6 @@ class NearestOthers {
   std::vector<Neighbor> found_;
   std::vector<Index> row_;
 };
-
-LocalSurface fit_surface(const Positions& points, const Vector3d& p, const Index* neighbours,
-                         std::size_t count, QuadricWorkspace& w, int robust_rounds = kRobustRounds) {
-  return surface_at_centre(fit_quadric(points, p, neighbours, count, w, robust_rounds));
-}
 
 }  // namespace
 
@@ -58,7 +49,7 @@ std::vector<LocalSurface> local_surfaces(const Positions& points, const Neighbor
     QuadricWorkspace workspace;
     for (std::size_t i = begin; i < end; ++i) {
       const auto row = near[i];
-      surfaces[i] = fit_surface(points, points[i], row.begin(), row.size(), workspace);
+      surfaces[i] = surface_at_centre(fit_quadric(points, points[i], row.begin(), row.size(), workspace));
     }
   });
   return surfaces;
@@ -111,7 +102,7 @@ Deviation deviation_at(const SpatialIndex& index, std::size_t m, const Context& 
     for (std::size_t s = begin; s < end; ++s) {
       const Index i = rows[s];
       const auto& row = nearest.find(index, i, m);
-      residuals[s] = fit_surface(points, points[i], row.data(), row.size(), workspace, 0).residual;
+      residuals[s] = fit_quadric(points, points[i], row.data(), row.size(), workspace, 0).residual;
       radii[s] = row.empty() ? 0 : (points[row.back()] - points[i]).norm();
     }
   });

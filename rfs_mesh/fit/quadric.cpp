@@ -41,7 +41,7 @@ inline void store(const Lanes& from, std::size_t at, std::vector<double>& to) {
   std::memcpy(to.data() + at, &from, sizeof from);
 }
 
-/// Turns x, y, z into units of `radius` and sets the weights by distance; returns the weighted covariance.
+/// Turns x, y, z into units of `radius`, sets the weights by distance and the weighted covariance.
 RFSMOOTH_AVX2
 void weigh(QuadricWorkspace& w, double radius, Matrix3d& covariance) {
   const double scale = 1 / radius;
@@ -57,11 +57,11 @@ void weigh(QuadricWorkspace& w, double radius, Matrix3d& covariance) {
     const Lanes inside = 1 - ((x * x + y * y) + z * z);
     Lanes weight = inside * inside;
     for (std::size_t lane = w.count; lane < k + kSideBySide; ++lane)
-      if (lane >= k) weight[lane - k] = 0;
+      if (lane >= k) weight[lane - k] = 0;  // no point but padding
     store(x, k, w.x);
     store(y, k, w.y);
     store(z, k, w.z);
-    store(weight, k, w.distance);
+    store(weight, k, w.nearness);
     const Lanes wx = weight * x, wy = weight * y, wz = weight * z;
     sum[0] += weight;
     sum[1] += wx;
@@ -75,7 +75,7 @@ void weigh(QuadricWorkspace& w, double radius, Matrix3d& covariance) {
     sum[9] += wz * z;
   }
   double s[10];
-  for (int t = 0; t < 10; ++t) s[t] = (sum[t][0] + sum[t][1]) + (sum[t][2] + sum[t][3]);
+  for (int t = 0; t < 10; ++t) s[t] = kTotal(sum[t]);
   const Vector3d mean = Vector3d(s[1], s[2], s[3]) / s[0];
   covariance << s[4], s[5], s[6], s[5], s[7], s[8], s[6], s[8], s[9];
   covariance -= s[0] * mean * mean.transpose();
@@ -149,12 +149,12 @@ RFSMOOTH_AVX2
 void weigh_by_residual(QuadricWorkspace& w, double cut) {
   const double inverse = 1 / cut;
   for (std::size_t k = 0; k < w.padded; k += kSideBySide) {
-    Lanes r, distance;
+    Lanes r, nearness;
     load(w.residual, k, r);
-    load(w.distance, k, distance);
+    load(w.nearness, k, nearness);
     r *= inverse;
     const Lanes inside = 1 - r * r, none = {};
-    store(inside > 0 ? distance * inside * inside : none, k, w.weight);
+    store(inside > 0 ? nearness * inside * inside : none, k, w.weight);
   }
 }
 
@@ -162,13 +162,16 @@ void weigh_by_residual(QuadricWorkspace& w, double cut) {
 bool reweight(QuadricWorkspace& w, const Quadric& q) {
   find_residuals(w, q);
   w.sorted.assign(w.residual.begin(), w.residual.begin() + std::ptrdiff_t(w.count));
-  const double cut = kTukey * 1.4826 * median(w.sorted);
-  if (!(cut > 1e-12)) return false;
+  constexpr double kOfMedian = 1.4826;  // sigma of a normal distribution over its median deviation
+  constexpr double kExact = 1e-12;      // of the radius: the points lie on the quadric but for rounding
+  const double cut = kTukey * kOfMedian * median(w.sorted);
+  if (!(cut > kExact)) return false;
   weigh_by_residual(w, cut);
   return true;
 }
 
-/// Weighted residual sum over the degrees of freedom the weights leave.
+/// Root of the weighted mean square of the residuals, over the degrees of freedom that the weights leave a
+/// fit of that many terms. In units of the radius.
 double residual_deviation(QuadricWorkspace& w, const Quadric& q, int terms) {
   find_residuals(w, q);
   double sum = 0, total = 0, squares = 0;
@@ -188,7 +191,7 @@ void make_room(QuadricWorkspace& w, std::size_t count) {
   w.count = count + 1;
   w.padded = (w.count + kSideBySide - 1) / kSideBySide * kSideBySide;
   if (w.x.size() >= w.padded) return;
-  for (auto* all : {&w.x, &w.y, &w.z, &w.u, &w.v, &w.h, &w.distance, &w.weight, &w.residual})
+  for (auto* all : {&w.x, &w.y, &w.z, &w.u, &w.v, &w.h, &w.nearness, &w.weight, &w.residual})
     all->resize(2 * w.padded);
 }
 
@@ -222,7 +225,7 @@ Quadric fit_quadric(const Positions& points, const Vector3d& p, const Index* nei
   if (count < 3) return q;
 
   turn_into(q, w);
-  std::copy_n(w.distance.begin(), w.padded, w.weight.begin());
+  std::copy_n(w.nearness.begin(), w.padded, w.weight.begin());
   const int terms = count >= kFewestOfQuadric ? 6 : 3;
   q.c = fit(w, terms);
   for (int round = 0; terms == 6 && round < robust_rounds && reweight(w, q); ++round) q.c = fit(w, terms);

@@ -40,13 +40,15 @@ struct Quadric {
 struct QuadricWorkspace {
   std::vector<double> x, y, z;   ///< offsets from the centre, in units of the radius
   std::vector<double> u, v, h;   ///< the same along t1, t2, n
-  std::vector<double> distance;  ///< weights by distance
-  std::vector<double> weight;    ///< weights by residual
-  std::vector<double> residual, sorted;
+  std::vector<double> nearness;  ///< weights by distance alone
+  std::vector<double> weight;    ///< weights by distance and residual: those of the fit
+  std::vector<double> residual;  ///< absolute, in units of the radius
+  std::vector<double> sorted;    ///< room to find their median
   std::size_t count = 0, padded = 0;
 };
 
-/// The quadric at `p` from `count` neighbours and p itself. O(count).
+/// The quadric at `p` from `count` neighbours and p itself. \param robust_rounds of re-weighting by
+/// residuals; with 0 all points within the radius count by their distance alone. O(count).
 Quadric fit_quadric(const Positions& points, const Eigen::Vector3d& p, const Index* neighbours,
                     std::size_t count, QuadricWorkspace& workspace, int robust_rounds = kRobustRounds);
 
