@@ -52,13 +52,11 @@ inline double between(double a, double b) {
   return t > M_PI ? 2 * M_PI - t : t;
 }
 
-/// The directions up to `width` (at most 2 pi) counter-clockwise of `from`, both ends included. `holds`
-/// computes no angle.
+/// The directions up to `width` (at most 2 pi) counter-clockwise of `first`, both ends included; none if the
+/// width is negative. `holds` computes no angle.
 class Sector {
  public:
-  Sector(double from, double width)
-      : Sector({std::cos(from), std::sin(from)}, {std::cos(from + width), std::sin(from + width)}, width) {}
-  /// The sector between two directions of any length.
+  /// \param first, last its ends, of any length; \param width the angle from one to the other, radians
   Sector(const Eigen::Vector2d& first, const Eigen::Vector2d& last, double width)
       : first_(first), last_(last), empty_(!(width >= 0)), narrow_(width <= M_PI) {}
 

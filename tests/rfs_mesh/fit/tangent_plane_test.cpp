@@ -8,6 +8,10 @@ using namespace rfsmooth::rfs_mesh;
 
 namespace {
 
+Eigen::Vector2d unit_at(double angle) {
+  return {std::cos(angle), std::sin(angle)};
+}
+
 TEST(TangentPlane, DirectionIsTheArcTangent) {
   for (int k = -18000; k <= 18000; ++k) {
     const double angle = radians(0.01 * k), x = 3 * std::cos(angle), y = 3 * std::sin(angle);
@@ -23,10 +27,10 @@ TEST(TangentPlane, SectorHoldsWhatTurnsIntoIt) {
   std::uniform_real_distribution<double> angle(-M_PI, M_PI), wide(0, 2 * M_PI);
   for (int trial = 0; trial < 10000; ++trial) {
     const double from = angle(engine), width = wide(engine), to = angle(engine);
-    const Eigen::Vector2d d(2 * std::cos(to), 2 * std::sin(to));
-    EXPECT_EQ(Sector(from, width).holds(d), turn(from, to) <= width) << from << " " << width << " " << to;
+    const Sector sector(unit_at(from), unit_at(from + width), width);
+    EXPECT_EQ(sector.holds(2 * unit_at(to)), turn(from, to) <= width) << from << " " << width << " " << to;
   }
-  EXPECT_FALSE(Sector(0, -0.1).holds({1, 0}));
+  EXPECT_FALSE(Sector(unit_at(0), unit_at(-0.1), -0.1).holds({1, 0}));
 }
 
 }  // namespace
