@@ -24,10 +24,10 @@ Winding::Winding(const Positions& points, double softening, const Context& conte
     : points_(points), softening_square_(softening * softening), tree_(points, context) {
   if (!(softening_square_ > 0)) throw std::invalid_argument("Winding: the softening must be positive");
   balls_.resize(tree_.node_count());
-  if (!tree_.empty()) enclose(tree_.root());
+  tree_.for_each_node_upward(context, [&](const KdTree::Cursor& c) { enclose(c); });
 }
 
-void Winding::enclose(KdTree::Cursor at) {
+void Winding::enclose(const KdTree::Cursor& at) {
   Ball& ball = balls_[at.node];
   if (at.is_leaf()) {
     for (const Index id : tree_.leaf(at.first).id) {
@@ -37,7 +37,6 @@ void Winding::enclose(KdTree::Cursor at) {
     }
   } else {
     for (const KdTree::Cursor child : {at.left(), at.right()}) {
-      enclose(child);
       ball.centre += balls_[child.node].count * balls_[child.node].centre;
       ball.count += balls_[child.node].count;
     }
@@ -47,21 +46,19 @@ void Winding::enclose(KdTree::Cursor at) {
   ball.radius_square = (box.high - ball.centre).cwiseMax(ball.centre - box.low).squaredNorm();
 }
 
-template <class Moment, class Of>
-std::vector<Moment> Winding::moments(Moment zero, Of&& of) const {
+template <class Moment>
+std::vector<Moment> Winding::moments(const std::vector<Moment>& of, Moment zero,
+                                     const Context& context) const {
   std::vector<Moment> sums(tree_.node_count(), zero);
-  const auto add = [&](auto&& self, KdTree::Cursor at) -> void {
-    if (at.is_leaf()) {
-      for (const Index id : tree_.leaf(at.first).id)
-        if (id != kNone) sums[at.node] += of(id);
-      return;
+  tree_.for_each_node_upward(context, [&](const KdTree::Cursor& c) {
+    if (c.is_leaf()) {
+      for (const Index id : tree_.leaf(c.first).id)
+        if (id != kNone) sums[c.node] += of[id];
+    } else {
+      sums[c.node] += sums[c.left().node];
+      sums[c.node] += sums[c.right().node];
     }
-    for (const KdTree::Cursor child : {at.left(), at.right()}) {
-      self(self, child);
-      sums[at.node] += sums[child.node];
-    }
-  };
-  if (!tree_.empty()) add(add, tree_.root());
+  });
   return sums;
 }
 
@@ -92,8 +89,7 @@ void Winding::visit(const Vector3d& q, std::vector<KdTree::Cursor>& pending, Far
 }
 
 std::vector<double> Winding::numbers(const Positions& area_vectors, const Context& context) const {
-  const std::vector<Vector3d> sums =
-      moments(Vector3d(Vector3d::Zero()), [&](Index id) { return area_vectors[id]; });
+  const Positions sums = moments(area_vectors, Vector3d(Vector3d::Zero()), context);
   std::vector<double> w(points_.size());
   for_blocks(context, w.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     std::vector<KdTree::Cursor> pending;
@@ -110,7 +106,7 @@ std::vector<double> Winding::numbers(const Positions& area_vectors, const Contex
 }
 
 Positions Winding::field(const std::vector<double>& charges, const Context& context) const {
-  const std::vector<double> sums = moments(0.0, [&](Index id) { return charges[id]; });
+  const std::vector<double> sums = moments(charges, 0.0, context);
   Positions field(points_.size());
   for_blocks(context, field.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     std::vector<KdTree::Cursor> pending;

@@ -58,11 +58,11 @@ class Winding {
     double count = 0;                                  ///< how many
     double radius_square = 0;                          ///< of a ball around the centroid that holds their box
   };
-  /// Fills in the balls of a node and of all below it.
-  void enclose(KdTree::Cursor at);
-  /// By node: the sum of `of(point)` over the points below it.
-  template <class Moment, class Of>
-  std::vector<Moment> moments(Moment zero, Of&& of) const;
+  /// Fills in the ball of a node, those below it being there.
+  void enclose(const KdTree::Cursor& at);
+  /// By node: the sum over the points below it.
+  template <class Moment>
+  std::vector<Moment> moments(const std::vector<Moment>& of, Moment zero, const Context& context) const;
   /// Calls `far(node, r, 1 / (|r|^2 + e^2)^(3/2))` for what counts as one point at r from q, and
   /// `near(point, r, ...)` for the other points. `pending` is room for nodes yet to be looked at.
   template <class Far, class Near>

@@ -38,9 +38,10 @@ class ForeignSearch {
 
   /// Updates the labels of the nodes from `component`. O(n), parallel.
   void label(const Context& context) {
-    for_each_index(
-        context, subtrees_.size(), [&](std::size_t s) { label(subtrees_[s]); }, 1);
-    label_upper(tree_.root());
+    tree_.for_each_node_upward(context, [&](const Cursor& c) {
+      shared_[c.node] =
+          c.is_leaf() ? shared_by_leaf(c) : common(shared_[c.left().node], shared_[c.right().node]);
+    });
   }
 
   /// The component that all points of a node share, kNone if they do not.
@@ -113,22 +114,15 @@ class ForeignSearch {
  private:
   static constexpr std::uint32_t kSubtree = 128;  ///< leaves
 
-  Index label(const Cursor& c) {
-    Index& shared = shared_[c.node];
-    if (!c.is_leaf()) {
-      const Index left = label(c.left()), right = label(c.right());
-      return shared = left == right ? left : kNone;
-    }
+  /// What two parts of a node share.
+  static Index common(Index one, Index other) { return one == other ? one : kNone; }
+
+  Index shared_by_leaf(const Cursor& c) const {
     const KdTree::Leaf& leaf = tree_.leaf(c.first);
-    shared = component_[leaf.id[0]];
+    Index shared = component_[leaf.id[0]];
     for (std::uint32_t i = 1; i < KdTree::kLeaf && leaf.id[i] != kNone; ++i)
-      if (component_[leaf.id[i]] != shared) shared = kNone;
+      shared = common(shared, component_[leaf.id[i]]);
     return shared;
-  }
-  Index label_upper(const Cursor& c) {
-    if (c.last - c.first <= kSubtree) return shared_[c.node];
-    const Index left = label_upper(c.left()), right = label_upper(c.right());
-    return shared_[c.node] = left == right ? left : kNone;
   }
 
   /// Calls `see(cursor)` for the leaves with foreign points whose boxes are within sqrt(bound) of that of

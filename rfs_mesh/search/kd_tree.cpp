@@ -17,9 +17,6 @@ struct Item {
   Index id;
 };
 
-constexpr std::uint32_t kSerialLeaves =
-    512;  // subtrees below this size are built by one thread, in its cache
-
 /// The longest axis of the box around `count` points, and where the box lies on it.
 struct Span {
   int axis = 0;
@@ -69,7 +66,8 @@ class Builder {
     std::vector<KdTree::Cursor> level = {root}, upper, small;
     while (!level.empty()) {
       std::vector<KdTree::Cursor> next;
-      for (const KdTree::Cursor& c : level) (c.last - c.first <= kSerialLeaves ? small : next).push_back(c);
+      for (const KdTree::Cursor& c : level)
+        (c.last - c.first <= KdTree::kSerialLeaves ? small : next).push_back(c);
       for_each_index(
           context, next.size(), [&](std::size_t i) { split(next[i]); }, 1);
       level.clear();
@@ -155,31 +153,15 @@ KdTree::KdTree(const Positions& points, const Context& context) {
   Builder(points, nodes_, leaves_).build(root(), context);
 }
 
-/// The nodes of a subtree, from its leaves up.
-template <class Enclose>
-void KdTree::enclose(const Cursor& c, const Enclose& enclose_leaf) {
-  if (c.is_leaf()) return enclose_leaf(leaves_[c.first], nodes_[c.node]);
-  enclose(c.left(), enclose_leaf);
-  enclose(c.right(), enclose_leaf);
-  join_children(c, nodes_);
-}
-
-/// The nodes above the subtrees that one thread encloses.
-void KdTree::enclose_upper(const Cursor& c) {
-  if (c.last - c.first <= kSerialLeaves) return;
-  enclose_upper(c.left());
-  enclose_upper(c.right());
-  join_children(c, nodes_);
-}
-
-/// All nodes. `enclose_leaf(leaf, node)` changes a leaf and makes its box.
+/// The box of every node; `enclose_leaf(leaf, node)` changes a leaf and makes its own.
 template <class Enclose>
 void KdTree::enclose_all(const Context& context, const Enclose& enclose_leaf) {
-  if (empty()) return;
-  const std::vector<Cursor> small = subtrees(kSerialLeaves);
-  for_each_index(
-      context, small.size(), [&](std::size_t i) { enclose(small[i], enclose_leaf); }, 1);
-  enclose_upper(root());
+  for_each_node_upward(context, [&](const Cursor& c) {
+    if (c.is_leaf())
+      enclose_leaf(leaves_[c.first], nodes_[c.node]);
+    else
+      join_children(c, nodes_);
+  });
 }
 
 void KdTree::follow(const Positions& points, const Context& context) {

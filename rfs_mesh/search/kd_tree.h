@@ -18,6 +18,7 @@
 
 #include <rfsmooth/context.h>
 
+#include "base/parallel.h"
 #include "rfs_mesh/points.h"
 
 namespace rfsmooth::rfs_mesh {
@@ -25,7 +26,8 @@ namespace rfsmooth::rfs_mesh {
 /// A balanced tree over points in leaves of eight.
 class KdTree {
  public:
-  static constexpr std::uint32_t kLeaf = 8;  ///< points in a leaf
+  static constexpr std::uint32_t kLeaf = 8;            ///< points in a leaf
+  static constexpr std::uint32_t kSerialLeaves = 512;  ///< of subtrees that are for one thread, in its cache
 
   /// Coordinates by axis; the missing points of a short leaf lie at infinity, behind the others, and have the
   /// id kNone.
@@ -95,12 +97,28 @@ class KdTree {
   /// The largest subtrees of at most that many leaves, left to right: work for parallel loops.
   std::vector<Cursor> subtrees(std::uint32_t leaves) const;
 
+  /// Calls `visit(cursor)` for every node, after those below it. Parallel.
+  template <class Visit>
+  void for_each_node_upward(const Context& context, Visit&& visit) const {
+    const std::vector<Cursor> small = subtrees(kSerialLeaves);
+    for_each_index(
+        context, small.size(), [&](std::size_t s) { upward(small[s], 0, visit); }, 1);
+    if (!empty()) upward(root(), kSerialLeaves, visit);
+  }
+
  private:
+  /// A node and all below it, of those of more than `done` leaves.
+  template <class Visit>
+  static void upward(const Cursor& c, std::uint32_t done, Visit& visit) {
+    if (c.last - c.first <= done) return;
+    if (!c.is_leaf()) {
+      upward(c.left(), done, visit);
+      upward(c.right(), done, visit);
+    }
+    visit(c);
+  }
   template <class Enclose>
   void enclose_all(const Context& context, const Enclose& enclose_leaf);
-  template <class Enclose>
-  void enclose(const Cursor& c, const Enclose& enclose_leaf);
-  void enclose_upper(const Cursor& c);
 
   std::vector<Node> nodes_;   // preorder
   std::vector<Leaf> leaves_;  // left to right
