@@ -250,6 +250,22 @@ Connection connect_all(const Positions& points, std::optional<Cloud> known, cons
   return c;
 }
 
+/// connect_all() behind a front door. `statistics`: as `whole`, or null.
+Result<Connection> connect_or_fail(const Positions& points, std::optional<Cloud> known,
+                                   const ConnectOptions& options, const Context& context,
+                                   const Positions* guide, Statistics* statistics) {
+  return guarded([&] {
+    value_or_throw(validate(options));
+    Connection connection;
+    Statistics own;
+    in_arena(context, [&] {
+      connection = connect_all(points, std::move(known), options, context, guide,
+                               statistics != nullptr ? *statistics : own);
+    });
+    return connection;
+  });
+}
+
 }  // namespace
 
 void measure_cloud(const SpatialIndex& index, const NeighborTable& near, Statistics& whole,
@@ -266,16 +282,8 @@ Result<Connection> connect(SpatialIndex index, NeighborTable near, const Connect
       std::min(std::size_t(options.neighbours), std::max<std::size_t>(points.size(), 1) - 1);
   if (near.items.size() != points.size() * width)
     throw std::invalid_argument("connect: near is not the table that the options ask for");
-  return guarded([&] {
-    value_or_throw(validate(options));
-    Connection connection;
-    Statistics own;
-    in_arena(context, [&] {
-      connection = connect_all(points, Cloud{std::move(index), std::move(near)}, options, context, nullptr,
-                               statistics != nullptr ? *statistics : own);
-    });
-    return connection;
-  });
+  return connect_or_fail(points, Cloud{std::move(index), std::move(near)}, options, context, nullptr,
+                         statistics);
 }
 
 }  // namespace rfsmooth::rfs_mesh
@@ -286,13 +294,7 @@ Result<Connection> connect(const Positions& points, const ConnectOptions& option
                            const Positions* guide) {
   if (guide != nullptr && guide->size() != points.size())
     throw std::invalid_argument("connect: guide must hold one position per point");
-  return guarded([&] {
-    value_or_throw(validate(options));
-    Connection connection;
-    Statistics own;
-    in_arena(context, [&] { connection = rfs_mesh::connect_all(points, {}, options, context, guide, own); });
-    return connection;
-  });
+  return rfs_mesh::connect_or_fail(points, {}, options, context, guide, nullptr);
 }
 
 }  // namespace rfsmooth
