@@ -1,5 +1,3 @@
-#include <algorithm>
-
 #include <fmt/format.h>
 
 #include <rfsmooth/flow.h>
@@ -213,15 +211,7 @@ Result<FlowReport> smooth(Mesh& mesh, const FlowOptions& options, const Context&
       report = any_order && iterations(options.flow) > 0 && is_scattered(mesh, context)
                    ? run_reordered(mesh, options, context, constraints)
                    : run(mesh, options, context, constraints);
-      report.largest_move = reduce_blocks(
-          context, original.size(), 0.0,
-          [&](std::size_t begin, std::size_t end) {
-            double largest = 0;
-            for (std::size_t i = begin; i < end; ++i)
-              largest = std::max(largest, (mesh.positions[i] - original[i]).norm());
-            return largest;
-          },
-          [](double a, double b) { return std::max(a, b); });
+      report.largest_move = largest_move(original, mesh.positions, context);
     });
     return report;
   });

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "base/parallel.h"
 #include "rfs_mesh/edge_faces.h"
 #include "rfs_mesh/measure.h"
 #include "smoothing/operators/operator.h"
@@ -42,6 +43,17 @@ std::optional<double> volume(const Mesh& mesh, const Context& context) {
 
 }  // namespace
 
+double largest_move(const Positions& before, const Positions& after, const Context& context) {
+  return reduce_blocks(
+      context, before.size(), 0.0,
+      [&](std::size_t begin, std::size_t end) {
+        double largest = 0;
+        for (std::size_t i = begin; i < end; ++i) largest = std::max(largest, (after[i] - before[i]).norm());
+        return largest;
+      },
+      [](double a, double b) { return std::max(a, b); });
+}
+
 Tracer::Tracer(std::vector<TraceRow>* rows, const Mesh& mesh, const Context& context)
     : rows_(rows), before_(rows == nullptr ? Positions{} : mesh.positions) {
   add(mesh, context);
@@ -55,8 +67,7 @@ void Tracer::add(const Mesh& mesh, const Context& context) {
   row.area = rfs_mesh::surface_area(mesh, context);
   row.energy = thin_plate_energy(mesh.one_ring, umbrella(mesh, context), mesh.positions, context);
   row.roughness = roughness(mesh);
-  for (std::size_t i = 0; i < before_.size(); ++i)
-    row.largest_move = std::max(row.largest_move, (mesh.positions[i] - before_[i]).norm());
+  row.largest_move = largest_move(before_, mesh.positions, context);
   before_ = mesh.positions;
   rows_->push_back(row);
 }

@@ -8,6 +8,9 @@
 
 namespace rfsmooth::smoothing {
 
+/// The longest way from a vertex's place in `before` to that in `after` (n each), world units. Parallel.
+double largest_move(const Positions& before, const Positions& after, const Context& context);
+
 /// Adds a row per step to a table. One thread at a time.
 class Tracer {
  public:
