@@ -56,6 +56,25 @@ TEST(Parallel, SortEqualsStdSort) {
   }
 }
 
+TEST(Parallel, TheFirstIsKeptWhateverTheOrder) {
+  std::atomic<std::uint32_t> least{1u << 31}, most{0};
+  for_each_index(
+      Context{}, 100000,
+      [&](std::size_t i) {
+        const auto value = std::uint32_t(1 + i * 7919 % 100003);
+        keep_first(least, value, std::less<>());
+        keep_first(most, value, std::greater<>());
+      },
+      16);
+  std::uint32_t low = 1u << 31, high = 0;
+  for (std::size_t i = 0; i < 100000; ++i) {
+    low = std::min(low, std::uint32_t(1 + i * 7919 % 100003));
+    high = std::max(high, std::uint32_t(1 + i * 7919 % 100003));
+  }
+  EXPECT_EQ(least, low);
+  EXPECT_EQ(most, high);
+}
+
 TEST(Parallel, StopCancelsALoop) {
   std::atomic<bool> stop{true};
   Context context;

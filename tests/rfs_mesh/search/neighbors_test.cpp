@@ -191,6 +191,17 @@ TEST(Neighbors, CancelStopsTheSearch) {
   EXPECT_THROW(SpatialIndex(points, context), rfsmooth::Failure);
 }
 
+TEST(Neighbors, NearestToEachOfManyPlaces) {
+  const Positions points = rfsmooth::test::noisy_sphere(3000, 0.1, 1),
+                  places = rfsmooth::test::noisy_sphere(5000, 0.3, 2);
+  const SpatialIndex index(points, {});
+  const std::vector<Index> nearest = nearest_points(index, places, {});
+  ASSERT_EQ(nearest.size(), places.size());
+  for (std::size_t i = 0; i < places.size(); ++i)
+    for (const Eigen::Vector3d& p : points)
+      ASSERT_LE((places[i] - points[nearest[i]]).squaredNorm(), (places[i] - p).squaredNorm() + 1e-15);
+}
+
 TEST(Neighbors, OfWhatIsLeftAreThoseOfTheRestAlone) {
   const Positions points = rfsmooth::test::noisy_sphere(2000, 0.1, 1);
   const NeighborTable near = SpatialIndex(points, {}).nearest(9, {});
