@@ -47,8 +47,8 @@ void Winding::enclose(const KdTree::Cursor& at) {
 }
 
 template <class Moment>
-std::vector<Moment> Winding::moments(const std::vector<Moment>& of, Moment zero,
-                                     const Context& context) const {
+std::vector<Moment> Winding::sum_up(const std::vector<Moment>& of, Moment zero,
+                                    const Context& context) const {
   std::vector<Moment> sums(tree_.node_count(), zero);
   tree_.for_each_node_upward(context, [&](const KdTree::Cursor& c) {
     if (c.is_leaf()) {
@@ -62,64 +62,49 @@ std::vector<Moment> Winding::moments(const std::vector<Moment>& of, Moment zero,
   return sums;
 }
 
-template <class Far, class Near>
-void Winding::visit(const Vector3d& q, std::vector<KdTree::Cursor>& pending, Far&& far, Near&& near) const {
-  pending.assign(1, tree_.root());
-  while (!pending.empty()) {
-    const KdTree::Cursor at = pending.back();
-    pending.pop_back();
-    const Ball& ball = balls_[at.node];
-    const Vector3d r = ball.centre - q;
-    const double square = r.squaredNorm();
-    if (ball.radius_square < kOpening * square) {
-      const double soft = square + softening_square_;
-      far(at.node, r, 1 / (soft * std::sqrt(soft)));
-    } else if (at.is_leaf()) {
-      for (const Index id : tree_.leaf(at.first).id) {
-        if (id == kNone) continue;
-        const Vector3d d = points_[id] - q;
-        const double soft = d.squaredNorm() + softening_square_;
-        near(id, d, 1 / (soft * std::sqrt(soft)));
+template <class Sum, class Moment, class Term>
+std::vector<Sum> Winding::evaluate(const std::vector<Moment>& of, Moment no_moment, Sum nothing,
+                                   const Context& context, Term&& term) const {
+  const std::vector<Moment> moments = sum_up(of, no_moment, context);
+  std::vector<Sum> results(points_.size());
+  for_blocks(context, results.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    std::vector<KdTree::Cursor> pending;
+    for (std::size_t i = begin; i < end; ++i) {
+      const Vector3d& q = points_[i];
+      Sum sum = nothing;
+      const auto add = [&](const Vector3d& r, const Moment& moment) {
+        const double soft = r.squaredNorm() + softening_square_;
+        sum += term(r, 1 / (soft * std::sqrt(soft)), moment);
+      };
+      for (pending.assign(1, tree_.root()); !pending.empty();) {
+        const KdTree::Cursor at = pending.back();
+        pending.pop_back();
+        const Ball& ball = balls_[at.node];
+        const Vector3d r = ball.centre - q;
+        if (ball.radius_square < kOpening * r.squaredNorm()) {
+          add(r, moments[at.node]);
+        } else if (at.is_leaf()) {
+          for (const Index id : tree_.leaf(at.first).id)
+            if (id != kNone) add(points_[id] - q, of[id]);
+        } else {
+          pending.push_back(at.right());
+          pending.push_back(at.left());
+        }
       }
-    } else {
-      pending.push_back(at.right());
-      pending.push_back(at.left());
+      results[i] = sum / kFourPi;
     }
-  }
+  });
+  return results;
 }
 
 std::vector<double> Winding::numbers(const Positions& area_vectors, const Context& context) const {
-  const Positions sums = moments(area_vectors, Vector3d(Vector3d::Zero()), context);
-  std::vector<double> w(points_.size());
-  for_blocks(context, w.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    std::vector<KdTree::Cursor> pending;
-    for (std::size_t i = begin; i < end; ++i) {
-      double sum = 0;
-      visit(
-          points_[i], pending,
-          [&](std::uint32_t node, const Vector3d& r, double weight) { sum += weight * r.dot(sums[node]); },
-          [&](Index id, const Vector3d& r, double weight) { sum += weight * r.dot(area_vectors[id]); });
-      w[i] = sum / kFourPi;
-    }
-  });
-  return w;
+  return evaluate(area_vectors, Vector3d(Vector3d::Zero()), 0.0, context,
+                  [](const Vector3d& r, double weight, const Vector3d& m) { return weight * r.dot(m); });
 }
 
 Positions Winding::field(const std::vector<double>& charges, const Context& context) const {
-  const std::vector<double> sums = moments(charges, 0.0, context);
-  Positions field(points_.size());
-  for_blocks(context, field.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    std::vector<KdTree::Cursor> pending;
-    for (std::size_t i = begin; i < end; ++i) {
-      Vector3d sum = Vector3d::Zero();
-      visit(
-          points_[i], pending,
-          [&](std::uint32_t node, const Vector3d& r, double weight) { sum -= (weight * sums[node]) * r; },
-          [&](Index id, const Vector3d& r, double weight) { sum -= (weight * charges[id]) * r; });
-      field[i] = sum / kFourPi;
-    }
-  });
-  return field;
+  return evaluate(charges, 0.0, Vector3d(Vector3d::Zero()), context,
+                  [](const Vector3d& r, double weight, double c) { return Vector3d(-(weight * c) * r); });
 }
 
 Positions Winding::gauss(int steps, const Context& context) const {

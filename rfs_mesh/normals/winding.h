@@ -62,11 +62,12 @@ class Winding {
   void enclose(const KdTree::Cursor& at);
   /// By node: the sum over the points below it.
   template <class Moment>
-  std::vector<Moment> moments(const std::vector<Moment>& of, Moment zero, const Context& context) const;
-  /// Calls `far(node, r, 1 / (|r|^2 + e^2)^(3/2))` for what counts as one point at r from q, and
-  /// `near(point, r, ...)` for the other points. `pending` is room for nodes yet to be looked at.
-  template <class Far, class Near>
-  void visit(const Eigen::Vector3d& q, std::vector<KdTree::Cursor>& pending, Far&& far, Near&& near) const;
+  std::vector<Moment> sum_up(const std::vector<Moment>& of, Moment zero, const Context& context) const;
+  /// At every point the sum of `term(r, 1 / (|r|^2 + e^2)^(3/2), moment)` / (4 pi) over all that counts as
+  /// one point at r from it: points, each with its moment in `of`, and boxes far away with the sum of theirs.
+  template <class Sum, class Moment, class Term>
+  std::vector<Sum> evaluate(const std::vector<Moment>& of, Moment no_moment, Sum nothing,
+                            const Context& context, Term&& term) const;
 
   const Positions& points_;
   double softening_square_;
