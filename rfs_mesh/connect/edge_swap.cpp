@@ -227,18 +227,13 @@ std::size_t swap_edges(Mesh& mesh, const SwapOptions& options, const Context& co
     made += swaps.size();
   }
   if (made == 0) return 0;
-  Mesh swapped;
-  swapped.faces = std::move(faces);
-  swapped.positions.swap(mesh.positions);
-  swapped.loose_edges.swap(mesh.loose_edges);
+  mesh.faces.swap(faces);
   try {
-    rebuild_adjacency(swapped, context);
+    rebuild_adjacency(mesh, context);
   } catch (...) {
-    swapped.positions.swap(mesh.positions);
-    swapped.loose_edges.swap(mesh.loose_edges);
+    mesh.faces.swap(faces);
     throw;
   }
-  mesh = std::move(swapped);
   return made;
 }
 
