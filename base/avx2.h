@@ -11,3 +11,10 @@
 #else
 #define RFSMOOTH_AVX2
 #endif
+
+/// The same with all that it calls inside, where the compiler can do both.
+#if defined(__clang__)
+#define RFSMOOTH_AVX2_FLAT RFSMOOTH_AVX2
+#else
+#define RFSMOOTH_AVX2_FLAT RFSMOOTH_AVX2 __attribute__((flatten))
+#endif

@@ -34,7 +34,7 @@ double variance_inside(double c) {
 
 RFSMOOTH_AVX2
 void ScatterFit::find_residuals(const Vector6& c) {
-  const Vector6 q = c;
+  const Vector6 q = c;  // NOLINT(performance-unnecessary-copy-initialization): no store can change it
   residual_.resize(u_.size());
   for (std::size_t i = 0; i < u_.size(); ++i) residual_[i] = z_[i] - height_at(q.data(), u_[i], v_[i]);
 }
@@ -134,7 +134,7 @@ double ScatterFit::keep_inside() {
 
 RFSMOOTH_AVX2
 void ScatterFit::sum_within(double window, const Vector6& c, bool first, bool last, Sums& sums) const {
-  const Vector6 q = c;
+  const Vector6 q = c;  // NOLINT(performance-unnecessary-copy-initialization): no store can change it
   // Of the columns of a and b: the first four rows, and of both together the last two.
   FourSums a[4] = {}, b[4] = {}, ends[6] = {}, right = {}, right_end = {};
   for (std::size_t i = 0; i < u_.size(); ++i) {

@@ -188,9 +188,8 @@ constexpr double kNoBound = std::numeric_limits<double>::infinity();
 
 /// The k nearest of q within sqrt(bound) except the point `self`; rows of up to kShortList end in kNone where
 /// there are fewer.
-RFSMOOTH_AVX2 __attribute__((flatten)) void find_nearest(const KdTree& tree, const Vector3d& q, Index self,
-                                                         std::size_t k, std::vector<Neighbor>& out,
-                                                         double bound = kNoBound) {
+RFSMOOTH_AVX2_FLAT void find_nearest(const KdTree& tree, const Vector3d& q, Index self, std::size_t k,
+                                     std::vector<Neighbor>& out, double bound = kNoBound) {
   if (k <= kShortList) {
     Nearest best(k, bound, out);
     gather_nearest(tree, q, self, best);
