@@ -40,8 +40,8 @@ constexpr double kFlatSlab = 0.18;
 /// them is inside a slab of noisy points, as the radius does. The cube root of 2; faster growth is shape.
 constexpr double kGrowthOfNoise = 1.26;
 
-/// Most points of a fit: the blotches of depth cameras are that large, and noise of sixteen spacings needs as
-/// many.
+/// Most points of a fit: the blotches of depth cameras are that large, and where noise is six times the side
+/// of the square that has one point, its slab is flat in no smaller ball.
 constexpr std::size_t kWidestFit = 4096;
 
 /// Points that stand for all of a cloud in a mean or a median over it, which they give to half a per cent.

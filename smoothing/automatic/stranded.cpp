@@ -116,11 +116,11 @@ std::vector<Index> find_stranded(const Adjacency& rings, const Positions& guide,
                                  const Context& context) {
   const std::size_t n = guide.size();
   std::vector<char> stranded(n);
+  const auto alone = [&](std::size_t i) { return rings.degree(i) == 0; };
   for_each_index(context, n, [&](std::size_t i) {
+    if (!alone(i)) return;
     const auto row = near[i];
-    const auto alike =
-        std::size_t(std::count_if(row.begin(), row.end(), [&](Index j) { return rings.degree(j) == 0; }));
-    stranded[i] = rings.degree(i) == 0 && 2 * alike < row.size();
+    stranded[i] = 2 * std::size_t(std::count_if(row.begin(), row.end(), alone)) < row.size();
   });
   using Distances = std::array<float, 2>;  // to the tenth and to the last
   std::vector<Distances> distance(n);

@@ -87,4 +87,17 @@ std::size_t run_peers(const Plan& plan, Cases& cases) {
   return runs;
 }
 
+peers::Smoothed peer_result(const std::filesystem::path& cache, const Positions& points,
+                            const std::string& setting, int threads) {
+  const PeerSetting& peer = peer_setting(setting);
+  const Store store(cache / "peers");
+  const auto input = hash_points(points);
+  if (auto known = store.cloud(input, setting)) return *std::move(known);
+  auto result = peer.run(points, threads);
+  Row row;
+  row.threads = threads;
+  store.save(input, setting, result, row);
+  return result;
+}
+
 }  // namespace rfsmooth::bench

@@ -49,4 +49,9 @@ Cell cached_peers(const Plan& plan, Cases& cases, std::size_t size, const Noise&
 /// per run; a peer that throws is named there and has no row. Returns the number of runs made.
 std::size_t run_peers(const Plan& plan, Cases& cases);
 
+/// What a peer makes of a cloud: from the store in `cache` if it is there, else kept in it. For clouds that
+/// are measured by other means than a Truth. \throw std::invalid_argument if no peer is called so.
+peers::Smoothed peer_result(const std::filesystem::path& cache, const Positions& points,
+                            const std::string& setting, int threads);
+
 }  // namespace rfsmooth::bench

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <set>
-#include <stdexcept>
 #include <tuple>
 
 #include "pipeline/io/io.h"
 #include "rfs_mesh/search/neighbors.h"
+#include "tests/bench/quality/runs.h"
 #include "tests/bench/support/median.h"
 
 namespace rfsmooth::bench {
@@ -83,16 +83,8 @@ OurResult run_ours(const Scan& scan, const Variant& variant, int threads) {
 
 Cleaned run_peer(const Scan& scan, const std::string& setting, const std::filesystem::path& cache,
                  int threads) {
-  const Store store(cache / "peers");
-  const auto input = hash_points(scan.points);
-  auto result = store.cloud(input, setting);
-  for (const auto& peer : peer_settings()) {
-    if (result || peer.name != setting) continue;
-    result = peer.run(scan.points, threads);
-    store.save(input, setting, *result, {});
-  }
-  if (!result) throw std::invalid_argument("no peer is called \"" + setting + "\"");
-  return {std::move(result->points), std::move(result->source)};
+  auto result = peer_result(cache, scan.points, setting, threads);
+  return {std::move(result.points), std::move(result.source)};
 }
 
 }  // namespace rfsmooth::bench

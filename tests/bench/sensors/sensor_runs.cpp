@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "tests/bench/quality/runs.h"
 #include "tests/bench/support/median.h"
 
 namespace rfsmooth::bench {
@@ -35,19 +36,8 @@ Distances distances(const clouds::Sensor& sensor, const Positions& truth, const 
   return {root_mean_square(all), median(all), root_mean_square(near)};
 }
 
-/// A peer's result, from the store if it is there.
-peers::Smoothed peer_result(const SensorPlan& plan, const Positions& measured, const PeerSetting& setting) {
-  const Store store(plan.cache / "sensors");
-  const auto input = hash_points(measured);
-  if (auto known = store.cloud(input, setting.name)) return *known;
-  const auto result = setting.run(measured, plan.threads);
-  Row row;
-  row.threads = plan.threads;
-  store.save(input, setting.name, result, row);
-  return result;
-}
-
 }  // namespace
+
 SensorRow measure_sensor(const SensorPlan& plan, const clouds::Sensor& sensor) {
   const clouds::Sight sight = clouds::look(sensor, plan.seed);
   const Positions measured = as_files_hold(sight.measured);
@@ -61,13 +51,12 @@ SensorRow measure_sensor(const SensorPlan& plan, const clouds::Sensor& sensor) {
   row.left = first.report.noise_left;
   row.raw = distances(sensor, sight.truth, {measured, {}});
   row.ours = distances(sensor, sight.truth, {first.points, {}});
-  for (const auto& setting : peer_settings()) {
-    if (setting.name != kFixedMls && setting.name != kFixedJet) continue;
+  for (const char* const setting : {kFixedMls, kFixedJet}) {
     try {
-      row.peers[setting.name] = distances(sensor, sight.truth, peer_result(plan, measured, setting));
+      row.peers[setting] =
+          distances(sensor, sight.truth, peer_result(plan.cache, measured, setting, plan.threads));
     } catch (const std::exception& e) {
-      std::fprintf(stderr, "%s: %s: failed: %s\n", std::string(sensor.name).c_str(), setting.name.c_str(),
-                   e.what());
+      std::fprintf(stderr, "%s: %s: failed: %s\n", std::string(sensor.name).c_str(), setting, e.what());
     }
   }
   return row;

@@ -1,5 +1,7 @@
 #include "tests/bench/quality/data/settings.h"
 
+#include <stdexcept>
+
 namespace rfsmooth::bench {
 
 const std::vector<PeerSetting>& peer_settings() {
@@ -34,6 +36,12 @@ const std::vector<PeerSetting>& peer_settings() {
     return list;
   }();
   return settings;
+}
+
+const PeerSetting& peer_setting(const std::string& name) {
+  for (const PeerSetting& setting : peer_settings())
+    if (setting.name == name) return setting;
+  throw std::invalid_argument("no peer is called \"" + name + "\"");
 }
 
 }  // namespace rfsmooth::bench

@@ -24,4 +24,7 @@ inline constexpr const char* kFixedJet = "CGAL jet k 24";
 /// In the order of the issue; a `base` comes before those that build on it.
 const std::vector<PeerSetting>& peer_settings();
 
+/// By its name. \throw std::invalid_argument if there is none.
+const PeerSetting& peer_setting(const std::string& name);
+
 }  // namespace rfsmooth::bench
