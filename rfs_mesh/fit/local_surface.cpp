@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "base/parallel.h"
 #include "base/quantile.h"
+#include "rfs_mesh/fit/flattest_slab.h"
 #include "rfs_mesh/fit/quadric.h"
 #include "rfs_mesh/levels.h"
 #include "rfs_mesh/sample.h"
@@ -85,12 +85,8 @@ double quartile_of_deviation(double freedom) {
   return std::pow(std::max(0.1, 1 - v - 0.6745 * std::sqrt(v)), 1.5);
 }
 
-struct Deviation {
-  double sigma, radius;
-};
-
 /// The flat places' residual and the median radius of neighbourhoods of m.
-Deviation deviation_at(const SpatialIndex& index, std::size_t m, const Context& context) {
+NoiseScale seen_at(const SpatialIndex& index, std::size_t m, const Context& context) {
   constexpr double kEffective = 5.0 / 9;  // (mean w)^2 / mean w^2 of w = (1 - t^2)^2 over a disk
   const Positions& points = index.points();
   const std::vector<Index> rows = sample_rows(points.size(), kPlacesOfCloud);
@@ -108,7 +104,7 @@ Deviation deviation_at(const SpatialIndex& index, std::size_t m, const Context& 
   });
   const auto quartile = residuals.begin() + std::ptrdiff_t(samples / 4);
   std::nth_element(residuals.begin(), quartile, residuals.end());
-  return {*quartile / quartile_of_deviation(std::max(1.0, kEffective * double(m + 1) - 6)), median(radii)};
+  return {*quartile / quartile_of_deviation(std::max(1.0, kEffective * double(m + 1) - 6)), m, median(radii)};
 }
 
 }  // namespace
@@ -117,22 +113,13 @@ NoiseScale noise_scale(const SpatialIndex& index, const Context& context, double
                        bool understated) {
   constexpr std::size_t kUsual = 384;  // radius of eleven spacings; wider ones blur detail
   const double known = understated ? measured : 0;
-  const std::size_t n = index.points().size();
-  NoiseScale best;
-  double least = std::numeric_limits<double>::infinity(), before = known;
-  for (std::size_t m = kNeighbourhood; m <= kWidestFit && m < n; m *= 2) {
-    const Deviation d = deviation_at(index, m, context);
-    const double seen = louder * d.sigma;
-    if (best.neighbours > 0 && seen > kGrowthOfNoise * before) break;
-    before = std::max(known, seen);
-    const double share = d.radius > 0 ? before / d.radius : 0;
-    if (share < least) {
-      least = share;
-      best = {before, m, d.radius};
-    }
-    if (share <= kFlatSlab || (m >= kUsual && kGrowthOfNoise * before >= measured)) break;
-  }
-  return best;
+  double shown = 0;
+  return flattest_slab(kNeighbourhood, index.points().size(), [&](std::size_t m) {
+    if (m > kUsual && kGrowthOfNoise * shown >= measured) return NoiseScale();
+    NoiseScale seen = seen_at(index, m, context);
+    seen.sigma = shown = std::max(known, louder * seen.sigma);
+    return seen;
+  });
 }
 
 }  // namespace rfsmooth::rfs_mesh

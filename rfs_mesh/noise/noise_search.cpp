@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rfs_mesh/fit/flattest_slab.h"
 #include "rfs_mesh/levels.h"
 
 namespace rfsmooth::rfs_mesh {
@@ -35,28 +36,19 @@ double open_window(double window, double seen) {
 }
 
 /// What the calmer fifth of the places shows without a window: more than the noise where there is shape, so a
-/// bound. The neighbourhood doubles until the slab is flat in it, or until shape shows. `narrowest`: fewer
-/// points are no piece of a surface.
+/// bound. `narrowest`: fewer points are no piece of a surface.
 double bound(const SpatialIndex& index, const Positions& places, std::vector<KeptNeighbors>* kept,
              std::size_t narrowest, const Context& context) {
   const std::vector<double> none(places.size(), 0);
-  double sigma = 0, least = 1;
-  const std::size_t first = std::max(narrowest, kNeighbourhood);
-  for (std::size_t m = first; m <= kWidestFit && m < index.points().size(); m *= 2) {
+  const auto see = [&](std::size_t m) {
     const std::vector<Scatter> all = fits(index, places, m, none, context, kept);
     std::vector<Weighed> seen = comparable(all, areas(all), kCalmFifthDeviate);
     std::vector<double> radii;
     for (const Scatter& s : all) radii.push_back(s.radius);
-    if (seen.empty()) break;
-    const double next = std::sqrt(quantile(seen, kCalmFifth)), radius = quantile(radii, 0.5);
-    if (m > first && next > kGrowthOfNoise * sigma) break;
-    if (!(radius > 0) || next < least * radius) {
-      least = radius > 0 ? next / radius : 0;
-      sigma = next;
-    }
-    if (least <= kFlatSlab) break;
-  }
-  return sigma;
+    if (seen.empty()) return NoiseScale();
+    return NoiseScale{std::sqrt(quantile(seen, kCalmFifth)), m, quantile(radii, 0.5)};
+  };
+  return flattest_slab(std::max(narrowest, kNeighbourhood), index.points().size(), see).sigma;
 }
 
 /// Where second sheets are as near as the neighbours nearly everywhere, fits without a window tell their
