@@ -20,6 +20,13 @@ inline std::vector<Index> sample_rows(std::size_t n, std::size_t most = kSampleO
   return rows;
 }
 
+/// The points in these rows: `most` of all at even steps.
+inline Positions sample(const Positions& all, std::size_t most) {
+  Positions at;
+  for (const Index i : sample_rows(all.size(), most)) at.push_back(all[i]);
+  return at;
+}
+
 /// Those rows of `all` (n x 3). Parallel.
 inline Positions at_rows(const Positions& all, const std::vector<Index>& rows, const Context& context) {
   Positions at(rows.size());

@@ -168,12 +168,9 @@ void ScatterFit::sum_within(double window, const Vector6& c, bool first, bool la
 }
 
 Scatter ScatterFit::operator()(const SpatialIndex& index, const Eigen::Vector3d& place, std::size_t m,
-                               double sigma, KeptNeighbors* kept) {
+                               double sigma, KeptNeighbors& kept) {
   static const double kInside = variance_inside(kScatterWindow);
-  if (kept != nullptr)
-    kept->nearest(index, place, m, near_);
-  else
-    index.nearest(place, int(m), near_);
+  kept.nearest(index, place, m, near_);
   Scatter s;
   s.foot = place;
   s.radius = std::sqrt(near_.back().squared_distance);

@@ -62,10 +62,10 @@ bool says(const Fit& fit) {
 class ScatterFit {
  public:
   /// Fits the m points nearest to `place`; 1 <= m <= n. \param sigma world units: the window reaches
-  /// kScatterWindow times as far to either side of the quadric; 0: no window. \param kept of the place, or
-  /// null. O(log n + m).
+  /// kScatterWindow times as far to either side of the quadric; 0: no window. \param kept of the place.
+  /// O(log n + m).
   Scatter operator()(const SpatialIndex& index, const Eigen::Vector3d& place, std::size_t m, double sigma,
-                     KeptNeighbors* kept = nullptr);
+                     KeptNeighbors& kept);
 
  private:
   using Vector6 = Eigen::Matrix<double, 6, 1>;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "rfs_mesh/noise/scatter_statistics.h"
+#include "rfs_mesh/sample.h"
 
 namespace rfsmooth::rfs_mesh {
 
@@ -76,7 +77,7 @@ double DepthSteps::sigma(const Eigen::Vector3d& at, const Eigen::Vector3d& norma
 
 std::optional<DepthSteps> find_depth_steps(const Positions& points,
                                            const std::optional<Eigen::Vector3d>& scanner) {
-  const Positions some = pick(points, std::min(points.size(), kLookedAt));
+  const Positions some = sample(points, kLookedAt);
   std::vector<double> depths(some.size());
   std::vector<DepthSteps> all;
   for (Eigen::Index axis = 0; axis < 3; ++axis) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <utility>
 
@@ -54,7 +53,7 @@ class SitesAround {
     // A point is at most half a diagonal from the centre, and so much farther from each of its nearest.
     constexpr double kRounding = 1 + 1e-9;
     const double reach = std::sqrt(around_.back().squared_distance) + (high - low).norm();
-    sites_.within(centre, kRounding * reach, around_);
+    sites_.within_unsorted(centre, kRounding * reach, around_);
   }
 
   /// The mean of the values at the sites nearest to one of the points.
@@ -62,13 +61,9 @@ class SitesAround {
     if (around_.size() > kMost) {
       sites_.nearest(p, int(kBlend), near_);
     } else {
-      near_.assign(std::min(kBlend, around_.size()), {kNone, std::numeric_limits<double>::infinity()});
-      for (const Neighbor& q : around_) {
-        Neighbor candidate = {q.index, squared_distance(p, sites_.points()[q.index])};
-        if (!(candidate < near_.back())) continue;
-        for (Neighbor& kept : near_)
-          if (candidate < kept) std::swap(candidate, kept);
-      }
+      near_.resize(std::min(kBlend, around_.size()));
+      for (Neighbor& q : around_) q.squared_distance = squared_distance(p, sites_.points()[q.index]);
+      std::partial_sort_copy(around_.begin(), around_.end(), near_.begin(), near_.end());
     }
     double sum = 0;
     for (const Neighbor& q : near_) sum += values[q.index];
@@ -152,19 +147,19 @@ void sum_up(const NoiseSites& sites, const std::vector<double>& spacing, const N
   if (noise.sigma <= start.least) noise.sigma = 0;
 }
 
-/// Fills the model's figures and sites.
-void measure(const SpatialIndex& index, const DepthSteps* steps, NoiseModel& noise, const Context& context) {
-  const Positions places = search_places(index.points());
-  std::vector<KeptNeighbors> kept(places.size(), KeptNeighbors(2 * kNarrowestPatch));
-  NoiseStart start = search_noise(index, places, steps, context, &kept);
+/// Where the sites begin: at the noise that points have of their own, or at that which they share, of which
+/// it tells the model. The points coincide if `least` is 0.
+NoiseStart find_start(const SpatialIndex& index, const DepthSteps* steps, NoiseModel& noise,
+                      const Context& context) {
+  Places places = search_places(index, context);
+  NoiseStart start = search_noise(places, steps);
   // Terraces of depths in steps look like lines, too; there the noise is shared.
   if (start.on_lines && steps == nullptr)
     noise.across = start.narrowest;
   else
     noise.shared = double(start.narrowest) / double(kNarrowestPatch);
-  if (!(start.least > 0)) return;
-  const SharedNoise shared = find_shared_noise(index, places, start, steps, context, &kept);
-  std::vector<KeptNeighbors>().swap(kept);  // the sites keep their own
+  if (!(start.least > 0)) return start;
+  const SharedNoise shared = find_shared_noise(places, start, steps, context);
   if (shared.points > 1) {
     start.sigma = shared.sigma;
     start.m = shared.m;
@@ -172,6 +167,13 @@ void measure(const SpatialIndex& index, const DepthSteps* steps, NoiseModel& noi
     start.most = std::max(start.most, shared.sigma);
     noise.shared = std::max(noise.shared, shared.points);
   }
+  return start;
+}
+
+/// Fills the model's figures and sites.
+void measure(const SpatialIndex& index, const DepthSteps* steps, NoiseModel& noise, const Context& context) {
+  const NoiseStart start = find_start(index, steps, noise, context);
+  if (!(start.least > 0)) return;
   noise.neighbours = start.m;
   NoiseSites sites = listen(index, listening_places(index.points(), start.m), start, steps, context);
   bound_sites(std::max(start.most, kNoNoise * noise.spacing), sites);

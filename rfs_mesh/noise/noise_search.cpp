@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "rfs_mesh/fit/flattest_slab.h"
 #include "rfs_mesh/levels.h"
+#include "rfs_mesh/sample.h"
 
 namespace rfsmooth::rfs_mesh {
 
@@ -16,11 +18,11 @@ constexpr std::size_t kSearchSites = 500;
 constexpr std::size_t kShareOfCloud = 12;  // m: at most n / 12
 constexpr double kFlat = 2;                // sigma: the least radius of a patch
 
-double median_radius(const SpatialIndex& index, const Positions& places, std::size_t m) {
+double median_radius(const Places& places, std::size_t m) {
   std::vector<Neighbor> near;
   std::vector<double> radii;
   for (std::size_t s = 0; s < places.size(); s += 4) {
-    index.nearest(places[s], int(m), near);
+    places.index().nearest(places.at()[s], int(m), near);
     radii.push_back(std::sqrt(near.back().squared_distance));
   }
   return quantile(radii, 0.5);
@@ -37,29 +39,25 @@ double open_window(double window, double seen) {
 
 /// What the calmer fifth of the places shows without a window: more than the noise where there is shape, so a
 /// bound. `narrowest`: fewer points are no piece of a surface.
-double bound(const SpatialIndex& index, const Positions& places, std::vector<KeptNeighbors>* kept,
-             std::size_t narrowest, const Context& context) {
-  const std::vector<double> none(places.size(), 0);
+double bound(Places& places, std::size_t narrowest) {
   const auto see = [&](std::size_t m) {
-    const std::vector<Scatter> all = fits(index, places, m, none, context, kept);
+    const std::vector<Scatter> all = places.fits(m);
     std::vector<Weighed> seen = comparable(all, areas(all), kCalmFifthDeviate);
     std::vector<double> radii;
     for (const Scatter& s : all) radii.push_back(s.radius);
     if (seen.empty()) return NoiseScale();
     return NoiseScale{std::sqrt(quantile(seen, kCalmFifth)), m, quantile(radii, 0.5)};
   };
-  return flattest_slab(std::max(narrowest, kNeighbourhood), index.points().size(), see).sigma;
+  return flattest_slab(std::max(narrowest, kNeighbourhood), places.index().points().size(), see).sigma;
 }
 
 /// Where second sheets are as near as the neighbours nearly everywhere, fits without a window tell their
 /// distance. So windows from an eighth of that on are tried: the first that a calm quarter of the cloud fills
 /// no wider than it is. \param sure no narrower ones.
-double lowest(const SpatialIndex& index, const Positions& places, std::vector<KeptNeighbors>* kept,
-              std::size_t m, double sigma, double sure, const Context& context) {
+double lowest(Places& places, std::size_t m, double sigma, double sure) {
   constexpr double kStep = 1.3;
   for (double window = std::max(sure, kNarrowestWindow * sigma); window < 0.8 * sigma; window *= kStep) {
-    const std::vector<Scatter> all =
-        fits(index, places, m, std::vector<double>(places.size(), window), context, kept);
+    const std::vector<Scatter> all = places.fits(m, window);
     const std::vector<double> area = areas(all);
     double saying = 0, whole = 0;
     for (std::size_t i = 0; i < all.size(); ++i) {
@@ -76,13 +74,11 @@ double lowest(const SpatialIndex& index, const Positions& places, std::vector<Ke
 
 /// Whether planes through m points are those through four times as many, around which a ball is twice as
 /// wide. \param all the fits to m points, without windows.
-bool same_planes(const SpatialIndex& index, const Positions& places, std::vector<KeptNeighbors>* kept,
-                 const std::vector<Scatter>& all, std::size_t m, const Context& context) {
+bool same_planes(Places& places, const std::vector<Scatter>& all, std::size_t m) {
   constexpr std::size_t kTwiceAsWide = 4;
   constexpr double kByChance = 0.5;  // the median cosine of the angle between two random lines
-  if (kTwiceAsWide * m > index.points().size()) return true;
-  const std::vector<Scatter> wide =
-      fits(index, places, kTwiceAsWide * m, std::vector<double>(places.size(), 0), context, kept);
+  if (kTwiceAsWide * m > places.index().points().size()) return true;
+  const std::vector<Scatter> wide = places.fits(kTwiceAsWide * m);
   std::vector<double> cosines;
   for (std::size_t s = 0; s < all.size(); ++s) cosines.push_back(std::abs(all[s].normal.dot(wide[s].normal)));
   return quantile(cosines, 0.5) >= kByChance;
@@ -94,9 +90,7 @@ bool same_planes(const SpatialIndex& index, const Positions& places, std::vector
 /// other makes a broad strip of it, that nothing scatters about; but the next lines lie on another plane.
 /// Terraces only tell how far points share their rounding: there the search starts from few.
 /// `all`: the fits at the narrowest m, without windows.
-void find_surface(const SpatialIndex& index, const Positions& places, std::vector<KeptNeighbors>* kept,
-                  std::vector<Scatter> all, std::size_t widest, bool terraces, NoiseStart& start,
-                  const Context& context) {
+void find_surface(Places& places, std::vector<Scatter> all, bool terraces, NoiseStart& start) {
   // Of the breadth: 1 in a disk, a quarter in a strip twice as long as wide. Scans have 0.56 and more.
   constexpr double kSurface = 0.4;
   const auto breadth = [&] {
@@ -106,10 +100,10 @@ void find_surface(const SpatialIndex& index, const Positions& places, std::vecto
   };
   std::size_t& m = start.narrowest;
   bool lines = breadth() < kLine;
-  while (2 * m <= widest &&
-         (breadth() < kSurface || !(terraces || same_planes(index, places, kept, all, m, context)))) {
+  while (2 * m <= widest_scatter(places.index()) &&
+         (breadth() < kSurface || !(terraces || same_planes(places, all, m)))) {
     m *= 2;
-    all = fits(index, places, m, std::vector<double>(places.size(), 0), context, kept);
+    all = places.fits(m);
     // Twice as many are nearer to a line than to a surface. Lines that are closer to each other are connected
     // across, and a surface to every stage.
     if (m == 2 * kNarrowestPatch) lines = lines && breadth() * breadth() < kLine * kSurface;
@@ -119,69 +113,20 @@ void find_surface(const SpatialIndex& index, const Positions& places, std::vecto
   if (!terraces && !start.on_lines) start.m = m;
 }
 
-}  // namespace
-
-std::size_t widest_scatter(const SpatialIndex& index) {
-  return std::clamp(index.points().size() / kShareOfCloud, kNarrowestPatch, kWidestFit);
-}
-
-double variance_of_steps(const DepthSteps& steps, const Positions& places, const std::vector<Scatter>& all) {
-  const std::vector<double> area = areas(all);
-  std::vector<Weighed> variances;
-  for (std::size_t i = 0; i < places.size(); ++i)
-    variances.push_back({std::pow(steps.sigma(places[i], all[i].normal), 2), area[i]});
-  return quantile(variances, kCalmPlaces);
-}
-
-double scatter_reach(double sigma, double narrow) {
-  return std::hypot(kScatterWindow * sigma, std::max(0.9 * narrow, kFlat * sigma));
-}
-
-Positions search_places(const Positions& places) {
-  return pick(places, std::min(places.size(), kSearchSites));
-}
-
-std::vector<std::size_t> points_to_fit(const SpatialIndex& index, const Positions& places,
-                                       const NoiseStart& start, const Context& context,
-                                       std::vector<KeptNeighbors>* kept) {
-  std::vector<std::size_t> points(places.size(), start.m);
-  if (!start.on_lines) return points;
-  const std::vector<Scatter> few =
-      fits(index, places, kNarrowestPatch, std::vector<double>(places.size(), 0), context, kept);
-  for (std::size_t s = 0; s < points.size(); ++s)
-    if (!(few[s].breadth < kLine)) points[s] = std::max(points[s], 2 * kNarrowestPatch);
-  return points;
-}
-
-NoiseStart search_noise(const SpatialIndex& index, Positions places, const DepthSteps* steps,
-                        const Context& context, std::vector<KeptNeighbors>* kept) {
+/// Ever wider windows, up to the bound: sets sigma to the first that is as wide as what it shows, and m to
+/// the points of a ball that holds it. The places go to the surface. \param narrow radius of the ball of the
+/// least m.
+void open_windows(Places& places, double narrow, NoiseStart& start) {
   constexpr double kTooNarrow = 1.35;  // a window this much smaller than what it shows shows too little
   constexpr double kSettled = 1.03;
-  const std::size_t widest = widest_scatter(index);
-  NoiseStart start;
-  std::vector<Scatter> all =
-      fits(index, places, start.m, std::vector<double>(places.size(), 0), context, kept);
-  find_surface(index, places, kept, all, widest, steps != nullptr && !steps->scanner, start, context);
-  if (start.m > kNarrowestPatch || start.on_lines)
-    all = fits(index, places, points_to_fit(index, places, start, context, kept),
-               std::vector<double>(places.size(), 0), context, kept);
-  const double narrow = median_radius(index, places, start.m);
-  start.least = 1e-9 * narrow;
-  start.sigma = std::sqrt(mean_variance(all, kCalmPlaces, kCalmDeviate));
-  const double sure =
-      steps == nullptr ? 0 : std::min(start.sigma, std::sqrt(variance_of_steps(*steps, places, all)));
-  // Lines are no sheets, and a window narrow enough finds some that are exact.
-  if (start.narrowest == kNarrowestPatch)
-    start.sigma = lowest(index, places, kept, start.m, start.sigma, sure, context);
-  start.most = kSameNoise * bound(index, places, kept, start.m, context);
+  const std::size_t widest = widest_scatter(places.index());
   double said = 0;
-  while (start.sigma > start.least) {  // ever wider windows, up to the bound
+  while (start.sigma > start.least) {
     const double reach = scatter_reach(start.sigma, narrow);
-    while (5 * start.m / 4 <= widest && median_radius(index, places, start.m) < 0.97 * reach)
+    while (5 * start.m / 4 <= widest && median_radius(places, start.m) < 0.97 * reach)
       start.m = 5 * start.m / 4;
-    all = fits(index, places, points_to_fit(index, places, start, context, kept),
-               std::vector<double>(places.size(), start.sigma), context, kept);
-    for (std::size_t s = 0; s < places.size(); ++s) places[s] = all[s].foot;
+    const std::vector<Scatter> all = places.fits(points_to_fit(places, start), start.sigma);
+    places.move_to_feet(all);
     const double seen = std::sqrt(mean_variance(all, kCalmPlaces, kCalmDeviate)), ratio = seen / start.sigma;
     if (said > 0 && seen > kSameNoise * said) {  // it grows with the neighbourhood: that is shape
       start.sigma = said;
@@ -198,6 +143,55 @@ NoiseStart search_noise(const SpatialIndex& index, Positions places, const Depth
     start.sigma = said = ratio > 1 ? open_window(start.sigma, seen) : seen;
     if (!(ratio >= kSettled)) break;
   }
+}
+
+}  // namespace
+
+std::size_t widest_scatter(const SpatialIndex& index) {
+  return std::clamp(index.points().size() / kShareOfCloud, kNarrowestPatch, kWidestFit);
+}
+
+double variance_of_steps(const DepthSteps& steps, const Places& places, const std::vector<Scatter>& all) {
+  const std::vector<double> area = areas(all);
+  std::vector<Weighed> variances;
+  for (std::size_t i = 0; i < places.size(); ++i)
+    variances.push_back({std::pow(steps.sigma(places.at()[i], all[i].normal), 2), area[i]});
+  return quantile(variances, kCalmPlaces);
+}
+
+double scatter_reach(double sigma, double narrow) {
+  return std::hypot(kScatterWindow * sigma, std::max(0.9 * narrow, kFlat * sigma));
+}
+
+Places search_places(const SpatialIndex& index, const Context& context) {
+  return {index, sample(index.points(), kSearchSites), 2 * kNarrowestPatch, context};
+}
+
+std::vector<std::size_t> points_to_fit(Places& places, const NoiseStart& start) {
+  std::vector<std::size_t> points(places.size(), start.m);
+  if (!start.on_lines) return points;
+  const std::vector<Scatter> few = places.fits(kNarrowestPatch);
+  for (std::size_t s = 0; s < points.size(); ++s)
+    if (!(few[s].breadth < kLine)) points[s] = std::max(points[s], 2 * kNarrowestPatch);
+  return points;
+}
+
+NoiseStart search_noise(Places& places, const DepthSteps* steps) {
+  NoiseStart start;
+  std::vector<Scatter> all = places.fits(start.m);
+  find_surface(places, all, steps != nullptr && !steps->scanner, start);
+  if (start.m > kNarrowestPatch || start.on_lines) all = places.fits(points_to_fit(places, start));
+  const double narrow = median_radius(places, start.m);
+  start.least = 1e-9 * narrow;
+  start.sigma = std::sqrt(mean_variance(all, kCalmPlaces, kCalmDeviate));
+  const double sure =
+      steps == nullptr ? 0 : std::min(start.sigma, std::sqrt(variance_of_steps(*steps, places, all)));
+  // Lines are no sheets, and a window narrow enough finds some that are exact.
+  if (start.narrowest == kNarrowestPatch) start.sigma = lowest(places, start.m, start.sigma, sure);
+  start.most = kSameNoise * bound(places, start.m);
+  Positions where_they_were = places.at();
+  open_windows(places, narrow, start);
+  places.move_to(std::move(where_they_were));
   return start;
 }
 

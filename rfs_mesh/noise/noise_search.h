@@ -8,6 +8,7 @@
 /// without any window is an upper bound.
 #pragma once
 
+#include "rfs_mesh/fit/places.h"
 #include "rfs_mesh/levels.h"
 #include "rfs_mesh/noise/depth_steps.h"
 #include "rfs_mesh/noise/scatter_statistics.h"
@@ -41,25 +42,21 @@ struct NoiseStart {
 std::size_t widest_scatter(const SpatialIndex& index);
 
 /// Variance that steps make sure of at calm places. \param all fits at the places.
-double variance_of_steps(const DepthSteps& steps, const Positions& places, const std::vector<Scatter>& all);
+double variance_of_steps(const DepthSteps& steps, const Places& places, const std::vector<Scatter>& all);
 
 /// How far the ball of a fit must reach for noise sigma: to a patch of 2 sigma with all of the window above
 /// and below it. \param narrow radius of the ball of the least m.
 double scatter_reach(double sigma, double narrow);
 
-/// Places at which the search looks: up to 500 of the given ones, evenly over their order.
-Positions search_places(const Positions& places);
+/// Where the search looks: up to 500 of the points, evenly over their order.
+Places search_places(const SpatialIndex& index, const Context& context);
 
 /// By place: start.m; along lines twice kNarrowestPatch where kNarrowestPatch are not on one, since noise
-/// makes a strip of it: twice as many on a line are a quarter as broad. Parallel, deterministic. \param kept
-/// of each place, or null.
-std::vector<std::size_t> points_to_fit(const SpatialIndex& index, const Positions& places,
-                                       const NoiseStart& start, const Context& context,
-                                       std::vector<KeptNeighbors>* kept = nullptr);
+/// makes a strip of it: twice as many on a line are a quarter as broad.
+std::vector<std::size_t> points_to_fit(Places& places, const NoiseStart& start);
 
-/// O(log n). Parallel, deterministic. \param index at least 25 points. \param places where it looks, at least
-/// one. \param kept of each place, or null. \param steps null: depths are not in steps.
-NoiseStart search_noise(const SpatialIndex& index, Positions places, const DepthSteps* steps,
-                        const Context& context, std::vector<KeptNeighbors>* kept = nullptr);
+/// O(log n). Parallel, deterministic. \param places at least one, of a cloud of at least 25 points; they are
+/// where they were when it is done. \param steps null: depths are not in steps.
+NoiseStart search_noise(Places& places, const DepthSteps* steps);
 
 }  // namespace rfsmooth::rfs_mesh

@@ -7,6 +7,7 @@
 
 #include "base/parallel.h"
 #include "rfs_mesh/levels.h"
+#include "rfs_mesh/sample.h"
 #include "rfs_mesh/sheets/two_sheets.h"
 
 namespace rfsmooth::rfs_mesh {
@@ -82,50 +83,45 @@ struct Around {
 class Listener {
  public:
   Listener(const SpatialIndex& cloud, const Positions& at, const NoiseStart& start, const Context& context)
-      : cloud_(cloud),
+      : n_(cloud.points().size()),
         context_(context),
-        at_(at),
-        centre_(at),
+        places_(cloud, at, std::min(n_, 2 * start.m), context),
         group_(at.size()),
-        kept_(at.size(), KeptNeighbors(std::min(cloud.points().size(), 2 * start.m))),
         narrow_(at.size(), 0),
         open_(at.size(), 0),
         sheet_(at.size(), std::numeric_limits<double>::infinity()),
         widest_(widest_scatter(cloud)),
         start_(start.sigma),
         on_lines_(start.on_lines),
-        m(points_to_fit(cloud, at, start, context)),
+        m(points_to_fit(places_, start)),
         sigma(at.size(), std::max(start.sigma, start.least)),
         most(at.size(), std::numeric_limits<double>::infinity()),
         floor(at.size(), 0),
         speaks(at.size(), 0) {
-    const SpatialIndex index(at_, context);
+    const SpatialIndex index(at, context);
     const int group = int(std::clamp(kGroupWork / start.m, kSmallestGroup, 2 * kNeighbourhood));
     for_each_index(
-        context, at.size(), [&](std::size_t s) { index.nearest(at_[s], group, group_[s]); }, 64);
+        context, at.size(), [&](std::size_t s) { index.nearest(at[s], group, group_[s]); }, 64);
   }
 
   /// Looks without windows: sets `open_`, `sheet_`, `most` and `floor`, and no window is narrower than that.
   void look(const DepthSteps* steps) {
-    const std::size_t n = cloud_.points().size();
-    const std::vector<double> open(at_.size(), 0);
-    std::vector<double> middle(at_.size(), 1);
-    const std::size_t few_points = std::min(n, kNeighbourhood),
-                      wide = std::min(n, std::max(kNeighbourhood, m.front()));
-    const std::vector<Scatter> many =
-        n < 2 * kPlateauTo ? std::vector<Scatter>() : fits(cloud_, at_, kPlateauTo, open, context_, &kept_);
-    const std::vector<Scatter> few = fits(cloud_, at_, few_points, open, context_, &kept_);
-    const std::vector<Scatter> all =
-        wide == few_points ? few : fits(cloud_, at_, wide, open, context_, &kept_);
+    std::vector<double> middle(group_.size(), 1);
+    const std::size_t few_points = std::min(n_, kNeighbourhood),
+                      wide = std::min(n_, std::max(kNeighbourhood, m.front()));
+    const bool many_there = n_ >= 2 * kPlateauTo;
+    const std::vector<Scatter> many = many_there ? places_.fits(kPlateauTo) : std::vector<Scatter>();
+    const std::vector<Scatter> few = places_.fits(few_points);
+    const std::vector<Scatter> all = wide == few_points ? few : places_.fits(wide);
     const std::vector<Said> said = what_they_say(few, kTypicalDeviate);
     for_each_index(
-        context_, at_.size(),
+        context_, group_.size(),
         [&](std::size_t s) {
           open_[s] = std::sqrt(mean_variance(around(s, said, group_[s].size()), kTypical));
           bound(s, all);
           const Around nearest(around(s, few, kNeighbourhood));
           look_for_sheets(s, nearest, few, steps, middle[s]);
-          if (n >= 2 * kPlateauTo) {
+          if (many_there) {
             look_for_sheets(s, Around(around(s, many, kNeighbourhood)), many, steps, middle[s]);
             find_floor(s, few, many, steps);
           }
@@ -140,12 +136,12 @@ class Listener {
   /// far louder than the start fills its window evenly, and keeps so little of the weight that no fit says
   /// anything. Where the second sheet of a wall is cut off, no more does, but the window is not full.
   bool open_windows() {
-    const std::vector<Scatter> all = fits(cloud_, centre_, m, sigma, context_, &kept_);
+    const std::vector<Scatter> all = places_.fits(m, sigma);
     const std::vector<Said> said = what_they_say(all, kTypicalDeviate);
     const std::vector<double> before = sigma;
-    std::vector<char> opened(at_.size(), 0);
+    std::vector<char> opened(group_.size(), 0);
     for_each_index(
-        context_, at_.size(),
+        context_, group_.size(),
         [&](std::size_t s) {
           std::vector<double> full, radius;
           for (const Neighbor& q : group_[s]) {
@@ -165,7 +161,7 @@ class Listener {
           if (sigma[s] > kLouder * start_ && widen(s, quantile(radius, 0.5))) opened[s] = 1;
         },
         64);
-    for_each_index(context_, at_.size(), [&](std::size_t s) { centre_[s] = all[s].foot; });
+    places_.move_to_feet(all);
     return std::find(opened.begin(), opened.end(), 1) != opened.end();
   }
 
@@ -173,12 +169,12 @@ class Listener {
   /// surface. Returns the fits.
   std::vector<Scatter> hear(std::size_t times, bool move) {
     std::vector<std::size_t> points = m;
-    for (std::size_t& count : points) count = std::min(times * count, cloud_.points().size());
-    std::vector<Scatter> all = fits(cloud_, centre_, points, sigma, context_, &kept_);
+    for (std::size_t& count : points) count = std::min(times * count, n_);
+    std::vector<Scatter> all = places_.fits(points, sigma);
     const std::vector<Said> said = what_they_say(all, kTypicalDeviate);
     for_each_index(
-        context_, at_.size(), [&](std::size_t s) { hear_at(s, said); }, 64);
-    if (move) for_each_index(context_, at_.size(), [&](std::size_t s) { centre_[s] = all[s].foot; });
+        context_, group_.size(), [&](std::size_t s) { hear_at(s, said); }, 64);
+    if (move) places_.move_to_feet(all);
     return all;
   }
 
@@ -227,7 +223,8 @@ class Listener {
   /// What depths in steps add there by their rounding, world units.
   double rounding_around(std::size_t s, const std::vector<Scatter>& all, const DepthSteps& steps) const {
     std::vector<double> sigma_of;
-    for (const Neighbor& q : group_[s]) sigma_of.push_back(steps.sigma(at_[q.index], all[q.index].normal));
+    for (const Neighbor& q : group_[s])
+      sigma_of.push_back(steps.sigma(places_.at()[q.index], all[q.index].normal));
     return quantile(sigma_of, 0.5);
   }
 
@@ -305,12 +302,10 @@ class Listener {
     return true;
   }
 
-  const SpatialIndex& cloud_;
+  std::size_t n_;  ///< points of the cloud
   const Context& context_;
-  const Positions& at_;
-  Positions centre_;
+  Places places_;  ///< the sites, which move to the surface after look()
   std::vector<std::vector<Neighbor>> group_;
-  std::vector<KeptNeighbors> kept_;
   std::vector<double> narrow_;  ///< radius of the ball of the fewest neighbours; 0: not asked for yet
   std::vector<double> open_;    ///< what the fits around show without windows, world units
   std::vector<double> sheet_;   ///< what each of two sheets shows at most; infinite: there is one
@@ -329,7 +324,7 @@ class Listener {
 }  // namespace
 
 Positions listening_places(const Positions& places, std::size_t m) {
-  return pick(places, std::min(places.size(), std::clamp(kWork / m, kFewestSites, kSites)));
+  return sample(places, std::clamp(kWork / m, kFewestSites, kSites));
 }
 
 NoiseSites listen(const SpatialIndex& index, Positions at, const NoiseStart& start, const DepthSteps* steps,

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "base/parallel.h"
-
 namespace rfsmooth::rfs_mesh {
 
 namespace {
@@ -87,30 +85,6 @@ double mean_variance(const std::vector<Said>& all, double share) {
 
 double mean_variance(const std::vector<Scatter>& all, double share, double deviate) {
   return mean_variance(what_they_say(all, deviate), share);
-}
-
-Positions pick(const Positions& points, std::size_t count) {
-  Positions picked(count);
-  for (std::size_t s = 0; s < count; ++s) picked[s] = points[s * points.size() / count];
-  return picked;
-}
-
-std::vector<Scatter> fits(const SpatialIndex& index, const Positions& places, std::size_t m,
-                          const std::vector<double>& sigma, const Context& context,
-                          std::vector<KeptNeighbors>* kept) {
-  return fits(index, places, std::vector<std::size_t>(places.size(), m), sigma, context, kept);
-}
-
-std::vector<Scatter> fits(const SpatialIndex& index, const Positions& places,
-                          const std::vector<std::size_t>& m, const std::vector<double>& sigma,
-                          const Context& context, std::vector<KeptNeighbors>* kept) {
-  std::vector<Scatter> all(places.size());
-  for_blocks(context, places.size(), 16, [&](std::size_t begin, std::size_t end) {
-    ScatterFit fit;
-    for (std::size_t s = begin; s < end; ++s)
-      all[s] = fit(index, places[s], m[s], sigma[s], kept != nullptr ? &(*kept)[s] : nullptr);
-  });
-  return all;
 }
 
 }  // namespace rfsmooth::rfs_mesh

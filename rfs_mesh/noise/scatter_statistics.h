@@ -57,17 +57,4 @@ std::vector<Said> what_they_say(const std::vector<Scatter>& all, double deviate)
 /// The mean variance of fits that say this.
 double mean_variance(const std::vector<Said>& all, double share);
 
-/// `count` points of the cloud, evenly over the indices.
-Positions pick(const Positions& points, std::size_t count);
-
-/// A fit to the m nearest of each place with the window `sigma` of each (scatter.h). Parallel.
-/// \param kept of each place, for places that are looked at again; or null.
-std::vector<Scatter> fits(const SpatialIndex& index, const Positions& places, std::size_t m,
-                          const std::vector<double>& sigma, const Context& context,
-                          std::vector<KeptNeighbors>* kept = nullptr);
-/// With m of each.
-std::vector<Scatter> fits(const SpatialIndex& index, const Positions& places,
-                          const std::vector<std::size_t>& m, const std::vector<double>& sigma,
-                          const Context& context, std::vector<KeptNeighbors>* kept = nullptr);
-
 }  // namespace rfsmooth::rfs_mesh

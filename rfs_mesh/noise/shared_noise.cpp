@@ -7,6 +7,7 @@
 #include <Eigen/Cholesky>
 
 #include "rfs_mesh/levels.h"
+#include "rfs_mesh/sample.h"
 #include "rfs_mesh/sheets/two_sheets.h"
 
 namespace rfsmooth::rfs_mesh {
@@ -124,14 +125,14 @@ void enter(const std::vector<Scatter>& all, double variance, Calm& calm) {
   calm.flatness.push_back(count > 0 ? flatness / count : 0);
 }
 
-Calm look(const SpatialIndex& index, const Positions& places, std::vector<KeptNeighbors>* kept,
-          const NoiseStart& start, const DepthSteps* steps, const Context& context) {
+Calm look(Places& places, const NoiseStart& start, const DepthSteps* steps, const Context& context) {
   Calm calm;
+  const SpatialIndex& index = places.index();
   const std::size_t last = std::min(widest_scatter(index), index.points().size() / kMostOfCloud);
   for (std::size_t m = std::max(start.m, start.narrowest); m <= last; m *= 2) {
-    const Positions some = pick(places, std::min(places.size(), kPointsLooked / m));
-    const std::vector<Scatter> all = fits(index, some, m, std::vector<double>(some.size(), 0), context,
-                                          some.size() == places.size() ? kept : nullptr);
+    Places fewer(index, sample(places.at(), kPointsLooked / m), 0, context);
+    Places& some = fewer.size() < places.size() ? fewer : places;
+    const std::vector<Scatter> all = some.fits(m);
     const std::vector<double> area = areas(all);
     std::vector<Weighed> variances = comparable(all, area, kCalmDeviate);
     if (variances.empty()) continue;
@@ -158,11 +159,10 @@ double without_shape(const Calm& calm, std::size_t i, double growth) {
 
 }  // namespace
 
-SharedNoise find_shared_noise(const SpatialIndex& index, const Positions& places, const NoiseStart& start,
-                              const DepthSteps* steps, const Context& context,
-                              std::vector<KeptNeighbors>* kept) {
+SharedNoise find_shared_noise(Places& places, const NoiseStart& start, const DepthSteps* steps,
+                              const Context& context) {
   SharedNoise found;
-  const Calm calm = look(index, places, kept, start, steps, context);
+  const Calm calm = look(places, start, steps, context);
   if (calm.m.empty()) return found;  // nothing scatters, or too few points to tell
   // A neighbourhood within one terrace sees nothing of the steps, so the noise may grow steeply. The shells
   // of a laser scanner are finer than its noise.

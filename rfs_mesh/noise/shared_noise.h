@@ -47,11 +47,10 @@ struct SharedNoise {
   std::size_t m = 0;  ///< points of a neighbourhood that is wide enough to show it
 };
 
-/// \param places where to look, at least one. \param kept of each place, or null. \param start of the noise
-/// that points have of their own (noise_search.h). \param steps null: depths are not in steps. O(log n).
-/// Parallel, deterministic. \param index at least 25 points.
-SharedNoise find_shared_noise(const SpatialIndex& index, const Positions& places, const NoiseStart& start,
-                              const DepthSteps* steps, const Context& context,
-                              std::vector<KeptNeighbors>* kept = nullptr);
+/// O(log n). Parallel, deterministic. \param places at least one, of a cloud of at least 25 points. \param
+/// start of the noise that points have of their own (noise_search.h). \param steps null: depths are not in
+/// steps.
+SharedNoise find_shared_noise(Places& places, const NoiseStart& start, const DepthSteps* steps,
+                              const Context& context);
 
 }  // namespace rfsmooth::rfs_mesh

@@ -23,7 +23,8 @@ Scatter middle_fit(std::size_t m, const std::function<double(const Eigen::Vector
     points.push_back(p);
   }
   const rfs_mesh::SpatialIndex index(points, {});
-  return rfs_mesh::ScatterFit()(index, Eigen::Vector3d::Zero(), m, 0);
+  rfs_mesh::KeptNeighbors kept(0);
+  return rfs_mesh::ScatterFit()(index, Eigen::Vector3d::Zero(), m, 0, kept);
 }
 
 TEST(Scatter, FlatnessTellsNormalEvenAndTwoSheetsApart) {

@@ -30,7 +30,8 @@ Positions rough_square(Sigma&& sigma, double step = 0) {
 
 NoiseSites sites_of(const Positions& points) {
   const SpatialIndex index(points, {});
-  const NoiseStart start = search_noise(index, search_places(points), nullptr, {});
+  Places places = search_places(index, {});
+  const NoiseStart start = search_noise(places, nullptr);
   return listen(index, listening_places(points, start.m), start, nullptr, {});
 }
 
@@ -131,7 +132,8 @@ TEST(NoiseSites, HearNoMoreThanIsSeenWithoutAWindow) {
     for (const double sigma : {0.1, 0.2, 0.4}) {
       const Positions points = ribs(thick, sigma);
       const SpatialIndex index(points, {});
-      const NoiseStart start = search_noise(index, search_places(points), nullptr, {});
+      Places places = search_places(index, {});
+      const NoiseStart start = search_noise(places, nullptr);
       const NoiseSites sites = listen(index, listening_places(points, start.m), start, nullptr, {});
       std::size_t known = 0, above = 0;
       for (std::size_t s = 0; s < sites.at.size(); ++s) {
