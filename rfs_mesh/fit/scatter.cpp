@@ -21,10 +21,17 @@ constexpr int kScatterRounds = 3;     // the first without a window
 
 typedef double FourSums __attribute__((vector_size(4 * sizeof(double))));
 
-/// The quadric q at u, v.
-inline double height_at(const double* q, double u, double v) {
-  return (q[0] + (v * q[2] + u * v * q[4])) + (u * q[1] + (u * u * q[3] + v * v * q[5]));
-}
+/// The heights of a quadric, by numbers of its own: while it is asked, no store to a buffer can change them.
+class Heights {
+ public:
+  explicit Heights(const Eigen::Matrix<double, 6, 1>& c) : q_{c[0], c[1], c[2], c[3], c[4], c[5]} {}
+  double operator()(double u, double v) const {
+    return (q_[0] + (v * q_[2] + u * v * q_[4])) + (u * q_[1] + (u * u * q_[3] + v * v * q_[5]));
+  }
+
+ private:
+  double q_[6];
+};
 
 }  // namespace
 
@@ -34,9 +41,9 @@ double variance_inside(double c) {
 
 RFSMOOTH_AVX2
 void ScatterFit::find_residuals(const Vector6& c) {
-  const Vector6 q = c;  // NOLINT(performance-unnecessary-copy-initialization): no store can change it
+  const Heights heights(c);
   residual_.resize(u_.size());
-  for (std::size_t i = 0; i < u_.size(); ++i) residual_[i] = z_[i] - height_at(q.data(), u_[i], v_[i]);
+  for (std::size_t i = 0; i < u_.size(); ++i) residual_[i] = z_[i] - heights(u_[i], v_[i]);
 }
 
 double ScatterFit::err_together() {
@@ -134,7 +141,7 @@ double ScatterFit::keep_inside() {
 
 RFSMOOTH_AVX2
 void ScatterFit::sum_within(double window, const Vector6& c, bool first, bool last, Sums& sums) const {
-  const Vector6 q = c;  // NOLINT(performance-unnecessary-copy-initialization): no store can change it
+  const Heights heights(c);
   // Of the columns of a and b: the first four rows, and of both together the last two.
   FourSums a[4] = {}, b[4] = {}, ends[6] = {}, right = {}, right_end = {};
   for (std::size_t i = 0; i < u_.size(); ++i) {
@@ -143,7 +150,7 @@ void ScatterFit::sum_within(double window, const Vector6& c, bool first, bool la
     const double low = 1 - z * z;
     const double w = first ? weight_[i] * (last ? low * low : low) : weight_[i];
     const double f[6] = {1, u, v, u * u, u * v, v * v};
-    if (std::abs(z - height_at(q.data(), u, v)) > window) continue;
+    if (std::abs(z - heights(u, v)) > window) continue;
     const FourSums start = {f[0], f[1], f[2], f[3]}, end = {f[4], f[5], f[4], f[5]};
     for (int column = 0; column < 6; ++column) {
       const double once = w * f[column], twice = w * w * f[column];
