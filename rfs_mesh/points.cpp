@@ -1,7 +1,5 @@
 #include "rfs_mesh/points.h"
 
-#include <limits>
-
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
@@ -68,32 +66,6 @@ int compare(const Vector3d& p, const Vector3d& q) {
   return 0;
 }
 
-/// Rows of the input in Morton order on a 2^21 grid over the box; points of one cell by their coordinates,
-/// what is not finite last.
-std::vector<Index> in_morton_order(const Input& input, const Vector3d& low, double side,
-                                   const Context& context) {
-  struct Keyed {
-    std::uint64_t code;
-    Index row;
-  };
-  constexpr auto kLast = std::numeric_limits<std::uint64_t>::max();
-  const double to_cell = side > 0 ? kMortonCells / side : 0;
-  std::vector<Keyed> keyed(input.n);
-  for_each_index(context, input.n, [&](std::size_t i) {
-    const Vector3d p = input[i];
-    keyed[i] = {p.allFinite() ? morton_code(p, low, to_cell) : kLast, Index(i)};
-  });
-  parallel_sort(context, keyed, [&](const Keyed& a, const Keyed& b) {
-    if (a.code != b.code) return a.code < b.code;
-    if (a.code != kLast)
-      if (const int order = compare(input[a.row], input[b.row]); order != 0) return order < 0;
-    return a.row < b.row;
-  });
-  std::vector<Index> rows(input.n);
-  for_each_index(context, input.n, [&](std::size_t k) { rows[k] = keyed[k].row; });
-  return rows;
-}
-
 WorkingCloud make(const Input& input, const Statistics::Box* box, const Context& context) {
   const std::size_t n = input.n;
   if (n >= kNone)
@@ -109,7 +81,9 @@ WorkingCloud make(const Input& input, const Statistics::Box* box, const Context&
           {ErrorCode::usage, "a point is outside the box of the statistics: they are of another cloud"});
     extent.box = whole;
   }
-  const std::vector<Index> rows = in_morton_order(input, extent.box.min(), largest_side(extent.box), context);
+  const auto rows = morton_order<Index>(
+      n, [&](std::size_t i) { return input[i]; }, extent.box.min(), largest_side(extent.box),
+      [&](Index a, Index b) { return compare(input[a], input[b]); }, context);
 
   WorkingCloud cloud;
   cloud.box = {extent.box.min(), extent.box.max()};

@@ -29,10 +29,6 @@ namespace {
 
 /// The vertices in Morton order.
 std::vector<Index> in_order_of_space(const Mesh& mesh, const Context& context) {
-  struct Keyed {
-    std::uint64_t code;
-    Index vertex;
-  };
   const std::size_t n = mesh.positions.size();
   const auto box = reduce_blocks(
       context, n, Eigen::AlignedBox3d(),
@@ -43,17 +39,9 @@ std::vector<Index> in_order_of_space(const Mesh& mesh, const Context& context) {
       },
       [](const Eigen::AlignedBox3d& a, const Eigen::AlignedBox3d& b) { return a.merged(b); });
   const double extent = box.isEmpty() ? 0 : box.sizes().maxCoeff();
-  const double to_cell = extent > 0 ? kMortonCells / extent : 0;
-  std::vector<Keyed> keyed(n);
-  for_each_index(context, n, [&](std::size_t i) {
-    keyed[i] = {morton_code(mesh.positions[i], box.min(), to_cell), Index(i)};
-  });
-  parallel_sort(context, keyed, [](const Keyed& a, const Keyed& b) {
-    return a.code != b.code ? a.code < b.code : a.vertex < b.vertex;
-  });
-  std::vector<Index> order(n);
-  for_each_index(context, n, [&](std::size_t k) { order[k] = keyed[k].vertex; });
-  return order;
+  return morton_order<Index>(
+      n, [&](std::size_t i) { return mesh.positions[i]; }, box.min(), extent, [](Index, Index) { return 0; },
+      context);
 }
 
 /// The rows move with their vertices; only their items have to be sorted again.
