@@ -25,10 +25,6 @@ using Matrix6d = Eigen::Matrix<double, 6, 6>;
 constexpr double kTukey = 4.685;  ///< biweight cut-off in sigmas: 95 % efficient on Gaussian noise
 constexpr double kRidge = 1e-9;   ///< relative; keeps collinear and gridded neighbourhoods solvable
 
-double square(double x) {
-  return x * x;
-}
-
 constexpr std::size_t kSideBySide = 4;
 typedef double Lanes __attribute__((vector_size(kSideBySide * sizeof(double))));
 
@@ -177,7 +173,7 @@ double residual_deviation(QuadricWorkspace& w, const Quadric& q, int terms) {
   double sum = 0, total = 0, squares = 0;
   for (std::size_t j = 0; j < w.count; ++j) {
     const double weight = w.weight[j];
-    sum += weight * square(w.residual[j]);
+    sum += weight * (w.residual[j] * w.residual[j]);
     total += weight;
     squares += weight * weight;
   }

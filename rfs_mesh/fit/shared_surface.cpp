@@ -32,10 +32,6 @@ constexpr double kTurn = 1.0 / 3;
 /// Less weight than that of one quadric near whose rim the point lies: the point is fitted by itself.
 constexpr double kLeastWeight = 0.01;
 
-double squared(double x) {
-  return x * x;
-}
-
 /// Fits quadrics around points of an index.
 class Fitter {
  public:
@@ -112,9 +108,10 @@ class SharedQuadrics {
       const double inside = 1 - d.squaredNorm();
       if (inside <= 0) continue;
       const double u = q.t1.dot(d), v = q.t2.dot(d), above = q.n.dot(d) - q.height(u, v);
-      const double scatter = std::max(q.residual, sigma), off = squared(above * q.radius / scatter);
-      if (off > squared(kScatterWindow)) continue;  // another sheet
-      const double trust = inside * squared(squared(sigma / scatter)) * std::exp(-0.5 * off);
+      const double scatter = std::max(q.residual, sigma), off = std::pow(above * q.radius / scatter, 2);
+      if (off > kScatterWindow * kScatterWindow) continue;  // another sheet
+      const double clear = std::pow(sigma / scatter, 2);    // 1 where the quadric shows noise alone
+      const double trust = inside * (clear * clear) * std::exp(-0.5 * off);
       const double weight = inside * inside * trust;
       // The normal over (u, v) is (n - a t1 - b t2) / sqrt(1 + a^2 + b^2), and so is the turned one.
       const auto slope = [&q](double at_u, double at_v) {
