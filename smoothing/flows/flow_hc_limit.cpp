@@ -19,6 +19,80 @@ namespace {
 
 using Eigen::Vector3d;
 
+/// The system above, A x = b, of one mesh. Isolated vertices have a unit row, fixed ones too: both stay.
+class HcSystem {
+ public:
+  HcSystem(const Adjacency& rows, const std::vector<char>& fixed, double beta, double c,
+           const Context& context)
+      : rows_(rows), fixed_(fixed), beta_(beta), c_(c), context_(context), laplacian_(rows.size()) {}
+
+  bool stays(std::size_t i) const { return fixed_[i] != 0 || rows_.degree(i) == 0; }
+
+  /// y = A x; returns x . y.
+  double multiply(const Positions& x, Positions& y) {
+    for_each_index(context_, rows_.size(), [&](std::size_t i) {
+      const Vector3d w = adjacent(x, i);
+      laplacian_[i] = stays(i) ? Vector3d(Vector3d::Zero()) : Vector3d(x[i] - w / degree(i));
+      y[i] = stays(i) ? x[i] : Vector3d(beta_ * degree(i) * x[i] + (1 - beta_) * w);
+    });
+    return sum_over(context_, rows_.size(), 0.0, [&](std::size_t i) {
+      if (!stays(i)) y[i] += c_ * (degree(i) * laplacian_[i] - adjacent(laplacian_, i));
+      return x[i].dot(y[i]);
+    });
+  }
+
+  std::vector<double> diagonal() const {
+    std::vector<double> diagonal(rows_.size(), 1);
+    for_each_index(context_, rows_.size(), [&](std::size_t i) {
+      if (stays(i)) return;
+      double of_square = degree(i);
+      for (const Index j : rows_[i])
+        if (fixed_[j] == 0) of_square += 1 / degree(j);
+      diagonal[i] = beta_ * degree(i) + c_ * of_square;
+    });
+    return diagonal;
+  }
+
+  /// D, in which the norm of the residual is measured.
+  std::vector<double> mass() const {
+    std::vector<double> mass(rows_.size());
+    for_each_index(context_, rows_.size(), [&](std::size_t i) { mass[i] = std::max(1.0, degree(i)); });
+    return mass;
+  }
+
+  /// b. \param original o. \param at where the fixed vertices are
+  Positions right_side(const Positions& original, const Positions& at) const {
+    Positions r(rows_.size(), Vector3d::Zero()), b(rows_.size(), Vector3d::Zero());
+    for_each_index(context_, rows_.size(), [&](std::size_t i) {
+      if (stays(i)) return;
+      for (const Index j : rows_[i])
+        if (fixed_[j] != 0) r[i] += at[j] / degree(i);
+    });
+    for_each_index(context_, rows_.size(), [&](std::size_t i) {
+      if (stays(i)) return;
+      b[i] = beta_ * degree(i) * original[i] + (1 - beta_) * adjacent(original, i) +
+             c_ * (degree(i) * r[i] - adjacent(r, i));
+    });
+    return b;
+  }
+
+ private:
+  double degree(std::size_t i) const { return double(rows_.degree(i)); }
+  /// (W x)_i: over the movable neighbours.
+  Vector3d adjacent(const Positions& x, std::size_t i) const {
+    Vector3d sum = Vector3d::Zero();
+    for (const Index j : rows_[i])
+      if (fixed_[j] == 0) sum += x[j];
+    return sum;
+  }
+
+  const Adjacency& rows_;
+  const std::vector<char>& fixed_;
+  double beta_, c_;
+  const Context& context_;
+  Positions laplacian_;  ///< D^-1 (D - W) x
+};
+
 class HcLimit : public SolvedFlow {
  public:
   HcLimit(const Mesh& mesh, const HcLimitOptions& options, const Constraints& constraints)
@@ -29,56 +103,19 @@ class HcLimit : public SolvedFlow {
 
   void step(Mesh& mesh, const Context& context) override {
     const std::size_t n = mesh.positions.size();
-    const Adjacency& rows = mesh.one_ring;
-    const auto degree = [&](std::size_t i) { return double(rows.degree(i)); };
-    // Isolated vertices get a unit row, fixed ones too: both keep their place.
-    const auto still = [&](std::size_t i) { return fixed_[i] != 0 || rows.degree(i) == 0; };
     const Vector3d centre = rfs_mesh::centroid(original_, context);
-    // Sum of x over the movable neighbours: (W x)_i.
-    const auto movable_sum = [&](const Positions& x, std::size_t i) {
-      Vector3d sum = Vector3d::Zero();
-      for (const Index j : rows[i])
-        if (!fixed_[j]) sum += x[j];
-      return sum;
-    };
-    Positions level(n);
-    const Product product = [&](const Positions& x, Positions& y) {
-      for_each_index(context, n, [&](std::size_t i) {
-        const Vector3d w = movable_sum(x, i);
-        level[i] = still(i) ? Vector3d(Vector3d::Zero()) : Vector3d(x[i] - w / degree(i));
-        y[i] = still(i) ? x[i] : Vector3d(beta_ * degree(i) * x[i] + (1 - beta_) * w);
-      });
-      return sum_over(context, n, 0.0, [&](std::size_t i) {
-        if (!still(i)) y[i] += c_ * (degree(i) * level[i] - movable_sum(level, i));
-        return x[i].dot(y[i]);
-      });
-    };
-    Positions x(n), b(n), original(n), share(n);  // share: of the fixed neighbours in the mean of all, known
-    std::vector<double> diagonal(n), mass(n);
+    HcSystem system(mesh.one_ring, fixed_, beta_, c_, context);
+    Positions original(n), at(n), x(n, Vector3d::Zero());
     for_each_index(context, n, [&](std::size_t i) {
       original[i] = original_[i] - centre;
-      x[i] = still(i) ? Vector3d(Vector3d::Zero()) : Vector3d(mesh.positions[i] - centre);
-      share[i].setZero();
-      double second = degree(i);
-      for (const Index j : rows[i]) {
-        if (fixed_[j])
-          share[i] += (mesh.positions[j] - centre) / degree(i);
-        else
-          second += 1 / degree(j);
-      }
-      if (still(i)) share[i].setZero();
-      mass[i] = std::max(1.0, degree(i));
-      diagonal[i] = still(i) ? 1 : beta_ * degree(i) + c_ * second;
+      at[i] = mesh.positions[i] - centre;
+      if (!system.stays(i)) x[i] = at[i];
     });
+    count(conjugate_gradients([&](const Positions& from, Positions& to) { return system.multiply(from, to); },
+                              system.diagonal(), system.mass(), system.right_side(original, at), x, {},
+                              solver_, context));
     for_each_index(context, n, [&](std::size_t i) {
-      b[i].setZero();
-      if (still(i)) return;
-      b[i] = beta_ * degree(i) * original[i] + (1 - beta_) * movable_sum(original, i) +
-             c_ * (degree(i) * share[i] - movable_sum(share, i));
-    });
-    count(conjugate_gradients(product, diagonal, mass, b, x, {}, solver_, context));
-    for_each_index(context, n, [&](std::size_t i) {
-      if (const Vector3d p = x[i] + centre; !still(i) && p.allFinite()) mesh.positions[i] = p;
+      if (const Vector3d p = x[i] + centre; !system.stays(i) && p.allFinite()) mesh.positions[i] = p;
     });
   }
 

@@ -36,52 +36,28 @@ class LocalDirectionalSpeed : public Speed {
 
   void evaluate(const Mesh& mesh, Positions& speed, const Context& context) override {
     const std::size_t n = mesh.positions.size();
-    const Adjacency& around = fans_.faces;
-    if (around.size() != n) {
+    if (fans_.faces.size() != n) {
       fans_ = fans_of(mesh, context);
-      interior_ = interior_vertices(mesh, around, context);
+      interior_ = interior_vertices(mesh, fans_.faces, context);
     }
-    const Operator op = curvature(mesh, around, context, options_.scheme);
-    const std::vector<double> area =
-        options_.scheme == Scheme::safe ? op.mass : curvature(mesh, around, context).mass;  // twice the mixed
-    const double h2 = op.unit;
+    const Operator op = curvature(mesh, fans_.faces, context, options_.scheme);
     Positions Hn;
     apply(mesh.one_ring, op, mesh.positions, Hn, context);
-    const auto gauss = [&](std::size_t i) {
-      return interior_[i] != 0 ? h2 * angle_deficit(mesh, around, Index(i)) * 2 / area[i] : 0;
-    };
-    std::vector<double> pull(n);  // what each vertex weighs in the integral
-    for_each_index(context, n, [&](std::size_t i) {
-      const double m = options_.power, H2 = h2 * Hn[i].squaredNorm();
-      pull[i] = area[i] * std::pow(4 * H2, m) * (m > 0 ? 6 * m * (2 * H2 - gauss(i)) + 2 * H2 : 2 * H2);
-    });
+    const Curvatures curvatures = curvatures_of(mesh, op, Hn, context);
     std::vector<char> against;
     const Positions normal = unsigned_normals(mesh, fans_, context, &against);
-    /// Whether face number f runs against the normal of its vertex i.
-    const auto opposed = [&](Index f, std::size_t i) {
-      const auto row = around[i];
-      return against[around.start[i] +
-                     std::size_t(std::lower_bound(row.begin(), row.end(), f) - row.begin())] != 0;
-    };
+    Positions integrand(n);
+    for_each_index(context, n, [&](std::size_t i) { integrand[i] = curvatures.energy[i] * normal[i]; });
     speed.assign(n, Vector3d::Zero());
     for_each_index(context, n, [&](std::size_t i) {
       if (interior_[i] == 0) return;
-      Vector3d b = Vector3d::Zero();
-      const auto part = [&](std::size_t j) { return Vector3d(pull[j] * normal[j]); };
-      b += part(i);
-      for (const Index j : mesh.one_ring[i]) {
-        const auto row = around[i];  // its side is told by the first face that has both
-        const Index f = *std::find_if(row.begin(), row.end(),
-                                      [&](Index g) { return rfs_mesh::has_corner(mesh.faces[g], j); });
-        b += opposed(f, i) == opposed(f, j) ? part(j) : Vector3d(-part(j));
-      }
+      const Vector3d b = one_ring_integral(mesh, integrand, against, i);
       if (!(b.norm() > 0)) return;
-      const double K = gauss(i), H2 = h2 * Hn[i].squaredNorm(), eps = options_.eps;
-      const double w = K <= -eps ? 0 : K < eps ? std::abs(K) : (1 + K) / ((1 + H2) * K);
+      const double w = weight(curvatures.gauss[i], curvatures.mean_square[i]);
       // inward = -L x
-      Vector3d v = -w * h2 * b.normalized().dot(normal[i]) * Hn[i];
+      Vector3d v = -w * op.unit * b.normalized().dot(normal[i]) * Hn[i];
       // half an edge at most, so that needles cannot blow the flow up
-      const double longest = 0.5 * std::sqrt(h2) / std::max(options_.lambda, 1e-300);
+      const double longest = 0.5 * std::sqrt(op.unit) / std::max(options_.lambda, 1e-300);
       if (options_.scheme == Scheme::safe && v.norm() > longest) v *= longest / v.norm();
       if (v.allFinite()) speed[i] = v;
     });
@@ -90,6 +66,56 @@ class LocalDirectionalSpeed : public Speed {
   void connectivity_changed(const Mesh&, const Context&) override { fans_ = {}; }
 
  private:
+  /// Of each vertex, lengths in h.
+  struct Curvatures {
+    std::vector<double> gauss, mean_square;  ///< K, H^2
+    std::vector<double> energy;              ///< what is integrated, times the vertex's area
+  };
+
+  /// \param op of H n
+  Curvatures curvatures_of(const Mesh& mesh, const Operator& op, const Positions& Hn,
+                           const Context& context) const {
+    const std::size_t n = mesh.positions.size();
+    const std::vector<double> area = options_.scheme == Scheme::safe
+                                         ? op.mass
+                                         : curvature(mesh, fans_.faces, context).mass;  // twice the mixed
+    Curvatures of{std::vector<double>(n, 0), std::vector<double>(n), std::vector<double>(n)};
+    for_each_index(context, n, [&](std::size_t i) {
+      if (interior_[i] != 0) of.gauss[i] = op.unit * angle_deficit(mesh, fans_.faces, Index(i)) * 2 / area[i];
+      const double m = options_.power, K = of.gauss[i],
+                   H2 = of.mean_square[i] = op.unit * Hn[i].squaredNorm();
+      of.energy[i] = area[i] * std::pow(4 * H2, m) * (m > 0 ? 6 * m * (2 * H2 - K) + 2 * H2 : 2 * H2);
+    });
+    return of;
+  }
+
+  /// The sum of the integrand over a vertex and its neighbours, each with its normal on the vertex's side.
+  Vector3d one_ring_integral(const Mesh& mesh, const Positions& integrand, const std::vector<char>& against,
+                             std::size_t i) const {
+    const Adjacency& around = fans_.faces;
+    const auto row = around[i];
+    /// Whether face number f runs against the normal of its vertex v.
+    const auto opposed = [&](Index f, std::size_t v) {
+      const auto faces = around[v];
+      return against[around.start[v] +
+                     std::size_t(std::lower_bound(faces.begin(), faces.end(), f) - faces.begin())] != 0;
+    };
+    Vector3d sum = integrand[i];
+    for (const Index j : mesh.one_ring[i]) {
+      // Its side is told by the first face that has both.
+      const Index f = *std::find_if(row.begin(), row.end(),
+                                    [&](Index g) { return rfs_mesh::has_corner(mesh.faces[g], j); });
+      sum += opposed(f, i) == opposed(f, j) ? integrand[j] : Vector3d(-integrand[j]);
+    }
+    return sum;
+  }
+
+  /// w.
+  double weight(double K, double H2) const {
+    const double eps = options_.eps;
+    return K <= -eps ? 0 : K < eps ? std::abs(K) : (1 + K) / ((1 + H2) * K);
+  }
+
   LocalDirectionalOptions options_;
   Fans fans_;
   std::vector<char> interior_;
