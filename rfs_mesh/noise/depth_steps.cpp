@@ -10,9 +10,12 @@ namespace rfsmooth::rfs_mesh {
 
 namespace {
 
-constexpr std::size_t kLookedAt = 20000;
 constexpr std::size_t kPointsOfStep = 10;  // in the mean: free coordinates hardly ever meet
-constexpr std::size_t kFewestSteps = 4;    // fewer are the sides of a box
+// Chosen, not derived: 2,000 steps are found. Those whose rounding is kNoNoise of the spacing may be more, up
+// to 11 sqrt(n) in a cloud of n points as deep as wide. All points of the real scans tell steps of one that
+// these do not: of 1.5 where the noise is 2.4.
+constexpr std::size_t kLookedAt = 20000;
+constexpr std::size_t kFewestSteps = 4;  // fewer are the sides of a box
 // Of a distance from the scanner: how far two that are the same lie apart where files keep seven digits of
 // each coordinate.
 constexpr double kSevenDigits = 2e-6;
