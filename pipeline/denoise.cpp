@@ -347,6 +347,9 @@ Result<DenoiseReport> denoise(double* xyz, std::size_t n, const DenoiseOptions& 
     value_or_throw(validate(options));
     value_or_throw(validate(options.flow));
     refuse_for_clouds(options.flow.modifiers);
+    if (options.statistics)
+      if (const auto wrong = check(*options.statistics); !wrong.empty())
+        fail(ErrorCode::usage, "`statistics`: {}", wrong.front());
     DenoiseReport report;
     in_arena(context, [&] { report = run(xyz, n, options, context, strength); });
     return report;

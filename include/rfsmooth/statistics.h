@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -81,5 +82,8 @@ struct Statistics {
   std::optional<Sheets> sheets;
   std::optional<bool> thin_walls;  ///< whether walls of a few sigma are parted
 };
+
+/// Why these cannot be statistics of any cloud, one line each; empty if they can.
+std::vector<std::string> check(const Statistics& statistics);
 
 }  // namespace rfsmooth

@@ -367,6 +367,31 @@ TEST(Denoise, StatisticsOfARunGiveItsBytesAgainAndThoseOfAnotherCloudOthers) {
   EXPECT_EQ(refused.error().code, ErrorCode::usage);
 }
 
+TEST(Denoise, StatisticsThatNoCloudHasAreRefused) {
+  Flat xyz = sphere();
+  const Statistics right = run(xyz, {}).statistics;
+  ASSERT_TRUE(right.noise && right.box && !right.passes.empty() && !right.passes[0].scales.empty());
+  EXPECT_THAT(check(right), ::testing::IsEmpty());
+  const auto expect_refused = [&](const auto& change, const char* why) {
+    DenoiseOptions options;
+    options.statistics = right;
+    change(*options.statistics);
+    const auto refused = denoise(xyz.data(), xyz.size() / 3, options, {});
+    ASSERT_FALSE(refused.ok()) << why;
+    EXPECT_EQ(refused.error().code, ErrorCode::usage);
+    EXPECT_THAT(refused.error().message, ::testing::HasSubstr(why));
+  };
+  expect_refused([](Statistics& s) { std::swap(s.box->low, s.box->high); }, "box");
+  expect_refused([](Statistics& s) { s.noise->sites.emplace_back(0, 0, 0); }, "sites");
+  expect_refused([](Statistics& s) { s.noise->spacing_at_sites.assign(s.noise->sites.size() + 1, 1); },
+                 "sites");
+  expect_refused([](Statistics& s) { s.noise->at_sites[0] = std::nan(""); }, "noise");
+  expect_refused([](Statistics& s) { s.noise->shared = 0; }, "noise");
+  expect_refused([](Statistics& s) { s.passes[0].scales[0].members = 0; }, "passes");
+  expect_refused([](Statistics& s) { s.passes[0].scales[0].thinnings = std::size_t(-1); }, "passes");
+  expect_refused([](Statistics& s) { s.passes[0].shares.pop_back(); }, "passes");
+}
+
 // Where far points stand together it is shape, not tails, and a part of a cloud is told so by the whole.
 TEST(Denoise, HowFarPointsStandTogetherIsOfTheWholeCloud) {
   Flat before = sphere();

@@ -142,7 +142,12 @@ Settled read_settled(const std::filesystem::path& path) {
   std::ifstream file(path);
   if (!file) fail(ErrorCode::input_unreadable, "{}: cannot be read", path.string());
   try {
-    return settled_of_json(ordered_json::parse(file));
+    Settled settled = settled_of_json(ordered_json::parse(file));
+    std::vector<std::string> wrong = check(settled.report.statistics);
+    if (!(settled.halo >= 0 && settled.radii >= 0 && settled.widest >= 1 && settled.widest < kNone))
+      wrong.emplace_back("halo, halo_radii or widest: is no length or no number of points");
+    if (!wrong.empty()) fail(ErrorCode::input_unreadable, "{}: {}", path.string(), wrong.front());
+    return settled;
   } catch (const nlohmann::json::exception& error) {
     fail(ErrorCode::input_unreadable, "{}: {}", path.string(), error.what());
   }

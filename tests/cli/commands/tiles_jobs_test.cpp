@@ -5,6 +5,7 @@
 #include <future>
 
 #include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
 
 #include "tests/cli/support/small_clouds.h"
 #include "tests/cli/support/tile_jobs.h"
@@ -156,6 +157,25 @@ TEST_F(Tiles, WhatCannotBeDoneIsRefusedWithWhatToDo) {
   const Ran later = run({"tiles", "settle", "job", "--strength", "2"});
   EXPECT_EQ(later.code, 2);
   EXPECT_THAT(later.err, HasSubstr("tiles plan"));
+}
+
+TEST_F(Tiles, AJobWhoseListsDoNotFitIsRefusedWithOneLineThatSaysWhich) {
+  put("in.ply", strip(0.4).bytes());
+  settled({"in.ply"}, "job");
+  const auto right = nlohmann::ordered_json::parse(take("job/statistics.json"));
+  const auto run_with = [&](const auto& change) {
+    auto json = right;
+    change(json);
+    put("job/statistics.json", json.dump());
+    return run({"tiles", "run", "job", "0"});
+  };
+  const Ran sites = run_with([](auto& json) { json["statistics"]["noise"]["at_sites"].clear(); });
+  EXPECT_EQ(sites.code, 3);
+  EXPECT_THAT(sites.err, HasSubstr("statistics.json: noise: sigma at 0"));
+  EXPECT_EQ(std::count(sites.err.begin(), sites.err.end(), '\n'), 1) << sites.err;
+  const Ran widest = run_with([](auto& json) { json["widest"] = 0; });
+  EXPECT_EQ(widest.code, 3);
+  EXPECT_THAT(widest.err, HasSubstr("statistics.json: halo"));
 }
 
 TEST_F(Tiles, AFullDiskIsAnErrorAndTheWorkGoesOnWhenThereIsRoom) {
