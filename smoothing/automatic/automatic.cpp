@@ -62,6 +62,49 @@ std::unique_ptr<HeightField> raise_field(const Positions& points, const Adjacenc
                                        points, noise.across, context);
 }
 
+/// c of the guide's fairing.
+double strength_of_guide(const rfs_mesh::NoiseField& noise, double spacing) {
+  const double share = noise.sigma / spacing;
+  return kGuide * share * share * std::max(1.0, share * share) * noise.shared;
+}
+
+/// Points as heights over their guide, and what all scales together make of these.
+struct Mixed {
+  std::unique_ptr<HeightField> field;
+  MixedScales heights;
+  Positions data;            ///< the points, tamed where there are tails
+  std::vector<double> most;  ///< how far each may move, world units
+  Tails tails;
+};
+
+/// Steps 1 to 3, twice where there are tails: then `noise` is as tamed.
+Mixed mix_scales(const Mesh& mesh, rfs_mesh::NoiseField& noise, double spacing, bool learned,
+                 AutomaticReport& report, Statistics& whole, const Context& context) {
+  std::optional<Adjacency> lines;
+  if (noise.across) lines = along_lines(mesh.positions, context);
+  const Adjacency& rings = lines ? *lines : mesh.one_ring;
+  Mixed mixed;
+  const auto smooth = [&](const Positions& points, std::size_t pass) {
+    whole.passes.resize(std::max(pass + 1, whole.passes.size()));
+    report.guide_strength = strength_of_guide(noise, spacing);
+    mixed.field.reset();
+    mixed.field = raise_field(points, rings, noise, report, whole.passes[pass], context);
+    context.report("smooth", 0.1);
+    mixed.heights = smooth_heights(*mixed.field, noise, spacing, learned, whole.passes[pass], context);
+  };
+  smooth(mesh.positions, 0);
+  mixed.data = mesh.positions;
+  mixed.most = noise.local;
+  for (double& limit : mixed.most) limit = kStray * std::max(limit, noise.sigma);
+  mixed.tails = tame(*mixed.field, mixed.heights, mesh, mixed.data, noise, whole.tails, context);
+  if (mixed.tails.share > 0) {
+    report.tail_times = mixed.tails.times;
+    for (double& limit : mixed.most) limit *= mixed.tails.times;
+    smooth(mixed.data, 1);
+  }
+  return mixed;
+}
+
 /// What is left between the data and the surface. With tails of the data as they came, for
 /// pseudo-observations of one sheet are flatter than a normal distribution, as if of two.
 Residuals residuals_of(const HeightField& field, const std::vector<float>& height, const Positions& data,
@@ -75,74 +118,58 @@ Residuals residuals_of(const HeightField& field, const std::vector<float>& heigh
   return left;
 }
 
+/// Where a point goes whose smoothed height is `height`.
+Eigen::Vector3d place_at(const HeightField& field, std::size_t i, const Eigen::Vector3d& from, float height) {
+  // On lines the fairing moved guide points beside their line, too: what counts is the height alone.
+  const Eigen::Vector3d foot =
+      field.on_lines() ? Eigen::Vector3d(from - field.height(i) * field.normal(i)) : field.guide()[i];
+  return foot + double(height) * field.normal(i);
+}
+
 }  // namespace
 
 Positions automatic_smoothing(Mesh& mesh, bool keep_rings, rfs_mesh::NoiseField noise, double spacing,
                               bool learned, AutomaticReport& report, rfs_mesh::NeighborTable& near,
                               const Context& context, Statistics& whole, LearnedSites* sites) {
   const std::size_t n = mesh.positions.size();
-  const auto guide_strength = [&] {
-    const double share = noise.sigma / spacing;
-    return kGuide * share * share * std::max(1.0, share * share) * noise.shared;
-  };
-  report.guide_strength = guide_strength();
-  std::optional<Adjacency> lines;
-  if (noise.across) lines = along_lines(mesh.positions, context);
-  const Adjacency& rings = lines ? *lines : mesh.one_ring;
-  whole.passes.resize(std::max<std::size_t>(1, whole.passes.size()));
-  auto field = raise_field(mesh.positions, rings, noise, report, whole.passes[0], context);
-  context.report("smooth", 0.1);
-  MixedScales pass = smooth_heights(*field, noise, spacing, learned, whole.passes[0], context);
-  Positions data = mesh.positions;  // as tamed
-  std::vector<double> most = noise.local;
-  for (double& limit : most) limit = kStray * std::max(limit, noise.sigma);
   const double measured = noise.sigma;
-  const Tails tails = tame(*field, pass, mesh, data, noise, whole.tails, context);
-  if (tails.share > 0) {
-    report.tail_times = tails.times;
-    for (double& limit : most) limit *= tails.times;
-    report.guide_strength = guide_strength();
-    whole.passes.resize(2);
-    field = raise_field(data, rings, noise, report, whole.passes[1], context);
-    pass = smooth_heights(*field, noise, spacing, learned, whole.passes[1], context);
-  }
-  lines.reset();
+  Mixed mixed = mix_scales(mesh, noise, spacing, learned, report, whole, context);
+  HeightField& field = *mixed.field;
+  MixedScales& heights = mixed.heights;
   if (!keep_rings) mesh.one_ring = {};
   const double of_whole = whole.points ? double(*whole.points) / double(n) : 1;
-  const std::vector<float> mixed = learned ? pass.height : std::vector<float>();
+  const std::vector<float> one_sheet = learned ? heights.height : std::vector<float>();
   // A k-th of the evidence never was enough for walls, and across lines there is none.
   const bool own_noise = !(noise.shared > 1) && !noise.across;
   HiddenSheets hidden;
   if (own_noise)
-    hidden = split_hidden_sheets(*field,
-                                 residuals_of(*field, pass.height, mesh.positions, measured, tails, context),
-                                 pass.height, pass.own, of_whole, whole.sheets, context);
+    hidden = split_hidden_sheets(
+        field, residuals_of(field, heights.height, mesh.positions, measured, mixed.tails, context),
+        heights.height, heights.own, of_whole, whole.sheets, context);
   const auto allowed = [&](std::size_t i, const Eigen::Vector3d& move) {
-    return move.allFinite() && move.norm() <= most[i];
+    return move.allFinite() && move.norm() <= mixed.most[i];
   };
   Positions smooth(n);
   for_each_index(context, n, [&](std::size_t i) {
     const Eigen::Vector3d& from = mesh.positions[i];
-    // On lines the fairing moved guide points beside their line, too: what counts is the height alone.
-    const Eigen::Vector3d foot =
-        field->on_lines() ? Eigen::Vector3d(from - field->height(i) * field->normal(i)) : field->guide()[i];
-    const Eigen::Vector3d move = foot + double(pass.height[i]) * field->normal(i) - from;
+    const Eigen::Vector3d move = place_at(field, i, from, heights.height[i]) - from;
     smooth[i] = allowed(i, move) ? from + move : from;
   });
   if (own_noise)
-    part_thin_walls(*field, data, pass.several, pass.members_seeing, noise, smooth, whole.thin_walls,
-                    context);
+    part_thin_walls(field, mixed.data, heights.several, heights.members_seeing, noise, smooth,
+                    whole.thin_walls, context);
   if (learned) {
     const auto may_go = [&](std::size_t i, const Eigen::Vector3d& there) {
       const Eigen::Vector3d& from = mesh.positions[i];
       return smooth[i] != from && allowed(i, there - from);  // strays stay
     };
     report.learned = take_learned_step(
-        *field, data, {pass.told, pass.own, mixed, smooth, hidden.there() ? hidden.variance : 1}, noise,
-        spacing, may_go, smooth, sites, context);
+        field, mixed.data,
+        {heights.told, heights.own, one_sheet, smooth, hidden.there() ? hidden.variance : 1}, noise, spacing,
+        may_go, smooth, sites, context);
   }
-  report.left = noise_left(*field, pass.height, pass.own, noise, context);
-  near = field->release_neighbors();
+  report.left = noise_left(field, heights.height, heights.own, noise, context);
+  near = field.release_neighbors();
   return smooth;
 }
 
