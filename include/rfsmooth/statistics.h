@@ -36,8 +36,8 @@ struct NoiseModel {
   /// Places, around the middle of the box; one where noise and density are even.
   std::vector<Eigen::Vector3d> sites;
   std::vector<double> at_sites;  ///< sigma there, world units
-  /// Mean distance to the nearest neighbour there if it is less than half of `spacing`, else `spacing`;
-  /// empty: it is nowhere less.
+  /// Mean distance to the nearest neighbour there if points are more than twice as dense as on the mean, else
+  /// `spacing`; empty: they are nowhere.
   std::vector<double> spacing_at_sites;
 };
 

@@ -16,6 +16,7 @@
 #include "rfs_mesh/connect/sdg.h"
 #include "rfs_mesh/connect/umbrella.h"
 #include "rfs_mesh/fit/local_surface.h"
+#include "rfs_mesh/levels.h"
 #include "rfs_mesh/noise/noise.h"
 #include "rfs_mesh/noise/scatter_statistics.h"
 #include "rfs_mesh/search/neighbors.h"
@@ -75,7 +76,8 @@ constexpr double kNoiseLeft = 1.0 / 3;
 /// The ground at the shadows of the points. Quadrics no wider than the neighbourhoods looked at are fitted a
 /// second time, on the shadows; wider ones have the better normals already.
 Ground shadow_ground(const Positions& points, std::vector<LocalSurface> surfaces, const NoiseScale& scale,
-                     const NoiseLevel& noise, const ConnectOptions& options, const Context& context) {
+                     const NoiseLevel& noise, const std::vector<Index>& wider, const ConnectOptions& options,
+                     const Context& context) {
   const int k = options.neighbours;
   Ground ground;
   ground.surfaces = std::move(surfaces);
@@ -86,7 +88,8 @@ Ground shadow_ground(const Positions& points, std::vector<LocalSurface> surfaces
   if (scale.neighbours <= std::size_t(k)) {
     std::vector<double> left = noise.field;
     for (double& sigma : left) sigma *= kNoiseLeft;
-    ground.surfaces = shared_local_surfaces(index, ground.near, scale, left, scale.neighbours, context);
+    ground.surfaces =
+        shared_local_surfaces(index, ground.near, scale, left, wider, scale.neighbours, context);
   }
   ground.between =
       part_sheets(points, index, ground.near, noise.sigma, options.sheets, ground.surfaces, context);
@@ -144,13 +147,28 @@ NoiseScale scale_for(const SpatialIndex& index, const NoiseModel& noise, const C
   return scale;
 }
 
-/// What `whole` says of the noise; what it does not say is measured and entered.
+/// n: the points that a quadric needs around each, where some are denser than on the mean; else none. Sigma
+/// over the spacing is larger there, and the slab that a ball must hold has as many times the points as its
+/// square. \param loud of the cloud; \param scale of the quadrics for that
+std::vector<Index> wider_where_dense(const NoiseField& noise, double loud, const NoiseScale& scale) {
+  std::vector<Index> wider(noise.local_spacing.size());
+  for (std::size_t i = 0; i < wider.size(); ++i) {
+    const double times = noise.local[i] / loud * noise.spacing / noise.local_spacing[i],
+                 m = std::max(1.0, times * times) * double(scale.neighbours);
+    wider[i] = Index(std::min(m, double(std::max(kWidestFit, scale.neighbours))));
+  }
+  return wider;
+}
+
+/// What `whole` says of the noise; what it does not say is measured and entered. \param wider
+/// wider_where_dense()
 NoiseLevel measure(const SpatialIndex& index, const NeighborTable& near, const Context& context,
-                   Statistics& whole) {
+                   Statistics& whole, std::vector<Index>& wider) {
   measure_cloud(index, near, whole, context);
   NoiseField field = spread_noise(*whole.noise, index.points(), context);
   const double loud = loudness(field), least = kNoNoise * field.spacing;
   const double share = loud > 0 ? whole.scale->sigma / loud : 0;
+  wider = wider_where_dense(field, loud, *whole.scale);
   for (double& sigma : field.local) sigma = std::max(share * sigma, least);
   return {*whole.spacing, field.sigma, std::move(field.local)};
 }
@@ -163,7 +181,8 @@ Ground survey(Cloud cloud, const ConnectOptions& options, const Context& context
   const NeighborTable& near = cloud.near;
   const Positions& points = index.points();
   const std::size_t n = points.size();
-  c.noise = stages.run("noise", 0.15, [&] { return measure(index, near, context, whole); });
+  std::vector<Index> wider;
+  c.noise = stages.run("noise", 0.15, [&] { return measure(index, near, context, whole, wider); });
   const NoiseScale scale = *whole.scale;
   c.on_shadow = guide == nullptr && n > 0 && scale.sigma > options.shadow_from * c.noise.spacing;
   c.emst = stages.run("emst", 0.2, [&] {
@@ -171,15 +190,16 @@ Ground survey(Cloud cloud, const ConnectOptions& options, const Context& context
   });
   auto surfaces = stages.run("local surfaces", 0.4, [&] {
     const auto least = std::min(std::size_t(options.neighbours), scale.neighbours);
-    return c.on_shadow ? shared_local_surfaces(index, near, scale, c.noise.field, least, context)
+    return c.on_shadow ? shared_local_surfaces(index, near, scale, c.noise.field, wider, least, context)
                        : local_surfaces(points, near, context);
   });
   if (guide == nullptr && !c.on_shadow)
     return {points, std::move(surfaces), std::move(cloud.near), c.emst, {}};
   cloud.near = NeighborTable();  // neighbours among the noisy points: not needed any more
   return stages.run(guide != nullptr ? "guide" : "shadow", 0.5, [&] {
-    return guide != nullptr ? ground_at(*guide, options.neighbours, context)
-                            : shadow_ground(points, std::move(surfaces), scale, c.noise, options, context);
+    return guide != nullptr
+               ? ground_at(*guide, options.neighbours, context)
+               : shadow_ground(points, std::move(surfaces), scale, c.noise, wider, options, context);
   });
 }
 

@@ -34,10 +34,11 @@ std::vector<LocalSurface> local_surfaces(const Positions& points, const Neighbor
 /// of one quadric per point, and the shadows scatter a little less, since several quadrics agree on each.
 ///
 /// The points are divided into compact groups of about m / 12, but 7 or more (groups.h), m =
-/// `scale.neighbours`. A quadric is fitted to the m nearest of the point in the middle of each group. If its
-/// residual is far above the noise there, it has met an edge, a second sheet or strong curvature, and m is
-/// halved, down to `least`. A point at offset d from a quadric's centre and e above it takes the mean over
-/// the quadrics of its own group and of its neighbours' groups (rows of `near`), with weights
+/// `scale.neighbours`. A quadric is fitted to the m nearest of the point in the middle of each group, or to
+/// as many as `wider` says there. If its residual is far above the noise there, it has met an edge, a second
+/// sheet or strong curvature, and m is halved, down to `least`. A point at offset d from a quadric's centre
+/// and e above it takes the mean over the quadrics of its own group and of its neighbours' groups (rows of
+/// `near`), with weights
 ///
 ///     (1 - |d|^2 / R^2)^3 s^-4 exp(-e^2 / (2 s^2)),    s = max(residual, sigma),
 ///
@@ -45,10 +46,12 @@ std::vector<LocalSurface> local_surfaces(const Positions& points, const Neighbor
 /// not cubed. A point that no quadric explains gets one of its own. `near` has k >= 1 unless n < 2.
 /// O(n m / 7 + n k), parallel, deterministic.
 ///
-/// \param noise n: sigma around each point, world units
+/// \param noise n: sigma around each point, world units. \param wider n: m around each point; empty:
+/// `scale.neighbours` everywhere
 std::vector<LocalSurface> shared_local_surfaces(const SpatialIndex& index, const NeighborTable& near,
                                                 const NoiseScale& scale, const std::vector<double>& noise,
-                                                std::size_t least, const Context& context);
+                                                const std::vector<Index>& wider, std::size_t least,
+                                                const Context& context);
 
 /// Mean distance to the nearest neighbour, world units; 0 for fewer than two points.
 double mean_spacing(const Positions& points, const NeighborTable& near, const Context& context);

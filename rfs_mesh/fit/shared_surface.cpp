@@ -36,13 +36,16 @@ constexpr double kLeastWeight = 0.01;
 class Fitter {
  public:
   Fitter(const SpatialIndex& index, const NoiseScale& scale, const std::vector<double>& noise,
-         std::size_t least)
-      : index_(index), noise_(noise), least_(least), near_(index, scale.neighbours + 1) {}
+         const std::vector<Index>& wider, std::size_t least)
+      : index_(index), noise_(noise), wider_(wider), least_(least), near_(index, scale.neighbours + 1) {}
 
   /// Around point i, with neighbourhoods halved until they are flat enough.
   Quadric fit(Index i) {
     const Positions& points = index_.points();
-    near_.find(points[i]);
+    if (wider_.empty())
+      near_.find(points[i]);
+    else
+      near_.find(points[i], wider_[i] + 1);
     row_.clear();
     for (std::size_t k = 0; k < near_.size(); ++k)
       if (near_.index()[k] != i) row_.push_back(near_.index()[k]);
@@ -65,6 +68,7 @@ class Fitter {
 
   const SpatialIndex& index_;
   const std::vector<double>& noise_;
+  const std::vector<Index>& wider_;
   std::size_t least_;
   QuadricWorkspace workspace_;
   WideNeighbors near_;
@@ -76,14 +80,15 @@ class Fitter {
 class SharedQuadrics {
  public:
   SharedQuadrics(const SpatialIndex& index, const NeighborTable& near, const NoiseScale& scale,
-                 const std::vector<double>& noise, std::size_t least, const Context& context)
+                 const std::vector<double>& noise, const std::vector<Index>& wider, std::size_t least,
+                 const Context& context)
       : index_(index), noise_(noise), group_(index.points().size()) {
     const auto members = std::max(kFewestInGroup, std::size_t(kPointsPerSeed * double(scale.neighbours)));
     const Adjacency groups = group_around_kept(index.points(), near, members, context);
     quadrics_.resize(groups.size());
     curvature_.resize(groups.size());
     for_blocks(context, groups.size(), 16, [&](std::size_t begin, std::size_t end) {
-      Fitter fitter(index, scale, noise, least);
+      Fitter fitter(index, scale, noise, wider, least);
       for (std::size_t g = begin; g < end; ++g) {
         for (const Index i : groups[g]) group_[i] = Index(g);
         quadrics_[g] = fitter.fit(middle(groups[g]));
@@ -157,11 +162,12 @@ class SharedQuadrics {
 
 std::vector<LocalSurface> shared_local_surfaces(const SpatialIndex& index, const NeighborTable& near,
                                                 const NoiseScale& scale, const std::vector<double>& noise,
-                                                std::size_t least, const Context& context) {
-  const SharedQuadrics quadrics(index, near, scale, noise, least, context);
+                                                const std::vector<Index>& wider, std::size_t least,
+                                                const Context& context) {
+  const SharedQuadrics quadrics(index, near, scale, noise, wider, least, context);
   std::vector<LocalSurface> surfaces(index.points().size());
   for_blocks(context, surfaces.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    Fitter fitter(index, scale, noise, least);
+    Fitter fitter(index, scale, noise, wider, least);
     std::vector<Index> around;
     for (std::size_t i = begin; i < end; ++i)
       if (!quadrics.surface(Index(i), near[i], around, surfaces[i]))

@@ -109,7 +109,7 @@ std::vector<double> spacing_around(const NoiseSites& sites, double spacing) {
   for (const double reach : sites.reach) mean += reach / double(sites.reach.size());
   std::vector<double> around(sites.reach.size(), spacing);
   for (std::size_t s = 0; s < around.size(); ++s)
-    if (kLouder * sites.reach[s] < mean) around[s] = spacing * sites.reach[s] / mean;
+    if (denser(sites.reach[s], mean)) around[s] = spacing * sites.reach[s] / mean;
   return around;
 }
 

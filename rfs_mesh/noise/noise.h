@@ -28,8 +28,8 @@
 
 namespace rfsmooth::rfs_mesh {
 
-/// Spacings: noise below this cannot be told from detail. Where points are less than half as far apart as
-/// on average their own spacing counts: there they show more.
+/// Spacings: noise below this cannot be told from detail. Where points are more than twice as dense as on
+/// the mean their own spacing counts: there they show more.
 inline constexpr double kNoNoise = 0.05;
 
 /// Least noise of a place, as a part of the figure. Points with less than twice that are not moved. Not zero,

@@ -139,6 +139,7 @@ class Listener {
     const std::vector<Scatter> all = places_.fits(m, sigma);
     const std::vector<Said> said = what_they_say(all, kTypicalDeviate);
     const std::vector<double> before = sigma;
+    const double typical_reach = reach_of_sparse(all);
     std::vector<char> opened(group_.size(), 0);
     for_each_index(
         context_, group_.size(),
@@ -158,7 +159,9 @@ class Listener {
                   std::min(at_most(s), std::max(kNarrowestWindow * open_[s], std::sqrt(typical) * before[s]));
             opened[s] = char(sigma[s] > before[s]);
           }
-          if (sigma[s] > kLouder * start_ && widen(s, quantile(radius, 0.5))) opened[s] = 1;
+          const double reach = quantile(radius, 0.5);
+          if (sigma[s] > kLouder * start_ || denser(reach / std::sqrt(double(m[s])), typical_reach))
+            opened[s] = char(widen(s, reach) || opened[s] != 0);
         },
         64);
     places_.move_to_feet(all);
@@ -179,6 +182,14 @@ class Listener {
   }
 
  private:
+  /// NoiseSites::reach where points are sparse: of the widest quarter. \param all fits to m points
+  double reach_of_sparse(const std::vector<Scatter>& all) const {
+    constexpr double kSparse = 0.75;
+    std::vector<double> reaches;
+    for (std::size_t s = 0; s < all.size(); ++s) reaches.push_back(all[s].radius / std::sqrt(double(m[s])));
+    return quantile(reaches, kSparse);
+  }
+
   /// Sets sigma and whether it is of this place; returns that.
   bool hear_at(std::size_t s, const std::vector<Said>& all) {
     const std::vector<Said> near = around(s, all, kSmallestGroup), wide = around(s, all, group_[s].size());

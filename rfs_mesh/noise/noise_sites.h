@@ -9,7 +9,7 @@
 /// little as the window was made for, while louder noise fills it evenly, at three times that variance, or
 /// leaves nothing in it at nearly all of the sites around. A window that is filled evenly gets wider, to the
 /// scatter seen in it, and that up to eight times. Where it ends at more than twice the noise it began with,
-/// the fits take more points, as many as such noise needs.
+/// or the points are denser than elsewhere, the fits take more points, as many as such noise needs.
 ///
 /// Where both sheets of a wall are within the narrowest windows, what opens ends at their distance. But the
 /// residuals of fits without windows, whose places hold both, are then flatter than a normal distribution,
@@ -58,6 +58,12 @@ struct NoiseSites {
   std::vector<double> reach;  ///< radius of the ball of a fit there over the root of its points, world units
   std::vector<Scatter> fits;  ///< to the m nearest of the site by itself, more where it is far louder
 };
+
+/// Whether points are so close that it is no second sheet beside theirs that makes them so: more than twice
+/// as dense as typical ones. \param reach of NoiseSites
+inline bool denser(double reach, double typical) {
+  return 2 * reach * reach < typical * typical;
+}
 
 /// Where to listen: up to 2,000 of the given places, evenly over their order, fewer the larger m is.
 Positions listening_places(const Positions& places, std::size_t m);

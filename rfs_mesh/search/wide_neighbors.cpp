@@ -69,6 +69,13 @@ void WideNeighbors::make_room(std::size_t size) {
   bin_.resize(size);
 }
 
+void WideNeighbors::find(const Eigen::Vector3d& place, std::size_t k) {
+  k = std::min(k, index_.points().size());
+  if (k_ > 0) guess_ *= double(k) / double(k_);  // as the area of a ball's surface grows
+  k_ = k;
+  find(place);
+}
+
 void WideNeighbors::find(const Eigen::Vector3d& place) {
   kept_ = 0;
   if (k_ == 0) return;

@@ -24,6 +24,8 @@ class WideNeighbors {
 
   /// Finds the k nearest of `place`, a point at the place included. O(log n + k).
   void find(const Eigen::Vector3d& place);
+  /// The same with another k from now on.
+  void find(const Eigen::Vector3d& place, std::size_t k);
 
   std::size_t size() const { return kept_; }
   double unit() const { return unit_; }  ///< of the lengths below, world units, > 0

@@ -30,7 +30,7 @@ Positions with_noise(Positions points, double sigma) {
 std::vector<LocalSurface> shared(const Positions& points, std::size_t m, double sigma) {
   const SpatialIndex index(points, {});
   const std::vector<double> noise(points.size(), sigma);
-  return shared_local_surfaces(index, index.nearest(kNear, {}), {sigma, m}, noise, kNear, {});
+  return shared_local_surfaces(index, index.nearest(kNear, {}), {sigma, m}, noise, {}, kNear, {});
 }
 
 /// The bytes of a surface.
@@ -119,7 +119,7 @@ TEST(SharedSurface, EveryPlaceIsFittedForItsOwnNoise) {
     noise[i] = here ? kLoud : kCalm;
   }
   const SpatialIndex index(points, {});
-  const auto surfaces = shared_local_surfaces(index, index.nearest(kNear, {}), {kLoud, 96}, noise, kNear, {});
+  const auto surfaces = shared_local_surfaces(index, index.nearest(kNear, {}), {kLoud, 96}, noise, {}, kNear, {});
   const auto all_calm = shared(points, 96, kCalm), all_loud = shared(points, 96, kLoud);
   std::size_t inside = 0, apart = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -186,7 +186,7 @@ TEST(SharedSurface, SameBytesForAnyNumberOfThreads) {
     context.threads = threads;
     std::vector<LocalSurface> surfaces;
     in_arena(context, [&] {
-      surfaces = shared_local_surfaces(index, near, {0.03, 96}, noise, kNear, context);
+      surfaces = shared_local_surfaces(index, near, {0.03, 96}, noise, {}, kNear, context);
     });
     return surfaces;
   };
