@@ -90,9 +90,11 @@ class Listener {
         narrow_(at.size(), 0),
         open_(at.size(), 0),
         sheet_(at.size(), std::numeric_limits<double>::infinity()),
+        held_(at.size(), 0),
         widest_(widest_scatter(cloud)),
         start_(start.sigma),
         on_lines_(start.on_lines),
+        deep_(start.m >= kNeighbourhood),
         m(points_to_fit(places_, start)),
         sigma(at.size(), std::max(start.sigma, start.least)),
         most(at.size(), std::numeric_limits<double>::infinity()),
@@ -130,6 +132,7 @@ class Listener {
         },
         64);
     believe_sheets(middle);
+    if (deep_) hold_slabs(few, many);
   }
 
   /// One round that opens windows which are too narrow for their places; false if there are none. A place
@@ -160,7 +163,9 @@ class Listener {
             opened[s] = char(sigma[s] > before[s]);
           }
           const double reach = quantile(radius, 0.5);
-          if (sigma[s] > kLouder * start_ || denser(reach / std::sqrt(double(m[s])), typical_reach))
+          const bool all_seen = held_[s] > 0 && held_[s] < kGrowthOfNoise * sigma[s];
+          if (sigma[s] > (all_seen ? kSameNoise : kLouder) * start_ ||
+              denser(reach / std::sqrt(double(m[s])), typical_reach))
             opened[s] = char(widen(s, reach) || opened[s] != 0);
         },
         64);
@@ -269,6 +274,27 @@ class Listener {
       std::fill(sheet_.begin(), sheet_.end(), std::numeric_limits<double>::infinity());
   }
 
+  /// Sets `held_`. \param few, many fits without windows to kNeighbourhood and kPlateauTo points
+  void hold_slabs(const std::vector<Scatter>& few, const std::vector<Scatter>& many) {
+    constexpr std::size_t kTimes = kPlateauTo / kNeighbourhood;
+    for (std::size_t points = kNeighbourhood; points <= std::min(widest_, kTimes * kPlateauTo);
+         points *= kTimes) {
+      const std::vector<Scatter> wide =
+          points > kPlateauTo ? Places(places_.index(), places_.at(), points, context_).fits(points)
+                              : std::vector<Scatter>();
+      const std::vector<Scatter>& all = points == kNeighbourhood ? few : points == kPlateauTo ? many : wide;
+      for_each_index(
+          context_, group_.size(),
+          [&](std::size_t s) {
+            if (held_[s] > 0) return;
+            const Around nearest(around(s, all, kNeighbourhood));
+            const double seen = std::sqrt(nearest.variance());
+            if (seen < kFlatSlab * nearest.radius()) held_[s] = seen;
+          },
+          64);
+    }
+  }
+
   /// Raises `floor` where fits without windows show two layers around that are no sheets. \param open all of
   /// them
   void look_for_layers(std::size_t s, const Around& around, const std::vector<Scatter>& open,
@@ -320,9 +346,12 @@ class Listener {
   std::vector<double> narrow_;  ///< radius of the ball of the fewest neighbours; 0: not asked for yet
   std::vector<double> open_;    ///< what the fits around show without windows, world units
   std::vector<double> sheet_;   ///< what each of two sheets shows at most; infinite: there is one
+  std::vector<double> held_;    ///< what the first ball shows that holds the slab, without windows; 0: none
   std::size_t widest_;
   double start_;  ///< world units
   bool on_lines_;
+  bool deep_;  ///< whether the noise is about a spacing or more: its slab is wider than the nearest
+               ///< neighbours are
 
  public:
   std::vector<std::size_t> m;
