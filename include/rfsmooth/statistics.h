@@ -39,6 +39,9 @@ struct NoiseModel {
   /// Mean distance to the nearest neighbour there if points are more than twice as dense as on the mean, else
   /// `spacing`; empty: they are nowhere.
   std::vector<double> spacing_at_sites;
+  /// 1 where more neighbours show no more scatter, so that it is no detail, however small; else 0; empty: it
+  /// is nowhere so.
+  std::vector<double> told_at_sites;
 };
 
 /// What `denoise` measures on a cloud as a whole. Lengths are in world units.

@@ -183,6 +183,8 @@ void measure(const SpatialIndex& index, const DepthSteps* steps, NoiseModel& noi
   noise.at_sites = relative_noise(sites, noise.sigma, context);
   for (double& v : noise.at_sites) v = noise.sigma * std::max(v, kStays);
   noise.sites = std::move(sites.at);
+  if (std::find(sites.told.begin(), sites.told.end(), 1) != sites.told.end())
+    noise.told_at_sites.assign(sites.told.begin(), sites.told.end());
   const auto even = [](const std::vector<double>& values, double value) {
     return std::all_of(values.begin(), values.end(), [&](double v) { return v == value; });
   };
@@ -191,6 +193,7 @@ void measure(const SpatialIndex& index, const DepthSteps* steps, NoiseModel& noi
   } else if (even(noise.at_sites, noise.at_sites.front())) {
     noise.sites.resize(1);
     noise.at_sites.resize(1);
+    noise.told_at_sites.clear();
   }
 }
 
@@ -216,7 +219,7 @@ const NoiseModel& known_noise(const SpatialIndex& index, Statistics& whole, cons
 }
 
 NoiseField spread_noise(NoiseModel model, const Positions& points, const Context& context) {
-  NoiseField noise{std::move(model), {}, {}};
+  NoiseField noise{std::move(model), {}, {}, {}};
   if (noise.sites.empty()) {
     noise.local.assign(points.size(), 0);
     return noise;
@@ -225,6 +228,7 @@ NoiseField spread_noise(NoiseModel model, const Positions& points, const Context
   noise.local = blend(sites, noise.at_sites, points, context);
   if (!noise.spacing_at_sites.empty())
     noise.local_spacing = blend(sites, noise.spacing_at_sites, points, context);
+  if (!noise.told_at_sites.empty()) noise.local_told = blend(sites, noise.told_at_sites, points, context);
   return noise;
 }
 

@@ -29,8 +29,14 @@
 namespace rfsmooth::rfs_mesh {
 
 /// Spacings: noise below this cannot be told from detail. Where points are more than twice as dense as on
-/// the mean their own spacing counts: there they show more.
+/// the mean their own spacing counts: there they show more. In a cloud that has more noise elsewhere, any is
+/// told where eight times the neighbours show no more scatter, or hardly: detail would.
 inline constexpr double kNoNoise = 0.05;
+
+/// What may be detail on a surface that is anything but smooth.
+constexpr double detail(double spacing) {
+  return 2 * kNoNoise * spacing;
+}
 
 /// Least noise of a place, as a part of the figure. Points with less than twice that are not moved. Not zero,
 /// because other values are divided by it.
@@ -45,6 +51,7 @@ inline bool stays(double local, double figure) {
 struct NoiseField : NoiseModel {
   std::vector<double> local;          ///< n: sigma near each point, world units
   std::vector<double> local_spacing;  ///< n: spacing_at_sites near each point; empty: `spacing` everywhere
+  std::vector<double> local_told;     ///< n: told_at_sites near each point, 0 to 1; empty: 0 everywhere
 };
 
 /// O(log n) after the index. Parallel, deterministic. Zero for fewer than 25 points. \param scanner where it

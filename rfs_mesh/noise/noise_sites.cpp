@@ -39,10 +39,14 @@ constexpr double kMiddleOfSheets = 0.25;
 constexpr double kTwoDepths = 3;
 constexpr int kOpeningRounds = 8;  // windows widen by up to 1.7 in each
 
+// Times, from kNeighbourhood to kPlateauTo points: less than this, and scatter is noise; more than that,
+// shape.
+constexpr double kStops = 1.6, kNeverStops = 1.9;
+
 /// What scatter at kNeighbourhood points, `few`, and at kPlateauTo, `many`, makes sure of. \param radius of
 /// the ball of the few.
 double plateau(double few, double many, double radius) {
-  constexpr double kStops = 1.6, kNeverStops = 1.9, kSure = 0.65;
+  constexpr double kSure = 0.65;
   constexpr double kThin = 0.14, kThick = 0.2;
   if (!(few > 0)) return 0;
   const double growth = many / few, share = few / radius;
@@ -99,6 +103,7 @@ class Listener {
         sigma(at.size(), std::max(start.sigma, start.least)),
         most(at.size(), std::numeric_limits<double>::infinity()),
         floor(at.size(), 0),
+        told(at.size(), 0),
         speaks(at.size(), 0) {
     const SpatialIndex index(at, context);
     const int group = int(std::clamp(kGroupWork / start.m, kSmallestGroup, 2 * kNeighbourhood));
@@ -106,7 +111,8 @@ class Listener {
         context, at.size(), [&](std::size_t s) { index.nearest(at[s], group, group_[s]); }, 64);
   }
 
-  /// Looks without windows: sets `open_`, `sheet_`, `most` and `floor`, and no window is narrower than that.
+  /// Looks without windows: sets `open_`, `sheet_`, `most`, `floor` and `told`, and no window is narrower
+  /// than that.
   void look(const DepthSteps* steps) {
     std::vector<double> middle(group_.size(), 1);
     const std::size_t few_points = std::min(n_, kNeighbourhood),
@@ -313,7 +319,7 @@ class Listener {
     floor[s] = std::max(floor[s], std::sqrt(variance));
   }
 
-  /// Sets `floor` from what is seen without windows.
+  /// Sets `floor` and `told` from what is seen without windows.
   void find_floor(std::size_t s, const std::vector<Scatter>& few, const std::vector<Scatter>& many,
                   const DepthSteps* steps) {
     std::vector<double> narrow, wide, radius;
@@ -322,8 +328,9 @@ class Listener {
       narrow.push_back(few[q.index].variance);
       wide.push_back(many[q.index].variance);
     }
-    const double seen = std::sqrt(quantile(wide, kTypical));
-    floor[s] = plateau(std::sqrt(quantile(narrow, kTypical)), seen, quantile(radius, 0.5));
+    const double less = std::sqrt(quantile(narrow, kTypical)), seen = std::sqrt(quantile(wide, kTypical));
+    floor[s] = plateau(less, seen, quantile(radius, 0.5));
+    told[s] = char(seen < kStops * less);
     // A stack of slices has few depths, too, and none of the scatter.
     if (steps != nullptr) floor[s] = std::max(floor[s], std::min(seen, rounding_around(s, many, *steps)));
   }
@@ -358,6 +365,7 @@ class Listener {
   std::vector<double> sigma;  ///< around each site; as before where it does not speak
   std::vector<double> most;   ///< infinite: not known
   std::vector<double> floor;
+  std::vector<char> told;
   std::vector<char> speaks;
 };
 
@@ -388,6 +396,7 @@ NoiseSites listen(const SpatialIndex& index, Positions at, const NoiseStart& sta
   sites.speaks = listener.speaks;
   sites.floor = listener.floor;
   sites.most = listener.most;
+  sites.told = listener.told;
   for (int round = 0; round < 2; ++round) listener.hear(2, false);
 
   sites.shape.assign(sites.at.size(), 0);

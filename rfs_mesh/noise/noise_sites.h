@@ -41,6 +41,8 @@
 ///   is noise: at least s(24) and 0.65 s(192). Up to 1.9 this fades out. Equal scatter needs no such floor:
 ///   it is plain noise, or two sheets. Counted steps (depth_steps.h) make sure of their rounding, as far as
 ///   s(192) shows it.
+///
+/// Where s(192) < 1.6 s(24) the scatter is told from detail, however small it is.
 #pragma once
 
 #include "rfs_mesh/noise/depth_steps.h"
@@ -58,6 +60,7 @@ struct NoiseSites {
   std::vector<char> cut;      ///< whether the site's own fit fills its window, which is its neighbours'
   std::vector<double> most;   ///< what is seen without windows around it, world units; infinite: not known
   std::vector<double> floor;  ///< what steps, shared noise or layers make sure of, world units; 0: nothing
+  std::vector<char> told;     ///< whether the scatter around it stops growing, and is no detail
   std::vector<double> reach;  ///< radius of the ball of a fit there over the root of its points, world units
   std::vector<Scatter> fits;  ///< to the m nearest of the site by itself, more where it is far louder
 };

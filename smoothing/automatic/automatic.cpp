@@ -142,7 +142,7 @@ Positions automatic_smoothing(Mesh& mesh, bool keep_rings, rfs_mesh::NoiseField 
   // A k-th of the evidence never was enough for walls, and across lines there is none.
   const bool own_noise = !(noise.shared > 1) && !noise.across;
   HiddenSheets hidden;
-  if (own_noise)
+  if (own_noise && measured > rfs_mesh::detail(spacing))
     hidden = split_hidden_sheets(
         field, residuals_of(field, heights.height, mesh.positions, measured, mixed.tails, context),
         heights.height, heights.own, of_whole, whole.sheets, context);

@@ -15,33 +15,36 @@ namespace rfsmooth::smoothing {
 
 namespace {
 
-/// Where most of the scatter is shape, noise of twice kNoNoise cannot be told from detail either: better
+/// Where most of the scatter is shape, noise of less than detail() cannot be told from it either: better
 /// leave a clean cloud alone, unless a part of it is clearly louder than that.
 /// The loudest tenth is of the sites, not of the points as in `summary_of`: the sites are those of the whole
 /// cloud in each of its tiles, too, so that all tiles decide alike.
 double measured(const rfs_mesh::NoiseField& noise, double spacing) {
   constexpr double kMostlyShape = 0.4;  // of the development shapes, clean and with noise of 0.1 spacings
-  const double detail = 2 * rfs_mesh::kNoNoise * spacing;
+  const double detail = rfs_mesh::detail(spacing);
   if (!(noise.sigma < detail && noise.shape > kMostlyShape)) return noise.sigma;
   std::vector<double> sites = noise.at_sites;
   return !sites.empty() && quantile(sites, 0.9) > rfs_mesh::kLouder * detail ? noise.sigma : 0;
 }
 
-/// Noise of the size `sigma`, that varies over the cloud as `noise` does, times `strength`. Places of less
-/// than kNoNoise stay. A strength above 1 acts everywhere, where next to nothing was measured on as much as
-/// may be hidden there.
+/// Noise of the size `sigma`, that varies over the cloud as `noise` does, times `strength`. What cannot be
+/// told from detail stays, and all of a cloud without noise that could be wherever it is. A strength above 1
+/// acts everywhere, where next to nothing was measured on as much as may be hidden there.
 rfs_mesh::NoiseField scaled(rfs_mesh::NoiseField noise, double sigma, double strength, double spacing) {
-  const auto of = [&](double s, double h) {
-    const double hidden = rfs_mesh::kNoNoise * h;
+  const auto of = [&](double s, double hidden) {
     if (strength > 1) return strength * std::max(s, hidden);
     return s > hidden ? strength * s : 0.0;
   };
+  const auto hidden_at = [&](std::size_t i) {
+    const double told = noise.local_told.empty() ? 0 : noise.local_told[i];
+    return (1 - told) * rfs_mesh::kNoNoise * (noise.local_spacing.empty() ? spacing : noise.local_spacing[i]);
+  };
   const double measured = noise.sigma;
   const std::vector<double>& denser = noise.spacing_at_sites;
-  noise.sigma = of(sigma, denser.empty() ? spacing : *std::min_element(denser.begin(), denser.end()));
+  const double least = denser.empty() ? spacing : *std::min_element(denser.begin(), denser.end());
+  noise.sigma = of(sigma, rfs_mesh::kNoNoise * least);
   for (std::size_t i = 0; i < noise.local.size(); ++i)
-    noise.local[i] = std::max(of(measured > 0 ? noise.local[i] * sigma / measured : sigma,
-                                 denser.empty() ? spacing : noise.local_spacing[i]),
+    noise.local[i] = std::max(of(measured > 0 ? noise.local[i] * sigma / measured : sigma, hidden_at(i)),
                               rfs_mesh::kStays * noise.sigma);
   return noise;
 }

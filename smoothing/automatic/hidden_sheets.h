@@ -25,7 +25,8 @@
 /// Residuals in steps (depths of a sensor) look a little like two sheets in some places, so walls are
 /// believed only if they take at least a twentieth of the cloud. Uniform noise looks like two sheets
 /// everywhere, so they are not believed if they take more than three quarters of it, unless the noise is
-/// known to have tails.
+/// known to have tails. Nor are they looked for in noise of less than a tenth of a spacing (detail() of
+/// noise.h): what it hides are layers of scans that do not quite meet, or a rough surface.
 #pragma once
 
 #include <optional>

@@ -35,6 +35,7 @@ ordered_json json_of_noise(const NoiseModel& noise) {
                        {"at_sites", noise.at_sites}};
   if (noise.across) json["across"] = *noise.across;
   if (!noise.spacing_at_sites.empty()) json["spacing_at_sites"] = noise.spacing_at_sites;
+  if (!noise.told_at_sites.empty()) json["told_at_sites"] = noise.told_at_sites;
   json["sites"] = ordered_json::array();
   for (const auto& p : noise.sites) json["sites"].push_back(json_of_place(p));
   return json;
@@ -52,6 +53,8 @@ NoiseModel noise_of(const ordered_json& json) {
   noise.at_sites = json.at("at_sites").get<std::vector<double>>();
   if (json.contains("spacing_at_sites"))
     noise.spacing_at_sites = json.at("spacing_at_sites").get<std::vector<double>>();
+  if (json.contains("told_at_sites"))
+    noise.told_at_sites = json.at("told_at_sites").get<std::vector<double>>();
   for (const auto& p : json.at("sites")) noise.sites.push_back(place_of(p));
   return noise;
 }
