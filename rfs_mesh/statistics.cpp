@@ -50,9 +50,10 @@ std::vector<std::string> check(const Statistics& statistics) {
     expect(is_number_of_points(noise->across.value_or(1)) && noise->shared >= 1 && is_length(noise->shared),
            "noise: what points share it, or reach across, is no number of points");
     const std::size_t sites = noise->sites.size(), at = noise->at_sites.size(),
-                      spaced = noise->spacing_at_sites.size();
-    expect(at == sites && (spaced == 0 || spaced == sites),
-           fmt::format("noise: sigma at {} and spacing at {} of {} sites", at, spaced, sites));
+                      spaced = noise->spacing_at_sites.size(), told = noise->told_at_sites.size();
+    expect(at == sites && (spaced == 0 || spaced == sites) && (told == 0 || told == sites),
+           fmt::format("noise: sigma at {}, spacing at {} and what is told at {} of {} sites", at, spaced,
+                       told, sites));
   }
   for (const Statistics::Pass& pass : statistics.passes) {
     expect(std::all_of(pass.scales.begin(), pass.scales.end(), is_scale) &&

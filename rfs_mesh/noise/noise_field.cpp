@@ -225,18 +225,20 @@ std::vector<double> mean_around(const Heard& heard, const NoiseSites& sites, dou
   }
   // What one is: what the field has where sites show about the figure. But where some are louder than others
   // the figure may be between the two, and the field calmer than they show: then what it has where they show
-  // the figure, in the middle of all.
-  std::vector<double> alike, shown;
+  // the figure, in the middle of all. Where depths come in steps these make most of the difference, unless it
+  // is large.
+  std::vector<double> alike, shown, times;
   for (std::size_t i = 0; i < relative.size(); ++i) {
     const auto k = Eigen::Index(i);
     const double of_figure = sites.sigma[i] / figure;
     if (of_figure < kAlike && kAlike * of_figure > 1) alike.push_back(best.of_all[k]);
     if (!sites.speaks[i] || !(std::abs(std::log(of_figure)) < std::log(kFar) / 2)) continue;
     shown.push_back(best.value[k] - 2 * std::log(of_figure));
+    times.push_back(of_figure);
   }
   if (alike.empty()) return relative;
   double typical = quantile(alike, 0.5);
-  if (!shown.empty())
+  if (!times.empty() && (!sites.in_steps || quantile(times, 0.9) > kMuchLouder * quantile(times, 0.1)))
     if (const double middle = quantile(shown, 0.5); middle < typical - 2 * std::log(kSameNoise))
       typical = middle;
   for (std::size_t i = 0; i < relative.size(); ++i) {

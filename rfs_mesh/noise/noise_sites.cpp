@@ -193,12 +193,11 @@ class Listener {
   }
 
  private:
-  /// NoiseSites::reach where points are sparse: of the widest quarter. \param all fits to m points
+  /// NoiseSites::reach where points are sparse. \param all fits to m points
   double reach_of_sparse(const std::vector<Scatter>& all) const {
-    constexpr double kSparse = 0.75;
     std::vector<double> reaches;
     for (std::size_t s = 0; s < all.size(); ++s) reaches.push_back(all[s].radius / std::sqrt(double(m[s])));
-    return quantile(reaches, kSparse);
+    return size_where_sparse(std::move(reaches));
   }
 
   /// Sets sigma and whether it is of this place; returns that.
@@ -282,9 +281,8 @@ class Listener {
 
   /// Sets `held_`. \param few, many fits without windows to kNeighbourhood and kPlateauTo points
   void hold_slabs(const std::vector<Scatter>& few, const std::vector<Scatter>& many) {
-    constexpr std::size_t kTimes = kPlateauTo / kNeighbourhood;
-    for (std::size_t points = kNeighbourhood; points <= std::min(widest_, kTimes * kPlateauTo);
-         points *= kTimes) {
+    const std::size_t times = kPlateauTo / kNeighbourhood, last = std::min(widest_, times * kPlateauTo);
+    for (std::size_t points = kNeighbourhood; points <= last; points *= times) {
       const std::vector<Scatter> wide =
           points > kPlateauTo ? Places(places_.index(), places_.at(), points, context_).fits(points)
                               : std::vector<Scatter>();
@@ -378,6 +376,7 @@ Positions listening_places(const Positions& places, std::size_t m) {
 NoiseSites listen(const SpatialIndex& index, Positions at, const NoiseStart& start, const DepthSteps* steps,
                   const Context& context) {
   NoiseSites sites;
+  sites.in_steps = steps != nullptr;
   sites.at = std::move(at);
   Listener listener(index, sites.at, start, context);
   listener.look(steps);

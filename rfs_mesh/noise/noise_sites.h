@@ -52,6 +52,7 @@ namespace rfsmooth::rfs_mesh {
 
 /// By site.
 struct NoiseSites {
+  bool in_steps = false;  ///< whether depths come in steps
   Positions at;
   std::vector<double> sigma;  ///< world units
   std::vector<double> shape;  ///< part of s^2(m) taken off as shape, 0 to 0.6

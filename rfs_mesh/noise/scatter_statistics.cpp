@@ -15,9 +15,7 @@ double chi_square(double freedom, double deviate) {
 
 /// How much balls of these squared radii count.
 std::vector<double> areas_of_squares(std::vector<double> squares) {
-  constexpr double kTypicalArea = 0.75;
-  std::vector<double> sorted = squares;
-  const double typical = quantile(sorted, kTypicalArea);
+  const double typical = size_where_sparse(squares);
   for (double& a : squares) a = typical > 0 ? std::min(1.0, a / typical) : 1;
   return squares;
 }
@@ -32,6 +30,11 @@ double quantile(std::vector<Weighed>& values, double share) {
   for (const Weighed& v : values)
     if ((below += v.weight) >= share * all) return v.value;
   return values.back().value;
+}
+
+double size_where_sparse(std::vector<double> sizes) {
+  constexpr double kTypicalArea = 0.75;
+  return quantile(sizes, kTypicalArea);
 }
 
 std::vector<double> areas(const std::vector<Scatter>& all) {

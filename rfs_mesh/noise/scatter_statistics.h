@@ -27,6 +27,10 @@ using rfsmooth::quantile;  // of values that count alike
 /// The least value that with those below it has `share` of the weight. Sorts. \param values at least one.
 double quantile(std::vector<Weighed>& values, double share);
 
+/// Of balls, or anything that grows with the distance between points: how large they are where these are
+/// sparse, which the widest quarter exceeds. \param sizes at least one
+double size_where_sparse(std::vector<double> sizes);
+
 /// How much each fit counts: 0 to 1.
 std::vector<double> areas(const std::vector<Scatter>& all);
 

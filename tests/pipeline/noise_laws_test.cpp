@@ -139,6 +139,60 @@ TEST(NoiseLaws, NoiseOfSixSpacingsIsSmoothedToATwelfth) {
   EXPECT_LT(rms_off(denoised(points), everywhere), rms_off(points, everywhere) / 12);
 }
 
+/// What a laser in the origin sees of the surface that meets `ray` at a distance: rays `step` degrees apart
+/// within `reach` of the x axis, each with noise along it.
+Positions seen_by_laser(const std::function<double(const Eigen::Vector3d&)>& meet, double reach, double step,
+                        double noise) {
+  std::mt19937_64 engine(5);
+  std::normal_distribution<double> normal(0, noise);
+  constexpr double kDegree = M_PI / 180;
+  Positions points;
+  for (double up = -reach; up < reach; up += step)
+    for (double side = -reach; side < reach; side += step) {
+      const double u = up * kDegree, s = side * kDegree;
+      const Eigen::Vector3d ray(std::cos(u) * std::cos(s), std::cos(u) * std::sin(s), std::sin(u));
+      if (const double there = meet(ray); std::isfinite(there))
+        points.emplace_back((there + normal(engine)) * ray);
+    }
+  return points;
+}
+
+double rms(const Positions& points, const std::function<double(const Eigen::Vector3d&)>& off) {
+  double sum = 0;
+  for (const Eigen::Vector3d& p : points) sum += std::pow(off(p), 2);
+  return std::sqrt(sum / double(points.size()));
+}
+
+// The near end of a wall has more points, and more of the noise lies across it there: several times as many
+// spacings as at the far end.
+TEST(NoiseLaws, AWallSeenAtASlantComesOutFlatAtBothEnds) {
+  for (const double slant : {45.0, 60.0}) {
+    const Eigen::Vector3d normal(std::cos(slant * M_PI / 180), std::sin(slant * M_PI / 180), 0);
+    const double away = 3 * normal.x();
+    const auto meet = [&](const Eigen::Vector3d& ray) {
+      const double there = away / normal.dot(ray);
+      return there > 0 && there < 9 ? there : INFINITY;
+    };
+    const auto off = [&](const Eigen::Vector3d& p) { return p.dot(normal) - away; };
+    for (const double noise : {0.01, 0.02, 0.03}) {
+      const Positions noisy = seen_by_laser(meet, 22.5, 0.3, noise);
+      EXPECT_LT(rms(denoised(noisy), off), 0.25 * rms(noisy, off)) << slant << ' ' << noise;
+    }
+  }
+}
+
+// Noise along the ray is less and less across a ball towards its rim.
+TEST(NoiseLaws, ABallSeenFromOneSideComesOutRoundInItsMiddle) {
+  const Eigen::Vector3d centre(3.7, 0, 0);
+  const auto meet = [&](const Eigen::Vector3d& ray) {
+    const double along = ray.dot(centre), inside = along * along - centre.squaredNorm() + 0.25;
+    return inside > 0 ? along - std::sqrt(inside) : INFINITY;
+  };
+  const auto off = [&](const Eigen::Vector3d& p) { return (p - centre).norm() - 0.5; };
+  const Positions noisy = seen_by_laser(meet, 8, 0.1, 0.01);
+  EXPECT_LT(rms(denoised(noisy), off), 0.2 * rms(noisy, off));
+}
+
 TEST(NoiseLaws, PointsThatAreNoisierThanTheirNeighboursComeToTheSurface) {
   for (const double share : {0.05, 0.2}) {
     std::mt19937_64 engine(4);
