@@ -20,6 +20,7 @@ class Places {
   /// Keeps references to index and context. \param at world units. \param most neighbours to keep
   /// (KeptNeighbors).
   Places(const SpatialIndex& index, Positions at, std::size_t most, const Context& context);
+  Places(const SpatialIndex& index, Positions at, std::size_t most, Context&& context) = delete;
 
   const SpatialIndex& index() const { return index_; }
   const Positions& at() const { return at_; }

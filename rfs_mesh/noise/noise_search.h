@@ -50,6 +50,7 @@ double scatter_reach(double sigma, double narrow);
 
 /// Where the search looks: up to 500 of the points, evenly over their order.
 Places search_places(const SpatialIndex& index, const Context& context);
+Places search_places(const SpatialIndex& index, Context&& context) = delete;
 
 /// By place: start.m; along lines twice kNarrowestPatch where kNarrowestPatch are not on one, since noise
 /// makes a strip of it: twice as many on a line are a quarter as broad.

@@ -30,9 +30,10 @@ Positions rough_square(Sigma&& sigma, double step = 0) {
 
 NoiseSites sites_of(const Positions& points) {
   const SpatialIndex index(points, {});
-  Places places = search_places(index, {});
+  const Context context = {};
+  Places places = search_places(index, context);
   const NoiseStart start = search_noise(places, nullptr);
-  return listen(index, listening_places(points, start.m), start, nullptr, {});
+  return listen(index, listening_places(points, start.m), start, nullptr, context);
 }
 
 double median_where(const NoiseSites& sites, double from, double to) {
@@ -132,7 +133,8 @@ TEST(NoiseSites, HearNoMoreThanIsSeenWithoutAWindow) {
     for (const double sigma : {0.1, 0.2, 0.4}) {
       const Positions points = ribs(thick, sigma);
       const SpatialIndex index(points, {});
-      Places places = search_places(index, {});
+      const Context context = {};
+      Places places = search_places(index, context);
       const NoiseStart start = search_noise(places, nullptr);
       const NoiseSites sites = listen(index, listening_places(points, start.m), start, nullptr, {});
       std::size_t known = 0, above = 0;
