@@ -50,6 +50,7 @@ double scatter_reach(double sigma, double narrow);
 
 /// Where the search looks: up to 500 of the points, evenly over their order.
 Places search_places(const SpatialIndex& index, const Context& context);
+/// It would keep a reference to a context that is gone.
 Places search_places(const SpatialIndex& index, Context&& context) = delete;
 
 /// By place: start.m; along lines twice kNarrowestPatch where kNarrowestPatch are not on one, since noise
