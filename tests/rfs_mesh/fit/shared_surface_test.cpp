@@ -119,7 +119,8 @@ TEST(SharedSurface, EveryPlaceIsFittedForItsOwnNoise) {
     noise[i] = here ? kLoud : kCalm;
   }
   const SpatialIndex index(points, {});
-  const auto surfaces = shared_local_surfaces(index, index.nearest(kNear, {}), {kLoud, 96}, noise, {}, kNear, {});
+  const auto surfaces =
+      shared_local_surfaces(index, index.nearest(kNear, {}), {kLoud, 96}, noise, {}, kNear, {});
   const auto all_calm = shared(points, 96, kCalm), all_loud = shared(points, 96, kLoud);
   std::size_t inside = 0, apart = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
