@@ -42,7 +42,6 @@ double variance_inside(double c) {
 RFSMOOTH_AVX2
 void ScatterFit::find_residuals(const Vector6& c) {
   const Heights heights(c);
-  residual_.resize(u_.size());
   for (std::size_t i = 0; i < u_.size(); ++i) residual_[i] = z_[i] - heights(u_[i], v_[i]);
 }
 
@@ -79,7 +78,6 @@ void ScatterFit::look_at_residuals(Scatter& s) const {
 
 RFSMOOTH_AVX2
 void ScatterFit::scale(const Positions& points, const Eigen::Vector3d& place, double r) {
-  for (std::vector<double>* const values : {&x_, &y_, &z_, &u_, &v_, &weight_}) values->resize(near_.size());
   for (std::size_t i = 0; i < near_.size(); ++i) {
     const Eigen::Vector3d& p = points[near_[i].index];
     x_[i] = p[0] - place[0], y_[i] = p[1] - place[1], z_[i] = p[2] - place[2];
@@ -135,7 +133,7 @@ double ScatterFit::keep_inside() {
     weight_[count++] = inside * inside;
     all += inside * inside;
   }
-  for (std::vector<double>* const values : {&u_, &v_, &z_, &weight_}) values->resize(count);
+  for (std::vector<double>* const values : {&u_, &v_, &z_, &weight_, &residual_}) values->resize(count);
   return all;
 }
 
@@ -183,6 +181,8 @@ Scatter ScatterFit::operator()(const SpatialIndex& index, const Eigen::Vector3d&
   s.radius = std::sqrt(near_.back().squared_distance);
   if (!(s.radius > 0)) return s;
   const double r = 1.1 * s.radius;  // the farthest neighbour keeps a little weight
+  for (std::vector<double>* const values : {&x_, &y_, &z_, &u_, &v_, &weight_, &residual_})
+    values->resize(near_.size());
   scale(index.points(), place, r);
   Eigen::Matrix3d axes = find_axes(s.breadth);
   const bool line = s.breadth < kLine;
