@@ -192,6 +192,12 @@ class Listener {
     return all;
   }
 
+  /// Of the sites around, the median of their reaches.
+  double reach_around(std::size_t s, const std::vector<double>& reaches) const {
+    std::vector<double> near = around(s, reaches, group_[s].size());
+    return quantile(near, 0.5);
+  }
+
  private:
   /// NoiseSites::reach where points are sparse. \param all fits to m points
   double reach_of_sparse(const std::vector<Scatter>& all) const {
@@ -388,9 +394,12 @@ NoiseSites listen(const SpatialIndex& index, Positions at, const NoiseStart& sta
   for (std::size_t s = 0; s < windows.size(); ++s)
     sites.cut.push_back(char(sites.fits[s].within > kFilled * windows[s] * windows[s]));
   // Balls of more points are not for that more of the surface.
+  std::vector<double> reaches;
   for (std::size_t s = 0; s < sites.fits.size(); ++s)
-    sites.reach.push_back(sites.fits[s].radius / std::sqrt(double(listener.m[s])));
-  sites.area = areas(sites.reach);
+    reaches.push_back(sites.fits[s].radius / std::sqrt(double(listener.m[s])));
+  sites.area = areas(reaches);
+  for (std::size_t s = 0; s < sites.fits.size(); ++s)
+    sites.reach.push_back(listener.reach_around(s, reaches));  // points at random are denser here and there
   sites.sigma = listener.sigma;
   sites.speaks = listener.speaks;
   sites.floor = listener.floor;
