@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <rfsmooth/mesh.h>
 #include <rfsmooth/statistics.h>
 
 namespace rfsmooth {
@@ -22,7 +23,7 @@ bool are_lengths(const std::vector<double>& values) {
 
 /// At least one, and no more than an index can tell apart.
 bool is_number_of_points(std::size_t n) {
-  return n >= 1 && n < std::numeric_limits<std::uint32_t>::max();
+  return n >= 1 && n < kNone;
 }
 
 /// Of any cloud so many thinnings leave one point.

@@ -160,17 +160,22 @@ std::vector<Index> wider_where_dense(const NoiseField& noise, double loud, const
   return wider;
 }
 
-/// What `whole` says of the noise; what it does not say is measured and entered. \param wider
-/// wider_where_dense()
-NoiseLevel measure(const SpatialIndex& index, const NeighborTable& near, const Context& context,
-                   Statistics& whole, std::vector<Index>& wider) {
+/// The noise, and wider_where_dense() of it.
+struct Measured {
+  NoiseLevel level;
+  std::vector<Index> wider;
+};
+
+/// What `whole` says of the noise; what it does not say is measured and entered.
+Measured measure(const SpatialIndex& index, const NeighborTable& near, const Context& context,
+                 Statistics& whole) {
   measure_cloud(index, near, whole, context);
   NoiseField field = spread_noise(*whole.noise, index.points(), context);
   const double loud = loudness(field), least = kNoNoise * field.spacing;
   const double share = loud > 0 ? whole.scale->sigma / loud : 0;
-  wider = wider_where_dense(field, loud, *whole.scale);
+  std::vector<Index> wider = wider_where_dense(field, loud, *whole.scale);
   for (double& sigma : field.local) sigma = std::max(share * sigma, least);
-  return {*whole.spacing, field.sigma, std::move(field.local)};
+  return {{*whole.spacing, field.sigma, std::move(field.local)}, std::move(wider)};
 }
 
 /// The first stages, up to the surfaces: what is measured on the points themselves. Fills emst, noise and
@@ -181,8 +186,9 @@ Ground survey(Cloud cloud, const ConnectOptions& options, const Context& context
   const NeighborTable& near = cloud.near;
   const Positions& points = index.points();
   const std::size_t n = points.size();
-  std::vector<Index> wider;
-  c.noise = stages.run("noise", 0.15, [&] { return measure(index, near, context, whole, wider); });
+  Measured measured = stages.run("noise", 0.15, [&] { return measure(index, near, context, whole); });
+  c.noise = std::move(measured.level);
+  const std::vector<Index>& wider = measured.wider;
   const NoiseScale scale = *whole.scale;
   c.on_shadow = guide == nullptr && n > 0 && scale.sigma > options.shadow_from * c.noise.spacing;
   c.emst = stages.run("emst", 0.2, [&] {

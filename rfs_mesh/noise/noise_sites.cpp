@@ -148,7 +148,7 @@ class Listener {
     const std::vector<Scatter> all = places_.fits(m, sigma);
     const std::vector<Said> said = what_they_say(all, kTypicalDeviate);
     const std::vector<double> before = sigma;
-    const double typical_reach = reach_of_sparse(all);
+    const double typical_reach = size_where_sparse(reaches(all));
     std::vector<char> opened(group_.size(), 0);
     for_each_index(
         context_, group_.size(),
@@ -192,20 +192,25 @@ class Listener {
     return all;
   }
 
-  /// Of the sites around, the median of their reaches.
-  double reach_around(std::size_t s, const std::vector<double>& reaches) const {
-    std::vector<double> near = around(s, reaches, group_[s].size());
-    return quantile(near, 0.5);
+  /// By site: the radius of its ball over the root of its points, which are not for being more of more
+  /// surface. \param all fits to m points
+  std::vector<double> reaches(const std::vector<Scatter>& all) const {
+    std::vector<double> of;
+    for (std::size_t s = 0; s < all.size(); ++s) of.push_back(all[s].radius / std::sqrt(double(m[s])));
+    return of;
+  }
+
+  /// The medians of these over the sites around each: points at random are denser here and there.
+  std::vector<double> medians_around(const std::vector<double>& of_sites) const {
+    std::vector<double> medians;
+    for (std::size_t s = 0; s < of_sites.size(); ++s) {
+      std::vector<double> near = around(s, of_sites, group_[s].size());
+      medians.push_back(quantile(near, 0.5));
+    }
+    return medians;
   }
 
  private:
-  /// NoiseSites::reach where points are sparse. \param all fits to m points
-  double reach_of_sparse(const std::vector<Scatter>& all) const {
-    std::vector<double> reaches;
-    for (std::size_t s = 0; s < all.size(); ++s) reaches.push_back(all[s].radius / std::sqrt(double(m[s])));
-    return size_where_sparse(std::move(reaches));
-  }
-
   /// Sets sigma and whether it is of this place; returns that.
   bool hear_at(std::size_t s, const std::vector<Said>& all) {
     const std::vector<Said> near = around(s, all, kSmallestGroup), wide = around(s, all, group_[s].size());
@@ -287,12 +292,7 @@ class Listener {
 
   /// Sets `held_`. \param few, many fits without windows to kNeighbourhood and kPlateauTo points
   void hold_slabs(const std::vector<Scatter>& few, const std::vector<Scatter>& many) {
-    const std::size_t times = kPlateauTo / kNeighbourhood, last = std::min(widest_, times * kPlateauTo);
-    for (std::size_t points = kNeighbourhood; points <= last; points *= times) {
-      const std::vector<Scatter> wide =
-          points > kPlateauTo ? Places(places_.index(), places_.at(), points, context_).fits(points)
-                              : std::vector<Scatter>();
-      const std::vector<Scatter>& all = points == kNeighbourhood ? few : points == kPlateauTo ? many : wide;
+    const auto hold = [&](const std::vector<Scatter>& all) {
       for_each_index(
           context_, group_.size(),
           [&](std::size_t s) {
@@ -302,7 +302,12 @@ class Listener {
             if (seen < kFlatSlab * nearest.radius()) held_[s] = seen;
           },
           64);
-    }
+    };
+    constexpr std::size_t widest = kPlateauTo * (kPlateauTo / kNeighbourhood);
+    if (widest_ >= kNeighbourhood) hold(few);
+    if (widest_ >= kPlateauTo) hold(many);
+    if (widest_ >= widest && std::find(held_.begin(), held_.end(), 0.0) != held_.end())
+      hold(Places(places_.index(), places_.at(), widest, context_).fits(widest));
   }
 
   /// Raises `floor` where fits without windows show two layers around that are no sheets. \param open all of
@@ -393,13 +398,9 @@ NoiseSites listen(const SpatialIndex& index, Positions at, const NoiseStart& sta
   sites.fits = listener.hear(1, false);
   for (std::size_t s = 0; s < windows.size(); ++s)
     sites.cut.push_back(char(sites.fits[s].within > kFilled * windows[s] * windows[s]));
-  // Balls of more points are not for that more of the surface.
-  std::vector<double> reaches;
-  for (std::size_t s = 0; s < sites.fits.size(); ++s)
-    reaches.push_back(sites.fits[s].radius / std::sqrt(double(listener.m[s])));
+  const std::vector<double> reaches = listener.reaches(sites.fits);
   sites.area = areas(reaches);
-  for (std::size_t s = 0; s < sites.fits.size(); ++s)
-    sites.reach.push_back(listener.reach_around(s, reaches));  // points at random are denser here and there
+  sites.reach = listener.medians_around(reaches);
   sites.sigma = listener.sigma;
   sites.speaks = listener.speaks;
   sites.floor = listener.floor;

@@ -62,8 +62,7 @@ struct NoiseSites {
   std::vector<double> most;   ///< what is seen without windows around it, world units; infinite: not known
   std::vector<double> floor;  ///< what steps, shared noise or layers make sure of, world units; 0: nothing
   std::vector<char> told;     ///< whether the scatter around it stops growing, and is no detail
-  std::vector<double>
-      reach;  ///< radius of a ball there over the root of its points, of those around: world units
+  std::vector<double> reach;  ///< radius of balls around it over the root of their points, world units
   std::vector<Scatter> fits;  ///< to the m nearest of the site by itself, more where it is far louder
 };
 
