@@ -303,11 +303,11 @@ class Listener {
           },
           64);
     };
-    constexpr std::size_t widest = kPlateauTo * (kPlateauTo / kNeighbourhood);
+    constexpr std::size_t kWidest = kPlateauTo * (kPlateauTo / kNeighbourhood);
     if (widest_ >= kNeighbourhood) hold(few);
     if (widest_ >= kPlateauTo) hold(many);
-    if (widest_ >= widest && std::find(held_.begin(), held_.end(), 0.0) != held_.end())
-      hold(Places(places_.index(), places_.at(), widest, context_).fits(widest));
+    if (widest_ >= kWidest && std::find(held_.begin(), held_.end(), 0.0) != held_.end())
+      hold(Places(places_.index(), places_.at(), kWidest, context_).fits(kWidest));
   }
 
   /// Raises `floor` where fits without windows show two layers around that are no sheets. \param open all of
