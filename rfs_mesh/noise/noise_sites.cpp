@@ -37,6 +37,8 @@ constexpr double kEven = 3, kFilled = 1.73;
 constexpr double kMiddleOfSheets = 0.25;
 // Points at two depths that follow each other scatter by half a step, and rounding by 1 / sqrt(12) of it.
 constexpr double kTwoDepths = 3;
+// Coefficients of a quadric.
+constexpr double kOfQuadric = 6;
 constexpr int kOpeningRounds = 8;  // windows widen by up to 1.7 in each
 
 // Times, from kNeighbourhood to kPlateauTo points: less than this, and scatter is noise; more than that,
@@ -63,12 +65,13 @@ struct Around {
     double saying = 0;
     for (const Scatter& fit : fits) {
       if (!says(fit)) continue;
+      freedom += fit.freedom;
       flatness += fit.flatness;
       lean += fit.lean - kLeanByChance;
       middle += fit.middle;
       ++saying;
     }
-    for (double* const sum : {&flatness, &lean, &middle}) *sum /= saying;
+    for (double* const sum : {&freedom, &flatness, &lean, &middle}) *sum /= saying;
   }
 
   double variance() const { return mean_variance(fits, kTypical, kTypicalDeviate); }
@@ -80,7 +83,14 @@ struct Around {
   }
 
   std::vector<Scatter> fits;
-  double flatness = 0, lean = 0, middle = 0;  ///< means; lean: beyond chance; nan: no fit says a thing
+  double freedom = 0, flatness = 0, lean = 0,
+         middle = 0;  ///< means; lean: beyond chance; nan: no fit says a thing
+};
+
+/// Fits at all sites to so many points, without windows.
+struct OpenFits {
+  std::size_t points;
+  std::vector<Scatter> all;
 };
 
 /// Fits at the sites, and what each site's neighbours say together.
@@ -94,7 +104,9 @@ class Listener {
         narrow_(at.size(), 0),
         open_(at.size(), 0),
         sheet_(at.size(), std::numeric_limits<double>::infinity()),
+        measured_(at.size(), 0),
         held_(at.size(), 0),
+        seen_(at.size(), std::numeric_limits<double>::infinity()),
         widest_(widest_scatter(cloud)),
         start_(start.sigma),
         on_lines_(start.on_lines),
@@ -111,34 +123,36 @@ class Listener {
         context, at.size(), [&](std::size_t s) { index.nearest(at[s], group, group_[s]); }, 64);
   }
 
-  /// Looks without windows: sets `open_`, `sheet_`, `most`, `floor` and `told`, and no window is narrower
-  /// than that.
+  /// Looks without windows: sets `open_`, `sheet_`, `measured_`, `seen_`, `most`, `floor` and `told`, and no
+  /// window is narrower than the floor, or wider than a sheet.
   void look(const DepthSteps* steps) {
-    std::vector<double> middle(group_.size(), 1);
-    const std::size_t few_points = std::min(n_, kNeighbourhood),
-                      wide = std::min(n_, std::max(kNeighbourhood, m.front()));
-    const bool many_there = n_ >= 2 * kPlateauTo;
-    const std::vector<Scatter> many = many_there ? places_.fits(kPlateauTo) : std::vector<Scatter>();
-    const std::vector<Scatter> few = places_.fits(few_points);
-    const std::vector<Scatter> all = wide == few_points ? few : places_.fits(wide);
+    std::vector<OpenFits> open;
+    for (std::size_t points = kNeighbourhood; open.empty() || (points <= kPlateauTo && n_ >= 2 * points);
+         points *= 2)
+      open.push_back({points, places_.fits(points)});
+    const std::vector<Scatter>& few = open.front().all;
+    const std::vector<Scatter> none, wide = deep_ ? places_.fits(m.front()) : none;
     const std::vector<Said> said = what_they_say(few, kTypicalDeviate);
+    std::vector<double> middle(group_.size(), 1);
     for_each_index(
         context_, group_.size(),
         [&](std::size_t s) {
           open_[s] = std::sqrt(mean_variance(around(s, said, group_[s].size()), kTypical));
-          bound(s, all);
-          const Around nearest(around(s, few, kNeighbourhood));
-          look_for_sheets(s, nearest, few, steps, middle[s]);
-          if (many_there) {
-            look_for_sheets(s, Around(around(s, many, kNeighbourhood)), many, steps, middle[s]);
-            find_floor(s, few, many, steps);
-          }
-          if (!on_lines_) look_for_layers(s, nearest, few, steps);
-          sigma[s] = std::max(sigma[s], floor[s]);
+          if (!deep_) seen_[s] = std::sqrt(Around(around(s, few, group_[s].size())).variance());
+          bound(s, deep_ ? wide : few);
+          look_for_sheets(s, open, steps, middle[s]);
         },
         64);
     believe_sheets(middle);
-    if (deep_) hold_slabs(few, many);
+    const bool many_there = open.back().points == kPlateauTo;
+    for_each_index(
+        context_, group_.size(),
+        [&](std::size_t s) {
+          if (many_there) find_floor(s, few, open.back().all, steps);
+          sigma[s] = std::max(floor[s], std::min(sigma[s], sheet_[s]));
+        },
+        64);
+    if (deep_) hold_slabs(few, many_there ? open.back().all : none);
   }
 
   /// One round that opens windows which are too narrow for their places; false if there are none. A place
@@ -159,13 +173,13 @@ class Listener {
             radius.push_back(all[q.index].radius);
             if (all[q.index].within > 0) full.push_back(all[q.index].within / (window * window));
           }
-          if (!hear_at(s, said)) {
+          if (!hear_at(s, said, 1)) {
             // Nearly nothing around is left within windows made for far calmer places.
             const bool empty = double(full.size()) < (1 - kMostSpeak) * double(group_[s].size());
             const double typical = empty ? kEven : quantile(full, 0.5);
             if (typical > kFilled && !std::isfinite(sheet_[s]))
-              sigma[s] =
-                  std::min(at_most(s), std::max(kNarrowestWindow * open_[s], std::sqrt(typical) * before[s]));
+              sigma[s] = std::min(at_most(s, 1),
+                                  std::max(kNarrowestWindow * open_[s], std::sqrt(typical) * before[s]));
             opened[s] = char(sigma[s] > before[s]);
           }
           const double reach = quantile(radius, 0.5);
@@ -187,7 +201,7 @@ class Listener {
     std::vector<Scatter> all = places_.fits(points, sigma);
     const std::vector<Said> said = what_they_say(all, kTypicalDeviate);
     for_each_index(
-        context_, group_.size(), [&](std::size_t s) { hear_at(s, said); }, 64);
+        context_, group_.size(), [&](std::size_t s) { hear_at(s, said, times); }, 64);
     if (move) places_.move_to_feet(all);
     return all;
   }
@@ -211,8 +225,9 @@ class Listener {
   }
 
  private:
-  /// Sets sigma and whether it is of this place; returns that.
-  bool hear_at(std::size_t s, const std::vector<Said>& all) {
+  /// Sets sigma and whether it is of this place; returns that. Where no fit within windows says anything but
+  /// two sheets are seen, the noise is what each of them shows. \param all fits to `times` m points
+  bool hear_at(std::size_t s, const std::vector<Said>& all, std::size_t times) {
     const std::vector<Said> near = around(s, all, kSmallestGroup), wide = around(s, all, group_[s].size());
     const auto saying = [](const std::vector<Said>& fits) {
       return double(std::count_if(fits.begin(), fits.end(), [](const Said& fit) { return fit.freedom > 0; }));
@@ -222,12 +237,21 @@ class Listener {
     if (wide.size() > kSmallestGroup && saying(near) >= kMostSpeak * double(kSmallestGroup))
       if (const double of_near = mean_variance(near, kTypical); of_near > kDiffers * variance)
         variance = of_near;
-    if (speaks[s] != 0) sigma[s] = std::min(at_most(s), std::sqrt(variance));
+    if (speaks[s] != 0)
+      sigma[s] = std::min(at_most(s, times), std::sqrt(variance));
+    else if (std::isfinite(sheet_[s]) && (measured_[s] != 0 || sheet_[s] < start_))
+      sigma[s] = floor[s] = sheet_[s];
     return speaks[s] != 0;
   }
 
-  /// What a window at the site may show: what is seen without one, and of two sheets that of each.
-  double at_most(std::size_t s) const { return std::min(sheet_[s], std::max(start_, kSameNoise * most[s])); }
+  /// What a window around `times` m points may show: what is seen without one, which grows inside a slab of
+  /// noisy points as their ball does, and of two sheets that of each. More is an edge or a second sheet that
+  /// a wider window has let in, and the next one would let in more.
+  double at_most(std::size_t s, std::size_t times) const {
+    const double balls = std::cbrt(std::max(1.0, double(times * m[s]) / double(kNeighbourhood)));
+    return std::min(sheet_[s],
+                    std::max(start_, kSameNoise * std::min(most[s], kOfTheSlab * balls * seen_[s])));
+  }
 
   /// Sets `most` from what the nearest sites see without windows.
   void bound(std::size_t s, const std::vector<Scatter>& open) {
@@ -267,27 +291,58 @@ class Listener {
     return variance > kTwoDepths * rounding * rounding;
   }
 
-  /// Lowers `sheet_`, and `middle` to their Scatter::middle, where fits without windows show two sheets
-  /// around, farther apart than two depths that follow each other. \param open all of them
-  void look_for_sheets(std::size_t s, const Around& around, const std::vector<Scatter>& open,
-                       const DepthSteps* steps, double& middle) {
-    if (!(around.flatness < kFlatnessOfSheets)) return;
-    const double variance = around.variance();
-    if (!exceeds_rounding(variance, s, open, steps)) return;
-    sheet_[s] = std::min(sheet_[s], std::sqrt(variance * share_of_sheet(around.flatness)));
-    middle = std::min(middle, around.middle);
+  /// Sets `sheet_`, `measured_`, and `middle` to Scatter::middle, where fits without windows show two sheets
+  /// around, farther apart than two depths that follow each other; or `floor` if these are layers. A ball
+  /// narrower than the sheets are apart holds hardly any of the second one, a wide one bends away with the
+  /// surface, so those count that are flattest.
+  void look_for_sheets(std::size_t s, const std::vector<OpenFits>& open, const DepthSteps* steps,
+                       double& middle) {
+    const Around nearest(around(s, open.front().all, kNeighbourhood));
+    Around flattest = nearest;
+    const OpenFits* of_flattest = &open.front();
+    for (std::size_t k = 1; k < open.size(); ++k) {
+      Around wider(around(s, open[k].all, kNeighbourhood));
+      if (!(wider.flatness < flattest.flatness)) continue;
+      flattest = std::move(wider);
+      of_flattest = &open[k];
+    }
+    const bool two = flattest.flatness < kFlatnessOfSheets;
+    if (two && exceeds_rounding(flattest.variance(), s, of_flattest->all, steps)) {
+      measure_sheet(s, flattest);
+      middle = flattest.middle;
+    }
+    if (on_lines_) return;
+    if (two && flattest.lean <= 0)
+      look_for_layers(s, flattest, *of_flattest, steps);
+    else
+      look_for_layers(s, nearest, open.front(), steps);
   }
 
-  /// Forgets `sheet_` if the noise itself is flat, and not empty in its middle. \param middle of each site
+  /// Sets `sheet_` and `measured_` from fits that hold two sheets.
+  void measure_sheet(std::size_t s, const Around& around) {
+    const double share = share_of_sheet(around.flatness, std::max(0.0, around.lean));
+    // The quadric bends to the sheet that happens to have more points here and there, and so spreads what
+    // lies between the sheets; by its share of the degrees of freedom.
+    const double spread = (1 - share) * kOfQuadric / (around.freedom + kOfQuadric);
+    const double least = kNarrowestWindow * kNarrowestWindow;
+    sheet_[s] = std::sqrt(around.variance() * std::max(least, share - spread));
+    measured_[s] = char(share - spread > spread);
+  }
+
+  /// Forgets `sheet_` if the noise itself is flat, and not empty in its middle; and what was measured on
+  /// sheets if most of them were too exact for that: the others only seem not to be. \param middle of each
+  /// site
   void believe_sheets(const std::vector<double>& middle) {
-    double sum = 0, parted = 0;
+    double sum = 0, parted = 0, measured = 0;
     for (std::size_t s = 0; s < sheet_.size(); ++s) {
       if (!std::isfinite(sheet_[s])) continue;
       sum += middle[s];
+      measured += measured_[s];
       ++parted;
     }
     if (sum > kMiddleOfSheets * parted)
       std::fill(sheet_.begin(), sheet_.end(), std::numeric_limits<double>::infinity());
+    if (measured < parted / 2) std::fill(measured_.begin(), measured_.end(), 0);
   }
 
   /// Sets `held_`. \param few, many fits without windows to kNeighbourhood and kPlateauTo points
@@ -310,25 +365,24 @@ class Listener {
       hold(Places(places_.index(), places_.at(), kWidest, context_).fits(kWidest));
   }
 
-  /// Raises `floor` where fits without windows show two layers around that are no sheets. \param open all of
-  /// them
-  void look_for_layers(std::size_t s, const Around& around, const std::vector<Scatter>& open,
-                       const DepthSteps* steps) {
+  /// Raises `floor` where fits without windows show two layers around that are no sheets.
+  void look_for_layers(std::size_t s, const Around& around, const OpenFits& open, const DepthSteps* steps) {
     constexpr double kNormalFlatness = 3;
     constexpr double kToNearest = 0.25;  // the mean distance from a random point to its nearest, squared
     if (!(around.flatness < kNormalFlatness)) return;
     const double lean = std::max(0.0, around.lean), of_sheet = share_of_sheet(around.flatness, lean);
     if (!(of_sheet < share_of_sheet(kFlatnessOfSheets))) return;
     const double variance = around.variance(), wide = around.radius(),
-                 square_of_point = M_PI * wide * wide / double(kNeighbourhood),
+                 square_of_point = M_PI * wide * wide / double(open.points),
                  nearest = (lean > 0 ? 1 : kToNearest) * square_of_point;
     if (!(squared_gap(of_sheet, lean) * variance < nearest)) return;
-    if (!exceeds_rounding(variance, s, open, steps)) return;
-    sheet_[s] = std::numeric_limits<double>::infinity();
+    if (!exceeds_rounding(variance, s, open.all, steps)) return;
+    sheet_[s] = seen_[s] = std::numeric_limits<double>::infinity();
     floor[s] = std::max(floor[s], std::sqrt(variance));
   }
 
-  /// Sets `floor` and `told` from what is seen without windows.
+  /// Raises `floor`, sets `told`, from what is seen without windows. What two sheets scatter does not grow,
+  /// either.
   void find_floor(std::size_t s, const std::vector<Scatter>& few, const std::vector<Scatter>& many,
                   const DepthSteps* steps) {
     std::vector<double> narrow, wide, radius;
@@ -338,7 +392,7 @@ class Listener {
       wide.push_back(many[q.index].variance);
     }
     const double less = std::sqrt(quantile(narrow, kTypical)), seen = std::sqrt(quantile(wide, kTypical));
-    floor[s] = plateau(less, seen, quantile(radius, 0.5));
+    if (!std::isfinite(sheet_[s])) floor[s] = std::max(floor[s], plateau(less, seen, quantile(radius, 0.5)));
     told[s] = char(seen < kStops * less);
     // A stack of slices has few depths, too, and none of the scatter.
     if (steps != nullptr) floor[s] = std::max(floor[s], std::min(seen, rounding_around(s, many, *steps)));
@@ -361,8 +415,10 @@ class Listener {
   std::vector<std::vector<Neighbor>> group_;
   std::vector<double> narrow_;  ///< radius of the ball of the fewest neighbours; 0: not asked for yet
   std::vector<double> open_;    ///< what the fits around show without windows, world units
-  std::vector<double> sheet_;   ///< what each of two sheets shows at most; infinite: there is one
+  std::vector<double> sheet_;   ///< what each of two sheets shows; infinite: there is one
+  std::vector<char> measured_;  ///< whether it shows that; else at most that
   std::vector<double> held_;    ///< what the first ball shows that holds the slab, without windows; 0: none
+  std::vector<double> seen_;    ///< what kNeighbourhood points show, without windows; infinite: no matter
   std::size_t widest_;
   double start_;  ///< world units
   bool on_lines_;

@@ -8,6 +8,7 @@
 #include <rfsmooth/denoise.h>
 
 #include "rfs_mesh/fit/local_surface.h"
+#include "rfs_mesh/noise/noise.h"
 #include "tests/support/meshes.h"
 #include "tests/support/shapes.h"
 
@@ -288,6 +289,39 @@ TEST(NoiseLaws, AThinPlateInDepthsOfStepsStaysAPlate) {
     plate.push_back(p);
   }
   EXPECT_LE(rms(denoised(plate)), 1.01 * rms(plate));
+}
+
+/// What a plate of so many points shows: two sheets, `thick` and noise in spacings.
+struct Plate {
+  double thick, sigma;
+};
+
+TEST(NoiseLaws, OfAThinPlateIsThatOfItsSheetsNotTheirDistance) {
+  constexpr std::size_t kPoints = 10000;
+  const double spacing = 0.5 * std::sqrt(2.0 / double(kPoints));  // of random points on two unit squares
+  for (const Plate& plate :
+       {Plate{1.5, 0.02}, Plate{1.5, 0.2}, Plate{2, 0.35}, Plate{3, 0.2}, Plate{3, 0.35}}) {
+    SCOPED_TRACE(testing::Message() << plate.thick << " spacings thick, noise of " << plate.sigma);
+    std::mt19937_64 engine(5);
+    std::uniform_real_distribution<double> uniform(0, 1);
+    std::normal_distribution<double> noise(0, plate.sigma * spacing);
+    const auto side = [&](std::size_t i) { return i % 2 == 0 ? 0 : plate.thick * spacing; };
+    Positions points;
+    for (std::size_t i = 0; i < kPoints; ++i)
+      points.emplace_back(uniform(engine), uniform(engine), side(i) + noise(engine));
+    const auto off_its_side = [&](const Positions& of) {
+      double sum = 0;
+      for (std::size_t i = 0; i < kPoints; ++i) sum += std::pow(of[i].z() - side(i), 2);
+      return std::sqrt(sum / double(kPoints)) / spacing;
+    };
+    if (plate.sigma >= 0.2) {
+      const double read =
+          rfs_mesh::measure_noise(rfs_mesh::SpatialIndex(points, {}), {}).sigma / (plate.sigma * spacing);
+      EXPECT_GT(read, 1 / 1.3);
+      EXPECT_LT(read, 1.3);
+    }
+    EXPECT_LE(off_its_side(denoised(points)), off_its_side(points) + 0.01);
+  }
 }
 
 TEST(NoiseLaws, ATorusInDepthsOfStepsIsNotTornIntoSheets) {
