@@ -224,7 +224,7 @@ std::vector<double> mean_around(const Heard& heard, const NoiseSites& sites, dou
     if (best.value.size() == 0 || means.gain > best.gain + kSurely) best = std::move(means);
   }
   // What one is: what the field has where sites show about the figure. But where some are louder than others
-  // the figure may be between the two, and the field calmer than they show: then what it has where they show
+  // the figure may be between the two, and the field another than they show: then what it has where they show
   // the figure, in the middle of all. Where depths come in steps these make most of the difference, unless it
   // is large.
   std::vector<double> alike, shown, times;
@@ -239,7 +239,7 @@ std::vector<double> mean_around(const Heard& heard, const NoiseSites& sites, dou
   if (alike.empty()) return relative;
   double typical = quantile(alike, 0.5);
   if (!times.empty() && (!sites.in_steps || quantile(times, 0.9) > kMuchLouder * quantile(times, 0.1)))
-    if (const double middle = quantile(shown, 0.5); middle < typical - 2 * std::log(kSameNoise))
+    if (const double middle = quantile(shown, 0.5); std::abs(middle - typical) > 2 * std::log(kSameNoise))
       typical = middle;
   for (std::size_t i = 0; i < relative.size(); ++i) {
     // Half: of the standard deviation, not of the variance.

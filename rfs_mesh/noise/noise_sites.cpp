@@ -104,7 +104,6 @@ class Listener {
         narrow_(at.size(), 0),
         open_(at.size(), 0),
         sheet_(at.size(), std::numeric_limits<double>::infinity()),
-        measured_(at.size(), 0),
         held_(at.size(), 0),
         seen_(at.size(), std::numeric_limits<double>::infinity()),
         widest_(widest_scatter(cloud)),
@@ -123,7 +122,7 @@ class Listener {
         context, at.size(), [&](std::size_t s) { index.nearest(at[s], group, group_[s]); }, 64);
   }
 
-  /// Looks without windows: sets `open_`, `sheet_`, `measured_`, `seen_`, `most`, `floor` and `told`, and no
+  /// Looks without windows: sets `open_`, `sheet_`, `seen_`, `most`, `floor` and `told`, and no
   /// window is narrower than the floor, or wider than a sheet.
   void look(const DepthSteps* steps) {
     std::vector<OpenFits> open;
@@ -226,7 +225,8 @@ class Listener {
 
  private:
   /// Sets sigma and whether it is of this place; returns that. Where no fit within windows says anything but
-  /// two sheets are seen, the noise is what each of them shows. \param all fits to `times` m points
+  /// two sheets are seen, the noise is what each of them shows, if that is less than the start. \param all
+  /// fits to `times` m points
   bool hear_at(std::size_t s, const std::vector<Said>& all, std::size_t times) {
     const std::vector<Said> near = around(s, all, kSmallestGroup), wide = around(s, all, group_[s].size());
     const auto saying = [](const std::vector<Said>& fits) {
@@ -239,7 +239,7 @@ class Listener {
         variance = of_near;
     if (speaks[s] != 0)
       sigma[s] = std::min(at_most(s, times), std::sqrt(variance));
-    else if (std::isfinite(sheet_[s]) && (measured_[s] != 0 || sheet_[s] < start_))
+    else if (sheet_[s] < start_)
       sigma[s] = floor[s] = sheet_[s];
     return speaks[s] != 0;
   }
@@ -291,58 +291,51 @@ class Listener {
     return variance > kTwoDepths * rounding * rounding;
   }
 
-  /// Sets `sheet_`, `measured_`, and `middle` to Scatter::middle, where fits without windows show two sheets
-  /// around, farther apart than two depths that follow each other; or `floor` if these are layers. A ball
-  /// narrower than the sheets are apart holds hardly any of the second one, a wide one bends away with the
-  /// surface, so those count that are flattest.
+  /// Sets `sheet_`, and `middle` to Scatter::middle, where fits without windows show two sheets around,
+  /// farther apart than two depths that follow each other; or `floor` if these are layers. A ball narrower
+  /// than the sheets are apart holds hardly any of the second one, a wide one bends away with the surface, so
+  /// those count that are flattest. What the residuals of mere shape show may be as flat, but grows.
   void look_for_sheets(std::size_t s, const std::vector<OpenFits>& open, const DepthSteps* steps,
                        double& middle) {
-    const Around nearest(around(s, open.front().all, kNeighbourhood));
-    Around flattest = nearest;
-    const OpenFits* of_flattest = &open.front();
-    for (std::size_t k = 1; k < open.size(); ++k) {
-      Around wider(around(s, open[k].all, kNeighbourhood));
-      if (!(wider.flatness < flattest.flatness)) continue;
-      flattest = std::move(wider);
-      of_flattest = &open[k];
-    }
-    const bool two = flattest.flatness < kFlatnessOfSheets;
-    if (two && exceeds_rounding(flattest.variance(), s, of_flattest->all, steps)) {
-      measure_sheet(s, flattest);
-      middle = flattest.middle;
+    std::vector<Around> seen;
+    for (const OpenFits& fits : open) seen.emplace_back(around(s, fits.all, kNeighbourhood));
+    const auto grows = [&](std::size_t k) {  // to or from the next, as only shape does
+      const std::size_t next = std::min(k + 1, seen.size() - 1);
+      return next > 0 && seen[next].variance() > kGrowthOfNoise * kGrowthOfNoise * seen[next - 1].variance();
+    };
+    std::size_t flattest = 0;
+    for (std::size_t k = 1; k < seen.size(); ++k)
+      if (!grows(k) && seen[k].flatness < seen[flattest].flatness) flattest = k;
+    const bool two = seen[flattest].flatness < kFlatnessOfSheets;
+    if (two && exceeds_rounding(seen[flattest].variance(), s, open[flattest].all, steps)) {
+      sheet_[s] = noise_of_sheet(seen[flattest]);
+      middle = seen[flattest].middle;
     }
     if (on_lines_) return;
-    if (two && flattest.lean <= 0)
-      look_for_layers(s, flattest, *of_flattest, steps);
-    else
-      look_for_layers(s, nearest, open.front(), steps);
+    const std::size_t of_layers = two && seen[flattest].lean <= 0 ? flattest : 0;
+    look_for_layers(s, seen[of_layers], open[of_layers], steps);
   }
 
-  /// Sets `sheet_` and `measured_` from fits that hold two sheets.
-  void measure_sheet(std::size_t s, const Around& around) {
+  /// What each of two sheets shows by itself, of fits that hold both; world units.
+  static double noise_of_sheet(const Around& around) {
     const double share = share_of_sheet(around.flatness, std::max(0.0, around.lean));
     // The quadric bends to the sheet that happens to have more points here and there, and so spreads what
     // lies between the sheets; by its share of the degrees of freedom.
     const double spread = (1 - share) * kOfQuadric / (around.freedom + kOfQuadric);
     const double least = kNarrowestWindow * kNarrowestWindow;
-    sheet_[s] = std::sqrt(around.variance() * std::max(least, share - spread));
-    measured_[s] = char(share - spread > spread);
+    return std::sqrt(around.variance() * std::max(least, share - spread));
   }
 
-  /// Forgets `sheet_` if the noise itself is flat, and not empty in its middle; and what was measured on
-  /// sheets if most of them were too exact for that: the others only seem not to be. \param middle of each
-  /// site
+  /// Forgets `sheet_` if the noise itself is flat, and not empty in its middle. \param middle of each site
   void believe_sheets(const std::vector<double>& middle) {
-    double sum = 0, parted = 0, measured = 0;
+    double sum = 0, parted = 0;
     for (std::size_t s = 0; s < sheet_.size(); ++s) {
       if (!std::isfinite(sheet_[s])) continue;
       sum += middle[s];
-      measured += measured_[s];
       ++parted;
     }
     if (sum > kMiddleOfSheets * parted)
       std::fill(sheet_.begin(), sheet_.end(), std::numeric_limits<double>::infinity());
-    if (measured < parted / 2) std::fill(measured_.begin(), measured_.end(), 0);
   }
 
   /// Sets `held_`. \param few, many fits without windows to kNeighbourhood and kPlateauTo points
@@ -416,7 +409,6 @@ class Listener {
   std::vector<double> narrow_;  ///< radius of the ball of the fewest neighbours; 0: not asked for yet
   std::vector<double> open_;    ///< what the fits around show without windows, world units
   std::vector<double> sheet_;   ///< what each of two sheets shows; infinite: there is one
-  std::vector<char> measured_;  ///< whether it shows that; else at most that
   std::vector<double> held_;    ///< what the first ball shows that holds the slab, without windows; 0: none
   std::vector<double> seen_;    ///< what kNeighbourhood points show, without windows; infinite: no matter
   std::size_t widest_;
