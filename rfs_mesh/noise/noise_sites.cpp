@@ -312,8 +312,11 @@ class Listener {
       middle = seen[flattest].middle;
     }
     if (on_lines_) return;
-    const std::size_t of_layers = two && seen[flattest].lean <= 0 ? flattest : 0;
-    look_for_layers(s, seen[of_layers], open[of_layers], steps);
+    const std::size_t k = two && seen[flattest].lean <= 0 ? flattest : 0;
+    if (!are_layers(seen[k], open[k].points) || !exceeds_rounding(seen[k].variance(), s, open[k].all, steps))
+      return;
+    sheet_[s] = seen_[s] = std::numeric_limits<double>::infinity();
+    floor[s] = std::max(floor[s], std::sqrt(seen[0].variance()));
   }
 
   /// What each of two sheets shows by itself, of fits that hold both; world units.
@@ -358,20 +361,17 @@ class Listener {
       hold(Places(places_.index(), places_.at(), kWidest, context_).fits(kWidest));
   }
 
-  /// Raises `floor` where fits without windows show two layers around that are no sheets.
-  void look_for_layers(std::size_t s, const Around& around, const OpenFits& open, const DepthSteps* steps) {
+  /// Whether fits to so many points show two layers that are nearer to each other than their points are, and
+  /// no sheets.
+  static bool are_layers(const Around& around, std::size_t points) {
     constexpr double kNormalFlatness = 3;
     constexpr double kToNearest = 0.25;  // the mean distance from a random point to its nearest, squared
-    if (!(around.flatness < kNormalFlatness)) return;
+    if (!(around.flatness < kNormalFlatness)) return false;
     const double lean = std::max(0.0, around.lean), of_sheet = share_of_sheet(around.flatness, lean);
-    if (!(of_sheet < share_of_sheet(kFlatnessOfSheets))) return;
-    const double variance = around.variance(), wide = around.radius(),
-                 square_of_point = M_PI * wide * wide / double(open.points),
+    if (!(of_sheet < share_of_sheet(kFlatnessOfSheets))) return false;
+    const double wide = around.radius(), square_of_point = M_PI * wide * wide / double(points),
                  nearest = (lean > 0 ? 1 : kToNearest) * square_of_point;
-    if (!(squared_gap(of_sheet, lean) * variance < nearest)) return;
-    if (!exceeds_rounding(variance, s, open.all, steps)) return;
-    sheet_[s] = seen_[s] = std::numeric_limits<double>::infinity();
-    floor[s] = std::max(floor[s], std::sqrt(variance));
+    return squared_gap(of_sheet, lean) * around.variance() < nearest;
   }
 
   /// Raises `floor`, sets `told`, from what is seen without windows. What two sheets scatter does not grow,
