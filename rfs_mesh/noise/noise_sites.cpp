@@ -137,7 +137,7 @@ class Listener {
         context_, group_.size(),
         [&](std::size_t s) {
           open_[s] = std::sqrt(mean_variance(around(s, said, group_[s].size()), kTypical));
-          if (!deep_) seen_[s] = std::sqrt(Around(around(s, few, group_[s].size())).variance());
+          if (!deep_) seen_[s] = open_[s];
           bound(s, deep_ ? wide : few);
           look_for_sheets(s, open, steps, middle[s]);
         },
@@ -410,7 +410,7 @@ class Listener {
   std::vector<double> open_;    ///< what the fits around show without windows, world units
   std::vector<double> sheet_;   ///< what each of two sheets shows; infinite: there is one
   std::vector<double> held_;    ///< what the first ball shows that holds the slab, without windows; 0: none
-  std::vector<double> seen_;    ///< what kNeighbourhood points show, without windows; infinite: no matter
+  std::vector<double> seen_;    ///< open_ where it bounds what a window may show; infinite: it does not
   std::size_t widest_;
   double start_;  ///< world units
   bool on_lines_;
