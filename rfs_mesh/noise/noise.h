@@ -7,7 +7,7 @@
 /// - A ball narrower than a few sigma lies inside a thick slab and tells too little: m grows from 16 until it
 ///   holds a patch of 2 sigma in radius.
 /// - Shape that a quadric does not follow: it grows with the neighbourhood, and is taken off.
-/// - Depths in steps and noise that neighbours share: they grow, too, but stop growing (noise_sites.h,
+/// - Depths in steps and noise that neighbours share: they grow, too, but stop growing (site_views.h,
 ///   shared_noise.h).
 /// - Places that are louder than the rest: their windows open until they hold the scatter (noise_sites.h).
 /// - Scans have most points where their surface is nearest: places count by their area.

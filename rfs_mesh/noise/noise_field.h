@@ -36,7 +36,7 @@
 /// Source: P. J. Huber 1964, Robust estimation of a location parameter.
 #pragma once
 
-#include "rfs_mesh/noise/noise_sites.h"
+#include "rfs_mesh/noise/sites/noise_sites.h"
 
 namespace rfsmooth::rfs_mesh {
 

@@ -1,4 +1,4 @@
-#include "rfs_mesh/noise/noise_sites.h"
+#include "rfs_mesh/noise/sites/noise_sites.h"
 
 #include <algorithm>
 #include <cmath>

@@ -14,35 +14,14 @@
 /// beyond it: fits without windows, to the first of 24, 192 and 1,536 points that hold the slab of noisy
 /// points, show hardly more.
 ///
-/// Where both sheets of a wall are within the narrowest windows, what opens ends at their distance. But the
-/// residuals of fits without windows, whose places hold both, are then flatter than a normal distribution,
-/// and their fourth moment tells the variance of one sheet (share_of_sheet, two_sheets.h): no window there
-/// opens, nor shows more. Two dozen sites decide that together, of 24 points each, and of 192. Not if the
-/// residuals fill their middle nearly as an even distribution does: then the noise itself is flat. Nor if
-/// they are as small as those of two depths in steps that follow each other, which look like two sheets.
+/// What a site sees without any window (site_views.h) bounds what it shows in one: two sheets seen there keep
+/// windows as narrow as each of them is, nothing is louder than nearly all of the nearest sites see, and
+/// depths in steps, shared noise and layers are a floor.
 ///
-/// Two scans that do not quite meet leave two layers. Where more points are on one, the residuals lean, too,
-/// and both moments together tell how far apart the layers are. Nearer to each other than the points are to
-/// their neighbours (a square of the cloud's spacing has one point) they cannot both be surfaces, and what is
-/// seen without a window is the noise. Layers with as many points each may be the sides of a plate: these
-/// must be nearer than a point is to its nearest neighbour, half a spacing where points lie at random.
-///
-/// Without a window the scatter is more than the noise, so that of nearly all of the dozen nearest sites is a
-/// bound, where their balls hold the slab. No window shows more: it would take more points, and those more of
-/// the shape.
-///
-/// Then two things are told apart that both make the scatter s(m) grow with the number of neighbours m:
-///
-/// - Shape that a quadric does not follow grows without an end: s^2(m) = sigma^2 + b m to first order, so
-///   sigma^2 = 2 s^2(m) - s^2(2 m), at most 0.6 of s^2(m) taken off. Where noise is shared and m wide, only
-///   smooth shape is left at calm places, and that grows by NoiseStart::shape_grows.
-/// - Depths in steps (time of flight, stereo, structured light) and noise that neighbours share grow, too,
-///   but stop where the neighbourhood is wider than a step. Where s(192) < 1.6 s(24), no windows, the scatter
-///   is noise: at least s(24) and 0.65 s(192). Up to 1.9 this fades out. Equal scatter needs no such floor:
-///   it is plain noise, or two sheets. Counted steps (depth_steps.h) make sure of their rounding, as far as
-///   s(192) shows it.
-///
-/// Where s(192) < 1.6 s(24) the scatter is told from detail, however small it is.
+/// Shape that a quadric does not follow makes the scatter s(m) grow with the number of neighbours m without
+/// an end: s^2(m) = sigma^2 + b m to first order, so sigma^2 = 2 s^2(m) - s^2(2 m), at most 0.6 of s^2(m)
+/// taken off. Where noise is shared and m wide, only smooth shape is left at calm places, and that grows by
+/// NoiseStart::shape_grows.
 #pragma once
 
 #include "rfs_mesh/noise/depth_steps.h"

@@ -1,0 +1,235 @@
+#include "rfs_mesh/noise/sites/noise_sites.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/parallel.h"
+#include "rfs_mesh/levels.h"
+#include "rfs_mesh/noise/sites/site_views.h"
+#include "rfs_mesh/sample.h"
+
+namespace rfsmooth::rfs_mesh {
+
+namespace {
+
+// Chosen on the development shapes with noise of 0.1 to 4 spacings, Gaussian and along the ray
+// (tests/bench/noise).
+constexpr std::size_t kSites = 2000, kFewestSites = 250;
+constexpr std::size_t kWork = 100000;    // sites x m
+constexpr std::size_t kGroupWork = 800;  // a fit of many points says much, and reaches far by itself
+constexpr double kDiffers = 1.5;         // of variances of a dozen fits: two standard errors and more
+constexpr double kMostSpeak = 0.7;       // of the fits around a site, to be believed
+// At m = 16 noise may be below the detail: less of s^2(m) need be noise.
+constexpr double kLeastNarrow = 0.4, kLeastWide = 0.5;
+// Wider, the ball is still a little too narrow for the slab, and shows that much more at 2 m.
+constexpr double kOfTheSlab = 1.07;
+// The residuals within a window show its own variance if they are of a normal distribution that it was made
+// for, three times that if they fill it evenly, as those of a far louder one do: the mean of the two factors.
+constexpr double kEven = 3, kFilled = 1.73;
+constexpr int kOpeningRounds = 8;  // windows widen by up to 1.7 in each
+
+/// Fits at the sites, and what each site's neighbours say together.
+class Listener {
+ public:
+  Listener(const SpatialIndex& cloud, const Positions& at, const NoiseStart& start, const DepthSteps* steps,
+           const Context& context)
+      : n_(cloud.points().size()),
+        context_(context),
+        places_(cloud, at, std::min(n_, 2 * start.m), context),
+        group_(at.size()),
+        narrow_(at.size(), 0),
+        widest_(widest_scatter(cloud)),
+        start_(start.sigma),
+        m(points_to_fit(places_, start)),
+        sigma(at.size(), std::max(start.sigma, start.least)),
+        floor(at.size(), 0),
+        speaks(at.size(), 0) {
+    const SpatialIndex index(at, context);
+    const int group = int(std::clamp(kGroupWork / start.m, kSmallestGroup, 2 * kNeighbourhood));
+    for_each_index(
+        context, at.size(), [&](std::size_t s) { index.nearest(at[s], group, group_[s]); }, 64);
+    // No window is narrower than what a site makes sure of without one, or wider than a sheet.
+    views = look_without_windows(places_, group_, start, steps, context);
+    for (std::size_t s = 0; s < at.size(); ++s) {
+      floor[s] = views[s].floor;
+      sigma[s] = std::max(floor[s], std::min(sigma[s], views[s].sheet));
+    }
+  }
+
+  /// One round that opens windows which are too narrow for their places; false if there are none. A place
+  /// far louder than the start fills its window evenly, and keeps so little of the weight that no fit says
+  /// anything. Where the second sheet of a wall is cut off, no more does, but the window is not full.
+  bool open_windows() {
+    const std::vector<Scatter> all = places_.fits(m, sigma);
+    const std::vector<Said> said = what_they_say(all, kTypicalDeviate);
+    const std::vector<double> before = sigma;
+    const double typical_reach = size_where_sparse(reaches(all));
+    std::vector<char> opened(group_.size(), 0);
+    for_each_index(
+        context_, group_.size(),
+        [&](std::size_t s) {
+          std::vector<double> full, radius;
+          for (const Neighbor& q : group_[s]) {
+            const double window = before[q.index];
+            radius.push_back(all[q.index].radius);
+            if (all[q.index].within > 0) full.push_back(all[q.index].within / (window * window));
+          }
+          if (!hear_at(s, said, 1)) {
+            // Nearly nothing around is left within windows made for far calmer places.
+            const bool empty = double(full.size()) < (1 - kMostSpeak) * double(group_[s].size());
+            const double typical = empty ? kEven : quantile(full, 0.5);
+            if (typical > kFilled && views[s].sheet == SiteView::kNone)
+              sigma[s] = std::min(at_most(s, 1),
+                                  std::max(kNarrowestWindow * views[s].open, std::sqrt(typical) * before[s]));
+            opened[s] = char(sigma[s] > before[s]);
+          }
+          const double reach = quantile(radius, 0.5);
+          const double held = views[s].held;
+          const bool all_seen = held > 0 && held < kGrowthOfNoise * sigma[s];
+          if (sigma[s] > (all_seen ? kSameNoise : kLouder) * start_ ||
+              denser(reach / std::sqrt(double(m[s])), typical_reach))
+            opened[s] = char(widen(s, reach) || opened[s] != 0);
+        },
+        64);
+    places_.move_to_feet(all);
+    return std::find(opened.begin(), opened.end(), 1) != opened.end();
+  }
+
+  /// Fits `times` m points with each site's own window and renews `sigma`; `move`: the places go to the
+  /// surface. Returns the fits.
+  std::vector<Scatter> hear(std::size_t times, bool move) {
+    std::vector<std::size_t> points = m;
+    for (std::size_t& count : points) count = std::min(times * count, n_);
+    std::vector<Scatter> all = places_.fits(points, sigma);
+    const std::vector<Said> said = what_they_say(all, kTypicalDeviate);
+    for_each_index(
+        context_, group_.size(), [&](std::size_t s) { hear_at(s, said, times); }, 64);
+    if (move) places_.move_to_feet(all);
+    return all;
+  }
+
+  /// By site: the radius of its ball over the root of its points, which are not for being more of more
+  /// surface. \param all fits to m points
+  std::vector<double> reaches(const std::vector<Scatter>& all) const {
+    std::vector<double> of;
+    for (std::size_t s = 0; s < all.size(); ++s) of.push_back(all[s].radius / std::sqrt(double(m[s])));
+    return of;
+  }
+
+  /// The medians of these over the sites around each: points at random are denser here and there.
+  std::vector<double> medians_around(const std::vector<double>& of_sites) const {
+    std::vector<double> medians;
+    for (std::size_t s = 0; s < of_sites.size(); ++s) {
+      std::vector<double> near = around(group_[s], of_sites, group_[s].size());
+      medians.push_back(quantile(near, 0.5));
+    }
+    return medians;
+  }
+
+ private:
+  /// Sets sigma and whether it is of this place; returns that. Where no fit within windows says anything but
+  /// two sheets are seen, the noise is what each of them shows, if that is less than the start. \param all
+  /// fits to `times` m points
+  bool hear_at(std::size_t s, const std::vector<Said>& all, std::size_t times) {
+    const std::vector<Said> near = around(group_[s], all, kSmallestGroup),
+                            wide = around(group_[s], all, group_[s].size());
+    const auto saying = [](const std::vector<Said>& fits) {
+      return double(std::count_if(fits.begin(), fits.end(), [](const Said& fit) { return fit.freedom > 0; }));
+    };
+    double variance = mean_variance(wide, kTypical);
+    speaks[s] = char(variance > 0 && saying(wide) >= kMostSpeak * double(wide.size()));
+    if (wide.size() > kSmallestGroup && saying(near) >= kMostSpeak * double(kSmallestGroup))
+      if (const double of_near = mean_variance(near, kTypical); of_near > kDiffers * variance)
+        variance = of_near;
+    if (speaks[s] != 0)
+      sigma[s] = std::min(at_most(s, times), std::sqrt(variance));
+    else if (views[s].sheet < start_)
+      sigma[s] = floor[s] = views[s].sheet;
+    return speaks[s] != 0;
+  }
+
+  /// What a window around `times` m points may show: what is seen without one, which grows inside a slab of
+  /// noisy points as their ball does, and of two sheets that of each. More is an edge or a second sheet that
+  /// a wider window has let in, and the next one would let in more.
+  double at_most(std::size_t s, std::size_t times) const {
+    const double balls = std::cbrt(std::max(1.0, double(times * m[s]) / double(kNeighbourhood)));
+    const SiteView& view = views[s];
+    return std::min(view.sheet,
+                    std::max(start_, kSameNoise * std::min(view.most, kOfTheSlab * balls * view.slab)));
+  }
+
+  /// Takes more points where their ball is narrow for the window, as search_noise does for the whole cloud.
+  /// False if they are enough.
+  bool widen(std::size_t s, double radius) {
+    if (narrow_[s] == 0) narrow_[s] = radius * std::sqrt(double(kNarrowestPatch) / double(m[s]));
+    const double reach = scatter_reach(sigma[s], narrow_[s]);
+    if (!(radius < 0.97 * reach) || m[s] >= widest_) return false;
+    const double more = std::clamp(reach * reach / (radius * radius), 1.25, 2.0);
+    m[s] = std::min(widest_, std::size_t(more * double(m[s])));
+    return true;
+  }
+
+  std::size_t n_;  ///< points of the cloud
+  const Context& context_;
+  Places places_;  ///< the sites, which move to the surface
+  SiteGroups group_;
+  std::vector<double> narrow_;  ///< radius of the ball of the fewest neighbours; 0: not asked for yet
+  std::size_t widest_;
+  double start_;  ///< world units
+
+ public:
+  std::vector<std::size_t> m;
+  std::vector<double> sigma;  ///< around each site; as before where it does not speak
+  std::vector<double> floor;
+  std::vector<char> speaks;
+  std::vector<SiteView> views;  ///< without windows
+};
+
+}  // namespace
+
+Positions listening_places(const Positions& places, std::size_t m) {
+  return sample(places, std::clamp(kWork / m, kFewestSites, kSites));
+}
+
+NoiseSites listen(const SpatialIndex& index, Positions at, const NoiseStart& start, const DepthSteps* steps,
+                  const Context& context) {
+  NoiseSites sites;
+  sites.in_steps = steps != nullptr;
+  sites.at = std::move(at);
+  Listener listener(index, sites.at, start, steps, context);
+  for (int round = 0; round < kOpeningRounds && listener.open_windows(); ++round)
+    ;
+  for (int round = 0; round < 3; ++round) listener.hear(1, true);
+  const std::vector<double> windows = listener.sigma;
+  sites.fits = listener.hear(1, false);
+  for (std::size_t s = 0; s < windows.size(); ++s)
+    sites.cut.push_back(char(sites.fits[s].within > kFilled * windows[s] * windows[s]));
+  const std::vector<double> reaches = listener.reaches(sites.fits);
+  sites.area = areas(reaches);
+  sites.reach = listener.medians_around(reaches);
+  sites.sigma = listener.sigma;
+  sites.speaks = listener.speaks;
+  sites.floor = listener.floor;
+  for (const SiteView& view : listener.views) {
+    sites.most.push_back(view.most);
+    sites.told.push_back(char(view.told));
+  }
+  for (int round = 0; round < 2; ++round) listener.hear(2, false);
+
+  sites.shape.assign(sites.at.size(), 0);
+  for (std::size_t s = 0; s < sites.at.size(); ++s) {
+    const double a = sites.sigma[s] * sites.sigma[s];
+    const bool narrow = listener.m[s] == kNarrowestPatch;
+    const double of_the_slab = narrow ? 1 : kOfTheSlab, least = narrow ? kLeastNarrow : kLeastWide;
+    const double growth = std::max(0.0, listener.sigma[s] * listener.sigma[s] - of_the_slab * a);
+    const double floor = listener.floor[s];
+    const double left = std::max({least * a, a - growth / (start.shape_grows - 1), floor * floor});
+    if (a > 0) sites.shape[s] = std::max(0.0, 1 - left / a);
+    sites.sigma[s] = std::sqrt(left);
+    if (floor > 0) sites.speaks[s] = 1;
+  }
+  return sites;
+}
+
+}  // namespace rfsmooth::rfs_mesh

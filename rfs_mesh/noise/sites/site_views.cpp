@@ -1,0 +1,255 @@
+#include "rfs_mesh/noise/sites/site_views.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/parallel.h"
+#include "rfs_mesh/levels.h"
+#include "rfs_mesh/sheets/two_sheets.h"
+
+namespace rfsmooth::rfs_mesh {
+
+namespace {
+
+// Of eight times the points: inside a thick slab their ball has twice the radius and sees twice the scatter.
+constexpr std::size_t kPlateauTo = 8 * kNeighbourhood;
+// Scatter::middle above which noise so flat is that of no two sheets: nearly that of an even distribution.
+constexpr double kMiddleOfSheets = 0.25;
+// Points at two depths that follow each other scatter by half a step, and rounding by 1 / sqrt(12) of it.
+constexpr double kTwoDepths = 3;
+// Coefficients of a quadric.
+constexpr double kOfQuadric = 6;
+
+// Times, from kNeighbourhood to kPlateauTo points: less than this, and scatter is noise; more than that,
+// shape. Chosen on depths in steps and shared noise (noise_test.cpp), so that it says nothing on the clean
+// development shapes.
+constexpr double kStops = 1.6, kNeverStops = 1.9;
+
+/// What scatter at kNeighbourhood points, `few`, and at kPlateauTo, `many`, makes sure of. \param radius of
+/// the ball of the few.
+double plateau(double few, double many, double radius) {
+  constexpr double kSure = 0.65;
+  constexpr double kThin = 0.14, kThick = 0.2;
+  if (!(few > 0)) return 0;
+  const double growth = many / few, share = few / radius;
+  const double trust = std::clamp((growth - 1) / (kSameNoise - 1), 0.0, 1.0) *
+                       std::clamp((kNeverStops - growth) / (kNeverStops - kStops), 0.0, 1.0) *
+                       std::clamp((kThick - share) / (kThick - kThin), 0.0, 1.0);
+  return trust * std::max(few, kSure * many);
+}
+
+/// The fits of the sites nearest to one, and what they say together.
+struct Around {
+  explicit Around(std::vector<Scatter> of_sites) : fits(std::move(of_sites)) {
+    constexpr double kLeanByChance = 6 / double(kNeighbourhood);  // of so many normal values, unweighted
+    double saying = 0;
+    for (const Scatter& fit : fits) {
+      if (!says(fit)) continue;
+      freedom += fit.freedom;
+      flatness += fit.flatness;
+      lean += fit.lean - kLeanByChance;
+      middle += fit.middle;
+      ++saying;
+    }
+    for (double* const sum : {&freedom, &flatness, &lean, &middle}) *sum /= saying;
+  }
+
+  double variance() const { return mean_variance(fits, kTypical, kTypicalDeviate); }
+  /// The median of their balls', world units.
+  double radius() const {
+    std::vector<double> radii;
+    for (const Scatter& fit : fits) radii.push_back(fit.radius);
+    return quantile(radii, 0.5);
+  }
+
+  std::vector<Scatter> fits;
+  double freedom = 0, flatness = 0, lean = 0,
+         middle = 0;  ///< means; lean: beyond chance; nan: no fit says a thing
+};
+
+/// What nearly all of the dozen nearest show, where their balls hold the slab.
+double bound(const std::vector<Neighbor>& group, const std::vector<Scatter>& open) {
+  constexpr double kNearlyAll = 0.75;
+  std::vector<double> radius, variance;
+  for (const Scatter& fit : around(group, open, kSmallestGroup)) {
+    radius.push_back(fit.radius);
+    variance.push_back(fit.variance);
+  }
+  const double seen = std::sqrt(quantile(variance, kNearlyAll));
+  return seen < kFlatSlab * quantile(radius, 0.5) ? seen : SiteView::kNone;
+}
+
+/// What each of two sheets shows by itself, of fits that hold both; world units.
+double noise_of_sheet(const Around& around) {
+  const double share = share_of_sheet(around.flatness, std::max(0.0, around.lean));
+  // The quadric bends to the sheet that happens to have more points here and there, and so spreads what
+  // lies between the sheets; by its share of the degrees of freedom.
+  const double spread = (1 - share) * kOfQuadric / (around.freedom + kOfQuadric);
+  const double least = kNarrowestWindow * kNarrowestWindow;
+  return std::sqrt(around.variance() * std::max(least, share - spread));
+}
+
+/// Whether fits to so many points show two layers that are nearer to each other than their points are, and
+/// no sheets.
+bool are_layers(const Around& around, std::size_t points) {
+  constexpr double kNormalFlatness = 3;
+  constexpr double kToNearest = 0.25;  // the mean distance from a random point to its nearest, squared
+  if (!(around.flatness < kNormalFlatness)) return false;
+  const double lean = std::max(0.0, around.lean), of_sheet = share_of_sheet(around.flatness, lean);
+  if (!(of_sheet < share_of_sheet(kFlatnessOfSheets))) return false;
+  const double wide = around.radius(), square_of_point = M_PI * wide * wide / double(points),
+               nearest = (lean > 0 ? 1 : kToNearest) * square_of_point;
+  return squared_gap(of_sheet, lean) * around.variance() < nearest;
+}
+
+/// Fits at all sites to so many points.
+struct OpenFits {
+  std::size_t points;
+  std::vector<Scatter> all;
+};
+
+/// The sites, and the depths in steps that they may have; null: they have none.
+struct Sites {
+  const Places& places;
+  const SiteGroups& groups;
+  const DepthSteps* steps;
+  bool on_lines;
+
+  /// What depths in steps add there by their rounding, world units.
+  double rounding_around(std::size_t s, const std::vector<Scatter>& all) const {
+    if (steps == nullptr) return 0;
+    std::vector<double> sigma_of;
+    for (const Neighbor& q : groups[s])
+      sigma_of.push_back(steps->sigma(places.at()[q.index], all[q.index].normal));
+    return quantile(sigma_of, 0.5);
+  }
+
+  /// Sets `sheet`, and `middle` to Scatter::middle, where two sheets are seen, farther apart than two depths
+  /// that follow each other; or `floor` if these are layers.
+  void look_for_sheets(std::size_t s, const std::vector<OpenFits>& open, SiteView& view,
+                       double& middle) const {
+    std::vector<Around> seen;
+    for (const OpenFits& fits : open) seen.emplace_back(around(groups[s], fits.all, kNeighbourhood));
+    const auto grows = [&](std::size_t k) {  // to or from the next, as only shape does
+      const std::size_t next = std::min(k + 1, seen.size() - 1);
+      return next > 0 && seen[next].variance() > kGrowthOfNoise * kGrowthOfNoise * seen[next - 1].variance();
+    };
+    const auto exceeds_rounding = [&](std::size_t k) {
+      const double rounding = rounding_around(s, open[k].all);
+      return seen[k].variance() > kTwoDepths * rounding * rounding;
+    };
+    std::size_t flattest = 0;
+    for (std::size_t k = 1; k < seen.size(); ++k)
+      if (!grows(k) && seen[k].flatness < seen[flattest].flatness) flattest = k;
+    const bool two = seen[flattest].flatness < kFlatnessOfSheets;
+    if (two && exceeds_rounding(flattest)) {
+      view.sheet = noise_of_sheet(seen[flattest]);
+      middle = seen[flattest].middle;
+    }
+    if (on_lines) return;
+    const std::size_t k = two && seen[flattest].lean <= 0 ? flattest : 0;
+    if (!are_layers(seen[k], open[k].points) || !exceeds_rounding(k)) return;
+    view.sheet = view.slab = SiteView::kNone;
+    view.floor = std::sqrt(seen[0].variance());
+  }
+
+  /// Raises `floor`, sets `told`. What two sheets scatter does not grow, either.
+  void find_floor(std::size_t s, const std::vector<Scatter>& few, const std::vector<Scatter>& many,
+                  SiteView& view) const {
+    std::vector<double> narrow, wide, radius;
+    for (const Neighbor& q : groups[s]) {
+      radius.push_back(few[q.index].radius);
+      narrow.push_back(few[q.index].variance);
+      wide.push_back(many[q.index].variance);
+    }
+    const double less = std::sqrt(quantile(narrow, kTypical)), seen = std::sqrt(quantile(wide, kTypical));
+    if (view.sheet == SiteView::kNone)
+      view.floor = std::max(view.floor, plateau(less, seen, quantile(radius, 0.5)));
+    view.told = seen < kStops * less;
+    // A stack of slices has few depths, too, and none of the scatter.
+    view.floor = std::max(view.floor, std::min(seen, rounding_around(s, many)));
+  }
+};
+
+/// Forgets the sheets if the noise itself is flat, and not empty in its middle. \param middle of each site
+void believe_sheets(const std::vector<double>& middle, std::vector<SiteView>& views) {
+  double sum = 0, parted = 0;
+  for (std::size_t s = 0; s < views.size(); ++s) {
+    if (views[s].sheet == SiteView::kNone) continue;
+    sum += middle[s];
+    ++parted;
+  }
+  if (sum > kMiddleOfSheets * parted)
+    for (SiteView& view : views) view.sheet = SiteView::kNone;
+}
+
+/// Sets `held` of those that have none from fits to so many points.
+void hold_slabs(const SiteGroups& groups, const std::vector<Scatter>& all, std::vector<SiteView>& views,
+                const Context& context) {
+  for_each_index(
+      context, groups.size(),
+      [&](std::size_t s) {
+        if (views[s].held > 0) return;
+        const Around nearest(around(groups[s], all, kNeighbourhood));
+        const double seen = std::sqrt(nearest.variance());
+        if (seen < kFlatSlab * nearest.radius()) views[s].held = seen;
+      },
+      64);
+}
+
+/// The same for all of them, in noise of about a spacing and more. \param open from kNeighbourhood points on
+void hold_slabs(const Places& places, const SiteGroups& groups, const std::vector<OpenFits>& open,
+                std::vector<SiteView>& views, const Context& context) {
+  constexpr std::size_t kWidest = kPlateauTo * (kPlateauTo / kNeighbourhood);
+  const std::size_t widest = widest_scatter(places.index());
+  for (const std::size_t points : {kNeighbourhood, kPlateauTo, kWidest}) {
+    const bool all_held =
+        std::all_of(views.begin(), views.end(), [](const SiteView& view) { return view.held > 0; });
+    if (widest < points || all_held) return;
+    const auto there =
+        std::find_if(open.begin(), open.end(), [&](const OpenFits& fits) { return fits.points == points; });
+    hold_slabs(
+        groups,
+        there != open.end() ? there->all : Places(places.index(), places.at(), points, context).fits(points),
+        views, context);
+  }
+}
+
+}  // namespace
+
+std::vector<SiteView> look_without_windows(Places& places, const SiteGroups& groups, const NoiseStart& start,
+                                           const DepthSteps* steps, const Context& context) {
+  const std::size_t n = places.index().points().size();
+  std::vector<OpenFits> open;
+  for (std::size_t points = kNeighbourhood; open.empty() || (points <= kPlateauTo && n >= 2 * points);
+       points *= 2)
+    open.push_back({points, places.fits(points)});
+  // The slab of noise of about a spacing or more is wider than the nearest neighbours are.
+  const bool deep = start.m >= kNeighbourhood;
+  const std::vector<Scatter>& few = open.front().all;
+  const std::vector<Scatter> wide = deep ? places.fits(start.m) : std::vector<Scatter>();
+  const std::vector<Said> said = what_they_say(few, kTypicalDeviate);
+  const Sites sites{places, groups, steps, start.on_lines};
+  std::vector<SiteView> views(groups.size());
+  std::vector<double> middle(groups.size(), 1);
+  for_each_index(
+      context, groups.size(),
+      [&](std::size_t s) {
+        SiteView& view = views[s];
+        view.open = std::sqrt(mean_variance(around(groups[s], said, groups[s].size()), kTypical));
+        if (!deep) view.slab = view.open;
+        view.most = bound(groups[s], deep ? wide : few);
+        sites.look_for_sheets(s, open, view, middle[s]);
+      },
+      64);
+  believe_sheets(middle, views);
+  if (open.back().points == kPlateauTo)
+    for_each_index(
+        context, groups.size(), [&](std::size_t s) { sites.find_floor(s, few, open.back().all, views[s]); },
+        64);
+  if (deep) hold_slabs(places, groups, open, views, context);
+  return views;
+}
+
+}  // namespace rfsmooth::rfs_mesh

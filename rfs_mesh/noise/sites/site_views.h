@@ -1,0 +1,74 @@
+/// What each site of a cloud sees without windows (scatter.h), in fits to the 24, 48, 96 and 192 points
+/// nearest to the two dozen sites around it. Without a window scatter is more than the noise: edges and
+/// second sheets are in it.
+///
+/// Two sheets: where both are within a ball, the residuals are flatter than a normal distribution, and their
+/// fourth moment tells the variance of one sheet (share_of_sheet, two_sheets.h). A ball narrower than the
+/// sheets are apart holds hardly any of the second one, a wide one bends away with the surface: those count
+/// that are flattest, unless they grow, to or from the next, as only shape does. Not if the residuals fill
+/// their middle nearly as an even distribution does: then the noise itself is flat. Nor if they are as small
+/// as those of two depths in steps that follow each other, which look like two sheets.
+///
+/// Layers: two scans that do not quite meet leave two. Where more points are on one, the residuals lean, too,
+/// and both moments together tell how far apart the layers are. Nearer to each other than the points are to
+/// their neighbours (a square of the cloud's spacing has one point) they cannot both be surfaces, and what is
+/// seen is the noise. Layers with as many points each may be the sides of a plate: these must be nearer than
+/// a point is to its nearest neighbour, half a spacing where points lie at random.
+///
+/// Bounds: the scatter of nearly all of the dozen nearest sites is one, where their balls hold the slab of
+/// noisy points; in noise of about a spacing and more what the first of 24, 192 and 1,536 points shows that
+/// hold it is one that a wider window hardly exceeds.
+///
+/// Floor: shape that a quadric does not follow makes the scatter s(m) grow without an end. Depths in steps
+/// (time of flight, stereo, structured light) and noise that neighbours share make it grow, too, but it stops
+/// where the neighbourhood is wider than a step. Where s(192) < 1.6 s(24) the scatter is noise: at least
+/// s(24) and 0.65 s(192). Up to 1.9 this fades out. Equal scatter needs no such floor: it is plain noise, or
+/// two sheets. Counted steps (depth_steps.h) make sure of their rounding, as far as s(192) shows it.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+#include "rfs_mesh/noise/depth_steps.h"
+#include "rfs_mesh/noise/noise_search.h"
+
+namespace rfsmooth::rfs_mesh {
+
+/// The sites nearest to one that say something by themselves.
+inline constexpr std::size_t kSmallestGroup = 12;
+
+/// The quantile of fits that is typical, and that of a normal variable.
+inline constexpr double kTypical = 0.35, kTypicalDeviate = -0.385;
+
+/// Of a site; world units.
+struct SiteView {
+  static constexpr double kNone = std::numeric_limits<double>::infinity();
+
+  double open = 0;       ///< what the 24 points around it show
+  double most = kNone;   ///< what nearly all of the dozen nearest sites show; kNone: not known
+  double slab = kNone;   ///< open, where it grows by no more than the slab lets it; kNone: it may
+  double held = 0;       ///< what the first ball shows that holds the slab; 0: none
+  double sheet = kNone;  ///< what each of two sheets shows; kNone: there is one
+  double floor = 0;      ///< what steps, shared noise or layers make sure of
+  bool told = false;     ///< whether the scatter stops growing, and is no detail
+};
+
+/// By site: the sites nearest to it, the nearest first.
+using SiteGroups = std::vector<std::vector<Neighbor>>;
+
+/// What the members of a group have, `count` of them at most.
+template <class T>
+std::vector<T> around(const std::vector<Neighbor>& group, const std::vector<T>& all, std::size_t count) {
+  std::vector<T> near;
+  near.reserve(count);
+  for (std::size_t k = 0; k < std::min(count, group.size()); ++k) near.push_back(all[group[k].index]);
+  return near;
+}
+
+/// O(sites). Parallel, deterministic. \param places the sites. \param steps null: depths are not in steps.
+std::vector<SiteView> look_without_windows(Places& places, const SiteGroups& groups, const NoiseStart& start,
+                                           const DepthSteps* steps, const Context& context);
+
+}  // namespace rfsmooth::rfs_mesh
