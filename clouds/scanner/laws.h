@@ -25,12 +25,10 @@ namespace rfsmooth::clouds {
 /// Where on the surface the points lie.
 enum class Spread {
   even,   ///< Poisson-disk
-  rings,  ///< where the rays of a spinning scanner meet it: rings kRingGap times farther apart than their
-          ///< points
+  rings,  ///< where the rays of a spinning scanner meet it: rings farther apart than their points
   clumps  ///< denser towards the centres of clumps, as matched image patches are
 };
 
-inline constexpr double kRingGap = 20;     ///< between rings, x step along a ring
 inline constexpr int kPerClump = 25;       ///< points of a clump, on average
 inline constexpr double kEyeDistance = 2;  ///< of the scanner from the centre, along z; x radius of the cloud
 
@@ -50,6 +48,7 @@ struct Law {
   double between = 0;  ///< ... each moved rigidly, by this standard deviation per coordinate or less
   double step = 0;     ///< depths along z are whole multiples of this
   Spread spread = Spread::even;
+  double ring_gap = 20;  ///< between rings, x step along a ring
 };
 
 /// The laws that benchmarks go through, white noise first.

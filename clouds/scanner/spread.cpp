@@ -46,12 +46,11 @@ void meet_triangle(const Eye& eye, const Corners& at, const std::array<Vector2d,
   if (sum != 0) hits.push_back((weight[0] * at[0] + weight[1] * at[1] + weight[2] * at[2]) / sum);
 }
 
-/// Rays `step` apart within a row and kRingGap steps from row to row, all that meet the triangle. They are
-/// off the axis, for the edges of many shapes are on it.
-void meet_rays(const Eye& eye, const Corners& at, double step, Positions& hits) {
+/// Rays, `steps` apart within a row and from row to row, all that meet the triangle. They are off the axis,
+/// for the edges of many shapes are on it.
+void meet_rays(const Eye& eye, const Corners& at, const Vector2d& steps, Positions& hits) {
   constexpr double kOffAxis = 0.37;
   const std::array<Vector2d, 3> seen = {eye.ray(at[0]), eye.ray(at[1]), eye.ray(at[2])};
-  const Vector2d steps(step, kRingGap * step);
   const Vector2d low = seen[0].cwiseMin(seen[1]).cwiseMin(seen[2]).cwiseQuotient(steps);
   const Vector2d high = seen[0].cwiseMax(seen[1]).cwiseMax(seen[2]).cwiseQuotient(steps);
   for (double row = std::ceil(low[1] - kOffAxis); row + kOffAxis <= high[1]; ++row)
@@ -59,7 +58,7 @@ void meet_rays(const Eye& eye, const Corners& at, double step, Positions& hits) 
       meet_triangle(eye, at, seen, steps.cwiseProduct(Vector2d(column + kOffAxis, row + kOffAxis)), hits);
 }
 
-Positions rings(const Mesh& mesh, std::size_t n) {
+Positions rings(const Mesh& mesh, std::size_t n, double gap) {
   const Eye eye{frame_of(mesh.positions).eye};
   const auto corners = [&](const Face& f) -> Corners {
     return {mesh.positions[f[0]], mesh.positions[f[1]], mesh.positions[f[2]]};
@@ -70,9 +69,9 @@ Positions rings(const Mesh& mesh, std::size_t n) {
     const Vector2d a = eye.ray(at[0]);
     picture += std::abs(cross(eye.ray(at[1]) - a, eye.ray(at[2]) - a)) / 2;
   }
-  const double step = std::sqrt(picture / (kRingGap * double(n)));
+  const double step = std::sqrt(picture / (gap * double(n)));
   Positions hits;
-  for (const Face& face : mesh.faces) meet_rays(eye, corners(face), step, hits);
+  for (const Face& face : mesh.faces) meet_rays(eye, corners(face), {step, gap * step}, hits);
   return hits;
 }
 
@@ -112,7 +111,7 @@ Spots spread(const Law& law, const Mesh& mesh, std::size_t n, std::uint64_t seed
   if (mesh.faces.empty()) throw std::invalid_argument("a mesh without faces has no surface to scan");
   switch (law.spread) {
     case Spread::rings:
-      return {rings(mesh, n), {}};
+      return {rings(mesh, n, law.ring_gap), {}};
     case Spread::clumps:
       return clumped(mesh, n, seed);
     case Spread::even:

@@ -211,7 +211,7 @@ TEST(Laws, RingsLieOnTheSurfaceFarApartAndPointsOfARingClose) {
   const double between = 1e-9 * (std::next(rows.begin(), 2)->first - std::next(rows.begin(), 1)->first);
   std::vector<double>& row = std::next(rows.begin())->second;
   std::sort(row.begin(), row.end());
-  EXPECT_NEAR(between / (row[1] - row[0]), kRingGap, 1e-3);
+  EXPECT_NEAR(between / (row[1] - row[0]), find_law("rings")->ring_gap, 1e-3);
   EXPECT_GT(frame.eye[2], 1) << "the scanner stands outside";
 }
 
