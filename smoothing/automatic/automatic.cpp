@@ -63,8 +63,8 @@ std::unique_ptr<HeightField> raise_field(const Positions& points, const Adjacenc
 }
 
 /// c of the guide's fairing.
-double strength_of_guide(const rfs_mesh::NoiseField& noise, double spacing) {
-  const double share = noise.sigma / spacing;
+double strength_of_guide(const rfs_mesh::NoiseField& noise) {
+  const double share = noise.sigma / noise.spacing;
   return kGuide * share * share * std::max(1.0, share * share) * noise.shared;
 }
 
@@ -77,20 +77,21 @@ struct Mixed {
   Tails tails;
 };
 
-/// Steps 1 to 3, twice where there are tails: then `noise` is as tamed.
-Mixed mix_scales(const Mesh& mesh, rfs_mesh::NoiseField& noise, double spacing, bool learned,
-                 AutomaticReport& report, Statistics& whole, const Context& context) {
+/// Steps 1 to 3, twice where there are tails: then the noise is as tamed.
+Mixed mix_scales(AutomaticTask& task, AutomaticReport& report, Statistics& whole, const Context& context) {
+  const Mesh& mesh = task.mesh;
+  rfs_mesh::NoiseField& noise = task.noise;
   std::optional<Adjacency> lines;
   if (noise.across) lines = along_lines(mesh.positions, context);
   const Adjacency& rings = lines ? *lines : mesh.one_ring;
   Mixed mixed;
   const auto smooth = [&](const Positions& points, std::size_t pass) {
     whole.passes.resize(std::max(pass + 1, whole.passes.size()));
-    report.guide_strength = strength_of_guide(noise, spacing);
+    report.guide_strength = strength_of_guide(noise);
     mixed.field.reset();
     mixed.field = raise_field(points, rings, noise, report, whole.passes[pass], context);
     context.report("smooth", 0.1);
-    mixed.heights = smooth_heights(*mixed.field, noise, spacing, learned, whole.passes[pass], context);
+    mixed.heights = smooth_heights(*mixed.field, noise, task.learned, whole.passes[pass], context);
   };
   smooth(mesh.positions, 0);
   mixed.data = mesh.positions;
@@ -128,21 +129,22 @@ Eigen::Vector3d place_at(const HeightField& field, std::size_t i, const Eigen::V
 
 }  // namespace
 
-Positions automatic_smoothing(Mesh& mesh, bool keep_rings, rfs_mesh::NoiseField noise, double spacing,
-                              bool learned, AutomaticReport& report, rfs_mesh::NeighborTable& near,
-                              const Context& context, Statistics& whole, LearnedSites* sites) {
+AutomaticResult automatic_smoothing(AutomaticTask task, AutomaticReport& report, Statistics& whole,
+                                    const Context& context) {
+  Mesh& mesh = task.mesh;
+  const rfs_mesh::NoiseField& noise = task.noise;
   const std::size_t n = mesh.positions.size();
   const double measured = noise.sigma;
-  Mixed mixed = mix_scales(mesh, noise, spacing, learned, report, whole, context);
+  Mixed mixed = mix_scales(task, report, whole, context);
   HeightField& field = *mixed.field;
   MixedScales& heights = mixed.heights;
-  if (!keep_rings) mesh.one_ring = {};
+  if (!task.keep_rings) mesh.one_ring = {};
   const double of_whole = whole.points ? double(*whole.points) / double(n) : 1;
-  const std::vector<float> one_sheet = learned ? heights.height : std::vector<float>();
+  const std::vector<float> one_sheet = task.learned ? heights.height : std::vector<float>();
   // A k-th of the evidence never was enough for walls, and across lines there is none.
   const bool own_noise = !(noise.shared > 1) && !noise.across;
   HiddenSheets hidden;
-  if (own_noise && measured > rfs_mesh::detail(spacing))
+  if (own_noise && measured > rfs_mesh::detail(noise.spacing))
     hidden = split_hidden_sheets(
         field, residuals_of(field, heights.height, mesh.positions, measured, mixed.tails, context),
         heights.height, heights.own, of_whole, whole.sheets, context);
@@ -158,19 +160,20 @@ Positions automatic_smoothing(Mesh& mesh, bool keep_rings, rfs_mesh::NoiseField 
   if (own_noise)
     part_thin_walls(field, mixed.data, heights.several, heights.members_seeing, noise, smooth,
                     whole.thin_walls, context);
-  if (learned) {
+  if (task.learned) {
+    const Smoothed smoothed{heights.told, heights.own, one_sheet, smooth,
+                            hidden.there() ? hidden.variance : 1};
     const auto may_go = [&](std::size_t i, const Eigen::Vector3d& there) {
       const Eigen::Vector3d& from = mesh.positions[i];
       return smooth[i] != from && allowed(i, there - from);  // strays stay
     };
-    report.learned = take_learned_step(
-        field, mixed.data,
-        {heights.told, heights.own, one_sheet, smooth, hidden.there() ? hidden.variance : 1}, noise, spacing,
-        may_go, smooth, sites, context);
+    if (task.sites != nullptr)
+      *task.sites = learned_sites(field, mixed.data, smoothed, noise, context);
+    else
+      report.learned = take_learned_step(field, mixed.data, smoothed, noise, may_go, smooth, context);
   }
   report.left = noise_left(field, heights.height, heights.own, noise, context);
-  near = field.release_neighbors();
-  return smooth;
+  return {std::move(smooth), field.release_neighbors()};
 }
 
 }  // namespace rfsmooth::smoothing

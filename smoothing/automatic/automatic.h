@@ -59,16 +59,25 @@
 
 namespace rfsmooth::smoothing {
 
-/// The smoothed places of mesh.positions (n x 3), at least HeightField::kNear. `noise`: along the normal, of
-/// positive `sigma`; `local`: n, positive. `spacing`: h, world units.
-/// \param keep_rings false: the mesh is left without its one-rings, as soon as they are read.
-/// \param near out: the nearest of every point on the guide (height_field.h).
-/// O(n log n); about 500 bytes a point beside the mesh. Parallel, the same bits for any number of
-/// threads. Of the report, what was measured and what was equalized are the flow's to enter (flow_auto.cpp).
-/// \param whole what is there is taken, the rest entered. \param learned whether the learned step is taken.
-/// \param sites what it would be given, instead of it.
-Positions automatic_smoothing(Mesh& mesh, bool keep_rings, rfs_mesh::NoiseField noise, double spacing,
-                              bool learned, AutomaticReport& report, rfs_mesh::NeighborTable& near,
-                              const Context& context, Statistics& whole, LearnedSites* sites = nullptr);
+/// What is smoothed, and how.
+struct AutomaticTask {
+  Mesh& mesh;                     ///< of at least HeightField::kNear points; they stay where they are
+  rfs_mesh::NoiseField noise;     ///< along the normal, of positive sigma; local: n, positive
+  bool learned = true;            ///< whether the learned step is taken
+  bool keep_rings = true;         ///< false: the mesh is left without its one-rings, as soon as they are read
+  LearnedSites* sites = nullptr;  ///< out: what the learned step would be given, instead of it; null: taken
+};
+
+/// What has become of it.
+struct AutomaticResult {
+  Positions points;              ///< n x 3: the smoothed places
+  rfs_mesh::NeighborTable near;  ///< the nearest of every point on the guide (height_field.h)
+};
+
+/// O(n log n); about 500 bytes a point beside the mesh. Parallel, the same bits for any number of threads. Of
+/// the report, what was measured and what was equalized are the flow's to enter (flow_auto.cpp).
+/// \param whole what is there is taken, the rest entered.
+AutomaticResult automatic_smoothing(AutomaticTask task, AutomaticReport& report, Statistics& whole,
+                                    const Context& context);
 
 }  // namespace rfsmooth::smoothing

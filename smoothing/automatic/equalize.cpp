@@ -263,7 +263,7 @@ void slide_back(Positions& points, const Positions& before, double share, rfs_me
 }
 
 Equalized equalize(Positions& points, const Positions& before, const rfs_mesh::NoiseField& noise,
-                   double spacing, rfs_mesh::NeighborTable table, const Context& context) {
+                   rfs_mesh::NeighborTable table, const Context& context) {
   const std::size_t n = points.size();
   if (n <= kNeighbourhood) return {};
   std::vector<Eigen::Vector3f> normals;
@@ -283,7 +283,7 @@ Equalized equalize(Positions& points, const Positions& before, const rfs_mesh::N
   std::vector<Eigen::Vector2f> start(n), moved(n, Eigen::Vector2f::Zero());
   for_each_index(context, n, [&](std::size_t i) {
     const double calm = std::min(1.0, noise.local[i] / noise.sigma),
-                 much = noise.local[i] / (kShareUpTo * spacing);
+                 much = noise.local[i] / (kShareUpTo * noise.spacing);
     const auto given_back = float((1 - (1 - kShare) * calm * calm) / (1 + much * much * much * much));
     start[i] = given_back * frames[i].offset((before[i] - points[i]).cast<float>());
     now[i] = frames[i].slide(points[i], start[i]);
@@ -298,7 +298,7 @@ Equalized equalize(Positions& points, const Positions& before, const rfs_mesh::N
       if (f.slides) force = f.along * f.along.dot(force);
       const double share = noise.local[i] / double(f.distance);
       moved[i] += float(std::min(kStep, kGain * share * share)) * reach * force;
-      const auto limit = float(kMostMove * std::min(double(f.distance), spacing));
+      const auto limit = float(kMostMove * std::min(double(f.distance), noise.spacing));
       if (const float length = moved[i].norm(); length > limit) moved[i] *= limit / length;
       next[i] = f.slide(points[i], start[i] + moved[i]);
     });

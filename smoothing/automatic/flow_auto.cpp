@@ -19,9 +19,9 @@ namespace {
 /// leave a clean cloud alone, unless a part of it is clearly louder than that.
 /// The loudest tenth is of the sites, not of the points as in `summary_of`: the sites are those of the whole
 /// cloud in each of its tiles, too, so that all tiles decide alike.
-double measured(const rfs_mesh::NoiseField& noise, double spacing) {
+double measured(const rfs_mesh::NoiseField& noise) {
   constexpr double kMostlyShape = 0.4;  // of the development shapes, clean and with noise of 0.1 spacings
-  const double detail = rfs_mesh::detail(spacing);
+  const double detail = rfs_mesh::detail(noise.spacing);
   if (!(noise.sigma < detail && noise.shape > kMostlyShape)) return noise.sigma;
   std::vector<double> sites = noise.at_sites;
   return !sites.empty() && quantile(sites, 0.9) > rfs_mesh::kLouder * detail ? noise.sigma : 0;
@@ -30,18 +30,19 @@ double measured(const rfs_mesh::NoiseField& noise, double spacing) {
 /// Noise of the size `sigma`, that varies over the cloud as `noise` does, times `strength`. What cannot be
 /// told from detail stays, and all of a cloud without noise that could be wherever it is. A strength above 1
 /// acts everywhere, where next to nothing was measured on as much as may be hidden there.
-rfs_mesh::NoiseField scaled(rfs_mesh::NoiseField noise, double sigma, double strength, double spacing) {
+rfs_mesh::NoiseField scaled(rfs_mesh::NoiseField noise, double sigma, double strength) {
   const auto of = [&](double s, double hidden) {
     if (strength > 1) return strength * std::max(s, hidden);
     return s > hidden ? strength * s : 0.0;
   };
   const auto hidden_at = [&](std::size_t i) {
     const double told = noise.local_told.empty() ? 0 : noise.local_told[i];
-    return (1 - told) * rfs_mesh::kNoNoise * (noise.local_spacing.empty() ? spacing : noise.local_spacing[i]);
+    return (1 - told) * rfs_mesh::kNoNoise *
+           (noise.local_spacing.empty() ? noise.spacing : noise.local_spacing[i]);
   };
   const double measured = noise.sigma;
   const std::vector<double>& denser = noise.spacing_at_sites;
-  const double least = denser.empty() ? spacing : *std::min_element(denser.begin(), denser.end());
+  const double least = denser.empty() ? noise.spacing : *std::min_element(denser.begin(), denser.end());
   noise.sigma = of(sigma, rfs_mesh::kNoNoise * least);
   for (std::size_t i = 0; i < noise.local.size(); ++i)
     noise.local[i] = std::max(of(measured > 0 ? noise.local[i] * sigma / measured : sigma, hidden_at(i)),
@@ -105,28 +106,26 @@ std::optional<AutomaticReport> smooth_automatically(Mesh& mesh, const AutomaticO
   Statistics own, &whole = statistics != nullptr ? *statistics : own;
   if (!whole.noise) rfs_mesh::known_noise(rfs_mesh::SpatialIndex(mesh.positions, context), whole, context);
   rfs_mesh::NoiseField noise = rfs_mesh::spread_noise(*whole.noise, mesh.positions, context);
-  const double spacing = noise.spacing;
   const NoiseSummary summary = summary_of(noise);
-  const double sigma = options.noise ? options.noise->resolve(spacing) : measured(noise, spacing);
-  noise = scaled(std::move(noise), sigma, options.strength, spacing);
+  const double sigma = options.noise ? options.noise->resolve(noise.spacing) : measured(noise);
+  noise = scaled(std::move(noise), sigma, options.strength);
   AutomaticReport report;
   report.noise = sigma;
   report.measured = summary;
   report.left = noise.sigma;
   report.not_smoothed = why_not(mesh.positions.size(), options.strength, noise.sigma);
   if (report.not_smoothed) return report;
-  rfs_mesh::NeighborTable near;
-  Positions smooth = automatic_smoothing(mesh, connectivity == Connectivity::kept, noise, spacing,
-                                         options.learned, report, near, context, whole, sites);
-  mesh.positions.swap(smooth);
-  const Positions before = std::move(smooth);
+  AutomaticResult smooth = automatic_smoothing(
+      {mesh, noise, options.learned, connectivity == Connectivity::kept, sites}, report, whole, context);
+  mesh.positions.swap(smooth.points);
+  const Positions before = std::move(smooth.points);
   if (!noise.across) {  // along lines only the normals are known
     if (options.equalize) {
-      const Equalized moved = equalize(mesh.positions, before, noise, spacing, std::move(near), context);
+      const Equalized moved = equalize(mesh.positions, before, noise, std::move(smooth.near), context);
       report.equalized = moved.rms;
       report.equalized_most = moved.largest;
     } else {  // back to where the guide took them from, so that they move along normals only
-      slide_back(mesh.positions, before, 1, std::move(near), context);
+      slide_back(mesh.positions, before, 1, std::move(smooth.near), context);
     }
   }
   limit(before, noise.local, options.strength, report.tail_times, mesh.positions, context);

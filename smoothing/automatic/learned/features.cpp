@@ -78,8 +78,8 @@ void write_residuals(const Sums<4>& s, Writer& to) {
 }  // namespace
 
 Features::Features(const HeightField& field, const Positions& data, const Smoothed& smoothed,
-                   const rfs_mesh::NoiseField& noise, double spacing, const Context& context)
-    : field_(field), smoothed_(smoothed), noise_(noise), spacing_(spacing) {
+                   const rfs_mesh::NoiseField& noise, const Context& context)
+    : field_(field), smoothed_(smoothed), noise_(noise) {
   constexpr int kTimes = 4;
   packed_.resize(field.size());
   pooled_.resize(field.size());
@@ -117,7 +117,7 @@ void Features::fill(std::size_t i, Row& row, Surroundings& near) const {
   to.odd(pooled_[i][2]);
   for (const Eigen::Index k : {1, 3, 4, 5, 6}) to.even(pooled_[i][k]);
 
-  const float dense = float(s / spacing_), radius = float(kSeen) * s;
+  const float dense = float(s / noise_.spacing), radius = float(kSeen) * s;
   near.move_to(field_.guide()[i], double(radius));
   const auto three = [](const Eigen::Vector3f& v) { return std::array<float, 3>{v[0], v[1], v[2]}; };
   const Packed& one = packed_[i];

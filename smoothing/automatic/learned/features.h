@@ -66,10 +66,10 @@ class Features {
     std::array<float, kOdd> odd;
   };
 
-  /// The arguments outlive it. `spacing`: world units. O(n), parallel, the same bits for any number of
+  /// The arguments outlive it. O(n), parallel, the same bits for any number of
   /// threads.
   Features(const HeightField& field, const Positions& data, const Smoothed& smoothed,
-           const rfs_mesh::NoiseField& noise, double spacing, const Context& context);
+           const rfs_mesh::NoiseField& noise, const Context& context);
 
   /// s, world units.
   float scale(std::size_t i) const { return float(std::min(noise_.local[i], noise_.sigma)); }
@@ -90,7 +90,6 @@ class Features {
   const HeightField& field_;
   const Smoothed smoothed_;
   const rfs_mesh::NoiseField& noise_;
-  double spacing_;
   std::vector<Packed> packed_;                ///< n
   std::vector<HeightField::Columns> pooled_;  ///< n: moments
 };

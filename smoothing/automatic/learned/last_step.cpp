@@ -33,13 +33,27 @@ float worth_taking(float step) {
   return std::abs(step) > kLeastStep ? step - kLeastStep * kLeastStep / step : 0;
 }
 
-void write_sites(const HeightField& field, const Smoothed& smoothed, const Features& features,
-                 LearnedSites& sites, const Context& context) {
+/// The points that the network is asked for.
+std::vector<Index> asked_for(const std::vector<ScalesSay>& scales, const rfs_mesh::NoiseField& noise) {
+  std::vector<Index> points;
+  if (noise.shared > 1 || noise.sigma < kLeastNoise * noise.spacing) return points;
+  for (std::size_t i = 0; i < scales.size(); ++i)
+    if (contradiction(scales[i]) > 0) points.push_back(Index(i));
+  return points;
+}
+
+}  // namespace
+
+LearnedSites learned_sites(const HeightField& field, const Positions& data, const Smoothed& smoothed,
+                           const rfs_mesh::NoiseField& noise, const Context& context) {
+  LearnedSites sites;
+  sites.point = asked_for(smoothed.scales, noise);
   const std::size_t n = sites.point.size();
   sites.features.resize(n);
   sites.place.resize(n);
   sites.normal.resize(n);
   sites.scale.resize(n);
+  const Features features(field, data, smoothed, noise, context);
   for_blocks(context, n, kBlockOfSites, [&](std::size_t begin, std::size_t end) {
     Surroundings near = features.start();
     for (std::size_t k = begin; k < end; ++k) {
@@ -50,23 +64,15 @@ void write_sites(const HeightField& field, const Smoothed& smoothed, const Featu
       sites.scale[k] = features.scale(i);
     }
   });
+  return sites;
 }
 
-}  // namespace
-
 std::size_t take_learned_step(const HeightField& field, const Positions& data, const Smoothed& smoothed,
-                              const rfs_mesh::NoiseField& noise, double spacing, const MayGo& may_go,
-                              Positions& place, LearnedSites* sites, const Context& context) {
-  if (noise.shared > 1 || noise.sigma < kLeastNoise * spacing) return 0;
-  const Features features(field, data, smoothed, noise, spacing, context);
-  std::vector<Index> points;
-  for (std::size_t i = 0; i < field.size(); ++i)
-    if (contradiction(smoothed.scales[i]) > 0) points.push_back(Index(i));
-  if (sites != nullptr) {
-    sites->point = std::move(points);
-    write_sites(field, smoothed, features, *sites, context);
-    return 0;
-  }
+                              const rfs_mesh::NoiseField& noise, const MayGo& may_go, Positions& place,
+                              const Context& context) {
+  const std::vector<Index> points = asked_for(smoothed.scales, noise);
+  if (points.empty()) return 0;
+  const Features features(field, data, smoothed, noise, context);
   const Network network;
   Positions there(points.size());  // neighbours are seen where they were
   for_blocks(context, points.size(), kBlockOfSites, [&](std::size_t begin, std::size_t end) {

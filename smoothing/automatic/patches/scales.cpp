@@ -124,132 +124,128 @@ std::vector<ScalesSay> tell(const std::vector<Scale>& scales, std::size_t n, con
   return told;
 }
 
-/// The mixture of all scales by their evidence, and of `first`, the data or what stands for them. `told`: for
-/// the learned step; null: not taken.
-void mix(const HeightField& field, std::vector<float> first, std::vector<Scale> scales, double shared,
-         const std::vector<float>& precision, std::vector<float>& height, std::vector<float>& own,
-         std::vector<ScalesSay>* told, std::vector<double>& shares, const Context& context) {
-  const auto alone = float(1 / shared);
-  Mixture mixture(std::move(first));
-  average_near(field, scales, context);
-  if (!precision.empty()) {
-    const std::vector<float> around = field.local_mean(field.local_mean(precision, context), context);
-    for (Scale& scale : scales) in_own_units(precision, around, scale.worse, context);
-  }
-  if (told != nullptr) *told = tell(scales, field.size(), context);
-  for (Scale& scale : scales) {
-    // A wide patch is judged over its own width, but must not be far off anywhere near the point either: the
-    // few points that it misses by sigmas would be outvoted.
-    std::vector<float>& gain = scale.worse;
-    for_each_index(context, field.size(), [&](std::size_t i) {
-      const float near = gain[i];
-      const float against = scale.mean.empty() ? kNearEvidence * near
-                                               : kPatchEvidence * float(scale.members) * scale.mean[i] +
-                                                     kNearEvidence * std::max(0.0F, near - kTolerated);
-      gain[i] = scale.prediction.covered[i] != 0 ? -alone * against : std::numeric_limits<float>::quiet_NaN();
-    });
-    mixture.add(std::move(scale.prediction.height), std::move(scale.prediction.own), std::move(gain),
-                context);
-    scale = {};
-  }
-  std::vector<float> say(field.size(), 1);
-  // A point counts by its variance: it has that much to lose.
-  for_each_index(context, precision.size(),
-                 [&](std::size_t i) { say[i] = precision[i] > 0 ? std::min(1.0F, 1 / precision[i]) : 0; });
-  mixture.average(height, own, shares, say, context);
-}
-
-/// The ladder of scales.
+/// The ladder of scales, and what all of them together make of the heights.
 class Ladder {
  public:
-  Ladder(const HeightField& field, const rfs_mesh::NoiseField& noise, const std::vector<float>& precision)
-      : field_(field), noise_(noise), precision_(precision) {
-    risk_.assign(field.size(), 1);  // of the data themselves: no error, all their own
+  /// `whole`: how the scales of the whole cloud are made; what is not there is entered.
+  Ladder(const HeightField& field, const rfs_mesh::NoiseField& noise, Statistics::Pass& whole,
+         const Context& context)
+      : field_(field),
+        noise_(noise),
+        whole_(whole),
+        context_(context),
+        precision_(precisions(noise, context)),
+        first_(heights(field, context)),
+        risk_(field.size(), 1) {  // of the data themselves: no error, all their own
+    const double share = noise.sigma / noise.spacing;
+    const double narrowest = std::max(double(kNarrowestPatch) * noise.shared, kNarrowest * share * share);
+    const double widest = std::max(kWidest, std::ldexp(narrowest, kSeeing));
+    if (noise.shared > 1) stand_in();
+    const bool known = !whole.scales.empty();
+    double m = narrowest;
+    for (std::size_t s = 0; known ? s < whole.scales.size() : m <= widest; ++s, m *= 2) {
+      context.report("smooth", 0.1 + 0.9 * std::log(m / narrowest) / std::log(2 * widest / narrowest));
+      if (!known) whole.scales.push_back(scale_of(m));
+      const std::size_t members = make_way(whole.scales[s]);
+      scales_.push_back(try_scale(field_, members, seeds_, noise_, precision_, risk_, memory_, context));
+      if (!known && m >= double(field.size()) / 2) break;
+    }
+  }
+
+  const std::vector<Scale>& scales() const { return scales_; }
+
+  /// The mixture of all scales by their evidence, and of the data or what stands for them; they are used up.
+  /// `told`: for the learned step; null: not taken.
+  void mix(std::vector<float>& height, std::vector<float>& own, std::vector<ScalesSay>* told) {
+    const auto alone = float(1 / noise_.shared);
+    Mixture mixture(std::move(first_));
+    average_near(field_, scales_, context_);
+    if (!precision_.empty()) {
+      const std::vector<float> around = field_.local_mean(field_.local_mean(precision_, context_), context_);
+      for (Scale& scale : scales_) in_own_units(precision_, around, scale.worse, context_);
+    }
+    if (told != nullptr) *told = tell(scales_, field_.size(), context_);
+    for (Scale& scale : scales_) {
+      // A wide patch is judged over its own width, but must not be far off anywhere near the point either:
+      // the few points that it misses by sigmas would be outvoted.
+      std::vector<float>& gain = scale.worse;
+      for_each_index(context_, field_.size(), [&](std::size_t i) {
+        const float near = gain[i];
+        const float against = scale.mean.empty() ? kNearEvidence * near
+                                                 : kPatchEvidence * float(scale.members) * scale.mean[i] +
+                                                       kNearEvidence * std::max(0.0F, near - kTolerated);
+        gain[i] =
+            scale.prediction.covered[i] != 0 ? -alone * against : std::numeric_limits<float>::quiet_NaN();
+      });
+      mixture.add(std::move(scale.prediction.height), std::move(scale.prediction.own), std::move(gain),
+                  context_);
+      scale = {};
+    }
+    std::vector<float> say(field_.size(), 1);
+    // A point counts by its variance: it has that much to lose.
+    for_each_index(context_, precision_.size(), [&](std::size_t i) {
+      say[i] = precision_[i] > 0 ? std::min(1.0F, 1 / precision_[i]) : 0;
+    });
+    mixture.average(height, own, whole_.shares, say, context_);
+  }
+
+ private:
+  /// Before any scale: the narrowest patches stand for the data, where they say something.
+  void stand_in() {
+    if (!whole_.narrow) whole_.narrow = scale_of(double(kNarrowestPatch));
+    const std::size_t members = make_way(*whole_.narrow);
+    const Prediction said =
+        Patches(field_, members, seeds_, noise_.local, memory_, context_).predict(context_);
+    for_each_index(context_, first_.size(), [&](std::size_t i) {
+      if (said.covered[i] != 0) first_[i] = said.height[i];
+    });
   }
 
   /// How patches of about m points are made here: with seeds thinned as far as these allow.
-  Statistics::Scale scale_of(double m, const Context& context) {
+  Statistics::Scale scale_of(double m) {
     // Compared before it is converted: noise of far more than the cloud asks for more points than numbers go.
     const std::size_t n = field_.size(), members = m < double(n) / 2 ? std::size_t(m) : n / 2;
-    thin_to(1, context);
-    while (seeds_.size() * members > kMostOverlap * n) thin_to(thinnings_ + 1, context);
+    thin_to(1);
+    while (seeds_.size() * members > kMostOverlap * n) thin_to(thinnings_ + 1);
     return {members, thinnings_};
   }
 
-  void add(const Statistics::Scale& how, const Context& context) {
-    const std::size_t members = make_way(how, context);
-    scales.push_back(try_scale(field_, members, seeds_, noise_, precision_, risk_, memory_, context));
-  }
-
-  /// The heights as the narrowest patches see them; the data where there are none. Before any scale.
-  std::vector<float> narrow(const Statistics::Scale& how, const Context& context) {
-    std::vector<float> smooth = heights(field_, context);
-    const std::size_t members = make_way(how, context);
-    const Prediction said = Patches(field_, members, seeds_, noise_.local, memory_, context).predict(context);
-    for_each_index(context, smooth.size(), [&](std::size_t i) {
-      if (said.covered[i] != 0) smooth[i] = said.height[i];
-    });
-    return smooth;
-  }
-
-  std::vector<Scale> scales;
-
- private:
   /// Thins the seeds for a scale; returns its number of points.
-  std::size_t make_way(const Statistics::Scale& how, const Context& context) {
-    thin_to(how.thinnings, context);
+  std::size_t make_way(const Statistics::Scale& how) {
+    thin_to(how.thinnings);
     return std::min(how.members, field_.size());
   }
 
-  void thin_to(std::size_t thinnings, const Context& context) {
+  void thin_to(std::size_t thinnings) {
     for (; thinnings_ < thinnings; ++thinnings_)
       if (thinnings_ == 0)
-        seeds_ = rfs_mesh::thin_all(field_.guide(), field_.neighbors(), context);
+        seeds_ = rfs_mesh::thin_all(field_.guide(), field_.neighbors(), context_);
       else if (seeds_.size() > field_.size() / kDense)
-        seeds_ = rfs_mesh::thin_dense(field_.index(), field_.neighbors(), seeds_, context);
+        seeds_ = rfs_mesh::thin_dense(field_.index(), field_.neighbors(), seeds_, context_);
       else
-        seeds_ = rfs_mesh::thin(field_.guide(), seeds_, context);
+        seeds_ = rfs_mesh::thin(field_.guide(), seeds_, context_);
   }
 
   const HeightField& field_;
   const rfs_mesh::NoiseField& noise_;
-  const std::vector<float>& precision_;
-  std::vector<float> risk_;
+  Statistics::Pass& whole_;
+  const Context& context_;
+  const std::vector<float> precision_;
+  std::vector<float> first_;  ///< n: the heights that stand for the data
+  std::vector<float> risk_;   ///< n: of the last scale
+  std::vector<Scale> scales_;
   Patches::Memory memory_;
   std::vector<Index> seeds_;
   std::size_t thinnings_ = 0;  ///< 0: the seeds are all points
 };
 
-/// All scales of a field, and in `first` the heights that stand for the data. `whole`: how those of the whole
-/// cloud are made; what is not there is entered.
-std::vector<Scale> try_scales(const HeightField& field, const rfs_mesh::NoiseField& noise,
-                              const std::vector<float>& precision, double spacing, Statistics::Pass& whole,
-                              std::vector<float>& first, const Context& context) {
-  Ladder ladder(field, noise, precision);
-  const double share = noise.sigma / spacing;
-  const double narrowest = std::max(double(kNarrowestPatch) * noise.shared, kNarrowest * share * share);
-  const double widest = std::max(kWidest, std::ldexp(narrowest, kSeeing));
-  if (noise.shared > 1 && !whole.narrow) whole.narrow = ladder.scale_of(double(kNarrowestPatch), context);
-  first = whole.narrow ? ladder.narrow(*whole.narrow, context) : heights(field, context);
-  const bool known = !whole.scales.empty();
-  double m = narrowest;
-  for (std::size_t s = 0; known ? s < whole.scales.size() : m <= widest; ++s, m *= 2) {
-    context.report("smooth", 0.1 + 0.9 * std::log(m / narrowest) / std::log(2 * widest / narrowest));
-    if (!known) whole.scales.push_back(ladder.scale_of(m, context));
-    ladder.add(whole.scales[s], context);
-    if (!known && m >= double(field.size()) / 2) break;
-  }
-  return std::move(ladder.scales);
-}
-
 }  // namespace
 
-MixedScales smooth_heights(const HeightField& field, const rfs_mesh::NoiseField& noise, double spacing,
-                           bool learned, Statistics::Pass& whole, const Context& context) {
-  std::vector<float> first;
-  const std::vector<float> precision = precisions(noise, context);
-  std::vector<Scale> scales = try_scales(field, noise, precision, spacing, whole, first, context);
+MixedScales smooth_heights(const HeightField& field, const rfs_mesh::NoiseField& noise, bool learned,
+                           Statistics::Pass& whole, const Context& context) {
+  Ladder ladder(field, noise, whole, context);
   MixedScales pass;
+  const std::vector<Scale>& scales = ladder.scales();
   const Scale& seeing = scales[std::min(std::size_t(kSeeing), scales.size() - 1)];
   pass.members_seeing = seeing.members;
   pass.several = seeing.several;
@@ -257,8 +253,7 @@ MixedScales smooth_heights(const HeightField& field, const rfs_mesh::NoiseField&
     pass.wide = scale.prediction.height;
     if (scale.members >= kOwnMean && &scale != &scales.front()) break;
   }
-  mix(field, std::move(first), std::move(scales), noise.shared, precision, pass.height, pass.own,
-      learned ? &pass.told : nullptr, whole.shares, context);
+  ladder.mix(pass.height, pass.own, learned ? &pass.told : nullptr);
   return pass;
 }
 

@@ -22,11 +22,10 @@ struct MixedScales {
   std::size_t members_seeing = 0;  ///< of that scale
 };
 
-/// Of scales that begin at a radius of 4.5 sigma and go on doubling their points. `spacing`: world units.
-/// \param learned whether the learned step will be taken. \param whole how those of the whole cloud are made;
-/// what is not there is entered. O(n) times the number of scales, about eight; parallel, the same bits for
-/// any number of threads.
-MixedScales smooth_heights(const HeightField& field, const rfs_mesh::NoiseField& noise, double spacing,
-                           bool learned, Statistics::Pass& whole, const Context& context);
+/// Of scales that begin at a radius of 4.5 sigma and go on doubling their points. \param learned whether the
+/// learned step will be taken. \param whole how those of the whole cloud are made; what is not there is
+/// entered. O(n) times the number of scales, about eight; parallel, the same bits for any number of threads.
+MixedScales smooth_heights(const HeightField& field, const rfs_mesh::NoiseField& noise, bool learned,
+                           Statistics::Pass& whole, const Context& context);
 
 }  // namespace rfsmooth::smoothing

@@ -39,10 +39,10 @@ rfs_mesh::NoiseField even(double sigma, std::size_t n) {
   return noise;
 }
 
-Positions smoothed(Mesh mesh, const rfs_mesh::NoiseField& noise, AutomaticReport& report) {
-  rfs_mesh::NeighborTable near;
+Positions smoothed(Mesh mesh, rfs_mesh::NoiseField noise, AutomaticReport& report) {
   Statistics whole;
-  return automatic_smoothing(mesh, true, noise, spacing(mesh.positions), true, report, near, {}, whole);
+  noise.spacing = spacing(mesh.positions);
+  return automatic_smoothing({mesh, std::move(noise)}, report, whole, {}).points;
 }
 
 Positions smoothed(const Mesh& mesh, double sigma, AutomaticReport& report) {

@@ -40,8 +40,9 @@ rfs_mesh::NeighborTable near(const Positions& points) {
   return rfs_mesh::SpatialIndex(points, {}).nearest(32, {});
 }
 
-rfs_mesh::NoiseField noise_of(double figure, std::vector<double> local) {
+rfs_mesh::NoiseField noise_of(double figure, std::vector<double> local, double spacing = 1) {
   rfs_mesh::NoiseField noise;
+  noise.spacing = spacing;
   noise.sigma = figure;
   noise.local = std::move(local);
   return noise;
@@ -50,7 +51,7 @@ rfs_mesh::NoiseField noise_of(double figure, std::vector<double> local) {
 /// Of points that nothing has smoothed: they are where they were before.
 smoothing::Equalized spread(Positions& points, double sigma, double spacing, const Context& context) {
   const Positions before = points;
-  return equalize(points, before, noise_of(sigma, std::vector<double>(points.size(), sigma)), spacing,
+  return equalize(points, before, noise_of(sigma, std::vector<double>(points.size(), sigma), spacing),
                   near(points), context);
 }
 
@@ -147,7 +148,7 @@ TEST(Equalize, WhatWasMovedSidewaysGoesBackWhereNoiseIsSmall) {
   for (const auto& [noise, share] : {std::pair{0.25, 0.75}, {4.0, 0.019}}) {
     Positions points = before;
     for (auto& p : points) p += aside;
-    equalize(points, before, noise_of(noise, std::vector<double>(points.size(), noise)), 1, near(points), {});
+    equalize(points, before, noise_of(noise, std::vector<double>(points.size(), noise)), near(points), {});
     for (std::size_t i = 0; i < points.size(); ++i)
       EXPECT_LT((points[i] - before[i] - (1 - share) * aside).norm(), 0.01) << noise;
   }
@@ -163,7 +164,7 @@ TEST(Equalize, CalmPointsAmongLoudOnesGoBackAllTheWay) {
   for (auto& p : points) p += aside;
   std::vector<double> sigma(points.size(), 0.3);
   for (std::size_t i = 0; i < sigma.size() / 2; ++i) sigma[i] = 0.001;
-  equalize(points, before, noise_of(0.3, sigma), 1, near(points), {});
+  equalize(points, before, noise_of(0.3, sigma), near(points), {});
   for (std::size_t i = 0; i < points.size(); ++i)
     EXPECT_NEAR((points[i] - before[i]).norm(), (2 * i < points.size() ? 0 : 0.25) * aside.norm(), 0.01) << i;
 }
@@ -174,7 +175,7 @@ TEST(Equalize, PointsWithoutNoiseStayAmongThoseWithSome) {
   std::vector<double> sigma(points.size(), 0.0);
   for (std::size_t i = 0; i < points.size(); ++i)
     if (points[i].x() > 0) sigma[i] = 1;
-  EXPECT_GT(equalize(points, before, noise_of(1, sigma), 1, near(points), {}).rms, 0);
+  EXPECT_GT(equalize(points, before, noise_of(1, sigma), near(points), {}).rms, 0);
   for (std::size_t i = 0; i < points.size(); ++i)
     if (before[i].x() <= 0) {
       ASSERT_LT((points[i] - before[i]).norm(), 1e-6);
