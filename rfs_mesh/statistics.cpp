@@ -61,6 +61,9 @@ std::vector<std::string> check(const Statistics& statistics) {
                (!pass.narrow || is_scale(*pass.narrow)),
            "passes: a scale without members, or without 1 to 64 thinnings");
     expect(
+        pass.scales.size() <= Statistics::Pass::kMostScales,
+        fmt::format("passes: {} scales, the most are {}", pass.scales.size(), Statistics::Pass::kMostScales));
+    expect(
         pass.shares.empty() || pass.shares.size() == pass.scales.size() + 1,
         fmt::format("passes: {} shares for the data and {} scales", pass.shares.size(), pass.scales.size()));
   }

@@ -65,8 +65,9 @@ struct Statistics {
   struct Pass {
     std::vector<double> reductions;  ///< of the residual, by each polynomial of the guide's fairing
     std::optional<Scale> narrow;     ///< stands for the data where points share their noise
-    std::vector<Scale> scales;       ///< ascending
-    std::vector<double> shares;      ///< of the cloud that the data and each scale serve best
+    static constexpr std::size_t kMostScales = 15;
+    std::vector<Scale> scales;   ///< ascending, at most kMostScales
+    std::vector<double> shares;  ///< of the cloud that the data and each scale serve best
   };
   /// Walls thinner than the noise.
   struct Sheets {

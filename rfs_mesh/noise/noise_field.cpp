@@ -123,7 +123,7 @@ struct Heard {
   }
 
   static bool speaks(const NoiseSites& sites, std::size_t i) {
-    return sites.speaks[i] && ((says(sites.fits[i]) && !sites.cut[i]) || sites.floor[i] > 0);
+    return sites.speaks[i] && ((says(sites.fits[i]) && !sites.full[i]) || sites.floor[i] > 0);
   }
 };
 

@@ -132,10 +132,10 @@ Eigen::Vector3d place_at(const HeightField& field, std::size_t i, const Eigen::V
 AutomaticResult automatic_smoothing(AutomaticTask task, AutomaticReport& report, Statistics& whole,
                                     const Context& context) {
   Mesh& mesh = task.mesh;
-  const rfs_mesh::NoiseField& noise = task.noise;
   const std::size_t n = mesh.positions.size();
-  const double measured = noise.sigma;
+  const double untamed = task.noise.sigma;
   Mixed mixed = mix_scales(task, report, whole, context);
+  const rfs_mesh::NoiseField& noise = task.noise;
   HeightField& field = *mixed.field;
   MixedScales& heights = mixed.heights;
   if (!task.keep_rings) mesh.one_ring = {};
@@ -144,9 +144,9 @@ AutomaticResult automatic_smoothing(AutomaticTask task, AutomaticReport& report,
   // A k-th of the evidence never was enough for walls, and across lines there is none.
   const bool own_noise = !(noise.shared > 1) && !noise.across;
   HiddenSheets hidden;
-  if (own_noise && measured > rfs_mesh::detail(noise.spacing))
+  if (own_noise && untamed > rfs_mesh::detail(noise.spacing))
     hidden = split_hidden_sheets(
-        field, residuals_of(field, heights.height, mesh.positions, measured, mixed.tails, context),
+        field, residuals_of(field, heights.height, mesh.positions, untamed, mixed.tails, context),
         heights.height, heights.own, of_whole, whole.sheets, context);
   const auto allowed = [&](std::size_t i, const Eigen::Vector3d& move) {
     return move.allFinite() && move.norm() <= mixed.most[i];

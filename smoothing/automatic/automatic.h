@@ -6,7 +6,7 @@
 ///    averaged before neighbours on the guide are neighbours on the surface.
 ///    Points it stranded are landed (stranded.h). The cloud is now a height field z over the guide.
 /// 2. Candidates: overlapping quadrics over m = m_0, 2 m_0, 4 m_0, ... points (patches.h), each scale a
-///    prediction f_m of every height. The narrowest patch has a radius of about 4.5 sigma: below that the
+///    prediction f_m of every height. The narrowest patch has a radius of 4.5 sigma or more: below that the
 ///    guide, which was made from the same data, is within its noise.
 /// 3. Choice: Stein's unbiased risk (Stein 1981) of each scale at each point,
 ///        rho_m = (z - f_m)^2 / sigma^2 + 2 df_m/dz - 1,
@@ -23,14 +23,14 @@
 ///    fitted together (thin_walls.h). Neither is tried where points share their noise: blotches look like
 ///    sheets. Where patches contradict each other, a learned step goes on from there towards the surface
 ///    (learned/last_step.h).
-/// 5. What is left: the mean risk of the mixture, at least the variance that the data's own weight passes on,
-///    sum sigma^2 df/dz, both with the variance that the residuals tell where the surface is smooth, of
-///    places as loud as each other together: next to what little is left there, a few percent in sigma would
+/// 5. What is left: the mean risk of the mixture, but at least the variance that the data's own weight passes
+///    on, sum sigma^2 df/dz. Both with a sigma that the residuals tell where the surface is smooth, of all
+///    places that are as loud as each other: beside what little is left there, a few percent in sigma would
 ///    be much. Points farther than 5 sigma from the result stay where they are and do not count: strays are
 ///    no noise.
 ///
 /// Noise that k neighbours share (rfs_mesh/shared_noise.h) is that of n / k points, each seen k times: scales
-/// begin at k times as many points, c is k times as large, evidence counts a k-th, and of a prediction that
+/// begin at 16 k points or more, c is k times as large, evidence counts a k-th, and of a prediction that
 /// has the share `own` of the point's height k own / (1 + (k - 1) own) is the point's and its neighbours'
 /// noise. What such points have of their own beside it is noise for sure: in place of the data the patches of
 /// 16 points are the first candidate, so that where every wide patch is worse the points are left calm.
@@ -65,7 +65,7 @@ struct AutomaticTask {
   rfs_mesh::NoiseField noise;     ///< along the normal, of positive sigma; local: n, positive
   bool learned = true;            ///< whether the learned step is taken
   bool keep_rings = true;         ///< false: the mesh is left without its one-rings, as soon as they are read
-  LearnedSites* sites = nullptr;  ///< out: what the learned step would be given, instead of it; null: taken
+  LearnedSites* sites = nullptr;  ///< out, with `learned`: what the step would be given; it is not taken
 };
 
 /// What has become of it.

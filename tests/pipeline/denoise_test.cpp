@@ -390,6 +390,13 @@ TEST(Denoise, StatisticsThatNoCloudHasAreRefused) {
   expect_refused([](Statistics& s) { s.passes[0].scales[0].members = 0; }, "passes");
   expect_refused([](Statistics& s) { s.passes[0].scales[0].thinnings = std::size_t(-1); }, "passes");
   expect_refused([](Statistics& s) { s.passes[0].shares.pop_back(); }, "passes");
+  expect_refused(
+      [](Statistics& s) {
+        Statistics::Pass& pass = s.passes[0];
+        pass.scales.resize(Statistics::Pass::kMostScales + 1, pass.scales[0]);
+        pass.shares.clear();
+      },
+      "passes");
 }
 
 // Where far points stand together it is shape, not tails, and a part of a cloud is told so by the whole.

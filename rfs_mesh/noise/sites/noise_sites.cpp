@@ -16,18 +16,20 @@ namespace {
 // Chosen on the development shapes with noise of 0.1 to 4 spacings, Gaussian and along the ray
 // (tests/bench/noise).
 constexpr std::size_t kSites = 2000, kFewestSites = 250;
-constexpr std::size_t kWork = 100000;    // sites x m
-constexpr std::size_t kGroupWork = 800;  // a fit of many points says much, and reaches far by itself
-constexpr double kDiffers = 1.5;         // of variances of a dozen fits: two standard errors and more
-constexpr double kMostSpeak = 0.7;       // of the fits around a site, to be believed
+constexpr std::size_t kWork = 100000;  // sites x m
+constexpr std::size_t kGroupWork =
+    800;  // sites of a group x m: where fits to many points say much each, fewer are needed
+constexpr double kDiffers = 1.5;        // of variances of a dozen fits: two standard errors and more
+constexpr double kLeastSpeaking = 0.7;  // of the fits around a site, to be believed
 // At m = 16 noise may be below the detail: less of s^2(m) need be noise.
 constexpr double kLeastNarrow = 0.4, kLeastWide = 0.5;
 // Wider, the ball is still a little too narrow for the slab, and shows that much more at 2 m.
 constexpr double kOfTheSlab = 1.07;
 // The residuals within a window show its own variance if they are of a normal distribution that it was made
-// for, three times that if they fill it evenly, as those of a far louder one do: the mean of the two factors.
+// for, three times that if they fill it evenly, as those of a far louder one do. Full: the geometric mean of
+// the two factors.
 constexpr double kEven = 3, kFilled = 1.73;
-constexpr int kOpeningRounds = 8;  // windows widen by up to 1.7 in each
+constexpr int kOpeningRounds = 8;  // in which windows open
 
 /// Fits at the sites, and what each site's neighbours say together.
 class Listener {
@@ -49,7 +51,7 @@ class Listener {
     const int group = int(std::clamp(kGroupWork / start.m, kSmallestGroup, 2 * kNeighbourhood));
     for_each_index(
         context, at.size(), [&](std::size_t s) { index.nearest(at[s], group, group_[s]); }, 64);
-    // No window is narrower than what a site makes sure of without one, or wider than a sheet.
+    // The first windows are as wide as what a site makes sure of, and no wider than a sheet.
     views = look_without_windows(places_, group_, start, steps, context);
     for (std::size_t s = 0; s < at.size(); ++s) {
       floor[s] = views[s].floor;
@@ -59,7 +61,7 @@ class Listener {
 
   /// One round that opens windows which are too narrow for their places; false if there are none. A place
   /// far louder than the start fills its window evenly, and keeps so little of the weight that no fit says
-  /// anything. Where the second sheet of a wall is cut off, no more does, but the window is not full.
+  /// anything. Nor does one where the second sheet of a wall is cut off; but there the window is not full.
   bool open_windows() {
     const std::vector<Scatter> all = places_.fits(m, sigma);
     const std::vector<Said> said = what_they_say(all, kTypicalDeviate);
@@ -77,7 +79,7 @@ class Listener {
           }
           if (!hear_at(s, said, 1)) {
             // Nearly nothing around is left within windows made for far calmer places.
-            const bool empty = double(full.size()) < (1 - kMostSpeak) * double(group_[s].size());
+            const bool empty = double(full.size()) < (1 - kLeastSpeaking) * double(group_[s].size());
             const double typical = empty ? kEven : quantile(full, 0.5);
             if (typical > kFilled && views[s].sheet == SiteView::kNone)
               sigma[s] = std::min(at_most(s, 1),
@@ -109,7 +111,7 @@ class Listener {
     return all;
   }
 
-  /// By site: the radius of its ball over the root of its points, which are not for being more of more
+  /// By site: the radius of its ball over the root of m, so that balls of more points do not count as more
   /// surface. \param all fits to m points
   std::vector<double> reaches(const std::vector<Scatter>& all) const {
     std::vector<double> of;
@@ -138,14 +140,14 @@ class Listener {
       return double(std::count_if(fits.begin(), fits.end(), [](const Said& fit) { return fit.freedom > 0; }));
     };
     double variance = mean_variance(wide, kTypical);
-    speaks[s] = char(variance > 0 && saying(wide) >= kMostSpeak * double(wide.size()));
-    if (wide.size() > kSmallestGroup && saying(near) >= kMostSpeak * double(kSmallestGroup))
+    speaks[s] = char(variance > 0 && saying(wide) >= kLeastSpeaking * double(wide.size()));
+    if (wide.size() > kSmallestGroup && saying(near) >= kLeastSpeaking * double(kSmallestGroup))
       if (const double of_near = mean_variance(near, kTypical); of_near > kDiffers * variance)
         variance = of_near;
     if (speaks[s] != 0)
       sigma[s] = std::min(at_most(s, times), std::sqrt(variance));
     else if (views[s].sheet < start_)
-      sigma[s] = floor[s] = views[s].sheet;
+      sigma[s] = floor[s] = views[s].sheet;  // also below rounding, which looks like sheets
     return speaks[s] != 0;
   }
 
@@ -180,7 +182,7 @@ class Listener {
 
  public:
   std::vector<std::size_t> m;
-  std::vector<double> sigma;  ///< around each site; as before where it does not speak
+  std::vector<double> sigma;  ///< around each site; where it does not speak and sees no sheet, as before
   std::vector<double> floor;
   std::vector<char> speaks;
   std::vector<SiteView> views;  ///< without windows
@@ -204,7 +206,7 @@ NoiseSites listen(const SpatialIndex& index, Positions at, const NoiseStart& sta
   const std::vector<double> windows = listener.sigma;
   sites.fits = listener.hear(1, false);
   for (std::size_t s = 0; s < windows.size(); ++s)
-    sites.cut.push_back(char(sites.fits[s].within > kFilled * windows[s] * windows[s]));
+    sites.full.push_back(char(sites.fits[s].within > kFilled * windows[s] * windows[s]));
   const std::vector<double> reaches = listener.reaches(sites.fits);
   sites.area = areas(reaches);
   sites.reach = listener.medians_around(reaches);
@@ -223,7 +225,7 @@ NoiseSites listen(const SpatialIndex& index, Positions at, const NoiseStart& sta
     const bool narrow = listener.m[s] == kNarrowestPatch;
     const double of_the_slab = narrow ? 1 : kOfTheSlab, least = narrow ? kLeastNarrow : kLeastWide;
     const double growth = std::max(0.0, listener.sigma[s] * listener.sigma[s] - of_the_slab * a);
-    const double floor = listener.floor[s];
+    const double floor = sites.floor[s];
     const double left = std::max({least * a, a - growth / (start.shape_grows - 1), floor * floor});
     if (a > 0) sites.shape[s] = std::max(0.0, 1 - left / a);
     sites.sigma[s] = std::sqrt(left);

@@ -24,6 +24,8 @@
 /// NoiseStart::shape_grows.
 #pragma once
 
+#include <vector>
+
 #include "rfs_mesh/noise/depth_steps.h"
 #include "rfs_mesh/noise/noise_search.h"
 
@@ -37,9 +39,10 @@ struct NoiseSites {
   std::vector<double> shape;  ///< part of s^2(m) taken off as shape, 0 to 0.6
   std::vector<double> area;   ///< of the surface around it, over that where points are sparse: 0 to 1
   std::vector<char> speaks;   ///< whether sigma is of this place; else it is what came nearest to it
-  std::vector<char> cut;      ///< whether the site's own fit fills its window, which is its neighbours'
+  std::vector<char> full;     ///< whether the site's own fit fills its window, which is its neighbours'
   std::vector<double> most;   ///< what is seen without windows around it, world units; infinite: not known
-  std::vector<double> floor;  ///< what steps, shared noise or layers make sure of, world units; 0: nothing
+  std::vector<double> floor;  ///< least noise, of steps, shared noise or layers, or of each of two sheets
+                              ///< where no fit within windows says a thing; world units; 0: none
   std::vector<char> told;     ///< whether the scatter around it stops growing, and is no detail
   std::vector<double> reach;  ///< radius of balls around it over the root of their points, world units
   std::vector<Scatter> fits;  ///< to the m nearest of the site by itself, more where it is far louder

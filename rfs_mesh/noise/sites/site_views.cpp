@@ -16,7 +16,8 @@ namespace {
 constexpr std::size_t kPlateauTo = 8 * kNeighbourhood;
 // Scatter::middle above which noise so flat is that of no two sheets: nearly that of an even distribution.
 constexpr double kMiddleOfSheets = 0.25;
-// Points at two depths that follow each other scatter by half a step, and rounding by 1 / sqrt(12) of it.
+// Points at two depths that follow each other scatter by half a step, and rounding by 1 / sqrt(12) of it; of
+// their variances 3.
 constexpr double kTwoDepths = 3;
 // Coefficients of a quadric.
 constexpr double kOfQuadric = 6;
@@ -39,10 +40,19 @@ double plateau(double few, double many, double radius) {
   return trust * std::max(few, kSure * many);
 }
 
+/// Fits at all sites to so many points.
+struct OpenFits {
+  std::size_t points;
+  std::vector<Scatter> all;
+};
+
 /// The fits of the sites nearest to one, and what they say together.
 struct Around {
-  explicit Around(std::vector<Scatter> of_sites) : fits(std::move(of_sites)) {
-    constexpr double kLeanByChance = 6 / double(kNeighbourhood);  // of so many normal values, unweighted
+  Around(const std::vector<Neighbor>& group, const OpenFits& open)
+      : fits(around(group, open.all, kNeighbourhood)), points(open.points) {
+    // Of two dozen normal values, unweighted. Wide fits lean less by chance, but so they do by sheets that
+    // the quadric has bent to: with 6 / points there, too, plates would be taken for layers.
+    constexpr double kLeanByChance = 6 / double(kNeighbourhood);
     double saying = 0;
     for (const Scatter& fit : fits) {
       if (!says(fit)) continue;
@@ -64,6 +74,7 @@ struct Around {
   }
 
   std::vector<Scatter> fits;
+  std::size_t points;
   double freedom = 0, flatness = 0, lean = 0,
          middle = 0;  ///< means; lean: beyond chance; nan: no fit says a thing
 };
@@ -90,24 +101,17 @@ double noise_of_sheet(const Around& around) {
   return std::sqrt(around.variance() * std::max(least, share - spread));
 }
 
-/// Whether fits to so many points show two layers that are nearer to each other than their points are, and
-/// no sheets.
-bool are_layers(const Around& around, std::size_t points) {
+/// Whether the fits show two layers that are nearer to each other than their points are, and no sheets.
+bool are_layers(const Around& around) {
   constexpr double kNormalFlatness = 3;
   constexpr double kToNearest = 0.25;  // the mean distance from a random point to its nearest, squared
   if (!(around.flatness < kNormalFlatness)) return false;
   const double lean = std::max(0.0, around.lean), of_sheet = share_of_sheet(around.flatness, lean);
   if (!(of_sheet < share_of_sheet(kFlatnessOfSheets))) return false;
-  const double wide = around.radius(), square_of_point = M_PI * wide * wide / double(points),
+  const double wide = around.radius(), square_of_point = M_PI * wide * wide / double(around.points),
                nearest = (lean > 0 ? 1 : kToNearest) * square_of_point;
   return squared_gap(of_sheet, lean) * around.variance() < nearest;
 }
-
-/// Fits at all sites to so many points.
-struct OpenFits {
-  std::size_t points;
-  std::vector<Scatter> all;
-};
 
 /// The sites, and the depths in steps that they may have; null: they have none.
 struct Sites {
@@ -130,7 +134,7 @@ struct Sites {
   void look_for_sheets(std::size_t s, const std::vector<OpenFits>& open, SiteView& view,
                        double& middle) const {
     std::vector<Around> seen;
-    for (const OpenFits& fits : open) seen.emplace_back(around(groups[s], fits.all, kNeighbourhood));
+    for (const OpenFits& fits : open) seen.emplace_back(groups[s], fits);
     const auto grows = [&](std::size_t k) {  // to or from the next, as only shape does
       const std::size_t next = std::min(k + 1, seen.size() - 1);
       return next > 0 && seen[next].variance() > kGrowthOfNoise * kGrowthOfNoise * seen[next - 1].variance();
@@ -140,16 +144,20 @@ struct Sites {
       return seen[k].variance() > kTwoDepths * rounding * rounding;
     };
     std::size_t flattest = 0;
-    for (std::size_t k = 1; k < seen.size(); ++k)
-      if (!grows(k) && seen[k].flatness < seen[flattest].flatness) flattest = k;
-    const bool two = seen[flattest].flatness < kFlatnessOfSheets;
+    double flatness = kFlatnessOfSheets;
+    for (std::size_t k = 0; k < seen.size(); ++k) {
+      if (!(seen[k].flatness < flatness) || grows(k)) continue;
+      flattest = k;
+      flatness = seen[k].flatness;
+    }
+    const bool two = flatness < kFlatnessOfSheets;
     if (two && exceeds_rounding(flattest)) {
       view.sheet = noise_of_sheet(seen[flattest]);
       middle = seen[flattest].middle;
     }
     if (on_lines) return;
     const std::size_t k = two && seen[flattest].lean <= 0 ? flattest : 0;
-    if (!are_layers(seen[k], open[k].points) || !exceeds_rounding(k)) return;
+    if (!are_layers(seen[k]) || !exceeds_rounding(k)) return;
     view.sheet = view.slab = SiteView::kNone;
     view.floor = std::sqrt(seen[0].variance());
   }
@@ -172,8 +180,9 @@ struct Sites {
   }
 };
 
-/// Forgets the sheets if the noise itself is flat, and not empty in its middle. \param middle of each site
-void believe_sheets(const std::vector<double>& middle, std::vector<SiteView>& views) {
+/// Forgets the sheets if it is the noise itself that is flat, and not empty in its middle. \param middle of
+/// each site
+void forget_flat_noise(const std::vector<double>& middle, std::vector<SiteView>& views) {
   double sum = 0, parted = 0;
   for (std::size_t s = 0; s < views.size(); ++s) {
     if (views[s].sheet == SiteView::kNone) continue;
@@ -184,21 +193,22 @@ void believe_sheets(const std::vector<double>& middle, std::vector<SiteView>& vi
     for (SiteView& view : views) view.sheet = SiteView::kNone;
 }
 
-/// Sets `held` of those that have none from fits to so many points.
-void hold_slabs(const SiteGroups& groups, const std::vector<Scatter>& all, std::vector<SiteView>& views,
-                const Context& context) {
+/// Sets `held` of those that have none.
+void set_held(const SiteGroups& groups, const OpenFits& open, std::vector<SiteView>& views,
+              const Context& context) {
   for_each_index(
       context, groups.size(),
       [&](std::size_t s) {
         if (views[s].held > 0) return;
-        const Around nearest(around(groups[s], all, kNeighbourhood));
+        const Around nearest(groups[s], open);
         const double seen = std::sqrt(nearest.variance());
         if (seen < kFlatSlab * nearest.radius()) views[s].held = seen;
       },
       64);
 }
 
-/// The same for all of them, in noise of about a spacing and more. \param open from kNeighbourhood points on
+/// The same from ever more points, in noise of about a spacing and more. \param open from kNeighbourhood
+/// points on
 void hold_slabs(const Places& places, const SiteGroups& groups, const std::vector<OpenFits>& open,
                 std::vector<SiteView>& views, const Context& context) {
   constexpr std::size_t kWidest = kPlateauTo * (kPlateauTo / kNeighbourhood);
@@ -209,10 +219,11 @@ void hold_slabs(const Places& places, const SiteGroups& groups, const std::vecto
     if (widest < points || all_held) return;
     const auto there =
         std::find_if(open.begin(), open.end(), [&](const OpenFits& fits) { return fits.points == points; });
-    hold_slabs(
-        groups,
-        there != open.end() ? there->all : Places(places.index(), places.at(), points, context).fits(points),
-        views, context);
+    if (there != open.end())
+      set_held(groups, *there, views, context);
+    else
+      set_held(groups, {points, Places(places.index(), places.at(), points, context).fits(points)}, views,
+               context);
   }
 }
 
@@ -243,7 +254,7 @@ std::vector<SiteView> look_without_windows(Places& places, const SiteGroups& gro
         sites.look_for_sheets(s, open, view, middle[s]);
       },
       64);
-  believe_sheets(middle, views);
+  forget_flat_noise(middle, views);
   if (open.back().points == kPlateauTo)
     for_each_index(
         context, groups.size(), [&](std::size_t s) { sites.find_floor(s, few, open.back().all, views[s]); },

@@ -1,13 +1,14 @@
-/// What each site of a cloud sees without windows (scatter.h), in fits to the 24, 48, 96 and 192 points
-/// nearest to the two dozen sites around it. Without a window scatter is more than the noise: edges and
-/// second sheets are in it.
+/// What each site of a cloud sees without windows (scatter.h), in fits to 24, 48, 96 and 192 points of the
+/// dozen to four dozen sites around it (SiteGroups). Without a window scatter is more than the noise: edges
+/// and second sheets are in it.
 ///
 /// Two sheets: where both are within a ball, the residuals are flatter than a normal distribution, and their
 /// fourth moment tells the variance of one sheet (share_of_sheet, two_sheets.h). A ball narrower than the
 /// sheets are apart holds hardly any of the second one, a wide one bends away with the surface: those count
-/// that are flattest, unless they grow, to or from the next, as only shape does. Not if the residuals fill
-/// their middle nearly as an even distribution does: then the noise itself is flat. Nor if they are as small
-/// as those of two depths in steps that follow each other, which look like two sheets.
+/// that are flattest, unless their scatter grows to the next wider ball (or to the widest) as only shape
+/// does. Not if the residuals fill their middle nearly as an even distribution does: then the noise itself is
+/// flat. Nor if they are as small as those of two depths in steps that follow each other, which look like two
+/// sheets.
 ///
 /// Layers: two scans that do not quite meet leave two. Where more points are on one, the residuals lean, too,
 /// and both moments together tell how far apart the layers are. Nearer to each other than the points are to
@@ -22,8 +23,10 @@
 /// Floor: shape that a quadric does not follow makes the scatter s(m) grow without an end. Depths in steps
 /// (time of flight, stereo, structured light) and noise that neighbours share make it grow, too, but it stops
 /// where the neighbourhood is wider than a step. Where s(192) < 1.6 s(24) the scatter is noise: at least
-/// s(24) and 0.65 s(192). Up to 1.9 this fades out. Equal scatter needs no such floor: it is plain noise, or
-/// two sheets. Counted steps (depth_steps.h) make sure of their rounding, as far as s(192) shows it.
+/// s(24) and 0.65 s(192), where s(24) is less than 0.14 of the radius of its ball. Up to 1.9, and 0.2, this
+/// fades out. Clouds of fewer than 384 points have no such floor. Equal scatter needs no such floor: it is
+/// plain noise, or two sheets. Counted steps (depth_steps.h) make sure of their rounding, as far as s(192)
+/// shows it.
 #pragma once
 
 #include <algorithm>
@@ -48,7 +51,8 @@ struct SiteView {
 
   double open = 0;       ///< what the 24 points around it show
   double most = kNone;   ///< what nearly all of the dozen nearest sites show; kNone: not known
-  double slab = kNone;   ///< open, where it grows by no more than the slab lets it; kNone: it may
+  double slab = kNone;   ///< open, a bound that grows as the ball does; kNone: none, as in layers and where
+                         ///< the noise fills the 24 points
   double held = 0;       ///< what the first ball shows that holds the slab; 0: none
   double sheet = kNone;  ///< what each of two sheets shows; kNone: there is one
   double floor = 0;      ///< what steps, shared noise or layers make sure of
@@ -58,7 +62,7 @@ struct SiteView {
 /// By site: the sites nearest to it, the nearest first.
 using SiteGroups = std::vector<std::vector<Neighbor>>;
 
-/// What the members of a group have, `count` of them at most.
+/// The values of the `count` nearest members of a group.
 template <class T>
 std::vector<T> around(const std::vector<Neighbor>& group, const std::vector<T>& all, std::size_t count) {
   std::vector<T> near;

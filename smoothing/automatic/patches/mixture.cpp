@@ -8,14 +8,16 @@
 
 #include <Eigen/Core>
 
+#include <rfsmooth/statistics.h>
+
 #include "base/parallel.h"
 
 namespace rfsmooth::smoothing {
 
 namespace {
 
-constexpr int kMostCandidates = 16;  // candidates
-constexpr int kMixtureRounds = 3;    // of expectation maximisation: a fourth changes the third digit
+constexpr int kMostCandidates = 1 + int(Statistics::Pass::kMostScales);
+constexpr int kMixtureRounds = 3;  // of expectation maximisation: a fourth changes the third digit
 
 using CandidateWeights = Eigen::Array<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMostCandidates, 1>;
 

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <utility>
 
 #include "base/parallel.h"
 #include "rfs_mesh/levels.h"
-#include "rfs_mesh/noise/depth_steps.h"
 #include "rfs_mesh/search/thinning.h"
 #include "smoothing/automatic/patches/mixture.h"
 #include "smoothing/automatic/patches/patches.h"
@@ -22,7 +22,7 @@ using rfs_mesh::kNarrowestPatch;
 constexpr std::size_t kMostOverlap = 14;  // patches over a point; a thinning leaves 0.4 of them
 constexpr double kNarrowest = 52.6;  // m_0 = kNarrowest (sigma/h)^2 if that is more: a radius of 4.5 sigma
 constexpr double kWidest = 1600;     // the widest patches, unless those that look for walls are wider
-constexpr int kSeeing = 2;           // the scale that looks for walls, of 9 sigma: from 0
+constexpr int kSeeing = 2;           // index of the scale that looks for walls: of 4 m_0 points, 9 sigma
 
 constexpr std::size_t kDense = 4;     // a subset with a point in so many has its own among the nearest
 constexpr std::size_t kOwnMean = 60;  // from this many members on, patches average; below, near neighbours do
@@ -48,8 +48,8 @@ std::vector<float> precisions(const rfs_mesh::NoiseField& noise, const Context& 
   return precision;
 }
 
-/// From means of risks in units of each point's own noise those of each point: what neighbours tell of the
-/// error counts by how well they know it. `around`: the same means of the precisions.
+/// Makes means of risks, each in the variance of its own point, means with weights 1 / sigma^2 in the
+/// variance of the point that they are for. `around`: the same means of the precisions.
 void in_own_units(const std::vector<float>& precision, const std::vector<float>& around,
                   std::vector<float>& mean, const Context& context) {
   for_each_index(context, mean.size(),
@@ -142,9 +142,10 @@ class Ladder {
     const double widest = std::max(kWidest, std::ldexp(narrowest, kSeeing));
     if (noise.shared > 1) stand_in();
     const bool known = !whole.scales.empty();
+    const double count = known ? double(whole.scales.size()) : 1 + std::log2(widest / narrowest);
     double m = narrowest;
     for (std::size_t s = 0; known ? s < whole.scales.size() : m <= widest; ++s, m *= 2) {
-      context.report("smooth", 0.1 + 0.9 * std::log(m / narrowest) / std::log(2 * widest / narrowest));
+      context.report("smooth", 0.1 + 0.9 * double(s) / count);
       if (!known) whole.scales.push_back(scale_of(m));
       const std::size_t members = make_way(whole.scales[s]);
       scales_.push_back(try_scale(field_, members, seeds_, noise_, precision_, risk_, memory_, context));
@@ -182,7 +183,7 @@ class Ladder {
       scale = {};
     }
     std::vector<float> say(field_.size(), 1);
-    // A point counts by its variance: it has that much to lose.
+    // A point counts by its variance, up to that of the figure: it has that much to lose.
     for_each_index(context_, precision_.size(), [&](std::size_t i) {
       say[i] = precision_[i] > 0 ? std::min(1.0F, 1 / precision_[i]) : 0;
     });
@@ -201,9 +202,9 @@ class Ladder {
     });
   }
 
-  /// How patches of about m points are made here: with seeds thinned as far as these allow.
+  /// How patches of about m points are made here: seeds thinned until at most kMostOverlap lie over a point.
   Statistics::Scale scale_of(double m) {
-    // Compared before it is converted: noise of far more than the cloud asks for more points than numbers go.
+    // Compared as a real number, for m may be larger than any integer.
     const std::size_t n = field_.size(), members = m < double(n) / 2 ? std::size_t(m) : n / 2;
     thin_to(1);
     while (seeds_.size() * members > kMostOverlap * n) thin_to(thinnings_ + 1);
@@ -244,17 +245,17 @@ class Ladder {
 MixedScales smooth_heights(const HeightField& field, const rfs_mesh::NoiseField& noise, bool learned,
                            Statistics::Pass& whole, const Context& context) {
   Ladder ladder(field, noise, whole, context);
-  MixedScales pass;
+  MixedScales mixed;
   const std::vector<Scale>& scales = ladder.scales();
   const Scale& seeing = scales[std::min(std::size_t(kSeeing), scales.size() - 1)];
-  pass.members_seeing = seeing.members;
-  pass.several = seeing.several;
-  for (const Scale& scale : scales) {
-    pass.wide = scale.prediction.height;
-    if (scale.members >= kOwnMean && &scale != &scales.front()) break;
-  }
-  ladder.mix(pass.height, pass.own, learned ? &pass.told : nullptr);
-  return pass;
+  mixed.members_seeing = seeing.members;
+  mixed.several = seeing.several;
+  // The narrowest that tails do not draw towards themselves: not the first, and of many points.
+  const auto of_many = [](const Scale& scale) { return scale.members >= kOwnMean; };
+  const auto wide = std::find_if(std::next(scales.begin()), scales.end(), of_many);
+  mixed.wide = (wide != scales.end() ? *wide : scales.back()).prediction.height;
+  ladder.mix(mixed.height, mixed.own, learned ? &mixed.told : nullptr);
+  return mixed;
 }
 
 }  // namespace rfsmooth::smoothing

@@ -38,7 +38,7 @@ NoiseSites room(
     sites.floor.push_back(0);
     sites.area.push_back(1);
     sites.speaks.push_back(1);
-    sites.cut.push_back(0);
+    sites.full.push_back(0);
     sites.most.push_back(std::numeric_limits<double>::infinity());
   }
   return sites;
@@ -105,7 +105,7 @@ TEST(NoiseField, DoesNotHearSitesWhoseWindowIsTheirNeighbours) {
   NoiseSites sites = room(even);
   for (std::size_t s = 0; s < kSites; s += 2) {
     sites.fits[s].variance = 0.1;
-    sites.cut[s] = 1;
+    sites.full[s] = 1;
   }
   EXPECT_LT(error(sites, 1, even), 0.03);
 }
