@@ -151,6 +151,10 @@ class Ladder {
       scales_.push_back(try_scale(field_, members, seeds_, noise_, precision_, risk_, memory_, context));
       if (!known && m >= double(field.size()) / 2) break;
     }
+    // Only the scales needed these, and the mixture has room for more itself.
+    memory_ = Patches::Memory();
+    risk_ = std::vector<float>();
+    seeds_ = std::vector<Index>();
   }
 
   const std::vector<Scale>& scales() const { return scales_; }
