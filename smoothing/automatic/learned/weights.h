@@ -10,8 +10,8 @@ namespace rfsmooth::smoothing::learned {
 /// that were made for another one do not compile.
 inline constexpr int kFormat = 2;
 
-inline constexpr std::size_t kInputs = 81;               ///< features, even and odd
-inline constexpr std::size_t kFirst = 64, kSecond = 32;  ///< units of the two layers
+inline constexpr std::size_t kInputs = 81;                ///< features, even and odd
+inline constexpr std::size_t kFirst = 128, kSecond = 48;  ///< units of the two layers
 
 /// Whole numbers times a unit of their row.
 extern const float kCentre[kInputs], kScale[kInputs];  ///< of the features, even ones first

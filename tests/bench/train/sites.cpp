@@ -57,7 +57,14 @@ Recipe make_recipe(std::uint64_t number) {
   } else if (kind > .87) {
     recipe.law.range_power = random.uniform(2, 4);
   }
-  if (random.uniform() < .2) recipe.sampling = clouds::Sampling::uniform;
+  const double spread = random.uniform();
+  if (spread < .2) {
+    recipe.sampling = clouds::Sampling::uniform;
+  } else if (spread < .32) {
+    recipe.law.spread = clouds::Spread::rings;
+    recipe.law.ring_gap = std::pow(20, random.uniform());
+    recipe.law.along_ray = true;
+  }
   if (random.uniform() < .35) recipe.points = std::size_t(4000 * std::pow(15, random.uniform()));
   if (random.uniform() < .5) recipe.disturbed = random.uniform(.85, 1.15);
   return recipe;
@@ -73,7 +80,9 @@ struct Cloud {
 Cloud make_cloud(const TrainingShape& shape, std::uint64_t number, Recipe recipe) {
   Sample sample;
   sample.mesh = shape.mesh;
-  sample.clean = clouds::sample(shape.mesh, recipe.points, number, recipe.sampling);
+  sample.clean = recipe.sampling == clouds::Sampling::uniform
+                     ? clouds::sample(shape.mesh, recipe.points, number, recipe.sampling)
+                     : clouds::spread(recipe.law, shape.mesh, recipe.points, number).points;
   const clouds::Frame frame = clouds::frame_of(sample.clean);
   for (auto* points : {&sample.clean, &sample.mesh.positions})
     for (auto& p : *points) p = (p - frame.centre) / frame.radius;

@@ -13,7 +13,7 @@ import time
 
 import numpy as np
 
-FIRST, SECOND = 64, 32  # units of the layers, as in weights.h
+FIRST, SECOND = 128, 48  # units of the layers, as in weights.h
 LEAK, FAR, REACH = 0.1, 6.0, 4.0  # as in network.cpp and sites.cpp
 FARTHEST = 16  # s^2: strays are lost anyway
 
@@ -41,7 +41,8 @@ def distance(table, height):
     low = at.astype(int)
     row = np.arange(len(height))
     a, b = table[row, low], table[row, low + 1]
-    return a + (at - low) * (b - a), (b - a) / step
+    beyond = height - np.clip(height, -REACH, REACH)  # where nothing is known, but surely farther than at the end
+    return a + (at - low) * (b - a) + beyond**2, (b - a) / step + 2 * beyond
 
 
 class Network:
@@ -84,7 +85,7 @@ class Network:
 
 
 def train(network, x, table, weight, epochs, random, report):
-    batch, rate, towards_zero = 512, 2e-3, 1e-5
+    batch, rate, towards_zero = 512, 1e-3, 1e-5
     first = [np.zeros_like(p) for p in network.parts]
     second = [np.zeros_like(p) for p in network.parts]
     steps = epochs * (len(x) // batch)
@@ -149,7 +150,7 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("sites")
     parser.add_argument("weights")
-    parser.add_argument("--epochs", type=int, default=10)
+    parser.add_argument("--epochs", type=int, default=16)
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args()
     version, even, cloud, x, table = read(options.sites)

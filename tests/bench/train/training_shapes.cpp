@@ -97,6 +97,21 @@ Made casting(Random& random) {
   return made;
 }
 
+/// Sheet metal: a plate with parallel fins on it, and perhaps a wall across them.
+Made fins(Random& random) {
+  Made made;
+  const Vector3d size = sides(random, .5, 1.2);
+  const double t = random.uniform(.025, .06);
+  made.add_box({0, 0, 0}, {size[0], size[1], t});
+  const int count = whole(random, 3, 8);
+  for (int k = 0; k < count; ++k) {
+    const double x = (size[0] - t) * k / (count - 1);
+    made.add_box({x, 0, 0}, {x + t, size[1], size[2] * random.uniform(.4, .8)});
+  }
+  if (random.uniform() < .3) made.add_box({0, 0, 0}, {size[0], t, size[2]});
+  return made;
+}
+
 Made open_box(Random& random) {
   Made made;
   const Vector3d size = sides(random, .4, 1.2);
@@ -264,7 +279,7 @@ void bend(Random& random, Mesh& mesh) {
 
 TrainingShape make_training_shape(std::uint64_t number) {
   using Maker = Made (*)(Random&);
-  constexpr std::array<std::pair<const char*, Maker>, 16> kMakers = {{{"chair", chair},
+  constexpr std::array<std::pair<const char*, Maker>, 17> kMakers = {{{"chair", chair},
                                                                       {"body", body},
                                                                       {"casting", casting},
                                                                       {"block", block},
@@ -279,7 +294,8 @@ TrainingShape make_training_shape(std::uint64_t number) {
                                                                       {"lump", detailed_lump},
                                                                       {"wheel", wheel},
                                                                       {"body", detailed_body},
-                                                                      {"wheel", wheel}}};
+                                                                      {"wheel", wheel},
+                                                                      {"fins", fins}}};
   constexpr double kCells = 110;  // along the longest side
   Random random(1000 + number);
   const auto& [kind, make] = kMakers[number % kMakers.size()];

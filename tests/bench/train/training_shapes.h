@@ -1,5 +1,6 @@
 /// Shapes to learn from, every one different: chairs, ribbed castings, open boxes, blocks with fillets,
-/// chamfers and holes, rods, bodies with limbs, bowls and lumps; half of them bent and twisted.
+/// chamfers and holes, rods, sheet metal with fins, bodies with limbs, wheels, bowls and lumps; half of them
+/// bent and twisted.
 #pragma once
 
 #include <cstdint>
