@@ -17,8 +17,8 @@ namespace {
 // (tests/bench/noise).
 constexpr std::size_t kSites = 2000, kFewestSites = 250;
 constexpr std::size_t kWork = 100000;  // sites x m
-constexpr std::size_t kGroupWork =
-    800;  // sites of a group x m: where fits to many points say much each, fewer are needed
+// Sites of a group x m: where fits to many points say much each, fewer are needed.
+constexpr std::size_t kGroupWork = 800;
 constexpr double kDiffers = 1.5;        // of variances of a dozen fits: two standard errors and more
 constexpr double kLeastSpeaking = 0.7;  // of the fits around a site, to be believed
 // At m = 16 noise may be below the detail: less of s^2(m) need be noise.
@@ -123,7 +123,7 @@ class Listener {
   std::vector<double> medians_around(const std::vector<double>& of_sites) const {
     std::vector<double> medians;
     for (std::size_t s = 0; s < of_sites.size(); ++s) {
-      std::vector<double> near = around(group_[s], of_sites, group_[s].size());
+      std::vector<double> near = around(group_[s], of_sites);
       medians.push_back(quantile(near, 0.5));
     }
     return medians;
@@ -134,8 +134,7 @@ class Listener {
   /// two sheets are seen, the noise is what each of them shows, if that is less than the start. \param all
   /// fits to `times` m points
   bool hear_at(std::size_t s, const std::vector<Said>& all, std::size_t times) {
-    const std::vector<Said> near = around(group_[s], all, kSmallestGroup),
-                            wide = around(group_[s], all, group_[s].size());
+    const std::vector<Said> near = around(group_[s], all, kSmallestGroup), wide = around(group_[s], all);
     const auto saying = [](const std::vector<Said>& fits) {
       return double(std::count_if(fits.begin(), fits.end(), [](const Said& fit) { return fit.freedom > 0; }));
     };

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "base/parallel.h"
 #include "rfs_mesh/levels.h"
@@ -248,7 +247,7 @@ std::vector<SiteView> look_without_windows(Places& places, const SiteGroups& gro
       context, groups.size(),
       [&](std::size_t s) {
         SiteView& view = views[s];
-        view.open = std::sqrt(mean_variance(around(groups[s], said, groups[s].size()), kTypical));
+        view.open = std::sqrt(mean_variance(around(groups[s], said), kTypical));
         if (!deep) view.slab = view.open;
         view.most = bound(groups[s], deep ? wide : few);
         sites.look_for_sheets(s, open, view, middle[s]);

@@ -24,9 +24,9 @@
 /// (time of flight, stereo, structured light) and noise that neighbours share make it grow, too, but it stops
 /// where the neighbourhood is wider than a step. Where s(192) < 1.6 s(24) the scatter is noise: at least
 /// s(24) and 0.65 s(192), where s(24) is less than 0.14 of the radius of its ball. Up to 1.9, and 0.2, this
-/// fades out. Clouds of fewer than 384 points have no such floor. Equal scatter needs no such floor: it is
-/// plain noise, or two sheets. Counted steps (depth_steps.h) make sure of their rounding, as far as s(192)
-/// shows it.
+/// fades out. Equal scatter needs no such floor: it is plain noise, or two sheets. Counted steps
+/// (depth_steps.h) make sure of their rounding, as far as s(192) shows it. Clouds of fewer than 384 points
+/// have none of this.
 #pragma once
 
 #include <algorithm>
@@ -62,12 +62,14 @@ struct SiteView {
 /// By site: the sites nearest to it, the nearest first.
 using SiteGroups = std::vector<std::vector<Neighbor>>;
 
-/// The values of the `count` nearest members of a group.
+/// The values of the members of a group, or of the `most` nearest of them.
 template <class T>
-std::vector<T> around(const std::vector<Neighbor>& group, const std::vector<T>& all, std::size_t count) {
+std::vector<T> around(const std::vector<Neighbor>& group, const std::vector<T>& all,
+                      std::size_t most = std::numeric_limits<std::size_t>::max()) {
+  const std::size_t count = std::min(most, group.size());
   std::vector<T> near;
   near.reserve(count);
-  for (std::size_t k = 0; k < std::min(count, group.size()); ++k) near.push_back(all[group[k].index]);
+  for (std::size_t k = 0; k < count; ++k) near.push_back(all[group[k].index]);
   return near;
 }
 

@@ -66,8 +66,7 @@ class Features {
     std::array<float, kOdd> odd;
   };
 
-  /// The arguments outlive it. O(n), parallel, the same bits for any number of
-  /// threads.
+  /// The arguments outlive it. O(n), parallel, the same bits for any number of threads.
   Features(const HeightField& field, const Positions& data, const Smoothed& smoothed,
            const rfs_mesh::NoiseField& noise, const Context& context);
 

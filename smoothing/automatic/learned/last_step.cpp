@@ -51,6 +51,7 @@ LearnedSites learned_sites(const HeightField& field, const Positions& data, cons
   LearnedSites sites;
   sites.point = asked_for(smoothed.scales, noise);
   const std::size_t n = sites.point.size();
+  if (n == 0) return sites;
   sites.features.resize(n);
   sites.place.resize(n);
   sites.normal.resize(n);

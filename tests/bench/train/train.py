@@ -41,7 +41,7 @@ def distance(table, height):
     low = at.astype(int)
     row = np.arange(len(height))
     a, b = table[row, low], table[row, low + 1]
-    beyond = height - np.clip(height, -REACH, REACH)  # where nothing is known, but surely farther than at the end
+    beyond = height - np.clip(height, -REACH, REACH)  # nothing is known there but that it is farther
     return a + (at - low) * (b - a) + beyond**2, (b - a) / step + 2 * beyond
 
 
