@@ -124,7 +124,14 @@ std::vector<ScalesSay> tell(const std::vector<Scale>& scales, std::size_t n, con
   return told;
 }
 
-/// The ladder of scales, and what all of them together make of the heights.
+/// All scales of a field, and what they are mixed with.
+struct Rungs {
+  std::vector<float> precision;  ///< of precisions()
+  std::vector<float> first;      ///< n: the heights that stand for the data
+  std::vector<Scale> scales;
+};
+
+/// Climbs the ladder of scales.
 class Ladder {
  public:
   /// `whole`: how the scales of the whole cloud are made; what is not there is entered.
@@ -134,64 +141,28 @@ class Ladder {
         noise_(noise),
         whole_(whole),
         context_(context),
-        precision_(precisions(noise, context)),
-        first_(heights(field, context)),
-        risk_(field.size(), 1) {  // of the data themselves: no error, all their own
-    const double share = noise.sigma / noise.spacing;
-    const double narrowest = std::max(double(kNarrowestPatch) * noise.shared, kNarrowest * share * share);
+        rungs_{precisions(noise, context), heights(field, context), {}},
+        risk_(field.size(), 1) {}  // of the data themselves: no error, all their own
+
+  /// Once.
+  Rungs climb() {
+    const double share = noise_.sigma / noise_.spacing;
+    const double narrowest = std::max(double(kNarrowestPatch) * noise_.shared, kNarrowest * share * share);
     const double widest = std::max(kWidest, std::ldexp(narrowest, kSeeing));
-    if (noise.shared > 1) stand_in();
-    const bool known = !whole.scales.empty();
-    const double count = known ? double(whole.scales.size()) : 1 + std::log2(widest / narrowest);
+    if (noise_.shared > 1) stand_in();
+    std::vector<Statistics::Scale>& how = whole_.scales;
+    const bool known = !how.empty();
+    const double count = known ? double(how.size()) : 1 + std::log2(widest / narrowest);
     double m = narrowest;
-    for (std::size_t s = 0; known ? s < whole.scales.size() : m <= widest; ++s, m *= 2) {
-      context.report("smooth", 0.1 + 0.9 * double(s) / count);
-      if (!known) whole.scales.push_back(scale_of(m));
-      const std::size_t members = make_way(whole.scales[s]);
-      scales_.push_back(try_scale(field_, members, seeds_, noise_, precision_, risk_, memory_, context));
-      if (!known && m >= double(field.size()) / 2) break;
+    for (std::size_t s = 0; known ? s < how.size() : m <= widest; ++s, m *= 2) {
+      context_.report("smooth", 0.1 + 0.9 * double(s) / count);
+      if (!known) how.push_back(scale_of(m));
+      const std::size_t members = make_way(how[s]);
+      rungs_.scales.push_back(
+          try_scale(field_, members, seeds_, noise_, rungs_.precision, risk_, memory_, context_));
+      if (!known && m >= double(field_.size()) / 2) break;
     }
-    // Only the scales needed these, and the mixture has room for more itself.
-    memory_ = Patches::Memory();
-    risk_ = std::vector<float>();
-    seeds_ = std::vector<Index>();
-  }
-
-  const std::vector<Scale>& scales() const { return scales_; }
-
-  /// The mixture of all scales by their evidence, and of the data or what stands for them; they are used up.
-  /// `told`: for the learned step; null: not taken.
-  void mix(std::vector<float>& height, std::vector<float>& own, std::vector<ScalesSay>* told) {
-    const auto alone = float(1 / noise_.shared);
-    Mixture mixture(std::move(first_));
-    average_near(field_, scales_, context_);
-    if (!precision_.empty()) {
-      const std::vector<float> around = field_.local_mean(field_.local_mean(precision_, context_), context_);
-      for (Scale& scale : scales_) in_own_units(precision_, around, scale.worse, context_);
-    }
-    if (told != nullptr) *told = tell(scales_, field_.size(), context_);
-    for (Scale& scale : scales_) {
-      // A wide patch is judged over its own width, but must not be far off anywhere near the point either:
-      // the few points that it misses by sigmas would be outvoted.
-      std::vector<float>& gain = scale.worse;
-      for_each_index(context_, field_.size(), [&](std::size_t i) {
-        const float near = gain[i];
-        const float against = scale.mean.empty() ? kNearEvidence * near
-                                                 : kPatchEvidence * float(scale.members) * scale.mean[i] +
-                                                       kNearEvidence * std::max(0.0F, near - kTolerated);
-        gain[i] =
-            scale.prediction.covered[i] != 0 ? -alone * against : std::numeric_limits<float>::quiet_NaN();
-      });
-      mixture.add(std::move(scale.prediction.height), std::move(scale.prediction.own), std::move(gain),
-                  context_);
-      scale = {};
-    }
-    std::vector<float> say(field_.size(), 1);
-    // A point counts by its variance, up to that of the figure: it has that much to lose.
-    for_each_index(context_, precision_.size(), [&](std::size_t i) {
-      say[i] = precision_[i] > 0 ? std::min(1.0F, 1 / precision_[i]) : 0;
-    });
-    mixture.average(height, own, whole_.shares, say, context_);
+    return std::move(rungs_);
   }
 
  private:
@@ -201,8 +172,8 @@ class Ladder {
     const std::size_t members = make_way(*whole_.narrow);
     const Prediction said =
         Patches(field_, members, seeds_, noise_.local, memory_, context_).predict(context_);
-    for_each_index(context_, first_.size(), [&](std::size_t i) {
-      if (said.covered[i] != 0) first_[i] = said.height[i];
+    for_each_index(context_, rungs_.first.size(), [&](std::size_t i) {
+      if (said.covered[i] != 0) rungs_.first[i] = said.height[i];
     });
   }
 
@@ -235,22 +206,55 @@ class Ladder {
   const rfs_mesh::NoiseField& noise_;
   Statistics::Pass& whole_;
   const Context& context_;
-  const std::vector<float> precision_;
-  std::vector<float> first_;  ///< n: the heights that stand for the data
-  std::vector<float> risk_;   ///< n: of the last scale
-  std::vector<Scale> scales_;
+  Rungs rungs_;
+  std::vector<float> risk_;  ///< n: of the last scale
   Patches::Memory memory_;
   std::vector<Index> seeds_;
   std::size_t thinnings_ = 0;  ///< 0: the seeds are all points
 };
 
+/// Enters the mixture of all scales by their evidence, and of the data or what stands for them. \param shared
+/// of the noise. \param learned whether the learned step will be told. \param shares of Statistics::Pass.
+void mix(const HeightField& field, Rungs rungs, double shared, bool learned, std::vector<double>& shares,
+         MixedScales& mixed, const Context& context) {
+  const auto alone = float(1 / shared);
+  const std::vector<float>& precision = rungs.precision;
+  Mixture mixture(std::move(rungs.first));
+  average_near(field, rungs.scales, context);
+  if (!precision.empty()) {
+    const std::vector<float> around = field.local_mean(field.local_mean(precision, context), context);
+    for (Scale& scale : rungs.scales) in_own_units(precision, around, scale.worse, context);
+  }
+  if (learned) mixed.told = tell(rungs.scales, field.size(), context);
+  for (Scale& scale : rungs.scales) {
+    // A wide patch is judged over its own width, but must not be far off anywhere near the point either:
+    // the few points that it misses by sigmas would be outvoted.
+    std::vector<float>& gain = scale.worse;
+    for_each_index(context, field.size(), [&](std::size_t i) {
+      const float near = gain[i];
+      const float against = scale.mean.empty() ? kNearEvidence * near
+                                               : kPatchEvidence * float(scale.members) * scale.mean[i] +
+                                                     kNearEvidence * std::max(0.0F, near - kTolerated);
+      gain[i] = scale.prediction.covered[i] != 0 ? -alone * against : std::numeric_limits<float>::quiet_NaN();
+    });
+    mixture.add(std::move(scale.prediction.height), std::move(scale.prediction.own), std::move(gain),
+                context);
+    scale = {};
+  }
+  std::vector<float> say(field.size(), 1);
+  // A point counts by its variance, up to that of the figure: it has that much to lose.
+  for_each_index(context, precision.size(),
+                 [&](std::size_t i) { say[i] = precision[i] > 0 ? std::min(1.0F, 1 / precision[i]) : 0; });
+  mixture.average(mixed.height, mixed.own, shares, say, context);
+}
+
 }  // namespace
 
 MixedScales smooth_heights(const HeightField& field, const rfs_mesh::NoiseField& noise, bool learned,
                            Statistics::Pass& whole, const Context& context) {
-  Ladder ladder(field, noise, whole, context);
+  Rungs rungs = Ladder(field, noise, whole, context).climb();
   MixedScales mixed;
-  const std::vector<Scale>& scales = ladder.scales();
+  const std::vector<Scale>& scales = rungs.scales;
   const Scale& seeing = scales[std::min(std::size_t(kSeeing), scales.size() - 1)];
   mixed.members_seeing = seeing.members;
   mixed.several = seeing.several;
@@ -258,7 +262,7 @@ MixedScales smooth_heights(const HeightField& field, const rfs_mesh::NoiseField&
   const auto of_many = [](const Scale& scale) { return scale.members >= kOwnMean; };
   const auto wide = std::find_if(std::next(scales.begin()), scales.end(), of_many);
   mixed.wide = (wide != scales.end() ? *wide : scales.back()).prediction.height;
-  ladder.mix(mixed.height, mixed.own, learned ? &mixed.told : nullptr);
+  mix(field, std::move(rungs), noise.shared, learned, whole.shares, mixed, context);
   return mixed;
 }
 
