@@ -40,6 +40,7 @@ struct NoiseSummary {
   double loudest = 0;     ///< the same of the loudest tenth of the points, its least
   double shared = 1;      ///< over how many neighbouring points it is about the same; 1: each has its own
   double step = 0;        ///< typical distance between depths that come in steps, world units; 0: they do not
+  bool on_grid = false;   ///< whether the points are on a grid of that step, as voxels' centres are
   bool on_lines = false;  ///< whether the points lie along lines, as on the rings of a spinning laser
 };
 

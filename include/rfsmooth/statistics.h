@@ -32,7 +32,8 @@ struct NoiseModel {
   /// Set where the nearest points lie along a line, as on the rings of a spinning laser: how many neighbours
   /// reach across to other lines and are a piece of the surface.
   std::optional<std::size_t> across;
-  double step = 0;  ///< typical distance between depths that come in steps, world units; 0: none
+  double step = 0;       ///< typical distance between depths that come in steps, world units; 0: none
+  bool on_grid = false;  ///< whether the points are on a grid of that step, as voxels' centres are
   /// Places, around the middle of the box; one where noise and density are even.
   std::vector<Eigen::Vector3d> sites;
   std::vector<double> at_sites;  ///< sigma there, world units

@@ -62,8 +62,8 @@ double mean_spacing(const Positions& points, const NeighborTable& near, const Co
          double(points.size());
 }
 
-double mean_spacing(const SpatialIndex& index, const Context& context) {
-  if (index.points().size() < 2) return 0;
+std::vector<double> nearest_distances(const SpatialIndex& index, const Context& context) {
+  if (index.points().size() < 2) return {};
   const std::vector<Index> rows = sample_rows(index.points().size());
   const std::size_t count = rows.size();
   std::vector<double> nearest(count);
@@ -74,7 +74,13 @@ double mean_spacing(const SpatialIndex& index, const Context& context) {
       nearest[s] = (index.points()[others.find(index, i, 1).front()] - index.points()[i]).norm();
     }
   });
-  return sum_over(context, count, 0.0, [&](std::size_t s) { return nearest[s]; }) / double(count);
+  return nearest;
+}
+
+double mean_spacing(const std::vector<double>& nearest, const Context& context) {
+  if (nearest.empty()) return 0;
+  return sum_over(context, nearest.size(), 0.0, [&](std::size_t s) { return nearest[s]; }) /
+         double(nearest.size());
 }
 
 namespace {

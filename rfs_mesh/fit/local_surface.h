@@ -56,8 +56,12 @@ std::vector<LocalSurface> shared_local_surfaces(const SpatialIndex& index, const
 /// Mean distance to the nearest neighbour, world units; 0 for fewer than two points.
 double mean_spacing(const Positions& points, const NeighborTable& near, const Context& context);
 
-/// The same, over up to 50,000 points spread over the indices. O(log n).
-double mean_spacing(const SpatialIndex& index, const Context& context);
+/// The distances to the nearest other point of up to 50,000 points spread over the indices, world units; none
+/// for fewer than two points. O(log n).
+std::vector<double> nearest_distances(const SpatialIndex& index, const Context& context);
+
+/// Their mean; 0 of none.
+double mean_spacing(const std::vector<double>& nearest, const Context& context);
 
 /// How wide the first quadrics are: those that connecting stands on, its only caller. It is no second measure
 /// of the noise. What is noise, where and how much, says the one model of the cloud (noise.h); this only says

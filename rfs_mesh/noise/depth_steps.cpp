@@ -73,6 +73,7 @@ double DepthSteps::gap(double depth) const {
 }
 
 double DepthSteps::sigma(const Eigen::Vector3d& at, const Eigen::Vector3d& normal) const {
+  if (on_grid) return rounding_noise(typical);
   if (!scanner) return rounding_noise(std::abs(normal[axis]) * gap(at[axis]));
   const Eigen::Vector3d ray = at - *scanner;
   return rounding_noise(std::abs(normal.dot(ray.normalized())) * gap(ray.norm()));
@@ -101,6 +102,18 @@ std::optional<DepthSteps> find_depth_steps(const Positions& points,
   steps.scanner = scanner;
   if (fill_steps(depths, kSevenDigits, steps)) found = std::move(steps);
   return found;
+}
+
+std::optional<DepthSteps> find_grid(std::vector<double> nearest) {
+  constexpr double kNearlyAll = 0.9;
+  constexpr double kSame = 1e-3;  // files of seven digits, some thousand points across
+  if (nearest.empty()) return {};
+  const double most = quantile(nearest, kNearlyAll), least = quantile(nearest, 1 - kNearlyAll);
+  if (!(most - least < kSame * least)) return {};
+  DepthSteps steps;
+  steps.on_grid = true;
+  steps.typical = least;
+  return steps;
 }
 
 }  // namespace rfsmooth::rfs_mesh

@@ -4,9 +4,9 @@
 /// Found where a coordinate has a tenth as many values as there are points, or else the distance from the
 /// scanner has. Of several coordinates it is the one with the largest steps: before a wall a camera knows so
 /// few depths that the columns of its image leave few values across, too, other ones at every depth. Where
-/// they are the same at every depth, the points are on a grid of their own, and nothing is said. Between two
-/// steps every depth is as likely, so a surface of normal n has noise of at least |n . ray| gap / sqrt(12)
-/// from them.
+/// they are the same at every depth, the points are on a grid of their own, and depth has no steps. Between
+/// two steps every depth is as likely, so a surface of normal n has noise of at least |n . ray| gap /
+/// sqrt(12) from them.
 #pragma once
 
 #include <optional>
@@ -19,11 +19,13 @@ namespace rfsmooth::rfs_mesh {
 /// Standard deviation of what rounding to steps of one size adds.
 double rounding_noise(double step);
 
-/// The steps of one coordinate, or of the distance from the scanner.
+/// The steps of one coordinate, of the distance from the scanner, or of a grid.
 struct DepthSteps {
   Eigen::Index axis = 2;
   std::optional<Eigen::Vector3d> scanner;  ///< if there, depth is the distance from it
-  std::vector<double> depths;              ///< ascending, at least two
+  /// Whether they are those of a grid in space: points are off by as much along any normal.
+  bool on_grid = false;
+  std::vector<double> depths;  ///< ascending, at least two; of a grid none
 
   /// Mean distance of the steps on both sides of the one nearest to a depth. O(log n).
   double gap(double depth) const;
@@ -38,5 +40,9 @@ struct DepthSteps {
 /// Looks at up to 20,000 points. Nothing where there are no steps. \param scanner where it may have stood.
 std::optional<DepthSteps> find_depth_steps(const Positions& points,
                                            const std::optional<Eigen::Vector3d>& scanner);
+
+/// The steps of a grid in space, turned any way: nearly all points are as far from their nearest as each
+/// other. Nothing if they are not. \param nearest these distances, of some points.
+std::optional<DepthSteps> find_grid(std::vector<double> nearest);
 
 }  // namespace rfsmooth::rfs_mesh

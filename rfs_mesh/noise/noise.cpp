@@ -172,7 +172,8 @@ NoiseStart find_start(const SpatialIndex& index, const DepthSteps* steps, NoiseM
 
 /// Fills the model's figures and sites.
 void measure(const SpatialIndex& index, const DepthSteps* steps, NoiseModel& noise, const Context& context) {
-  const NoiseStart start = find_start(index, steps, noise, context);
+  // What is on a grid may be exact, as stairs are: it makes sure of no noise.
+  const NoiseStart start = find_start(index, noise.on_grid ? nullptr : steps, noise, context);
   if (!(start.least > 0)) return;
   noise.neighbours = start.m;
   NoiseSites sites = listen(index, listening_places(index.points(), start.m), start, steps, context);
@@ -202,10 +203,15 @@ void measure(const SpatialIndex& index, const DepthSteps* steps, NoiseModel& noi
 NoiseModel measure_noise(const SpatialIndex& index, const Context& context,
                          const std::optional<Eigen::Vector3d>& scanner) {
   NoiseModel noise;
-  noise.spacing = mean_spacing(index, context);
+  const std::vector<double> nearest = nearest_distances(index, context);
+  noise.spacing = mean_spacing(nearest, context);
   if (index.points().size() <= kNeighbourhood) return noise;
-  const std::optional<DepthSteps> steps = find_depth_steps(index.points(), scanner);
-  if (steps) noise.step = steps->typical;
+  std::optional<DepthSteps> steps = find_grid(nearest);
+  if (!steps) steps = find_depth_steps(index.points(), scanner);
+  if (steps) {
+    noise.step = steps->typical;
+    noise.on_grid = steps->on_grid;
+  }
   measure(index, steps ? &*steps : nullptr, noise, context);
   return noise;
 }

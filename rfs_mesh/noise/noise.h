@@ -24,6 +24,7 @@
 
 #include <rfsmooth/statistics.h>
 
+#include "rfs_mesh/noise/depth_steps.h"
 #include "rfs_mesh/search/neighbors.h"
 
 namespace rfsmooth::rfs_mesh {
@@ -45,6 +46,11 @@ inline constexpr double kStays = 1e-3;
 /// Whether points of so much noise stay. \param figure of the cloud.
 inline bool stays(double local, double figure) {
   return local < 2 * kStays * figure;
+}
+
+/// Whether most of the noise may be what depths in steps are rounded by.
+inline bool is_of_steps(const NoiseModel& noise) {
+  return rounding_noise(noise.step) > noise.sigma;
 }
 
 /// The noise of a cloud, at every point.

@@ -91,7 +91,8 @@ class AutomaticFlow : public Flow {
 }  // namespace
 
 NoiseSummary summary_of(const rfs_mesh::NoiseField& noise) {
-  NoiseSummary summary{noise.sigma, noise.sigma, noise.shared, noise.step, noise.across.has_value()};
+  NoiseSummary summary{noise.sigma, noise.sigma,   noise.shared,
+                       noise.step,  noise.on_grid, noise.across.has_value()};
   if (noise.local.empty()) return summary;
   std::vector<double> local = noise.local;
   summary.loudest = quantile(local, 0.9);

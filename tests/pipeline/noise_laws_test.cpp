@@ -23,7 +23,8 @@ const Positions& sphere() {
 }
 
 double spacing() {
-  static const double mean = rfs_mesh::mean_spacing(rfs_mesh::SpatialIndex(sphere(), {}), {});
+  static const double mean =
+      rfs_mesh::mean_spacing(rfs_mesh::nearest_distances(rfs_mesh::SpatialIndex(sphere(), {}), {}), {});
   return mean;
 }
 
@@ -328,7 +329,7 @@ TEST(NoiseLaws, ATorusInDepthsOfStepsIsNotTornIntoSheets) {
   for (const unsigned seed : {1U, 2U, 3U}) {
     Positions stepped = test::random_points(test::torus(), 10000, seed);
     const rfs_mesh::SpatialIndex index(stepped, {});
-    const double step = rfs_mesh::mean_spacing(index, {});
+    const double step = rfs_mesh::mean_spacing(rfs_mesh::nearest_distances(index, {}), {});
     for (Eigen::Vector3d& p : stepped) p.z() = step * std::round(p.z() / step);
     const auto rms = [](const Positions& points) {
       double sum = 0;

@@ -41,7 +41,9 @@ std::string in_words(const NoiseSummary& noise) {
     words += fmt::format(", {:.3g} in the loudest tenth", noise.loudest);
   if (noise.shared >= 2) words += fmt::format(", shared by {:.0f} neighbours", noise.shared);
   if (noise.on_lines) words += ", points along lines";
-  if (noise.step > 0) words += fmt::format(", depth in steps of {:.3g}", noise.step);
+  if (noise.step > 0)
+    words += fmt::format(noise.on_grid ? ", points on a grid of {:.3g}" : ", depth in steps of {:.3g}",
+                         noise.step);
   return words;
 }
 

@@ -32,7 +32,7 @@ ordered_json json_of_noise(const NoiseModel& noise) {
   ordered_json json = {{"sigma", noise.sigma},      {"shape", noise.shape},
                        {"spacing", noise.spacing},  {"neighbours", noise.neighbours},
                        {"shared_by", noise.shared}, {"depth_step", noise.step},
-                       {"at_sites", noise.at_sites}};
+                       {"on_grid", noise.on_grid},  {"at_sites", noise.at_sites}};
   if (noise.across) json["across"] = *noise.across;
   if (!noise.spacing_at_sites.empty()) json["spacing_at_sites"] = noise.spacing_at_sites;
   if (!noise.told_at_sites.empty()) json["told_at_sites"] = noise.told_at_sites;
@@ -49,6 +49,7 @@ NoiseModel noise_of(const ordered_json& json) {
   noise.neighbours = json.at("neighbours");
   noise.shared = json.at("shared_by");
   noise.step = json.at("depth_step");
+  noise.on_grid = json.at("on_grid");
   if (json.contains("across")) noise.across = json.at("across").get<std::size_t>();
   noise.at_sites = json.at("at_sites").get<std::vector<double>>();
   if (json.contains("spacing_at_sites"))
@@ -136,16 +137,13 @@ Statistics statistics_of(const ordered_json& json) {
 }
 
 ordered_json json_of(const NoiseSummary& noise) {
-  return {{"typical", noise.typical},
-          {"loudest_tenth", noise.loudest},
-          {"shared_by", noise.shared},
-          {"depth_step", noise.step},
-          {"on_lines", noise.on_lines}};
+  return {{"typical", noise.typical}, {"loudest_tenth", noise.loudest}, {"shared_by", noise.shared},
+          {"depth_step", noise.step}, {"on_grid", noise.on_grid},       {"on_lines", noise.on_lines}};
 }
 
 NoiseSummary summary_of(const ordered_json& json) {
-  return {json.at("typical"), json.at("loudest_tenth"), json.at("shared_by"), json.at("depth_step"),
-          json.at("on_lines")};
+  return {json.at("typical"),    json.at("loudest_tenth"), json.at("shared_by"),
+          json.at("depth_step"), json.at("on_grid"),       json.at("on_lines")};
 }
 
 ordered_json json_of(const std::optional<NotSmoothed>& why) {

@@ -119,6 +119,8 @@ struct Sites {
   const DepthSteps* steps;
   bool on_lines;
 
+  bool on_grid() const { return steps != nullptr && steps->on_grid; }
+
   /// What depths in steps add there by their rounding, world units.
   double rounding_around(std::size_t s, const std::vector<Scatter>& all) const {
     if (steps == nullptr) return 0;
@@ -139,7 +141,8 @@ struct Sites {
       return next > 0 && seen[next].variance() > kGrowthOfNoise * kGrowthOfNoise * seen[next - 1].variance();
     };
     const auto exceeds_rounding = [&](std::size_t k) {
-      const double rounding = rounding_around(s, open[k].all);
+      const double apart = on_grid() ? 2 : 1;  // steps: with no empty voxel between them there is one sheet
+      const double rounding = apart * rounding_around(s, open[k].all);
       return seen[k].variance() > kTwoDepths * rounding * rounding;
     };
     std::size_t flattest = 0;
@@ -174,8 +177,8 @@ struct Sites {
     if (view.sheet == SiteView::kNone)
       view.floor = std::max(view.floor, plateau(less, seen, quantile(radius, 0.5)));
     view.told = seen < kStops * less;
-    // A stack of slices has few depths, too, and none of the scatter.
-    view.floor = std::max(view.floor, std::min(seen, rounding_around(s, many)));
+    // A stack of slices has few depths, too, and none of the scatter; a grid may be exact.
+    if (!on_grid()) view.floor = std::max(view.floor, std::min(seen, rounding_around(s, many)));
   }
 };
 

@@ -8,7 +8,7 @@
 /// that are flattest, unless their scatter grows to the next wider ball (or to the widest) as only shape
 /// does. Not if the residuals fill their middle nearly as an even distribution does: then the noise itself is
 /// flat. Nor if they are as small as those of two depths in steps that follow each other, which look like two
-/// sheets.
+/// sheets, or on a grid as those of two with one between them: voxels are filled evenly.
 ///
 /// Layers: two scans that do not quite meet leave two. Where more points are on one, the residuals lean, too,
 /// and both moments together tell how far apart the layers are. Nearer to each other than the points are to

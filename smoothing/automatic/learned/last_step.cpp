@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "base/parallel.h"
-#include "rfs_mesh/noise/depth_steps.h"
 #include "smoothing/automatic/learned/network.h"
 
 namespace rfsmooth::smoothing {
@@ -37,8 +36,7 @@ float worth_taking(float step) {
 /// The points that the network is asked for.
 std::vector<Index> asked_for(const std::vector<ScalesSay>& scales, const rfs_mesh::NoiseField& noise) {
   std::vector<Index> points;
-  const bool of_steps = rfs_mesh::rounding_noise(noise.step) > noise.sigma;
-  if (noise.shared > 1 || of_steps || noise.sigma < kLeastNoise * noise.spacing) return points;
+  if (noise.shared > 1 || is_of_steps(noise) || noise.sigma < kLeastNoise * noise.spacing) return points;
   for (std::size_t i = 0; i < scales.size(); ++i)
     if (contradiction(scales[i]) > 0) points.push_back(Index(i));
   return points;

@@ -9,7 +9,6 @@
 
 #include "base/parallel.h"
 #include "rfs_mesh/levels.h"
-#include "rfs_mesh/noise/depth_steps.h"
 #include "smoothing/automatic/stranded.h"
 
 namespace rfsmooth::smoothing {
@@ -96,7 +95,7 @@ void land_hovering(const HeightField& field, const MixedScales& pass, const Mesh
 Tails tame(const HeightField& field, const MixedScales& pass, const Mesh& mesh, Positions& data,
            rfs_mesh::NoiseField& noise, std::optional<Statistics::Tails>& whole, const Context& context) {
   // Terraces stand out as tails do, and so does what lines of points pass over.
-  if (rfs_mesh::rounding_noise(noise.step) > noise.sigma || noise.across) return {};
+  if (is_of_steps(noise) || noise.across) return {};
   constexpr float kMostItsOwn = 0.8F;
   constexpr double kByChance = 1.6;  // far points together: tails have 0.7 to 1.1 in ten thousand points
   constexpr double kGroups = 5;      // the same: groups of points that share what they are off by

@@ -21,6 +21,7 @@ Statistics full() {
   all.noise->across = 128;
   all.noise->shared = 3.7;
   all.noise->step = 1.0 / 30;
+  all.noise->on_grid = true;
   all.noise->sites = {{0.1, 0.2, 0.3}, {1, 2, 3}};
   all.noise->at_sites = {0.1, 1.0 / 3};
   all.noise->spacing_at_sites = {1.0 / 7, 0.01};
@@ -43,6 +44,7 @@ TEST(StatisticsJson, IsTheSameWhenReadAgain) {
   ASSERT_TRUE(again.noise);
   EXPECT_EQ(again.noise->across, full().noise->across);
   EXPECT_EQ(again.noise->shared, full().noise->shared);
+  EXPECT_TRUE(again.noise->on_grid);
   EXPECT_EQ(again.noise->at_sites, full().noise->at_sites);
   EXPECT_EQ(again.noise->spacing_at_sites, full().noise->spacing_at_sites);
   EXPECT_EQ(again.noise->told_at_sites, full().noise->told_at_sites);
@@ -60,12 +62,13 @@ TEST(StatisticsJson, WhatIsNotThereStaysOut) {
 }
 
 TEST(StatisticsJson, TheSummaryOfTheNoiseIsTheSameWhenReadAgain) {
-  const NoiseSummary summary = {1.0 / 3, 0.5, 7, 1.0 / 9, true};
+  const NoiseSummary summary = {1.0 / 3, 0.5, 7, 1.0 / 9, true, false};
   const NoiseSummary again = summary_of(json_of(summary));
   EXPECT_EQ(again.typical, summary.typical);
   EXPECT_EQ(again.loudest, summary.loudest);
   EXPECT_EQ(again.shared, summary.shared);
   EXPECT_EQ(again.step, summary.step);
+  EXPECT_EQ(again.on_grid, summary.on_grid);
   EXPECT_EQ(again.on_lines, summary.on_lines);
 }
 

@@ -64,6 +64,26 @@ TEST(DepthSteps, AreNoneInFreePointsAndOnAGrid) {
   EXPECT_FALSE(find_depth_steps(stepped(1, {2})));  // two planes
 }
 
+TEST(Grid, IsFoundWhereNearlyAllAreAsFarFromTheirNearest) {
+  std::vector<double> nearest(1000, 0.05);
+  for (std::size_t i = 0; i < nearest.size(); i += 2) nearest[i] *= 1 + 1e-6;  // as files round
+  for (std::size_t i = 0; i < nearest.size(); i += 12) nearest[i] *= std::sqrt(2.0);
+  const auto grid = rfs_mesh::find_grid(nearest);
+  ASSERT_TRUE(grid);
+  EXPECT_TRUE(grid->on_grid);
+  EXPECT_NEAR(grid->typical, 0.05, 1e-6);
+  for (const Eigen::Vector3d& normal : {Eigen::Vector3d(0, 0, 1), Eigen::Vector3d(0.6, 0, -0.8)})
+    EXPECT_NEAR(grid->sigma({1, 2, 3}, normal), 0.05 / std::sqrt(12.0), 1e-6);
+}
+
+TEST(Grid, IsNoneElsewhere) {
+  EXPECT_FALSE(rfs_mesh::find_grid({}));
+  EXPECT_FALSE(rfs_mesh::find_grid({0, 0, 0}));  // of points that coincide
+  std::vector<double> nearest(1000, 0.05);
+  for (std::size_t i = 0; i < nearest.size(); i += 4) nearest[i] *= 1.01;
+  EXPECT_FALSE(rfs_mesh::find_grid(nearest));
+}
+
 /// Points all around a scanner at `scanner`, at ranges of 1 to 3 in whole multiples of `step`, as a file of
 /// single precision keeps them.
 Positions shells(double step, const Eigen::Vector3d& scanner) {

@@ -1,0 +1,99 @@
+/// What `denoise` makes of clouds of voxels' centres, turned as a registered scan may be.
+#include <array>
+#include <cmath>
+#include <random>
+#include <set>
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include <rfsmooth/denoise.h>
+
+namespace rfsmooth {
+namespace {
+
+using Voxels = std::set<std::array<int, 3>>;
+
+constexpr double kVoxel = 0.06;
+
+Positions centres(const Voxels& voxels) {
+  const Eigen::Matrix3d turned = Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, -0.5).normalized()).matrix();
+  Positions points;
+  for (const auto& [i, j, k] : voxels)
+    points.push_back(kVoxel * (turned * (Eigen::Vector3d(i, j, k).array() + 0.5).matrix()));
+  return points;
+}
+
+/// Those that many noisy points of the unit sphere are in. \param noise of a voxel
+Voxels of_sphere(double noise) {
+  std::mt19937_64 engine(1);
+  std::normal_distribution<double> normal;
+  Voxels voxels;
+  for (int i = 0; i < 100000; ++i) {
+    Eigen::Vector3d p = Eigen::Vector3d(normal(engine), normal(engine), normal(engine)).normalized();
+    p *= 1 + noise * kVoxel * normal(engine);
+    const Eigen::Vector3d at = (p / kVoxel).array().floor();
+    voxels.insert({int(at.x()), int(at.y()), int(at.z())});
+  }
+  return voxels;
+}
+
+double rms_off_sphere(const Positions& points) {
+  double sum = 0;
+  for (const Eigen::Vector3d& p : points) sum += std::pow(p.norm() - 1, 2);
+  return std::sqrt(sum / double(points.size()));
+}
+
+DenoiseReport denoise(Positions& points) {
+  const auto report = rfsmooth::denoise(points.front().data(), points.size(), {}, {});
+  EXPECT_TRUE(report);
+  return report ? report.value() : DenoiseReport();
+}
+
+class NoisyVoxels : public ::testing::TestWithParam<double> {};
+
+// Two and three voxels lie one behind the other everywhere, as if there were two sheets.
+TEST_P(NoisyVoxels, BecomeTheSurface) {
+  Positions points = centres(of_sphere(GetParam()));
+  ASSERT_GT(points.size(), 3000u);
+  const double raw = rms_off_sphere(points);
+  const DenoiseReport report = denoise(points);
+  EXPECT_TRUE(report.measured.on_grid);
+  EXPECT_NEAR(report.measured.step, kVoxel, 1e-9);
+  EXPECT_LT(rms_off_sphere(points), 0.2 * raw);
+}
+
+INSTANTIATE_TEST_SUITE_P(Noise, NoisyVoxels, ::testing::Values(0, 0.05, 0.1, 0.15, 0.25, 0.4));
+
+// Of whole voxels, 40 along each edge.
+TEST(Voxels, OfAnExactBoxStay) {
+  constexpr int kEdge = 40;
+  Voxels box;
+  for (int i = 0; i <= kEdge; ++i)
+    for (int j = 0; j <= kEdge; ++j)
+      for (const int k : {0, kEdge}) box.insert({{i, j, k}, {i, k, j}, {k, i, j}});
+  Positions points = centres(box);
+  const Positions before = points;
+  denoise(points);
+  EXPECT_TRUE(points == before);
+}
+
+// Treads and risers of ten voxels.
+TEST(Voxels, OfExactStairsStay) {
+  constexpr int kTread = 10, kStairs = 6, kWidth = 80;
+  Voxels stairs;
+  for (int stair = 0; stair < kStairs; ++stair)
+    for (int along = 0; along <= kTread; ++along)
+      for (int across = 0; across < kWidth; ++across) {
+        const int front = stair * kTread, top = (stair + 1) * kTread;
+        stairs.insert({front, across, front + along});  // as high as it is far
+        stairs.insert({front + along, across, top});
+      }
+  Positions points = centres(stairs);
+  const Positions before = points;
+  denoise(points);
+  EXPECT_TRUE(points == before);
+}
+
+}  // namespace
+}  // namespace rfsmooth
