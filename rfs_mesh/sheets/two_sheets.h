@@ -133,6 +133,15 @@ struct SplitHeights {
 /// \param fewest heights of either sheet, at least 1.
 SplitHeights split_heights(const std::vector<double>& ascending, std::size_t fewest);
 
+/// The square that one point has, of so many in a disc of that radius.
+inline double square_of_point(double radius, std::size_t points) {
+  return M_PI * radius * radius / double(points);
+}
+
+/// Times that square: the mean distance from a point to its nearest, squared, where points lie at random. Two
+/// sheets of as many points each that are no farther apart may be layers of one surface.
+inline constexpr double kToNearest = 0.25;
+
 // Moments.
 
 /// d^2 = v - c. \param variance v, of the heights about the middle. \param of_sheet c, at most v.

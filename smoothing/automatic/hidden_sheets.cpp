@@ -38,9 +38,21 @@ struct Sum {
   }
 };
 
+/// By point: half the distance of sheets that would be layers, squared, in squares of the unit.
+std::vector<float> squared_of_layers(const HeightField& field, double unit, const Context& context) {
+  std::vector<float> squared(field.size());
+  for_each_index(context, field.size(), [&](std::size_t i) {
+    const auto row = field.neighbors()[i];
+    const double radius = (field.guide()[row[row.size() - 1]] - field.guide()[i]).norm();
+    squared[i] =
+        float(rfs_mesh::kToNearest * rfs_mesh::square_of_point(radius, row.size()) / (4 * unit * unit));
+  });
+  return squared;
+}
+
 /// Over all c; `v` are the squares' local means.
 HiddenSheets best_evidence(const Residuals& left, const std::vector<float>& own, const std::vector<float>& v,
-                           double whole, const Context& context) {
+                           const std::vector<float>& layers, double whole, const Context& context) {
   const std::size_t n = v.size();
   HiddenSheets best;
   std::size_t points = 0;  // at the best c
@@ -56,12 +68,13 @@ HiddenSheets best_evidence(const Residuals& left, const std::vector<float>& own,
               all.head(there) = Eigen::Map<const Eigen::ArrayXf>(values.data() + i, there);
               return all;
             };
-            const Lanes mean = lanes(v), share = lanes(own);
-            const auto counts = share <= kMostOwn && mean >= kLouder * float(c) && mean <= kLoudest;
+            const Lanes mean = lanes(v), share = lanes(own), least = lanes(layers);
+            const Lanes squared = rfs_mesh::squared_apart(mean, float(c));
+            const auto counts =
+                share <= kMostOwn && mean >= kLouder * float(c) && mean <= kLoudest && squared >= least;
             const auto counted = std::size_t(counts.count());
             if (counted == 0) continue;
-            const Lanes squared = rfs_mesh::squared_apart(mean, float(c)),
-                        variance = float(c) * (1 - 2 * share),
+            const Lanes variance = float(c) * (1 - 2 * share),
                         evidence = rfs_mesh::evidence_of_two(lanes(left.scores), squared, variance);
             part.evidence += double(counts.select(evidence, 0).sum());
             part.points += counted;
@@ -92,6 +105,7 @@ HiddenSheets split_hidden_sheets(const HeightField& field, const Residuals& left
   if (known) found = {*known, 0};
   if (known && !found.there()) return found;
   const std::size_t n = field.size();
+  const std::vector<float> layers = squared_of_layers(field, left.unit, context);
   std::vector<float> v(n);
   const std::vector<float>& residual = left.scores;
   const auto square = [&](std::size_t i) { return residual[i] * residual[i] + 2 * own[i]; };
@@ -101,20 +115,21 @@ HiddenSheets split_hidden_sheets(const HeightField& field, const Residuals& left
   for (int round = 0; round < kSheetRounds; ++round) {
     for (int again = 0; again < kSheetRounds; ++again) v = field.local_mean(v, context);
     if (known) continue;
-    found = best_evidence(left, own, v, whole, context);
+    found = best_evidence(left, own, v, layers, whole, context);
     if (!found.there()) break;
   }
   if (found.there()) {  // of the other points
     for_each_index(context, n, [&](std::size_t i) { v[i] = (v[i] - kItself * square(i)) / (1 - kItself); });
-    if (!known) found = best_evidence(left, own, v, whole, context);
+    if (!known) found = best_evidence(left, own, v, layers, whole, context);
   }
   known = found;
   if (!found.there()) return found;
   const double c = found.variance;
   found.split = sum_over(context, n, std::size_t(0), [&](std::size_t i) {
     const double mean = double(v[i]);
-    if (mean < double(kLouder) * c) return std::size_t(0);
-    const double d = std::sqrt(rfs_mesh::squared_apart(mean, c));
+    const double squared = rfs_mesh::squared_apart(mean, c);
+    if (mean < double(kLouder) * c || squared < double(layers[i])) return std::size_t(0);
+    const double d = std::sqrt(squared);
     height[i] += float(left.unit * d * rfs_mesh::sharpened_label(double(residual[i]), d, c));
     return std::size_t(1);
   });

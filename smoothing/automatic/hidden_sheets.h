@@ -21,6 +21,9 @@
 /// with r = d^2 / v, to what two sheets would bring, about r^4 / 12 (1 - r). For thin walls, where r is 0.3,
 /// that is as much again at w = 0.01, and it is there without walls, too, and grows with their points.
 ///
+/// Sheets no farther apart than points at random are from their nearest are layers, of two scans that do not
+/// quite meet, and nobody is moved onto them (kToNearest of two_sheets.h; the noise is measured by the same).
+///
 /// Source: a likelihood ratio of two simple hypotheses.
 /// Residuals in steps (depths of a sensor) look a little like two sheets in some places, so walls are
 /// believed only if they take at least a twentieth of the cloud. Uniform noise looks like two sheets

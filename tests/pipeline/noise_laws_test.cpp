@@ -131,6 +131,22 @@ TEST(NoiseLaws, TwoLayersATenthOfASpacingApartBecomeOneSurface) {
   EXPECT_LT(rms_off(denoised(noisy), everywhere), 0.2 * rms_off(noisy, everywhere));
 }
 
+// Two scans of a ball, one moved as far as points at random are from their nearest: farther apart here than
+// there, and nowhere the sides of a wall.
+TEST(NoiseLaws, TwoScansThatDoNotQuiteMeetBecomeOneSurface) {
+  constexpr std::size_t kPoints = 16000;
+  const double to_nearest = 0.5 * std::sqrt(4 * M_PI / double(kPoints));
+  std::mt19937_64 engine(3);
+  std::normal_distribution<double> normal;
+  Positions scans;
+  for (std::size_t i = 0; i < kPoints; ++i) {
+    const Eigen::Vector3d at = Eigen::Vector3d(normal(engine), normal(engine), normal(engine)).normalized();
+    const Eigen::Vector3d moved = (i % 2 == 0 ? 0.5 : -0.5) * to_nearest * Eigen::Vector3d(0.48, 0.64, 0.6);
+    scans.push_back((1 + 0.1 * to_nearest * normal(engine)) * at + moved);
+  }
+  EXPECT_LT(rms_off(denoised(scans), everywhere), 0.2 * rms_off(scans, everywhere));
+}
+
 // As hand-held scanners leave it: the neighbourhoods that tell what is a surface must be as wide as the
 // noise.
 TEST(NoiseLaws, NoiseOfSixSpacingsIsSmoothedToATwelfth) {

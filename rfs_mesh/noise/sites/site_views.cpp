@@ -103,12 +103,10 @@ double noise_of_sheet(const Around& around) {
 /// Whether the fits show two layers that are nearer to each other than their points are, and no sheets.
 bool are_layers(const Around& around) {
   constexpr double kNormalFlatness = 3;
-  constexpr double kToNearest = 0.25;  // the mean distance from a random point to its nearest, squared
   if (!(around.flatness < kNormalFlatness)) return false;
   const double lean = std::max(0.0, around.lean), of_sheet = share_of_sheet(around.flatness, lean);
   if (!(of_sheet < share_of_sheet(kFlatnessOfSheets))) return false;
-  const double wide = around.radius(), square_of_point = M_PI * wide * wide / double(around.points),
-               nearest = (lean > 0 ? 1 : kToNearest) * square_of_point;
+  const double nearest = (lean > 0 ? 1 : kToNearest) * square_of_point(around.radius(), around.points);
   return squared_gap(of_sheet, lean) * around.variance() < nearest;
 }
 
