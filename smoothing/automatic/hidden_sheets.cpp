@@ -30,9 +30,10 @@ using Lanes = Eigen::Array<float, 16, 1>;
 
 struct Sum {
   double evidence = 0;
-  std::size_t points = 0;
+  std::size_t louder = 0, points = 0;  // places; of these such as are no layers
   Sum& operator+=(const Sum& other) {
     evidence += other.evidence;
+    louder += other.louder;
     points += other.points;
     return *this;
   }
@@ -55,7 +56,7 @@ HiddenSheets best_evidence(const Residuals& left, const std::vector<float>& own,
                            const std::vector<float>& layers, double whole, const Context& context) {
   const std::size_t n = v.size();
   HiddenSheets best;
-  std::size_t points = 0;  // at the best c
+  std::size_t louder = 0;  // at the best c
   for (double c = 1.1; c > 0.55; c *= 0.9) {
     const Sum sum = reduce_blocks(
         context, n, Sum(),
@@ -70,8 +71,9 @@ HiddenSheets best_evidence(const Residuals& left, const std::vector<float>& own,
             };
             const Lanes mean = lanes(v), share = lanes(own), least = lanes(layers);
             const Lanes squared = rfs_mesh::squared_apart(mean, float(c));
-            const auto counts =
-                share <= kMostOwn && mean >= kLouder * float(c) && mean <= kLoudest && squared >= least;
+            const auto loud = share <= kMostOwn && mean >= kLouder * float(c) && mean <= kLoudest;
+            part.louder += std::size_t(loud.count());
+            const auto counts = loud && squared >= least;
             const auto counted = std::size_t(counts.count());
             if (counted == 0) continue;
             const Lanes variance = float(c) * (1 - 2 * share),
@@ -86,9 +88,9 @@ HiddenSheets best_evidence(const Residuals& left, const std::vector<float>& own,
     if (double(sum.points) < kLeastSheetShare * double(n) || evidence <= best.evidence) continue;
     best.evidence = evidence;
     best.variance = c;
-    points = sum.points;
+    louder = sum.louder;
   }
-  if (!left.with_tails && double(points) > kMostSheetShare * double(n)) best.evidence = 0;
+  if (!left.with_tails && double(louder) > kMostSheetShare * double(n)) best.evidence = 0;
   return best;
 }
 

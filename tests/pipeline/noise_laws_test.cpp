@@ -131,9 +131,9 @@ TEST(NoiseLaws, TwoLayersATenthOfASpacingApartBecomeOneSurface) {
   EXPECT_LT(rms_off(denoised(noisy), everywhere), 0.2 * rms_off(noisy, everywhere));
 }
 
-// Two scans of a ball, one moved as far as points at random are from their nearest: farther apart here than
-// there, and nowhere the sides of a wall.
-TEST(NoiseLaws, TwoScansThatDoNotQuiteMeetBecomeOneSurface) {
+/// Scans of the unit sphere, each moved by one of `moves`; these and the noise in mean distances of points at
+/// random to their nearest.
+Positions scans_that_do_not_meet(const std::vector<Eigen::Vector3d>& moves, double noise) {
   constexpr std::size_t kPoints = 16000;
   const double to_nearest = 0.5 * std::sqrt(4 * M_PI / double(kPoints));
   std::mt19937_64 engine(3);
@@ -141,9 +141,21 @@ TEST(NoiseLaws, TwoScansThatDoNotQuiteMeetBecomeOneSurface) {
   Positions scans;
   for (std::size_t i = 0; i < kPoints; ++i) {
     const Eigen::Vector3d at = Eigen::Vector3d(normal(engine), normal(engine), normal(engine)).normalized();
-    const Eigen::Vector3d moved = (i % 2 == 0 ? 0.5 : -0.5) * to_nearest * Eigen::Vector3d(0.48, 0.64, 0.6);
-    scans.push_back((1 + 0.1 * to_nearest * normal(engine)) * at + moved);
+    scans.push_back((1 + noise * to_nearest * normal(engine)) * at + to_nearest * moves[i % moves.size()]);
   }
+  return scans;
+}
+
+// Farther apart here than there, and nowhere the sides of a wall.
+TEST(NoiseLaws, TwoScansThatDoNotQuiteMeetBecomeOneSurface) {
+  const Positions scans = scans_that_do_not_meet({{0.24, 0.32, 0.3}, {-0.24, -0.32, -0.3}}, 0.1);
+  EXPECT_LT(rms_off(denoised(scans), everywhere), 0.2 * rms_off(scans, everywhere));
+}
+
+// Some of them are as far apart as walls' sides may be, but louder places are nearly everywhere.
+TEST(NoiseLaws, FourScansFartherApartComeTogether) {
+  const Positions scans =
+      scans_that_do_not_meet({{0.7, 0.7, 0.7}, {0.7, -0.7, -0.7}, {-0.7, 0.7, -0.7}, {-0.7, -0.7, 0.7}}, 0.3);
   EXPECT_LT(rms_off(denoised(scans), everywhere), 0.2 * rms_off(scans, everywhere));
 }
 
