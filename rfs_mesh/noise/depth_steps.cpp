@@ -105,10 +105,9 @@ std::optional<DepthSteps> find_depth_steps(const Positions& points,
 }
 
 std::optional<DepthSteps> find_grid(std::vector<double> nearest) {
-  constexpr double kNearlyAll = 0.9;
   constexpr double kSame = 1e-3;  // files of seven digits, some thousand points across
   if (nearest.empty()) return {};
-  const double most = quantile(nearest, kNearlyAll), least = quantile(nearest, 1 - kNearlyAll);
+  const double most = quantile(nearest, 0.75), least = quantile(nearest, 0.25);
   if (!(most - least < kSame * least)) return {};
   DepthSteps steps;
   steps.on_grid = true;

@@ -41,8 +41,8 @@ struct DepthSteps {
 std::optional<DepthSteps> find_depth_steps(const Positions& points,
                                            const std::optional<Eigen::Vector3d>& scanner);
 
-/// The steps of a grid in space, turned any way: nearly all points are as far from their nearest as each
-/// other. Nothing if they are not. \param nearest these distances, of some points.
+/// The steps of a grid in space, turned any way: the quartiles of the distances to the nearest point are the
+/// same. Nothing if they are not. \param nearest these distances, of some points.
 std::optional<DepthSteps> find_grid(std::vector<double> nearest);
 
 }  // namespace rfsmooth::rfs_mesh

@@ -124,8 +124,7 @@ Command info_command() {
       "together, as in the blotches of depth cameras, and N of them tell no more than one; smoothing takes "
       "so many points more together. 'points along lines': the nearest of a point are on one line, as on "
       "the rings of a spinning laser; smoothing follows the lines. 'depth in steps of S': depths are "
-      "rounded, and S is the typical distance from one to the next. 'points on a grid of S': nearly all are "
-      "S "
+      "rounded, and S is the typical distance from one to the next. 'points on a grid of S': most are S "
       "from their nearest, as the centres of voxels are.";
   collect(*options, command.options);
   command.run = [options](const Invocation& typed) { return run_info(*options, typed); };
