@@ -65,7 +65,13 @@ Recipe make_recipe(std::uint64_t number) {
     recipe.law.ring_gap = std::pow(20, random.uniform());
     recipe.law.along_ray = true;
   }
-  if (random.uniform() < .35) recipe.points = std::size_t(4000 * std::pow(15, random.uniform()));
+  const double size = random.uniform();
+  if (size < .32) {  // noise of many layers of points, where they make films of walls
+    recipe.points = std::size_t(25000 * std::pow(2.6, random.uniform()));
+    if (random.uniform() < .75) recipe.share = random.uniform(.012, .036);
+  } else if (size < .55) {
+    recipe.points = std::size_t(4000 * std::pow(15, random.uniform()));
+  }
   if (random.uniform() < .5) recipe.disturbed = random.uniform(.85, 1.15);
   return recipe;
 }
