@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # From nothing to weights: makes shapes, scans them, writes what the smoother knows there beside the truth, trains,
-# and puts the weights into smoothing/automatic/learned/weights.cpp. About an hour and a half on two cores.
+# and puts the weights into smoothing/automatic/learned/weights.cpp. About two and a half hours on two cores.
 #   tests/bench/train/train.sh [CLOUDS] [EPOCHS]
 # Needs what tests/packages.sh installs, and numpy, which it puts into a virtual environment of the build folder.
 set -euo pipefail
 cd "$(dirname "$0")/../../.."
-clouds=${1:-3360} epochs=${2:-16}
+clouds=${1:-4960} epochs=${2:-16}
 cmake --preset bench
 cmake --build --preset bench --target train_sites
 work=build/bench/train
