@@ -206,8 +206,11 @@ NoiseModel measure_noise(const SpatialIndex& index, const Context& context,
   const std::vector<double> nearest = nearest_distances(index, context);
   noise.spacing = mean_spacing(nearest, context);
   if (index.points().size() <= kNeighbourhood) return noise;
-  std::optional<DepthSteps> steps = find_grid(nearest);
-  if (!steps) steps = find_depth_steps(index.points(), scanner);
+  std::optional<DepthSteps> steps = find_depth_steps(index.points(), scanner);
+  const std::optional<DepthSteps> grid = find_grid(nearest);
+  // Before a wall a camera's points are on a grid, too, of its pixels; a turned grid has few values of each
+  // coordinate, too, far nearer to each other.
+  if (grid && !(steps && steps->typical > grid->typical)) steps = grid;
   if (steps) {
     noise.step = steps->typical;
     noise.on_grid = steps->on_grid;
