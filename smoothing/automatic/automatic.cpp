@@ -141,7 +141,8 @@ AutomaticResult automatic_smoothing(AutomaticTask task, AutomaticReport& report,
   if (!task.keep_rings) mesh.one_ring = {};
   const double of_whole = whole.points ? double(*whole.points) / double(n) : 1;
   const std::vector<float> one_sheet = task.learned ? heights.height : std::vector<float>();
-  // A k-th of the evidence never was enough for walls, and across lines there is none.
+  // A k-th of the evidence never was enough for walls, across lines there is none, and noise that fills
+  // voxels evenly looks like two sheets.
   const bool own_noise = !(noise.shared > 1) && !noise.across && !noise.on_grid;
   HiddenSheets hidden;
   if (own_noise && untamed > rfs_mesh::detail(noise.spacing))
