@@ -12,6 +12,7 @@
 #include "rfs_mesh/levels.h"
 #include "rfs_mesh/normals/winding.h"
 #include "rfs_mesh/sample.h"
+#include "rfs_mesh/sheets/two_sheets.h"
 
 namespace rfsmooth::rfs_mesh {
 
@@ -59,7 +60,7 @@ class ThinParts {
     for_each_index(context, row_.size(), [&](std::size_t s) {
       const Adjacency::Row row = around_[s];
       const std::size_t count = std::min(kRing, row.size());
-      area_[s] = M_PI * (at_[row[count - 1]] - at_[s]).squaredNorm() / double(count);
+      area_[s] = square_of_point((at_[row[count - 1]] - at_[s]).squaredNorm(), count);
     });
   }
 

@@ -133,9 +133,9 @@ struct SplitHeights {
 /// \param fewest heights of either sheet, at least 1.
 SplitHeights split_heights(const std::vector<double>& ascending, std::size_t fewest);
 
-/// The square that one point has, of so many in a disc of that radius.
-inline double square_of_point(double radius, std::size_t points) {
-  return M_PI * radius * radius / double(points);
+/// The square that one point has, of so many in a disc. \param squared_radius of the disc
+inline double square_of_point(double squared_radius, std::size_t points) {
+  return M_PI * squared_radius / double(points);
 }
 
 /// Times that square: the mean distance from a point to its nearest, squared, where points lie at random. Two

@@ -44,9 +44,9 @@ std::vector<float> squared_of_layers(const HeightField& field, double unit, cons
   std::vector<float> squared(field.size());
   for_each_index(context, field.size(), [&](std::size_t i) {
     const auto row = field.neighbors()[i];
-    const double radius = (field.guide()[row[row.size() - 1]] - field.guide()[i]).norm();
+    const double farthest = (field.guide()[row[row.size() - 1]] - field.guide()[i]).squaredNorm();
     squared[i] =
-        float(rfs_mesh::kToNearest * rfs_mesh::square_of_point(radius, row.size()) / (4 * unit * unit));
+        float(rfs_mesh::kToNearest * rfs_mesh::square_of_point(farthest, row.size()) / (4 * unit * unit));
   });
   return squared;
 }

@@ -1,6 +1,5 @@
 /// What `denoise` makes of clouds of voxels' centres, turned as a registered scan may be.
 #include <array>
-#include <cmath>
 #include <random>
 #include <set>
 
@@ -8,6 +7,8 @@
 #include <gtest/gtest.h>
 
 #include <rfsmooth/denoise.h>
+
+#include "tests/support/meshes.h"
 
 namespace rfsmooth {
 namespace {
@@ -38,12 +39,6 @@ Voxels of_sphere(double noise) {
   return voxels;
 }
 
-double rms_off_sphere(const Positions& points) {
-  double sum = 0;
-  for (const Eigen::Vector3d& p : points) sum += std::pow(p.norm() - 1, 2);
-  return std::sqrt(sum / double(points.size()));
-}
-
 DenoiseReport denoise(Positions& points) {
   const auto report = rfsmooth::denoise(points.front().data(), points.size(), {}, {});
   EXPECT_TRUE(report);
@@ -56,11 +51,11 @@ class NoisyVoxels : public ::testing::TestWithParam<double> {};
 TEST_P(NoisyVoxels, BecomeTheSurface) {
   Positions points = centres(of_sphere(GetParam()));
   ASSERT_GT(points.size(), 3000u);
-  const double raw = rms_off_sphere(points);
+  const double raw = support::rms_off_unit_sphere(points);
   const DenoiseReport report = denoise(points);
   EXPECT_TRUE(report.measured.on_grid);
   EXPECT_NEAR(report.measured.step, kVoxel, 1e-9);
-  EXPECT_LT(rms_off_sphere(points), 0.2 * raw);
+  EXPECT_LT(support::rms_off_unit_sphere(points), 0.2 * raw);
 }
 
 INSTANTIATE_TEST_SUITE_P(Noise, NoisyVoxels, ::testing::Values(0, 0.05, 0.1, 0.15, 0.25, 0.4));

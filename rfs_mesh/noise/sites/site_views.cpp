@@ -106,7 +106,8 @@ bool are_layers(const Around& around) {
   if (!(around.flatness < kNormalFlatness)) return false;
   const double lean = std::max(0.0, around.lean), of_sheet = share_of_sheet(around.flatness, lean);
   if (!(of_sheet < share_of_sheet(kFlatnessOfSheets))) return false;
-  const double nearest = (lean > 0 ? 1 : kToNearest) * square_of_point(around.radius(), around.points);
+  const double radius = around.radius(),
+               nearest = (lean > 0 ? 1 : kToNearest) * square_of_point(radius * radius, around.points);
   return squared_gap(of_sheet, lean) * around.variance() < nearest;
 }
 
