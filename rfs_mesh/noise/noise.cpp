@@ -200,6 +200,13 @@ void measure(const SpatialIndex& index, const DepthSteps* steps, NoiseModel& noi
 
 }  // namespace
 
+std::vector<double> NoiseField::reaches(double times, const Context& context) const {
+  std::vector<double> of(local.size());
+  for_each_index(context, of.size(),
+                 [&](std::size_t i) { of[i] = kStray * times * std::max(local[i], sigma); });
+  return of;
+}
+
 NoiseModel measure_noise(const SpatialIndex& index, const Context& context,
                          const std::optional<Eigen::Vector3d>& scanner) {
   NoiseModel noise;

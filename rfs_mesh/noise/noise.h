@@ -58,6 +58,10 @@ struct NoiseField : NoiseModel {
   std::vector<double> local;          ///< n: sigma near each point, world units
   std::vector<double> local_spacing;  ///< n: spacing_at_sites near each point; empty: `spacing` everywhere
   std::vector<double> local_told;     ///< n: told_at_sites near each point, 0 to 1; empty: 0 everywhere
+
+  /// n: how far the noise may have carried each point, world units; what is farther off is a stray. `times`
+  /// that noise.
+  std::vector<double> reaches(double times, const Context& context) const;
 };
 
 /// O(log n) after the index. Parallel, deterministic. Zero for fewer than 25 points. \param scanner where it

@@ -23,8 +23,6 @@ namespace rfsmooth::smoothing {
 
 namespace {
 
-using rfs_mesh::kStray;
-
 // Chosen on the development shapes (tests/bench/quality) at 10,000 and 50,000 points, noise of 1 to 3 %.
 constexpr double kGuide = 10;  // c = kGuide (sigma/h)^2, to the fourth power above h
 
@@ -56,7 +54,7 @@ std::unique_ptr<HeightField> raise_field(const Positions& points, const Adjacenc
                                          const rfs_mesh::NoiseField& noise, AutomaticReport& report,
                                          Statistics::Pass& whole, const Context& context) {
   Positions guide = fair(points, rings, report.guide_strength, whole.reductions, context);
-  Landed landed = land_stranded(points, rings, kStray * noise.sigma, guide, context);
+  Landed landed = land_stranded(points, rings, noise.reaches(1, context), guide, context);
   report.stranded = landed.stranded;
   return std::make_unique<HeightField>(std::move(guide), std::move(landed.tree), std::move(landed.near),
                                        points, noise.across, context);
@@ -95,8 +93,7 @@ Mixed mix_scales(AutomaticTask& task, AutomaticReport& report, Statistics& whole
   };
   smooth(mesh.positions, 0);
   mixed.data = mesh.positions;
-  mixed.most = noise.local;
-  for (double& limit : mixed.most) limit = kStray * std::max(limit, noise.sigma);
+  mixed.most = noise.reaches(1, context);
   mixed.tails = tame(*mixed.field, mixed.heights, mesh, mixed.data, noise, whole.tails, context);
   if (mixed.tails.share > 0) {
     report.tail_times = mixed.tails.times;

@@ -163,9 +163,9 @@ Eigen::Vector3d project(const Positions& guide, const std::vector<Neighbor>& nea
 }
 
 /// Lands the points `stranded`; returns which found a place. The others stay.
-std::vector<Index> land(const Positions& points, const std::vector<Index>& stranded, double most,
-                        const NeighborTable& near, const MovingGuide& surface, Positions& guide,
-                        const Context& context) {
+std::vector<Index> land(const Positions& points, const std::vector<Index>& stranded,
+                        const std::vector<double>& most, const NeighborTable& near,
+                        const MovingGuide& surface, Positions& guide, const Context& context) {
   Positions landed(stranded.size());
   for_blocks(context, stranded.size(), 256, [&](std::size_t begin, std::size_t end) {
     MovingGuide::Search search;
@@ -184,7 +184,7 @@ std::vector<Index> land(const Positions& points, const std::vector<Index>& stran
   std::vector<Index> moved;
   for (std::size_t k = 0; k < stranded.size(); ++k) {
     const Index i = stranded[k];
-    if (!landed[k].allFinite() || !((landed[k] - points[i]).norm() < most)) continue;
+    if (!landed[k].allFinite() || !((landed[k] - points[i]).norm() < most[i])) continue;
     guide[i] = landed[k];
     moved.push_back(i);
   }
@@ -215,9 +215,9 @@ std::vector<char> beside_moved(const MovingGuide& surface, const NeighborTable& 
 
 /// Moves the points (stranded.h) and returns which. `near`: of where the guide was; rows of moved points are
 /// no longer right. \param first set to the number of those that were found at first
-std::vector<Index> move_stranded(const Positions& points, const Adjacency& rings, double most,
-                                 MovingGuide& surface, NeighborTable& near, Positions& guide,
-                                 std::size_t& first, const Context& context) {
+std::vector<Index> move_stranded(const Positions& points, const Adjacency& rings,
+                                 const std::vector<double>& most, MovingGuide& surface, NeighborTable& near,
+                                 Positions& guide, std::size_t& first, const Context& context) {
   std::vector<Index> moved;
   if (near.k < HeightField::kNear) return moved;
   for (int round = 0; round < kStrandedRounds; ++round) {
@@ -249,8 +249,8 @@ std::vector<Index> move_stranded(const Positions& points, const Adjacency& rings
 
 }  // namespace
 
-Landed land_stranded(const Positions& points, const Adjacency& rings, double most, Positions& guide,
-                     const Context& context) {
+Landed land_stranded(const Positions& points, const Adjacency& rings, const std::vector<double>& most,
+                     Positions& guide, const Context& context) {
   MovingGuide surface(guide, context);
   NeighborTable near = surface.before().nearest(HeightField::kNear, context);
   std::size_t first = 0;
@@ -262,8 +262,8 @@ Landed land_stranded(const Positions& points, const Adjacency& rings, double mos
   return {first, std::move(near), index.release_tree()};
 }
 
-void land_stranded_only(const Positions& points, const Adjacency& rings, double most, Positions& guide,
-                        const Context& context) {
+void land_stranded_only(const Positions& points, const Adjacency& rings, const std::vector<double>& most,
+                        Positions& guide, const Context& context) {
   MovingGuide surface(guide, context);
   NeighborTable near = surface.before().nearest(HeightField::kNear, context);
   std::size_t first = 0;

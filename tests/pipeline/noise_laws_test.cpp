@@ -1,4 +1,5 @@
 /// What `denoise` makes of noise that is not the same everywhere, not normal, not every point's own.
+#include <array>
 #include <cmath>
 #include <functional>
 #include <random>
@@ -122,6 +123,41 @@ TEST(NoiseLaws, ACalmPlaneIsFlattenedBesideALoudOne) {
 }
 
 // Two scans that meet but for a tenth of a spacing: no wall is so thin.
+// Three walls of a corner, of dark and of bright paint: none may hide what another one has.
+TEST(NoiseLaws, WallsOfACornerAreSmoothedWhateverTheNoiseOfTheOthers) {
+  constexpr std::size_t kPerWall = 8000;
+  const double spacing = std::sqrt(1.0 / kPerWall);  // side of the square that has one point
+  struct Noises {
+    std::array<double, 3> of;  // of each wall, spacings
+  };
+  for (const Noises& noises : {Noises{{0.1, 0.5, 1}}, Noises{{0.3, 0.5, 1}}, Noises{{0.1, 0.25, 1.5}}}) {
+    std::mt19937_64 engine(4);
+    std::uniform_real_distribution<double> uniform(0, 1);
+    std::normal_distribution<double> normal(0, spacing);
+    Positions noisy;
+    for (Eigen::Index wall = 0; wall < 3; ++wall)
+      for (std::size_t i = 0; i < kPerWall; ++i) {
+        Eigen::Vector3d p(uniform(engine), uniform(engine), uniform(engine));
+        p[wall] = 0;
+        for (double& x : p) x += noises.of[std::size_t(wall)] * normal(engine);
+        noisy.push_back(p);
+      }
+    const Positions smooth = denoised(noisy);
+    for (std::size_t wall = 0; wall < 3; ++wall) {
+      double before = 0, after = 0;
+      for (std::size_t i = wall * kPerWall; i < (wall + 1) * kPerWall; ++i) {
+        const auto of_wall = Eigen::Index(wall), next = (of_wall + 1) % 3, other = (of_wall + 2) % 3;
+        if (noisy[i][next] < 6 * spacing || noisy[i][other] < 6 * spacing) continue;  // the edges
+        before += noisy[i][of_wall] * noisy[i][of_wall];
+        after += smooth[i][of_wall] * smooth[i][of_wall];
+      }
+      ASSERT_GT(before, 0);
+      EXPECT_LT(std::sqrt(after / before), 0.2)
+          << noises.of[wall] << " beside " << noises.of[0] << " to " << noises.of[2];
+    }
+  }
+}
+
 TEST(NoiseLaws, TwoLayersATenthOfASpacingApartBecomeOneSurface) {
   std::mt19937_64 engine(8);
   std::bernoulli_distribution upper(0.5);

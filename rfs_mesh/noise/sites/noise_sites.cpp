@@ -43,6 +43,7 @@ class Listener {
         narrow_(at.size(), 0),
         widest_(widest_scatter(cloud)),
         start_(start.sigma),
+        deep_(start.m >= kNeighbourhood),
         m(points_to_fit(places_, start)),
         sigma(at.size(), std::max(start.sigma, start.least)),
         floor(at.size(), 0),
@@ -80,16 +81,12 @@ class Listener {
           if (!hear_at(s, said, 1)) {
             // Nearly nothing around is left within windows made for far calmer places.
             const bool empty = double(full.size()) < (1 - kLeastSpeaking) * double(group_[s].size());
-            const double typical = empty ? kEven : quantile(full, 0.5);
-            if (typical > kFilled && views[s].sheet == SiteView::kNone)
-              sigma[s] = std::min(at_most(s, 1),
-                                  std::max(kNarrowestWindow * views[s].open, std::sqrt(typical) * before[s]));
+            if (views[s].sheet == SiteView::kNone)
+              open_window(s, before, empty ? kEven : quantile(full, 0.5));
             opened[s] = char(sigma[s] > before[s]);
           }
           const double reach = quantile(radius, 0.5);
-          const double held = views[s].held;
-          const bool all_seen = held > 0 && held < kGrowthOfNoise * sigma[s];
-          if (sigma[s] > (all_seen ? kSameNoise : kLouder) * start_ ||
+          if (sigma[s] > (all_seen(s) ? kSameNoise : kLouder) * start_ ||
               denser(reach / std::sqrt(double(m[s])), typical_reach))
             opened[s] = char(widen(s, reach) || opened[s] != 0);
         },
@@ -130,6 +127,27 @@ class Listener {
   }
 
  private:
+  /// Widens the window of a place that no fit speaks for and that sees one sheet. \param before all windows.
+  /// \param full of those around, as kFilled
+  void open_window(std::size_t s, const std::vector<double>& before, double full) {
+    if (full > kFilled)
+      sigma[s] =
+          std::min(at_most(s, 1), std::max(kNarrowestWindow * views[s].open, std::sqrt(full) * before[s]));
+    // Two sheets that scatter twice as much as one would be seen as two.
+    if (views[s].plain > kLouder * sigma[s]) sigma[s] = views[s].plain;
+    // Where most of the places around have opened theirs, these are not full any more, and this one is late.
+    std::vector<double> windows = around(group_[s], before, kSmallestGroup);
+    sigma[s] = std::max(sigma[s], std::min(at_most(s, 1), quantile(windows, 0.5)));
+  }
+
+  /// Whether no second sheet is beyond the window, nor an edge. Where the search began with few points,
+  /// places show a little more or less by chance.
+  bool all_seen(std::size_t s) const {
+    const double held = views[s].held;
+    return held > 0 && held < kGrowthOfNoise * sigma[s] &&
+           (deep_ || held * held > kDiffers * start_ * start_);
+  }
+
   /// Sets sigma and whether it is of this place; returns that. Where no fit within windows says anything but
   /// two sheets are seen, the noise is what each of them shows, if that is less than the start. \param all
   /// fits to `times` m points
@@ -178,6 +196,7 @@ class Listener {
   std::vector<double> narrow_;  ///< radius of the ball of the fewest neighbours; 0: not asked for yet
   std::size_t widest_;
   double start_;  ///< world units
+  bool deep_;     ///< whether the search found noise that fills the nearest neighbours
 
  public:
   std::vector<std::size_t> m;

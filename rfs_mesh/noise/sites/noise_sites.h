@@ -10,9 +10,13 @@
 /// leaves nothing in it at nearly all of the sites around. A window that is filled evenly gets wider, to the
 /// scatter seen in it, and that up to eight times. Where it ends at more than twice the noise it began with,
 /// or the points are denser than elsewhere, the fits take more points, as many as such noise needs. So they
-/// do in noise of about a spacing and more where it ends above the noise it began with and no second sheet is
-/// beyond it: fits without windows, to the first of 24, 192 and 1,536 points that hold the slab of noisy
-/// points, show hardly more.
+/// do where it ends above the noise it began with and no second sheet is beyond it: fits without windows, to
+/// the first of 24, 192 and 1,536 points that hold the slab of noisy points, show hardly more (and, where the
+/// search began with few points, 1.5 times the variance that it found).
+///
+/// A part that is far louder than the start leaves so few points in a window that the quadric passes through
+/// them. Where what is plain noise (site_views.h) is more than twice the window, the window is as wide as
+/// that; two sheets that far apart would have been seen.
 ///
 /// What a site sees without any window (site_views.h) bounds what it shows in one: two sheets seen there keep
 /// windows as narrow as each of them is, nothing is louder than nearly all of the nearest sites see, and

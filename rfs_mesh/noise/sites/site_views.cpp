@@ -18,6 +18,8 @@ constexpr double kMiddleOfSheets = 0.25;
 // Points at two depths that follow each other scatter by half a step, and rounding by 1 / sqrt(12) of it; of
 // their variances 3.
 constexpr double kTwoDepths = 3;
+// Scatter::flatness of normal noise.
+constexpr double kNormalFlatness = 3;
 // Coefficients of a quadric.
 constexpr double kOfQuadric = 6;
 
@@ -65,6 +67,13 @@ struct Around {
   }
 
   double variance() const { return mean_variance(fits, kTypical, kTypicalDeviate); }
+  /// Whether the residuals are distributed as normal noise is: those of an edge have more in their middle and
+  /// far out, those of two sheets less.
+  bool normal() const {
+    constexpr double kMiddle = 0.383;
+    return middle > kMiddle / kSameNoise && middle < kMiddle * kSameNoise && flatness > kFlatnessOfSheets &&
+           flatness < 2 * kNormalFlatness - kFlatnessOfSheets;
+  }
   /// The median of their balls', world units.
   double radius() const {
     std::vector<double> radii;
@@ -102,7 +111,6 @@ double noise_of_sheet(const Around& around) {
 
 /// Whether the fits show two layers that are nearer to each other than their points are, and no sheets.
 bool are_layers(const Around& around) {
-  constexpr double kNormalFlatness = 3;
   if (!(around.flatness < kNormalFlatness)) return false;
   const double lean = std::max(0.0, around.lean), of_sheet = share_of_sheet(around.flatness, lean);
   if (!(of_sheet < share_of_sheet(kFlatnessOfSheets))) return false;
@@ -194,37 +202,48 @@ void forget_flat_noise(const std::vector<double>& middle, std::vector<SiteView>&
     for (SiteView& view : views) view.sheet = SiteView::kNone;
 }
 
-/// Sets `held` of those that have none.
-void set_held(const SiteGroups& groups, const OpenFits& open, std::vector<SiteView>& views,
-              const Context& context) {
+/// What the fits around a site show without windows.
+struct Shown {
+  double scatter;  ///< world units
+  bool held;       ///< whether their balls hold the slab of noisy points
+  bool normal;     ///< Around::normal
+};
+
+std::vector<Shown> shown_around(const SiteGroups& groups, const OpenFits& open, const Context& context) {
+  std::vector<Shown> shown(groups.size());
   for_each_index(
       context, groups.size(),
       [&](std::size_t s) {
-        if (views[s].held > 0) return;
         const Around nearest(groups[s], open);
-        const double seen = std::sqrt(nearest.variance());
-        if (seen < kFlatSlab * nearest.radius()) views[s].held = seen;
+        const double scatter = std::sqrt(nearest.variance());
+        shown[s] = {scatter, scatter < kFlatSlab * nearest.radius(), nearest.normal()};
       },
       64);
+  return shown;
 }
 
-/// The same from ever more points, in noise of about a spacing and more. \param open from kNeighbourhood
-/// points on
+/// Sets `held` and `plain`. \param open from kNeighbourhood points on, each of twice as many
 void hold_slabs(const Places& places, const SiteGroups& groups, const std::vector<OpenFits>& open,
                 std::vector<SiteView>& views, const Context& context) {
-  constexpr std::size_t kWidest = kPlateauTo * (kPlateauTo / kNeighbourhood);
-  const std::size_t widest = widest_scatter(places.index());
-  for (const std::size_t points : {kNeighbourhood, kPlateauTo, kWidest}) {
-    const bool all_held =
-        std::all_of(views.begin(), views.end(), [](const SiteView& view) { return view.held > 0; });
-    if (widest < points || all_held) return;
-    const auto there =
-        std::find_if(open.begin(), open.end(), [&](const OpenFits& fits) { return fits.points == points; });
-    if (there != open.end())
-      set_held(groups, *there, views, context);
-    else
-      set_held(groups, {points, Places(places.index(), places.at(), points, context).fits(points)}, views,
-               context);
+  constexpr std::size_t kFarther = kPlateauTo / kNeighbourhood;
+  const std::size_t widest = std::min(kFarther * kPlateauTo, widest_scatter(places.index()));
+  Places far(places.index(), places.at(), widest, context);
+  std::vector<Shown> before;
+  std::size_t holding = kNeighbourhood, fits = 0;
+  for (std::size_t points = kNeighbourhood; points <= widest; points *= 2, ++fits) {
+    const std::vector<Shown> now =
+        shown_around(groups, fits < open.size() ? open[fits] : OpenFits{points, far.fits(points)}, context);
+    for (std::size_t s = 0; s < views.size(); ++s) {
+      SiteView& view = views[s];
+      if (points == holding && !(view.held > 0) && now[s].held) view.held = now[s].scatter;
+      if (!before.empty() && !(view.plain > 0) && before[s].held && before[s].normal &&
+          now[s].scatter < kGrowthOfNoise * before[s].scatter)
+        view.plain = before[s].scatter;
+    }
+    if (std::all_of(views.begin(), views.end(), [](const SiteView& v) { return v.held > 0 && v.plain > 0; }))
+      return;
+    if (points == holding) holding *= kFarther;
+    before = now;
   }
 }
 
@@ -260,7 +279,7 @@ std::vector<SiteView> look_without_windows(Places& places, const SiteGroups& gro
     for_each_index(
         context, groups.size(), [&](std::size_t s) { sites.find_floor(s, few, open.back().all, views[s]); },
         64);
-  if (deep) hold_slabs(places, groups, open, views, context);
+  hold_slabs(places, groups, open, views, context);
   return views;
 }
 

@@ -17,8 +17,10 @@
 /// a point is to its nearest neighbour, half a spacing where points lie at random.
 ///
 /// Bounds: the scatter of nearly all of the dozen nearest sites is one, where their balls hold the slab of
-/// noisy points; in noise of about a spacing and more what the first of 24, 192 and 1,536 points shows that
-/// hold it is one that a wider window hardly exceeds.
+/// noisy points; what the first of 24, 192 and 1,536 points shows that hold it is one that a wider window
+/// hardly exceeds. Plain noise is what the first of 24, 48, ... 768 show that hold it, where twice as many
+/// show hardly more, which shape would, and where the residuals are distributed as normal noise is, which
+/// edges and second sheets are not.
 ///
 /// Floor: shape that a quadric does not follow makes the scatter s(m) grow without an end. Depths in steps
 /// (time of flight, stereo, structured light) and noise that neighbours share make it grow, too, but it stops
@@ -54,6 +56,7 @@ struct SiteView {
   double slab = kNone;   ///< open, a bound that grows as the ball does; kNone: none, as in layers and where
                          ///< the noise fills the 24 points
   double held = 0;       ///< what the first ball shows that holds the slab; 0: none
+  double plain = 0;      ///< noise of one sheet and no shape that is seen for sure; 0: none
   double sheet = kNone;  ///< what each of two sheets shows; kNone: there is one
   double floor = 0;      ///< what steps, shared noise or layers make sure of
   bool told = false;     ///< whether the scatter stops growing, and is no detail

@@ -15,7 +15,6 @@ namespace rfsmooth::smoothing {
 
 namespace {
 
-using rfs_mesh::kStray;
 
 constexpr double kCalm = 0.1;    // of the figure: so much calmer places have no part in the tails
 constexpr float kMostOfOne = 2;  // sigma: what one neighbour's distance counts as in a mean over them
@@ -82,7 +81,7 @@ void land_hovering(const HeightField& field, const MixedScales& pass, const Mesh
     smooth[i] = field.guide()[i] + double(pass.height[i]) * field.normal(i);
   });
   Positions landed = smooth;
-  land_stranded_only(mesh.positions, mesh.one_ring, kStray * tails.times * noise.sigma, landed, context);
+  land_stranded_only(mesh.positions, mesh.one_ring, noise.reaches(tails.times, context), landed, context);
   for_each_index(context, smooth.size(), [&](std::size_t i) {
     if (landed[i] == smooth[i] || noise.local[i] < kCalm * noise.sigma) return;
     const Eigen::Vector3d off = mesh.positions[i] - landed[i];

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -17,7 +18,8 @@ namespace {
 std::size_t land(const Mesh& mesh, double most, Positions& guide) {
   const rfs_mesh::NeighborTable before = rfs_mesh::SpatialIndex(guide, {}).nearest(32, {});
   const Positions start = guide;
-  const auto [found, near, tree] = land_stranded(mesh.positions, mesh.one_ring, most, guide, {});
+  const std::vector<double> of_each(guide.size(), most);
+  const auto [found, near, tree] = land_stranded(mesh.positions, mesh.one_ring, of_each, guide, {});
   const rfs_mesh::SpatialIndex index(guide, {});
   const rfs_mesh::NeighborTable exact = index.nearest(32, {});
   for (std::size_t i = 0; i < guide.size(); ++i) {
@@ -104,7 +106,8 @@ TEST(Stranded, FewPointsAreLeftAlone) {
   Mesh mesh = support::grid(5, 5);
   mesh.positions[12].z() = 3;
   Positions guide = mesh.positions;
-  EXPECT_EQ(land_stranded(mesh.positions, mesh.one_ring, 10, guide, {}).stranded, 0u);
+  const std::vector<double> most(guide.size(), 10);
+  EXPECT_EQ(land_stranded(mesh.positions, mesh.one_ring, most, guide, {}).stranded, 0u);
   EXPECT_EQ(guide, mesh.positions);
 }
 
