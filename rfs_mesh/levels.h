@@ -44,6 +44,9 @@ constexpr double kGrowthOfNoise = 1.26;
 /// of the square that has one point, its slab is flat in no smaller ball.
 constexpr std::size_t kWidestFit = 4096;
 
+/// Of the places or of their area: less does not speak for all of them.
+constexpr double kLeastPart = 0.1;
+
 /// Points that stand for all of a cloud in a mean or a median over it, which they give to half a per cent.
 constexpr std::size_t kSampleOfCloud = 50000;
 

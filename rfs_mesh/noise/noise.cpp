@@ -19,7 +19,6 @@ namespace {
 // (tests/bench/noise).
 // The quantile of sites that is the figure: at m = 16 noise may be below the detail.
 constexpr double kFigureNarrow = 0.4, kFigureWide = 0.45;
-constexpr double kLeastPart = 0.1;     // of the area: less does not speak for a cloud
 constexpr double kLittleShape = 0.25;  // more of it makes places differ that are as noisy
 constexpr std::size_t kBlend = 4;      // sites that a point takes the mean of
 

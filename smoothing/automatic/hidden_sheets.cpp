@@ -31,9 +31,11 @@ using Lanes = Eigen::Array<float, 16, 1>;
 struct Sum {
   double evidence = 0;
   std::size_t louder = 0, points = 0;  // places; of these such as are no layers
+  double area = 0;                     // of those, as `layers`
   Sum& operator+=(const Sum& other) {
     evidence += other.evidence;
     louder += other.louder;
+    area += other.area;
     points += other.points;
     return *this;
   }
@@ -51,12 +53,20 @@ std::vector<float> squared_of_layers(const HeightField& field, double unit, cons
   return squared;
 }
 
+/// Whether these places have more points than the others on the same area: twice as many where there are
+/// two sheets, and a part of them has. Scans that do not meet have as many everywhere. \param areas by point
+bool is_denser(const Sum& sum, const std::vector<float>& areas, const Context& context) {
+  const double all = sum_over(context, areas.size(), 0.0, [&](std::size_t i) { return double(areas[i]); });
+  const double points = double(sum.points), others = double(areas.size()) - points;
+  return sum.area * others < (1 - rfs_mesh::kLeastPart / 2) * (all - sum.area) * points;
+}
+
 /// Over all c; `v` are the squares' local means.
 HiddenSheets best_evidence(const Residuals& left, const std::vector<float>& own, const std::vector<float>& v,
                            const std::vector<float>& layers, double whole, const Context& context) {
   const std::size_t n = v.size();
   HiddenSheets best;
-  std::size_t louder = 0;  // at the best c
+  Sum at_best;
   for (double c = 1.1; c > 0.55; c *= 0.9) {
     const Sum sum = reduce_blocks(
         context, n, Sum(),
@@ -80,6 +90,7 @@ HiddenSheets best_evidence(const Residuals& left, const std::vector<float>& own,
                         evidence = rfs_mesh::evidence_of_two(lanes(left.scores), squared, variance);
             part.evidence += double(counts.select(evidence, 0).sum());
             part.points += counted;
+            part.area += double(counts.select(least, 0).sum());
           }
           return part;
         },
@@ -88,9 +99,11 @@ HiddenSheets best_evidence(const Residuals& left, const std::vector<float>& own,
     if (double(sum.points) < kLeastSheetShare * double(n) || evidence <= best.evidence) continue;
     best.evidence = evidence;
     best.variance = c;
-    louder = sum.louder;
+    at_best = sum;
   }
-  if (!left.with_tails && double(louder) > kMostSheetShare * double(n)) best.evidence = 0;
+  const bool everywhere = double(at_best.louder) > kMostSheetShare * double(n);
+  const bool believed = everywhere ? left.with_tails : is_denser(at_best, layers, context);
+  if (!believed) best.evidence = 0;
   return best;
 }
 

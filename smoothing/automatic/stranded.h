@@ -25,13 +25,13 @@ struct Landed {
 };
 
 /// Moves the stranded points of `guide` (n x 3, the `points` after the fairing over their `rings`), except
-/// those farther from the surface than `most` (n, world units): they are strays. Then once more: the landed ones
-/// make the surface denser, and smaller islands stand out. O(n log n), parallel, deterministic.
-Landed land_stranded(const Positions& points, const Adjacency& rings, const std::vector<double>& most, Positions& guide,
-                     const Context& context);
+/// those farther from the surface than `most` (n, world units): they are strays. Then once more: the landed
+/// ones make the surface denser, and smaller islands stand out. O(n log n), parallel, deterministic.
+Landed land_stranded(const Positions& points, const Adjacency& rings, const std::vector<double>& most,
+                     Positions& guide, const Context& context);
 
 /// The same where nobody needs anything of the guide afterwards.
-void land_stranded_only(const Positions& points, const Adjacency& rings, const std::vector<double>& most, Positions& guide,
-                        const Context& context);
+void land_stranded_only(const Positions& points, const Adjacency& rings, const std::vector<double>& most,
+                        Positions& guide, const Context& context);
 
 }  // namespace rfsmooth::smoothing

@@ -195,6 +195,12 @@ TEST(NoiseLaws, FourScansFartherApartComeTogether) {
   EXPECT_LT(rms_off(denoised(scans), everywhere), 0.2 * rms_off(scans, everywhere));
 }
 
+// Half of the places look like two sheets here, but none has more points than the others.
+TEST(NoiseLaws, ThreeScansFartherApartComeTogether) {
+  const Positions scans = scans_that_do_not_meet({{1.6, 0, 0}, {-0.8, 1.4, 0}, {-0.8, -1.4, 0}}, 0.4);
+  EXPECT_LT(rms_off(denoised(scans), everywhere), 0.2 * rms_off(scans, everywhere));
+}
+
 // As hand-held scanners leave it: the neighbourhoods that tell what is a surface must be as wide as the
 // noise.
 TEST(NoiseLaws, NoiseOfSixSpacingsIsSmoothedToATwelfth) {

@@ -54,10 +54,13 @@ class Listener {
         context, at.size(), [&](std::size_t s) { index.nearest(at[s], group, group_[s]); }, 64);
     // The first windows are as wide as what a site makes sure of, and no wider than a sheet.
     views = look_without_windows(places_, group_, start, steps, context);
+    std::size_t louder = 0;
     for (std::size_t s = 0; s < at.size(); ++s) {
+      louder += std::size_t(views[s].sheet == SiteView::kNone && views[s].plain > kLouder * sigma[s]);
       floor[s] = views[s].floor;
       sigma[s] = std::max(floor[s], std::min(sigma[s], views[s].sheet));
     }
+    loud_part_ = double(louder) > kLeastPart * double(at.size());
   }
 
   /// One round that opens windows which are too narrow for their places; false if there are none. A place
@@ -133,6 +136,7 @@ class Listener {
     if (full > kFilled)
       sigma[s] =
           std::min(at_most(s, 1), std::max(kNarrowestWindow * views[s].open, std::sqrt(full) * before[s]));
+    if (!loud_part_) return;
     // Two sheets that scatter twice as much as one would be seen as two.
     if (views[s].plain > kLouder * sigma[s]) sigma[s] = views[s].plain;
     // Where most of the places around have opened theirs, these are not full any more, and this one is late.
@@ -195,8 +199,9 @@ class Listener {
   SiteGroups group_;
   std::vector<double> narrow_;  ///< radius of the ball of the fewest neighbours; 0: not asked for yet
   std::size_t widest_;
-  double start_;  ///< world units
-  bool deep_;     ///< whether the search found noise that fills the nearest neighbours
+  double start_;            ///< world units
+  bool loud_part_ = false;  ///< whether a part of the cloud is plainly louder than the start
+  bool deep_;               ///< whether the search found noise that fills the nearest neighbours
 
  public:
   std::vector<std::size_t> m;

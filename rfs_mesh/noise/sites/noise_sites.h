@@ -15,8 +15,9 @@
 /// search began with few points, 1.5 times the variance that it found).
 ///
 /// A part that is far louder than the start leaves so few points in a window that the quadric passes through
-/// them. Where what is plain noise (site_views.h) is more than twice the window, the window is as wide as
-/// that; two sheets that far apart would have been seen.
+/// them. Where a tenth of the places and more see plain noise (site_views.h) of more than twice the window,
+/// their windows are as wide as that; two sheets that far apart would have been seen. Places that no fit
+/// speaks for take the window that is usual around them, then.
 ///
 /// What a site sees without any window (site_views.h) bounds what it shows in one: two sheets seen there keep
 /// windows as narrow as each of them is, nothing is louder than nearly all of the nearest sites see, and

@@ -21,9 +21,10 @@ enum class Noise { gaussian, uniform, partly_uniform };
 
 /// Noisy heights over a flat guide, smoothed to zero, where points of the left third (or of all) truly are at
 /// +-`wall` and those of the right third have `louder` times the noise of 1. `truth`: where they are without
-/// noise.
+/// noise. `denser`: the left third has so many times the points on the same area.
 struct Sheet {
-  Sheet(double wall, double louder, Noise kind = Noise::gaussian, int side = kSide, bool everywhere = false) {
+  Sheet(double wall, double louder, Noise kind = Noise::gaussian, int side = kSide, bool everywhere = false,
+        double denser = 2) {
     std::mt19937 random(7);
     std::normal_distribution<double> gauss;
     std::uniform_real_distribution<double> even(-std::sqrt(3.0), std::sqrt(3.0));
@@ -34,8 +35,10 @@ struct Sheet {
     Positions guide, data;
     for (int i = 0; i < side; ++i)
       for (int j = 0; j < side; ++j) {
-        guide.emplace_back(i + 0.3 * std::sin(5.0 * j), j + 0.3 * std::cos(3.0 * i), 0);
         const bool left = everywhere || i < side / 3, right = i >= 2 * side / 3;
+        const double x = i + 0.3 * std::sin(5.0 * j), border = side / 3;
+        guide.emplace_back(wall > 0 && x < border ? border + (x - border) / denser : x,
+                           j + 0.3 * std::cos(3.0 * i), 0);
         truth.push_back(left ? (random() % 2 != 0 ? wall : -wall) : 0);
         data.push_back(guide.back());
         if (kind == Noise::partly_uniform)
@@ -81,6 +84,13 @@ TEST(HiddenSheets, PointsOfAWallThinnerThanTheNoiseGoToItsTwoSheets) {
     EXPECT_NEAR(double(found.split), kSide * kSide / 3.0, kSide * kSide / 20.0);
     EXPECT_LT(sheet.error(), 0.2 * film);
   }
+}
+
+TEST(HiddenSheets, LayersOfScansAreNotDenserAndAreNotTakenForThem) {
+  Sheet sheet(1, 1, Noise::gaussian, kSide, false, 1);
+  const std::vector<float> before = sheet.height;
+  EXPECT_EQ(sheet.split(1).split, 0u);
+  EXPECT_EQ(sheet.height, before);
 }
 
 TEST(HiddenSheets, LouderNoiseIsNotTakenForThem) {
