@@ -15,7 +15,6 @@ namespace rfsmooth::smoothing {
 
 namespace {
 
-
 constexpr double kCalm = 0.1;    // of the figure: so much calmer places have no part in the tails
 constexpr float kMostOfOne = 2;  // sigma: what one neighbour's distance counts as in a mean over them
 
