@@ -31,23 +31,28 @@ double variance_inside(double c);
 /// Breadth (Scatter) below which points lie along a line: rings have 0.004 to 0.04, surfaces 0.2 and more.
 constexpr double kLine = 0.1;
 
+/// Scatter::flatness and middle of a normal distribution.
+constexpr double kNormalFlatness = 3, kNormalMiddle = 0.383;
+
 /// How far the points around one scatter about the quadric through them.
 struct Scatter {
-  double variance = 0;    ///< s^2, world units squared
-  double freedom = 0;     ///< its degrees of freedom; 0: nothing can be said here
-  double radius = 0;      ///< of the ball of neighbours, world units
-  double together = 1;    ///< of the kRing nearest points, those above the quadric count 1, those below -1:
-                          ///< the sum's square over kRing. Its mean is 1 where every point errs by itself,
-                          ///< kRing where they err the same way. Without window
-  double flatness = 3;    ///< fourth moment of the residuals over the square of the second: 3 of a normal
-                          ///< distribution, 1.8 of an even one, 1 of two sheets. Without window
-  double lean = 0;        ///< third moment of the residuals squared, over the cube of the second: 0 of a
-                          ///< symmetric distribution. Without window
-  double middle = 0.383;  ///< share of the weight within half a deviation of the quadric: 0.383 of a normal
-                          ///< distribution, 0.289 of an even one, 0 of two sheets. Without window
-  double within = 0;      ///< s^2 also where the window cuts off so much that the place says nothing; 0: too
-                          ///< few points are left within it to tell
-  double breadth = 0;     ///< variance of the neighbours across their longest axis over that along it, 0 to 1
+  double variance = 0;  ///< s^2, world units squared
+  double freedom = 0;   ///< its degrees of freedom; 0: nothing can be said here
+  double radius = 0;    ///< of the ball of neighbours, world units
+  double together = 1;  ///< of the kRing nearest points, those above the quadric count 1, those below -1:
+                        ///< the sum's square over kRing. Its mean is 1 where every point errs by itself,
+                        ///< kRing where they err the same way. Without window
+  double flatness =
+      kNormalFlatness;  ///< fourth moment of the residuals over the square of the second: 3 of a normal
+                        ///< distribution, 1.8 of an even one, 1 of two sheets. Without window
+  double lean = 0;      ///< third moment of the residuals squared, over the cube of the second: 0 of a
+                        ///< symmetric distribution. Without window
+  double middle =
+      kNormalMiddle;   ///< share of the weight within half a deviation of the quadric: 0.383 of a normal
+                       ///< distribution, 0.289 of an even one, 0 of two sheets. Without window
+  double within = 0;   ///< s^2 also where the window cuts off so much that the place says nothing; 0: too
+                       ///< few points are left within it to tell
+  double breadth = 0;  ///< variance of the neighbours across their longest axis over that along it, 0 to 1
   Eigen::Vector3d foot = Eigen::Vector3d::Zero();    ///< the surface at the place
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< there; zero if the points coincide
 };

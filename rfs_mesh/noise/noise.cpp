@@ -201,8 +201,7 @@ void measure(const SpatialIndex& index, const DepthSteps* steps, NoiseModel& noi
 
 std::vector<double> NoiseField::reaches(double times, const Context& context) const {
   std::vector<double> of(local.size());
-  for_each_index(context, of.size(),
-                 [&](std::size_t i) { of[i] = kStray * times * std::max(local[i], sigma); });
+  for_each_index(context, of.size(), [&](std::size_t i) { of[i] = times * reach(i); });
   return of;
 }
 

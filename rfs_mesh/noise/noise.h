@@ -19,11 +19,13 @@
 /// within a factor of 1.7.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <vector>
 
 #include <rfsmooth/statistics.h>
 
+#include "rfs_mesh/levels.h"
 #include "rfs_mesh/noise/depth_steps.h"
 #include "rfs_mesh/search/neighbors.h"
 
@@ -59,8 +61,9 @@ struct NoiseField : NoiseModel {
   std::vector<double> local_spacing;  ///< n: spacing_at_sites near each point; empty: `spacing` everywhere
   std::vector<double> local_told;     ///< n: told_at_sites near each point, 0 to 1; empty: 0 everywhere
 
-  /// n: how far the noise may have carried each point, world units; what is farther off is a stray. `times`
-  /// that noise.
+  /// How far the noise may have carried point i, world units: what is farther off is a stray.
+  double reach(std::size_t i) const { return kStray * std::max(local[i], sigma); }
+  /// n: that of each point, of so many times the noise.
   std::vector<double> reaches(double times, const Context& context) const;
 };
 

@@ -35,6 +35,8 @@ struct NoiseStart {
   std::size_t m = kNarrowestPatch;  ///< points of a neighbourhood; along lines it follows them
   double shape_grows = 2;           ///< variance that is shape, from m to 2 m points: at least so many times
   std::size_t narrowest = kNarrowestPatch;  ///< least m that is a piece of surface and not of a line
+  /// Whether noise of about a spacing or more fills the nearest neighbours: its slab is wider than they are.
+  bool fills_nearest() const { return m >= kNeighbourhood; }
   bool on_lines = false;  ///< whether twice kNarrowestPatch points lie along a line, and `narrowest` do not
 };
 

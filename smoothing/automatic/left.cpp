@@ -88,7 +88,6 @@ class ToldByResiduals {
 
 double noise_left(const HeightField& field, const std::vector<float>& height, const std::vector<float>& own,
                   const rfs_mesh::NoiseField& noise, const Context& context) {
-  const std::vector<double> reach = noise.reaches(1, context);
   const ToldByResiduals told(field, height, own, noise, context);
   // The points that count, their variance, their risk, and their noise.
   const Eigen::Vector4d sums =
@@ -96,7 +95,7 @@ double noise_left(const HeightField& field, const std::vector<float>& height, co
         const double e = field.height(i) - double(height[i]),
                      share = double(own_of_all(own[i], float(noise.shared))),
                      measured = noise.local[i] * noise.local[i], square = told.at(noise.local[i]) * measured;
-        if (!(std::abs(e) <= reach[i])) return Eigen::Vector4d(0, 0, 0, 0);
+        if (!(std::abs(e) <= noise.reach(i))) return Eigen::Vector4d(0, 0, 0, 0);
         return Eigen::Vector4d(1, share * square, e * e + (2 * share - 1) * square, measured);
       });
   if (!(sums[0] > 0)) return noise.sigma;

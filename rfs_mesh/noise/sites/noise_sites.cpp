@@ -43,7 +43,7 @@ class Listener {
         narrow_(at.size(), 0),
         widest_(widest_scatter(cloud)),
         start_(start.sigma),
-        deep_(start.m >= kNeighbourhood),
+        deep_(start.fills_nearest()),
         m(points_to_fit(places_, start)),
         sigma(at.size(), std::max(start.sigma, start.least)),
         floor(at.size(), 0),
@@ -56,7 +56,7 @@ class Listener {
     views = look_without_windows(places_, group_, start, steps, context);
     std::size_t louder = 0;
     for (std::size_t s = 0; s < at.size(); ++s) {
-      louder += std::size_t(views[s].sheet == SiteView::kNone && views[s].plain > kLouder * sigma[s]);
+      louder += std::size_t(views[s].sheet == SiteView::kNone && is_plainly_louder(s));
       floor[s] = views[s].floor;
       sigma[s] = std::max(floor[s], std::min(sigma[s], views[s].sheet));
     }
@@ -137,12 +137,14 @@ class Listener {
       sigma[s] =
           std::min(at_most(s, 1), std::max(kNarrowestWindow * views[s].open, std::sqrt(full) * before[s]));
     if (!loud_part_) return;
-    // Two sheets that scatter twice as much as one would be seen as two.
-    if (views[s].plain > kLouder * sigma[s]) sigma[s] = views[s].plain;
+    if (is_plainly_louder(s)) sigma[s] = views[s].plain;
     // Where most of the places around have opened theirs, these are not full any more, and this one is late.
     std::vector<double> windows = around(group_[s], before, kSmallestGroup);
     sigma[s] = std::max(sigma[s], std::min(at_most(s, 1), quantile(windows, 0.5)));
   }
+
+  /// Than its window. Two sheets that scatter twice as much as one would be seen as two.
+  bool is_plainly_louder(std::size_t s) const { return views[s].plain > kLouder * sigma[s]; }
 
   /// Whether no second sheet is beyond the window, nor an edge. Where the search began with few points,
   /// places show a little more or less by chance.
@@ -201,7 +203,7 @@ class Listener {
   std::size_t widest_;
   double start_;            ///< world units
   bool loud_part_ = false;  ///< whether a part of the cloud is plainly louder than the start
-  bool deep_;               ///< whether the search found noise that fills the nearest neighbours
+  bool deep_;               ///< NoiseStart::fills_nearest
 
  public:
   std::vector<std::size_t> m;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/parallel.h"
 #include "rfs_mesh/levels.h"
@@ -18,8 +19,6 @@ constexpr double kMiddleOfSheets = 0.25;
 // Points at two depths that follow each other scatter by half a step, and rounding by 1 / sqrt(12) of it; of
 // their variances 3.
 constexpr double kTwoDepths = 3;
-// Scatter::flatness of normal noise.
-constexpr double kNormalFlatness = 3;
 // Coefficients of a quadric.
 constexpr double kOfQuadric = 6;
 
@@ -70,9 +69,8 @@ struct Around {
   /// Whether the residuals are distributed as normal noise is: those of an edge have more in their middle and
   /// far out, those of two sheets less.
   bool normal() const {
-    constexpr double kMiddle = 0.383;
-    return middle > kMiddle / kSameNoise && middle < kMiddle * kSameNoise && flatness > kFlatnessOfSheets &&
-           flatness < 2 * kNormalFlatness - kFlatnessOfSheets;
+    return middle > kNormalMiddle / kSameNoise && middle < kNormalMiddle * kSameNoise &&
+           flatness > kFlatnessOfSheets && flatness < 2 * kNormalFlatness - kFlatnessOfSheets;
   }
   /// The median of their balls', world units.
   double radius() const {
@@ -229,10 +227,11 @@ void hold_slabs(const Places& places, const SiteGroups& groups, const std::vecto
   const std::size_t widest = std::min(kFarther * kPlateauTo, widest_scatter(places.index()));
   Places far(places.index(), places.at(), widest, context);
   std::vector<Shown> before;
-  std::size_t holding = kNeighbourhood, fits = 0;
-  for (std::size_t points = kNeighbourhood; points <= widest; points *= 2, ++fits) {
-    const std::vector<Shown> now =
-        shown_around(groups, fits < open.size() ? open[fits] : OpenFits{points, far.fits(points)}, context);
+  std::size_t holding = kNeighbourhood, scale = 0;
+  for (std::size_t points = kNeighbourhood; points <= widest; points *= 2, ++scale) {
+    const bool known = scale < open.size();
+    const OpenFits wider = known ? OpenFits() : OpenFits{points, far.fits(points)};
+    std::vector<Shown> now = shown_around(groups, known ? open[scale] : wider, context);
     for (std::size_t s = 0; s < views.size(); ++s) {
       SiteView& view = views[s];
       if (points == holding && !(view.held > 0) && now[s].held) view.held = now[s].scatter;
@@ -243,7 +242,7 @@ void hold_slabs(const Places& places, const SiteGroups& groups, const std::vecto
     if (std::all_of(views.begin(), views.end(), [](const SiteView& v) { return v.held > 0 && v.plain > 0; }))
       return;
     if (points == holding) holding *= kFarther;
-    before = now;
+    before = std::move(now);
   }
 }
 
@@ -256,8 +255,7 @@ std::vector<SiteView> look_without_windows(Places& places, const SiteGroups& gro
   for (std::size_t points = kNeighbourhood; open.empty() || (points <= kPlateauTo && n >= 2 * points);
        points *= 2)
     open.push_back({points, places.fits(points)});
-  // The slab of noise of about a spacing or more is wider than the nearest neighbours are.
-  const bool deep = start.m >= kNeighbourhood;
+  const bool deep = start.fills_nearest();
   const std::vector<Scatter>& few = open.front().all;
   const std::vector<Scatter> wide = deep ? places.fits(start.m) : std::vector<Scatter>();
   const std::vector<Said> said = what_they_say(few, kTypicalDeviate);
