@@ -45,8 +45,8 @@ std::vector<std::string> check(const Statistics& statistics) {
   };
   if (statistics.box) expect(is_box(*statistics.box), "box: its corners are not the lowest and the highest");
   if (const auto& noise = statistics.noise) {
-    expect(is_length(noise->sigma) && is_length(noise->spacing) && is_length(noise->step) &&
-               are_lengths(noise->at_sites) && are_lengths(noise->spacing_at_sites),
+    expect(is_length(noise->sigma) && is_length(noise->spacing) && is_length(noise->apart) &&
+               is_length(noise->step) && are_lengths(noise->at_sites) && are_lengths(noise->spacing_at_sites),
            "noise: a sigma, a spacing or the step of depths is no length");
     expect(is_number_of_points(noise->across.value_or(1)) && noise->shared >= 1 && is_length(noise->shared),
            "noise: what points share it, or reach across, is no number of points");

@@ -27,6 +27,7 @@ struct NoiseModel {
   double sigma = 0;    ///< standard deviation along the normal, world units: typical of the cloud
   double shape = 0;    ///< part of the scatter taken off as shape, 0 to 0.6; above half little is sure
   double spacing = 0;  ///< mean distance to the nearest neighbour, of up to 50,000 points
+  double apart = 0;    ///< the distance to the nearest neighbour that 99 of 100 of them keep, at least
   std::size_t neighbours = 0;  ///< of the fits that it was measured by
   double shared = 1;  ///< points that say as much as one, since they share the noise; 1: each its own
   /// Set where the nearest points lie along a line, as on the rings of a spinning laser: how many neighbours

@@ -21,6 +21,7 @@ namespace {
 constexpr double kFigureNarrow = 0.4, kFigureWide = 0.45;
 constexpr double kLittleShape = 0.25;  // more of it makes places differ that are as noisy
 constexpr std::size_t kBlend = 4;      // sites that a point takes the mean of
+constexpr double kNearer = 0.01;       // share of the points that may be nearer than NoiseModel::apart
 
 /// Root mean square of the values within a factor of `typical`; of noise that varies a little over the cloud,
 /// as along a ray, the mean says more than a quantile.
@@ -152,6 +153,7 @@ NoiseStart find_start(const SpatialIndex& index, const DepthSteps* steps, NoiseM
                       const Context& context) {
   Places places = search_places(index, context);
   NoiseStart start = search_noise(places, steps);
+  start.apart = noise.apart;
   // Terraces of depths in steps look like lines, too; there the noise is shared.
   if (start.on_lines && steps == nullptr)
     noise.across = start.narrowest;
@@ -208,11 +210,12 @@ std::vector<double> NoiseField::reaches(double times, const Context& context) co
 NoiseModel measure_noise(const SpatialIndex& index, const Context& context,
                          const std::optional<Eigen::Vector3d>& scanner) {
   NoiseModel noise;
-  const std::vector<double> nearest = nearest_distances(index, context);
+  std::vector<double> nearest = nearest_distances(index, context);
   noise.spacing = mean_spacing(nearest, context);
+  if (!nearest.empty()) noise.apart = quantile(nearest, kNearer);
   if (index.points().size() <= kNeighbourhood) return noise;
   std::optional<DepthSteps> steps = find_depth_steps(index.points(), scanner);
-  const std::optional<DepthSteps> grid = find_grid(nearest);
+  const std::optional<DepthSteps> grid = find_grid(std::move(nearest));
   // Before a wall a camera's points are on a grid, too, of its pixels; a turned grid has few values of each
   // coordinate, too, far nearer to each other.
   if (grid && !(steps && steps->typical > grid->typical)) steps = grid;

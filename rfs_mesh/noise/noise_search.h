@@ -32,6 +32,7 @@ struct NoiseStart {
   double sigma = 0;                 ///< world units
   double least = 0;                 ///< what counts as zero; 0: the points coincide
   double most = 0;                  ///< bound
+  double apart = 0;                 ///< NoiseModel::apart
   std::size_t m = kNarrowestPatch;  ///< points of a neighbourhood; along lines it follows them
   double shape_grows = 2;           ///< variance that is shape, from m to 2 m points: at least so many times
   std::size_t narrowest = kNarrowestPatch;  ///< least m that is a piece of surface and not of a line

@@ -27,6 +27,7 @@
 /// are believed. Thread safe: functions keep no state, const functions change none.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -141,6 +142,12 @@ inline double square_of_point(double squared_radius, std::size_t points) {
 /// Times that square: the mean distance from a point to its nearest, squared, where points lie at random. Two
 /// sheets of as many points each that are no farther apart may be layers of one surface.
 inline constexpr double kToNearest = 0.25;
+
+/// That distance squared, of points that may keep a distance from each other, as thinned clouds do.
+/// \param square of a point. \param apart NoiseModel::apart
+inline double squared_nearest(double square, double apart) {
+  return std::max(kToNearest * square, apart * apart);
+}
 
 // Moments.
 

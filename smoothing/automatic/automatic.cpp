@@ -106,8 +106,8 @@ Mixed mix_scales(AutomaticTask& task, AutomaticReport& report, Statistics& whole
 /// What is left between the data and the surface. With tails of the data as they came, for
 /// pseudo-observations of one sheet are flatter than a normal distribution, as if of two.
 Residuals residuals_of(const HeightField& field, const std::vector<float>& height, const Positions& data,
-                       double sigma, const Tails& tails, const Context& context) {
-  Residuals left{std::vector<float>(field.size()), tails.unit() * sigma, tails.share > 0};
+                       const NoiseModel& noise, double sigma, const Tails& tails, const Context& context) {
+  Residuals left{std::vector<float>(field.size()), tails.unit() * sigma, noise.apart, tails.share > 0};
   for_each_index(context, field.size(), [&](std::size_t i) {
     const double at = left.with_tails ? (data[i] - field.guide()[i]).dot(field.normal(i)) : field.height(i),
                  score = tails.normal_score((at - double(height[i])) / sigma);
@@ -144,7 +144,7 @@ AutomaticResult automatic_smoothing(AutomaticTask task, AutomaticReport& report,
   HiddenSheets hidden;
   if (own_noise && untamed > rfs_mesh::detail(noise.spacing))
     hidden = split_hidden_sheets(
-        field, residuals_of(field, heights.height, mesh.positions, untamed, mixed.tails, context),
+        field, residuals_of(field, heights.height, mesh.positions, noise, untamed, mixed.tails, context),
         heights.height, heights.own, of_whole, whole.sheets, context);
   const auto allowed = [&](std::size_t i, const Eigen::Vector3d& move) {
     return move.allFinite() && move.norm() <= mixed.most[i];

@@ -42,13 +42,14 @@ struct Sum {
 };
 
 /// By point: half the distance of sheets that would be layers, squared, in squares of the unit.
-std::vector<float> squared_of_layers(const HeightField& field, double unit, const Context& context) {
+std::vector<float> squared_of_layers(const HeightField& field, const Residuals& left,
+                                     const Context& context) {
   std::vector<float> squared(field.size());
   for_each_index(context, field.size(), [&](std::size_t i) {
     const auto row = field.neighbors()[i];
-    const double farthest = (field.guide()[row[row.size() - 1]] - field.guide()[i]).squaredNorm();
-    squared[i] =
-        float(rfs_mesh::kToNearest * rfs_mesh::square_of_point(farthest, row.size()) / (4 * unit * unit));
+    const double farthest = (field.guide()[row[row.size() - 1]] - field.guide()[i]).squaredNorm(),
+                 square = rfs_mesh::square_of_point(farthest, row.size());
+    squared[i] = float(rfs_mesh::squared_nearest(square, left.apart) / (4 * left.unit * left.unit));
   });
   return squared;
 }
@@ -120,7 +121,7 @@ HiddenSheets split_hidden_sheets(const HeightField& field, const Residuals& left
   if (known) found = {*known, 0};
   if (known && !found.there()) return found;
   const std::size_t n = field.size();
-  const std::vector<float> layers = squared_of_layers(field, left.unit, context);
+  const std::vector<float> layers = squared_of_layers(field, left, context);
   std::vector<float> v(n);
   const std::vector<float>& residual = left.scores;
   const auto square = [&](std::size_t i) { return residual[i] * residual[i] + 2 * own[i]; };

@@ -21,8 +21,8 @@
 /// with r = d^2 / v, to what two sheets would bring, about r^4 / 12 (1 - r). For thin walls, where r is 0.3,
 /// that is as much again at w = 0.01, and it is there without walls, too, and grows with their points.
 ///
-/// Sheets no farther apart than points at random are from their nearest are layers, of two scans that do not
-/// quite meet, and nobody is moved onto them (kToNearest of two_sheets.h; the noise is measured by the same).
+/// Sheets no farther apart than points are from their nearest are layers, of two scans that do not quite
+/// meet, and nobody is moved onto them (squared_nearest of two_sheets.h; the noise is measured by the same).
 ///
 /// Nor is anybody where the places that look like two sheets have no more points on the same area than the
 /// others: two sheets have twice as many, and even if only a tenth of these places had two, they would be 5 %
@@ -61,6 +61,7 @@ struct HiddenSheets : Statistics::Sheets {
 struct Residuals {
   std::vector<float> scores;  ///< n: standard normal where there is one sheet
   double unit = 0;            ///< what a score of 1 is near 0, world units
+  double apart = 0;           ///< NoiseModel::apart
   bool with_tails = false;    ///< whether the law that they are the scores of has tails (tails.h)
 };
 

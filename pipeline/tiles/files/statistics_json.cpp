@@ -29,10 +29,10 @@ NoiseScale scale_of(const ordered_json& json) {
 }
 
 ordered_json json_of_noise(const NoiseModel& noise) {
-  ordered_json json = {{"sigma", noise.sigma},      {"shape", noise.shape},
-                       {"spacing", noise.spacing},  {"neighbours", noise.neighbours},
-                       {"shared_by", noise.shared}, {"depth_step", noise.step},
-                       {"on_grid", noise.on_grid},  {"at_sites", noise.at_sites}};
+  ordered_json json = {
+      {"sigma", noise.sigma},     {"shape", noise.shape},           {"spacing", noise.spacing},
+      {"apart", noise.apart},     {"neighbours", noise.neighbours}, {"shared_by", noise.shared},
+      {"depth_step", noise.step}, {"on_grid", noise.on_grid},       {"at_sites", noise.at_sites}};
   if (noise.across) json["across"] = *noise.across;
   if (!noise.spacing_at_sites.empty()) json["spacing_at_sites"] = noise.spacing_at_sites;
   if (!noise.told_at_sites.empty()) json["told_at_sites"] = noise.told_at_sites;
@@ -46,6 +46,7 @@ NoiseModel noise_of(const ordered_json& json) {
   noise.sigma = json.at("sigma");
   noise.shape = json.at("shape");
   noise.spacing = json.at("spacing");
+  noise.apart = json.at("apart");
   noise.neighbours = json.at("neighbours");
   noise.shared = json.at("shared_by");
   noise.step = json.at("depth_step");

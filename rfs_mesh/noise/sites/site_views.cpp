@@ -108,12 +108,13 @@ double noise_of_sheet(const Around& around) {
 }
 
 /// Whether the fits show two layers that are nearer to each other than their points are, and no sheets.
-bool are_layers(const Around& around) {
+/// \param apart NoiseModel::apart
+bool are_layers(const Around& around, double apart) {
   if (!(around.flatness < kNormalFlatness)) return false;
   const double lean = std::max(0.0, around.lean), of_sheet = share_of_sheet(around.flatness, lean);
   if (!(of_sheet < share_of_sheet(kFlatnessOfSheets))) return false;
-  const double radius = around.radius(),
-               nearest = (lean > 0 ? 1 : kToNearest) * square_of_point(radius * radius, around.points);
+  const double radius = around.radius(), square = square_of_point(radius * radius, around.points),
+               nearest = lean > 0 ? square : squared_nearest(square, apart);
   return squared_gap(of_sheet, lean) * around.variance() < nearest;
 }
 
@@ -123,6 +124,7 @@ struct Sites {
   const SiteGroups& groups;
   const DepthSteps* steps;
   bool on_lines;
+  double apart;  ///< NoiseModel::apart
 
   bool on_grid() const { return steps != nullptr && steps->on_grid; }
 
@@ -146,8 +148,8 @@ struct Sites {
       return next > 0 && seen[next].variance() > kGrowthOfNoise * kGrowthOfNoise * seen[next - 1].variance();
     };
     const auto exceeds_rounding = [&](std::size_t k) {
-      const double apart = on_grid() ? 2 : 1;  // steps: with no empty voxel between them there is one sheet
-      const double rounding = apart * rounding_around(s, open[k].all);
+      const double depths = on_grid() ? 2 : 1;  // with no empty voxel between them there is one sheet
+      const double rounding = depths * rounding_around(s, open[k].all);
       return seen[k].variance() > kTwoDepths * rounding * rounding;
     };
     std::size_t flattest = 0;
@@ -164,7 +166,7 @@ struct Sites {
     }
     if (on_lines) return;
     const std::size_t k = two && seen[flattest].lean <= 0 ? flattest : 0;
-    if (!are_layers(seen[k]) || !exceeds_rounding(k)) return;
+    if (!are_layers(seen[k], apart) || !exceeds_rounding(k)) return;
     view.sheet = view.slab = SiteView::kNone;
     view.floor = std::sqrt(seen[0].variance());
   }
@@ -259,7 +261,7 @@ std::vector<SiteView> look_without_windows(Places& places, const SiteGroups& gro
   const std::vector<Scatter>& few = open.front().all;
   const std::vector<Scatter> wide = deep ? places.fits(start.m) : std::vector<Scatter>();
   const std::vector<Said> said = what_they_say(few, kTypicalDeviate);
-  const Sites sites{places, groups, steps, start.on_lines};
+  const Sites sites{places, groups, steps, start.on_lines, start.apart};
   std::vector<SiteView> views(groups.size());
   std::vector<double> middle(groups.size(), 1);
   for_each_index(

@@ -14,7 +14,8 @@
 /// and both moments together tell how far apart the layers are. Nearer to each other than the points are to
 /// their neighbours (a square of the cloud's spacing has one point) they cannot both be surfaces, and what is
 /// seen is the noise. Layers with as many points each may be the sides of a plate: these must be nearer than
-/// a point is to its nearest neighbour, half a spacing where points lie at random.
+/// a point is to its nearest neighbour: half a side of that square where points lie at random, all of it
+/// where the cloud was thinned so that they keep a distance (NoiseModel::apart).
 ///
 /// Bounds: the scatter of nearly all of the dozen nearest sites is one, where their balls hold the slab of
 /// noisy points; what the first of 24, 192 and 1,536 points shows that hold it is one that a wider window
