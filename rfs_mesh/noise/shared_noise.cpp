@@ -109,20 +109,23 @@ struct Calm {
   /// Means of those of Scatter: together is 1, less what patches follow of it, of noise that points have of
   /// their own, up to kRing where they share it.
   std::vector<double> together, flatness;
-  double steps = 0;  ///< variance that depths in steps make sure of
+  std::vector<double> radius;  ///< mean, of their balls
+  double steps = 0;            ///< variance that depths in steps make sure of
 };
 
 /// Enters what the fits of at most this variance show of how points err.
 void enter(const std::vector<Scatter>& all, double variance, Calm& calm) {
-  double together = 0, flatness = 0, count = 0;
+  double together = 0, flatness = 0, radius = 0, count = 0;
   for (const Scatter& s : all) {
     if (!says(s) || s.variance > variance) continue;
     together += s.together;
     flatness += s.flatness;
+    radius += s.radius;
     ++count;
   }
   calm.together.push_back(count > 0 ? together / count : 0);
   calm.flatness.push_back(count > 0 ? flatness / count : 0);
+  calm.radius.push_back(count > 0 ? radius / count : 0);
 }
 
 Calm look(Places& places, const NoiseStart& start, const DepthSteps* steps, const Context& context) {
@@ -144,6 +147,11 @@ Calm look(Places& places, const NoiseStart& start, const DepthSteps* steps, cons
     calm.seen.push_back(variance);
   }
   return calm;
+}
+
+/// Whether the balls of the i-th m hold a slab as thick as its points scatter.
+bool hold_slab(const Calm& calm, std::size_t i) {
+  return std::sqrt(calm.seen[i]) < kFlatSlab * calm.radius[i];
 }
 
 /// Whether nearest points lie off patches of the i-th m the same way.
@@ -179,6 +187,7 @@ SharedNoise find_shared_noise(Places& places, const NoiseStart& start, const Dep
   bool wide = false, fast = false;
   std::size_t slow = 0;  // growths in a row that noise may have
   for (std::size_t i = 0; i < calm.m.size(); ++i) {
+    if (!terraces && !hold_slab(calm, i)) break;
     make_sure(i, std::min(calm.steps, calm.seen[i]));
     if (i + 1 == calm.m.size() || calm.m[i + 1] != 2 * calm.m[i] || calm.m[i] < 2 * double(start.m)) continue;
     const double growth = calm.seen[i + 1] / calm.seen[i];

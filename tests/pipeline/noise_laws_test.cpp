@@ -201,6 +201,89 @@ TEST(NoiseLaws, ThreeScansFartherApartComeTogether) {
   EXPECT_LT(rms_off(denoised(scans), everywhere), 0.2 * rms_off(scans, everywhere));
 }
 
+double rms(const Positions& points, const std::function<double(const Eigen::Vector3d&)>& off) {
+  double sum = 0;
+  for (const Eigen::Vector3d& p : points) sum += std::pow(off(p), 2);
+  return std::sqrt(sum / double(points.size()));
+}
+
+/// Points of which none is nearer to another than `least`: the first in their order stay.
+Positions thinned(const Positions& points, double least) {
+  const rfs_mesh::SpatialIndex index(points, {});
+  std::vector<char> gone(points.size(), 0);
+  std::vector<rfs_mesh::Neighbor> near;
+  Positions left;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (gone[i] != 0) continue;
+    left.push_back(points[i]);
+    index.within(points[i], least, near);
+    for (const auto& q : near) gone[q.index] = 1;
+  }
+  return left;
+}
+
+// As CloudCompare thins scans once they are merged. Layers nearer to each other than that distance keep each
+// other's points off; beyond, each is as dense as a single scan.
+TEST(NoiseLaws, ScansThatDoNotMeetAndWereThinnedToADistanceBecomeOneSurface) {
+  constexpr double kLeast = 0.03;
+  for (const double apart : {0.8, 1.0, 1.3}) {
+    std::mt19937_64 engine(4);
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    std::normal_distribution<double> normal(0, 0.1 * kLeast);
+    const Eigen::Vector3d half = 0.5 * apart * kLeast * Eigen::Vector3d(0.6, 0.48, 0.64);
+    Positions scans;
+    for (int i = 0; i < 200000; ++i) {
+      Eigen::Vector3d p(uniform(engine), uniform(engine), uniform(engine));
+      p[i % 3] = i % 2 == 0 ? 1 : -1;
+      p += Eigen::Vector3d(normal(engine), normal(engine), normal(engine));
+      scans.push_back(uniform(engine) < 0 ? Eigen::Vector3d(p + half) : Eigen::Vector3d(p - half));
+    }
+    const auto off_the_box = [](const Eigen::Vector3d& p) {
+      const Eigen::Array3d beyond = p.array().abs() - 1;
+      return beyond.maxCoeff() > 0 ? beyond.max(0).matrix().norm() : beyond.maxCoeff();
+    };
+    const Positions noisy = thinned(scans, kLeast);
+    ASSERT_GT(noisy.size(), 10000U);
+    EXPECT_LT(rms(denoised(noisy), off_the_box), 0.2 * rms(noisy, off_the_box)) << apart;
+  }
+}
+
+/// A trunk, and branches with bunches of leaves, in metres.
+Positions tree(int branches, unsigned seed) {
+  constexpr int kTrunk = 8000, kCrown = 32000, kBunches = 12;
+  std::mt19937_64 engine(seed);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  std::normal_distribution<double> normal;
+  const auto anyhow = [&] { return Eigen::Vector3d(normal(engine), normal(engine), normal(engine)); };
+  Positions points;
+  for (int i = 0; i < kTrunk; ++i) {
+    const double turn = 2 * M_PI * uniform(engine);
+    points.emplace_back(0.08 * std::cos(turn), 0.08 * std::sin(turn), 4 * uniform(engine));
+  }
+  for (int b = 0; b < branches; ++b) {
+    const Eigen::Vector3d foot(0, 0, 2.5 + 2 * uniform(engine)), way = anyhow().normalized();
+    const double length = 0.6 + 1.2 * uniform(engine);
+    Positions bunches;
+    for (int k = 0; k < kBunches; ++k)
+      bunches.emplace_back(foot + length * uniform(engine) * way + 0.15 * anyhow());
+    for (int i = 0; i < kCrown / branches; ++i)
+      points.push_back(i % 3 == 0 ? Eigen::Vector3d(foot + length * uniform(engine) * way + 0.01 * anyhow())
+                                  : Eigen::Vector3d(bunches[std::size_t(i % kBunches)] + 0.05 * anyhow()));
+  }
+  for (Eigen::Vector3d& p : points) p += 0.004 * anyhow();
+  return points;
+}
+
+// Patches wider than a bunch of leaves are no piece of a surface, and what they show is no noise.
+TEST(NoiseLaws, LeavesAreNoNoiseThatNeighboursShare) {
+  for (const unsigned seed : {1U, 2U, 3U, 4U}) {
+    const Positions points = tree(seed % 2 == 0 ? 60 : 120, seed);
+    const rfsmooth::NoiseModel noise = rfs_mesh::measure_noise(rfs_mesh::SpatialIndex(points, {}), {});
+    EXPECT_EQ(noise.shared, 1) << seed;
+    EXPECT_LT(noise.sigma, 0.06) << seed;  // a bunch is as wide
+  }
+}
+
 // As hand-held scanners leave it: the neighbourhoods that tell what is a surface must be as wide as the
 // noise.
 TEST(NoiseLaws, NoiseOfSixSpacingsIsSmoothedToATwelfth) {
@@ -227,12 +310,6 @@ Positions seen_by_laser(const std::function<double(const Eigen::Vector3d&)>& mee
         points.emplace_back((there + normal(engine)) * ray);
     }
   return points;
-}
-
-double rms(const Positions& points, const std::function<double(const Eigen::Vector3d&)>& off) {
-  double sum = 0;
-  for (const Eigen::Vector3d& p : points) sum += std::pow(off(p), 2);
-  return std::sqrt(sum / double(points.size()));
 }
 
 // The near end of a wall has more points, and more of the noise lies across it there: several times as many
