@@ -111,7 +111,7 @@ void set_field(Cloud& cloud, const std::string& name, Scalar type, const std::ve
   if (const auto present = find_field(cloud, name))
     scatter(cloud.points(), {*present}, values.data(), context);
   else
-    append_field(cloud.points(), Field{name, type}, values.data(), context);
+    add_field(cloud.points(), Field{name, type}, values.data(), context);
 }
 
 void check_field(const Cloud& cloud, const std::string& name, Scalar type) {

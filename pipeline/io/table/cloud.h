@@ -42,6 +42,7 @@ struct XyzStyle {
   bool counted = false;              ///< a line with the number of points (.pts)
   std::optional<std::string> names;  ///< the start of a line that names the columns ("//", "# ", "")
   char separator = ' ';              ///< between those names
+  std::vector<std::string> cells;    ///< those names as written, with quotes and units
 };
 
 /// A file in memory: every element and field, known or not.
