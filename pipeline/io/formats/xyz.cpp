@@ -123,6 +123,10 @@ Cloud read_xyz(const Source& source, const Context& context) {
   table.fields = fields_of(names, columns);
   count_text_rows(table, cursor);
   read_text_rows(table, cursor, context);
+  if (const auto promised = cloud.xyz_style.counted; promised && *promised != table.count)
+    source.fail("line {}: expected {} points in all, as a line before the first one says, found {}; {}",
+                cursor.lines, *promised, table.count,
+                table.count < *promised ? "the file is cut off, or mend that number" : "mend that number");
   if (const std::size_t k = names.empty() ? unit_columns(table) : 0; k > 0)
     for (std::size_t axis = 0; axis < 3; ++axis) table.fields[k + axis].name = kPlyNormal[axis];
   cloud.tail = cursor.rest();

@@ -118,7 +118,7 @@ std::vector<XyzNames> read_xyz_beginning(TextCursor& cursor, Cloud& cloud) {
     } else if (comment) {
       if (!words.empty()) cloud.notes.push_back({std::string(content)});
     } else if (words.size() == 1 && parse_count(words[0]) && !cloud.xyz_style.counted) {
-      cloud.xyz_style.counted = true;
+      cloud.xyz_style.counted = parse_count(words[0]);
     } else {
       break;
     }

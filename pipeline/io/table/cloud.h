@@ -39,10 +39,10 @@ struct Note {
 
 /// What an XYZ file says before its first point, besides comments.
 struct XyzStyle {
-  bool counted = false;              ///< a line with the number of points (.pts)
-  std::optional<std::string> names;  ///< the start of a line that names the columns ("//", "# ", "")
-  char separator = ' ';              ///< between those names
-  std::vector<std::string> cells;    ///< those names as written, with quotes and units
+  std::optional<std::uint64_t> counted;  ///< the number of points, on a line of its own (.pts)
+  std::optional<std::string> names;      ///< the start of a line that names the columns ("//", "# ", "")
+  char separator = ' ';                  ///< between those names
+  std::vector<std::string> cells;        ///< those names as written, with quotes and units
 };
 
 /// A file in memory: every element and field, known or not.

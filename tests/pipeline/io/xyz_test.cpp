@@ -127,6 +127,13 @@ TEST(Xyz, ARowOfOtherCellsThanTheFirstIsRefused) {
               HasSubstr("line 2: expected a value of 'y' (float64), found 'five'"));
 }
 
+TEST(Xyz, ANumberOfPointsThatIsNotTheRowsIsRefused) {
+  EXPECT_THAT(refusal_of("3\n1 2 3\n4 5 6\n"),
+              AllOf(HasSubstr("line 3: expected 3 points"), HasSubstr("found 2"), HasSubstr("cut off")));
+  EXPECT_THAT(refusal_of("# scan\n1\n1,2,3\n4,5,6\n"),
+              AllOf(HasSubstr("line 4: expected 1 points"), HasSubstr("found 2")));
+}
+
 TEST(Xyz, LinesThatEndInCarriageReturnsAloneAreRefused) {
   for (const std::string text : {"1 2 3\r4 5 6\r", "x y z\r1 2 3\r4 5 6\r", "1,2,3\r4,5,6"})
     EXPECT_THAT(refusal_of(text), AllOf(HasSubstr("line 1"), HasSubstr("CR alone"))) << text;
