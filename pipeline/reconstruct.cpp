@@ -1,4 +1,7 @@
+#include <algorithm>
 #include <limits>
+
+#include <Eigen/Geometry>
 
 #include <rfsmooth/normals.h>
 #include <rfsmooth/reconstruct.h>
@@ -23,6 +26,21 @@ namespace {
 double spacing_of(const Positions& points, const Context& context) {
   const rfs_mesh::SpatialIndex index(points, context);
   return rfs_mesh::mean_spacing(points, index.nearest(1, context), context);
+}
+
+/// Whether all points are on one line but for the rounding of float32. O(n).
+bool on_one_line(const Positions& points) {
+  const auto farthest_from = [&](const Eigen::Vector3d& p) {
+    return *std::max_element(points.begin(), points.end(), [&](const auto& a, const auto& b) {
+      return (a - p).squaredNorm() < (b - p).squaredNorm();
+    });
+  };
+  const Eigen::Vector3d end = farthest_from(points.front());
+  const Eigen::Vector3d along = farthest_from(end) - end;
+  const double rounding = 2 * double(std::numeric_limits<float>::epsilon()) * along.norm();
+  return std::all_of(points.begin(), points.end(), [&](const Eigen::Vector3d& p) {
+    return (p - end).cross(along).norm() <= rounding * along.norm();
+  });
 }
 
 /// Takes the noise out of the rows and outliers out of the cloud.
@@ -72,6 +90,8 @@ Reconstruction run(std::vector<double> xyz, const ReconstructOptions& options, c
         value_or_throw(rfs_mesh::make_working_cloud(xyz.data(), xyz.size() / 3, context));
     if (cloud.points.size() < 4)
       fail(ErrorCode::no_usable_points, "a surface needs four distinct points at least");
+    if (on_one_line(cloud.points))
+      fail(ErrorCode::no_usable_points, "all points are on one line: there is no surface in them");
     SurfaceInput input;
     input.points = cloud.points;
     input.normals = working_normals(xyz, cloud, context);

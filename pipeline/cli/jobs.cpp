@@ -30,14 +30,24 @@ std::string joined(const std::string& folder, const std::string& name) {
   return (fs::path(folder) / name).string();
 }
 
-std::vector<Job> into_folder(const std::vector<std::string>& inputs, const std::string& folder) {
+/// What an input is called in a folder. "scan.v2" has no extension that stands for a format.
+std::string name_in_folder(const std::string& input, std::optional<Format> written) {
+  fs::path name = fs::path(input).filename();
+  const auto present = pipeline::io::format_of_extension(name);
+  if (!written || present == written) return name.string();
+  if (present) name.replace_extension();
+  return fmt::format("{}.{}", name.string(), pipeline::io::name_of(*written));
+}
+
+std::vector<Job> into_folder(const std::vector<std::string>& inputs, const std::string& folder,
+                             std::optional<Format> written) {
   std::map<std::string, std::string> taken;
   std::vector<Job> jobs;
   for (const std::string& input : inputs) {
     if (input == "-")
       fail(ErrorCode::usage,
            "standard input (-) cannot go into a folder: it has no name; give -o a file name");
-    const std::string name = fs::path(input).filename().string();
+    const std::string name = name_in_folder(input, written);
     const auto [it, is_new] = taken.emplace(name, input);
     if (!is_new)
       fail(ErrorCode::usage, "{} and {} would both be written to {}", it->second, input,
@@ -51,7 +61,7 @@ std::vector<Job> into_folder(const std::vector<std::string>& inputs, const std::
 }  // namespace
 
 std::vector<Job> plan_jobs(const std::vector<std::string>& arguments,
-                           const std::optional<std::string>& output) {
+                           const std::optional<std::string>& output, std::optional<Format> written) {
   for (const std::string& argument : arguments)
     if (argument.empty()) fail(ErrorCode::usage, "a file name is empty");
   if (!output) {
@@ -65,7 +75,8 @@ std::vector<Job> plan_jobs(const std::vector<std::string>& arguments,
   if (arguments.empty()) fail(ErrorCode::usage, "no input given");
   std::error_code error;
   const bool slash = !output->empty() && output->back() == '/';
-  if (*output != "-" && (slash || fs::is_directory(*output, error))) return into_folder(arguments, *output);
+  if (*output != "-" && (slash || fs::is_directory(*output, error)))
+    return into_folder(arguments, *output, written);
   if (arguments.size() == 1) return {{arguments[0], *output}};
   if (fs::exists(*output, error))
     fail(ErrorCode::cannot_write, "{}: is not a folder, and there are several inputs", *output);
@@ -73,7 +84,7 @@ std::vector<Job> plan_jobs(const std::vector<std::string>& arguments,
   if (*output == "-" || pipeline::io::format_of_extension(*output))
     fail(ErrorCode::usage, "several inputs need a folder: -o {}",
          *output == "-" ? "FOLDER" : *output + "/ if it is to be called so");
-  return into_folder(arguments, *output);
+  return into_folder(arguments, *output, written);
 }
 
 int run_jobs(const std::vector<Job>& jobs, Console& console,

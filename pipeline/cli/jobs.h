@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <rfsmooth/cloud_file.h>
 #include <rfsmooth/result.h>
 
 #include "pipeline/cli/console/console.h"
@@ -22,8 +23,11 @@ struct Job {
 /// or for several inputs any name that is not a cloud file's. The folder is made if need be. \throw Failure:
 /// usage (wrong count, two inputs with the same output name), cannot_write (a file is in the folder's place,
 /// or the folder cannot be made).
+/// \param written the format of all outputs, whose extension their names in a folder get; none: each as its
+/// input, and called as that is
 std::vector<Job> plan_jobs(const std::vector<std::string>& arguments,
-                           const std::optional<std::string>& output);
+                           const std::optional<std::string>& output,
+                           std::optional<Format> written = std::nullopt);
 
 /// Runs every job, also after errors, and stops at a cancel. `run` returns the error, if any. After several
 /// jobs the failed ones are listed again on stderr. \return 0 without errors; 130 after a cancel; the code of

@@ -14,14 +14,17 @@ std::uint8_t level(double value) {
   return std::isfinite(value) ? std::uint8_t(std::lround(std::clamp(value, 0.0, 255.0))) : 0;
 }
 
-/// What a value of full brightness is times 255: floats go to 1, 16 bits of LAS to 65535, unless the program
-/// that wrote them used the lower 8.
+/// What makes levels of 0 to 255 of the values: floats go to 1, unless a value says that they go to 255 or to
+/// 65535, as numbers of a text do; 16 bits of LAS go to 65535, unless the program that wrote them used the
+/// lower 8.
 double to_levels(Scalar type, const std::array<std::vector<double>, 3>& colors) {
-  if (is_float(type)) return 255;
-  const auto above = [](const std::vector<double>& c) {
-    return std::any_of(c.begin(), c.end(), [](double value) { return value > 255; });
+  const auto any_above = [&](double most) {
+    return std::any_of(colors.begin(), colors.end(), [&](const std::vector<double>& c) {
+      return std::any_of(c.begin(), c.end(), [&](double value) { return value > most; });
+    });
   };
-  return type == Scalar::uint16 && std::any_of(colors.begin(), colors.end(), above) ? 255.0 / 65535 : 1;
+  if (is_float(type) && !any_above(1)) return 255;
+  return (is_float(type) || type == Scalar::uint16) && any_above(255) ? 255.0 / 65535 : 1;
 }
 
 /// The colours of one field of packed bits.

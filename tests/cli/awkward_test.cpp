@@ -182,6 +182,30 @@ TEST_F(Awkward, LinkAsOutputIsWrittenThrough) {
   EXPECT_NE(take("target.ply"), "old");
 }
 
+TEST_F(Awkward, PipesAndOpenFilesTakeTheCloudByTheirNames) {
+  put("in.ply", noisy_plane(20).bytes());
+  ASSERT_EQ(run({"denoise", "in.ply", "out.ply"}).code, 0);
+  const auto bash = [&](const std::string& line) {
+    RunSetup setup;
+    setup.folder = at("");
+    setup.environment = {std::string("R=") + RFSMOOTH_COMMAND};
+    const Ran ran = run_program("bash", {"-c", "set -o pipefail; " + line}, setup);
+    EXPECT_EQ(ran.code, 0) << line << ran.err;
+  };
+  bash("$R denoise in.ply /dev/stdout | cat > a.ply");
+  bash("$R denoise in.ply >(cat > b.part; mv b.part b.ply); until [ -e b.ply ]; do sleep 0.1; done");
+  bash("$R denoise in.ply /dev/stdout > c.ply");
+  bash("$R denoise in.ply /dev/fd/7 7> d.ply");
+  bash("ln -s /dev/stdout link.ply; $R denoise in.ply link.ply | cat > e.ply");
+  for (const char* name : {"a.ply", "b.ply", "c.ply", "d.ply", "e.ply"})
+    EXPECT_EQ(take(name), take("out.ply")) << name;
+  EXPECT_THAT(names(),
+              ElementsAre("a.ply", "b.ply", "c.ply", "d.ply", "e.ply", "in.ply", "link.ply", "out.ply"));
+  const Ran closed = run({"denoise", "in.ply", "/dev/fd/77"});
+  EXPECT_EQ(closed.code, 5);
+  EXPECT_THAT(closed.err, HasSubstr("/dev/fd/77: cannot write: Bad file descriptor"));
+}
+
 TEST_F(Awkward, MemoryIsRefusedBeforeStarting) {
   if (kSanitized) GTEST_SKIP() << "address space cannot be limited under the address sanitizer";
   BinaryPly cloud;

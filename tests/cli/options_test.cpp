@@ -330,6 +330,31 @@ TEST(Flows, TextAndJsonListTheSameFlows) {
   }
 }
 
+TEST_F(Flags, FlowsPrintsWhatCanBeTyped) {
+  put("in.ply", noisy_plane(20).bytes());
+  std::istringstream lines(rfsmooth({"flows"}).out);
+  int seen = 0;
+  for (std::string name, options; std::getline(lines, name) && std::getline(lines, options); ++seen) {
+    name = name.substr(0, name.find(' '));
+    std::istringstream words(options);
+    for (std::string word; words >> word;) {
+      std::vector<std::string> typed = {"denoise", "in.ply", "out.ply", "--force", "--flow", name};
+      // A flag is in brackets: "[--no-equalize]", "[--on|--no-on]"; another option has its value behind it.
+      if (word.front() == '[') {
+        typed.push_back(word.substr(1, word.find_first_of("|]") - 1));
+      } else {
+        typed.push_back(word);
+        ASSERT_TRUE(words >> word) << options;
+        typed.push_back(word);
+      }
+      const Ran ran = run(typed);
+      const bool wants_another = ran.err.find("has no effect without") != std::string::npos;
+      EXPECT_TRUE(ran.code == 0 || wants_another) << typed.back() << ": " << ran.err;
+    }
+  }
+  EXPECT_GE(seen, 13);
+}
+
 TEST(Command, LinksTheCoreOnly) {
   const Ran ran = run_program("ldd", {RFSMOOTH_COMMAND});
   if (ran.code != 0) GTEST_SKIP() << "no ldd here";

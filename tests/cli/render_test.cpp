@@ -26,6 +26,12 @@ class Render : public InFolder {
   }
 };
 
+TEST_F(Render, ColouringByAFieldNeedsItsName) {
+  const Ran ran = run({"render", "in.ply", "-o", "one.png", "--color", "field"});
+  EXPECT_EQ(ran.code, 2);
+  EXPECT_THAT(ran.err, HasSubstr("--color field needs the name of a field: --field NAME"));
+}
+
 TEST_F(Render, DrawsCloudsSideBySide) {
   ASSERT_EQ(run({"render", "in.ply", "-o", "one.png", "--width", "100", "--height", "80"}).code, 0);
   EXPECT_EQ(size("one.png"), std::pair(100u, 80u));

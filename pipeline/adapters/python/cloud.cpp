@@ -161,7 +161,7 @@ void put_rows(io::Cloud& cloud, const std::vector<FieldText>& fields, const Rows
       values = changed(io::gather(before, {f}, {}), values, io::gather(table, {fixed[f]}, {}));
       io::scatter(table, {fixed[f]}, values.data(), {});
     } else {
-      io::append_field(table, given.fields[f], values.data(), {});
+      io::add_field(table, given.fields[f], values.data(), {});
     }
   }
 }

@@ -2,12 +2,15 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include <nlohmann/json_fwd.hpp>
+
+#include <rfsmooth/cloud_file.h>
 
 #include "pipeline/cli/console/progress.h"
 #include "pipeline/cli/options/option.h"
@@ -56,6 +59,8 @@ struct OnCloud {
   /// Writes what stands beside the cloud (a page, a trace), which `work` has made ready; empty: nothing does.
   /// Called once the cloud is there, and not stopped any more. \throw Failure.
   std::function<void(Console&)> beside = {};
+  /// The format of what `work` makes; none: that of the input.
+  std::optional<Format> makes = std::nullopt;
 };
 
 struct Command {

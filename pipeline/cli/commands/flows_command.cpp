@@ -26,21 +26,24 @@ struct FlowsOptions {
   }
 };
 
-/// The flow's own values, by option name, as they would be typed.
-std::vector<std::pair<std::string, std::string>> defaults_of(AnyFlow flow) {
+/// The flow's own options, with its values. They point into `flow`.
+std::vector<CommandOption> options_of(AnyFlow& flow) {
   std::vector<CommandOption> options;
   std::visit([&](auto& values) { collect(values, options); }, flow);
-  std::vector<std::pair<std::string, std::string>> defaults;
-  for (const CommandOption& option : options)
-    defaults.emplace_back(option.name, option.get().value_or("auto"));
-  return defaults;
+  return options;
+}
+
+/// The option with the flow's value, as it can be typed; of a flag what there is to type, in brackets.
+std::string typed_default(const CommandOption& option) {
+  if (option.kind == ValueKind::flag) return fmt::format("[{}]", fmt::join(typed_names(option), "|"));
+  return fmt::format("--{} {}", option.name, option.get().value_or("auto"));
 }
 
 void print_table() {
-  for (const AnyFlow& flow : rfsmooth::flows()) {
+  for (AnyFlow flow : rfsmooth::flows()) {
     const FlowInfo& info = info_of(flow);
     fmt::print("{:<18} {} ({})\n{:18}", info.name, info.summary, info.source, "");
-    for (const auto& [name, value] : defaults_of(flow)) fmt::print(" --{} {}", name, value);
+    for (const CommandOption& option : options_of(flow)) fmt::print(" {}", typed_default(option));
     fmt::print("\n");
   }
 }
@@ -55,10 +58,11 @@ void print_markdown() {
 
 void print_json() {
   auto list = nlohmann::ordered_json::array();
-  for (const AnyFlow& flow : rfsmooth::flows()) {
+  for (AnyFlow flow : rfsmooth::flows()) {
     const FlowInfo& info = info_of(flow);
     auto defaults = nlohmann::ordered_json::object();
-    for (const auto& [name, value] : defaults_of(flow)) defaults[name] = json_value(value);
+    for (const CommandOption& option : options_of(flow))
+      defaults[option.name] = json_value(option.get().value_or("auto"));
     list.push_back(
         {{"name", info.name}, {"summary", info.summary}, {"source", info.source}, {"options", defaults}});
   }
@@ -73,7 +77,9 @@ Command flows_command() {
   command.name = "flows";
   command.summary = "list the ways of smoothing that --flow takes";
   command.usage = {"[--json|--markdown]"};
-  command.description = "Prints every flow with its source and the options it uses.";
+  command.description =
+      "Prints every flow with its source and the options it uses, each with its value there; flags are in "
+      "brackets.";
   collect(*options, command.options);
   command.run = [options](const Invocation& typed) {
     if (!typed.arguments.empty()) fail(ErrorCode::usage, "rfsmooth flows takes no arguments");

@@ -118,7 +118,9 @@ std::string connect_cloud(const MeshCommandOptions& options, pipeline::io::Cloud
   if (stage == "rfs") faces = connection.mesh.faces;
   for (auto& face : faces)
     for (Index& corner : face) corner = order.rank[corner];
+  const pipeline::io::Encoding encoding = cloud.encoding;
   cloud = pipeline::io::make_mesh_file(points, faces, edges, graph.kind);
+  if (encoding != pipeline::io::Encoding::binary_compressed) cloud.encoding = encoding;  // PLY has none
 
   entry["options"] = effective_options(options.mesh, options.job.files);
   entry["counts"] = {{"points", xyz.size() / 3}, {"vertices", points.size()}};
@@ -159,8 +161,11 @@ Command mesh_command() {
   collect(options->job, command.options);
   command.everyday = {"stage", "output", "force", "threads", "report", "quiet", "verbose"};
   command.on_cloud = {
-      [](const Invocation&) {}, [options] { return stages_up_to(options->mesh.stage); },
-      [options](auto& cloud, const CloudTask& task) { return connect_cloud(*options, cloud, task); }};
+      [](const Invocation&) {},
+      [options] { return stages_up_to(options->mesh.stage); },
+      [options](auto& cloud, const CloudTask& task) { return connect_cloud(*options, cloud, task); },
+      {},
+      pipeline::io::Format::ply};
   command.run = [options, on_cloud = command.on_cloud](const Invocation& typed) {
     return run_cloud_jobs("mesh", options->job, typed, on_cloud);
   };

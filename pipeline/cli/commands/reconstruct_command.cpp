@@ -142,11 +142,13 @@ Command reconstruct_command(std::vector<SurfaceMethod> methods) {
   Command command = table(options);
   command.run = [options, methods = std::move(methods)](const Invocation& typed) {
     const SurfaceMethod& method = find_method(methods, options->reconstruct.method);
-    return run_cloud_jobs("reconstruct", options->job, typed,
-                          {[](const Invocation&) {}, [&] { return reconstructing_stages(*options); },
-                           [&](auto& cloud, const CloudTask& task) {
-                             return reconstruct_cloud(*options, method, cloud, task);
-                           }});
+    return run_cloud_jobs(
+        "reconstruct", options->job, typed,
+        {[](const Invocation&) {},
+         [&] { return reconstructing_stages(*options); },
+         [&](auto& cloud, const CloudTask& task) { return reconstruct_cloud(*options, method, cloud, task); },
+         {},
+         pipeline::io::Format::ply});
   };
   return command;
 }

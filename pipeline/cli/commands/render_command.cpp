@@ -32,6 +32,9 @@ Command render_table(const std::shared_ptr<RenderOptions>& options) {
 void check_request(const RenderOptions& options, const Invocation& typed) {
   if (typed.arguments.empty()) fail(ErrorCode::usage, "no input given");
   if (!options.output) fail(ErrorCode::usage, "no picture named: -o OUT.png");
+  if (options.color == "field" && options.field.empty())
+    fail(ErrorCode::usage,
+         "--color field needs the name of a field: --field NAME (rfsmooth info lists them)");
   check_no_cloud_target(*options.output, options.force, "picture");
   const std::string extension = std::filesystem::path(*options.output).extension().string();
   if (!extension.empty() && extension != ".png" && extension != ".PNG")

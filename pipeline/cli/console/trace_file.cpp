@@ -11,7 +11,7 @@ namespace rfsmooth::cli {
 
 void TraceFile::check(const FileOptions& files, const Invocation& typed) const {
   if (!trace) return;
-  if (plan_jobs(typed.arguments, files.output).size() > 1)
+  if (plan_cloud_jobs(typed.arguments, files).size() > 1)
     fail(ErrorCode::usage, "--trace is for one input; run the command once for each");
   check_no_cloud_target(*trace, files.force, "trace");
 }

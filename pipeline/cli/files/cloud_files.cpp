@@ -48,6 +48,12 @@ void check_target(const std::string& output, const FileOptions& options) {
   if (output != "-") value_or_throw(io::check_output(output, write_options(options)));
 }
 
+std::vector<Job> plan_cloud_jobs(const std::vector<std::string>& arguments, const FileOptions& options,
+                                 std::optional<io::Format> makes) {
+  const auto named = options.format ? io::format_by_name(*options.format) : std::nullopt;
+  return plan_jobs(arguments, options.output, named ? named : makes);
+}
+
 void need_free_stdout(const std::vector<Job>& jobs, const RunOptions& options) {
   std::size_t uses = options.report == "-" ? 1 : 0;
   for (const Job& job : jobs) uses += job.output == "-";

@@ -17,6 +17,11 @@ namespace rfsmooth::cli {
 /// Refuses an output that cannot be written, before any work. "-" always can. \throw Failure.
 void check_target(const std::string& output, const FileOptions& options);
 
+/// The jobs of a sub-command. `makes`: the format of what it makes, unless --format says another; none: that
+/// of the input. \throw Failure as plan_jobs.
+std::vector<Job> plan_cloud_jobs(const std::vector<std::string>& arguments, const FileOptions& options,
+                                 std::optional<pipeline::io::Format> makes = std::nullopt);
+
 /// Refuses two outputs to standard output; --report - counts as one. \throw Failure (usage).
 void need_free_stdout(const std::vector<Job>& jobs, const RunOptions& options);
 

@@ -69,7 +69,7 @@ void tell_summary(const Job& job, const std::string& summary, bool one_of_many, 
 int run_cloud_jobs(const std::string& command, const JobOptions& options, const Invocation& typed,
                    const OnCloud& on_cloud) {
   on_cloud.check(typed);
-  const std::vector<Job> jobs = plan_jobs(typed.arguments, options.files.output);
+  const std::vector<Job> jobs = plan_cloud_jobs(typed.arguments, options.files, on_cloud.makes);
   need_free_stdout(jobs, options.run);
   Report report(command, options.run.report, options.files.force);
   Console console(options.talk);

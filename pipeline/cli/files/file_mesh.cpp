@@ -1,5 +1,7 @@
 #include "pipeline/cli/files/file_mesh.h"
 
+#include <fmt/format.h>
+
 #include "base/fail.h"
 #include "pipeline/io/io.h"
 #include "pipeline/io/mesh_file.h"
@@ -30,11 +32,16 @@ FileMesh file_mesh(const io::Cloud& cloud, const std::string& name, const Contex
   out.origin = points.front();
   if (own_heights) out.origin.z() = 0;
   for (Vector3d& p : points) p -= out.origin;
+  std::size_t left_out = 0;
   for (const Face& face : faces) {
     const Face f = {out.of_row[face[0]], out.of_row[face[1]], out.of_row[face[2]]};
     const bool whole = f[0] != kNone && f[1] != kNone && f[2] != kNone;
+    left_out += !whole;
     if (whole && f[0] != f[1] && f[1] != f[2] && f[2] != f[0]) out.mesh.faces.push_back(f);
   }
+  if (left_out > 0)
+    context.warn(fmt::format("{}: {} faces with a corner that is not finite are left out of the work", name,
+                             left_out));
   out.before = points;
   rfsmooth::rebuild_adjacency(out.mesh, context);
   return out;

@@ -53,6 +53,7 @@ io::Cloud surface_file(io::Cloud cloud, const Reconstruction& made, const Contex
       cloud.encoding == io::Encoding::binary_compressed ? io::Encoding::binary_little_endian : cloud.encoding;
   out.elements.push_back(std::move(cloud.points()));
   out.points().name = "vertex";
+  io::make_words(out.points(), context);  // PLY has no commas
   out.xyz = cloud.xyz;
   out.width = out.points().count;
   io::select_points(out, made.row, context);

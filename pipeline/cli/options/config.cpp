@@ -26,6 +26,8 @@ json parse_file(const std::string& path) {
     return json::parse(text);
   } catch (const json::parse_error& error) {
     fail(ErrorCode::input_unreadable, "{}: not JSON at byte {}", path, error.byte);
+  } catch (const json::exception&) {  // the one other thing that goes wrong in reading
+    fail(ErrorCode::usage, "{}: a number in it is too large for any option", path);
   }
 }
 

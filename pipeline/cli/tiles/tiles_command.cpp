@@ -154,7 +154,7 @@ void tell_status(const TilesOptions& options, const std::vector<std::string>& ar
                s.settled ? "" : "not ", s.run,
                s.run == 0
                    ? ""
-                   : fmt::format(" in {:.3g} s of processor time, with {:.2g} % more points around them",
+                   : fmt::format(" in {:.3g} s of processor time, with {:.0f} % more points around them",
                                  s.seconds, 100 * s.halo_share));
 }
 

@@ -142,8 +142,8 @@ void add_kept_points(const Cloud& cloud, Format format, const Context& context, 
       if (kept[k] != k) return false;
     return kept.size() == points.fields.size();
   }();
-  // Text with commas is written anew as well: only XYZ may have them.
-  if (!same_fields || points.separators != Separators::space) project(points, kept, context);
+  make_words(points, context);  // only XYZ may have commas
+  if (!same_fields) project(points, kept, context);
   for (std::size_t axis = 0; axis < 3; ++axis)
     out.xyz[axis] = std::size_t(std::find(kept.begin(), kept.end(), cloud.xyz[axis]) - kept.begin());
   for (Field& f : points.fields) f.spelling.clear();

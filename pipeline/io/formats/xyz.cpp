@@ -14,29 +14,6 @@
 namespace rfsmooth::pipeline::io {
 namespace {
 
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-
-std::string_view without_line_end(std::string_view line) {
-  while (!line.empty() && (line.back() == '\n' || line.back() == '\r')) line.remove_suffix(1);
-  return line;
-}
-
-// What a line of names starts with: a comment sign and blanks, or nothing.
-std::string_view prefix_of(std::string_view line) {
-  std::size_t n = 0;
-  while (n < line.size() && (line[n] == '#' || line[n] == '/' || line[n] == ' ' || line[n] == '\t')) ++n;
-  return line.substr(0, n);
-}
-
-bool has_word(const std::vector<std::string_view>& words, char lower) {
-  const std::string low(1, lower), high(1, char(lower - 'a' + 'A'));
-  return std::any_of(words.begin(), words.end(), [&](std::string_view w) { return w == low || w == high; });
-}
-
-bool names_coordinates(const std::vector<std::string_view>& words) {
-  return has_word(words, 'x') && has_word(words, 'y') && has_word(words, 'z');
-}
-
 // "1,5 2,5 3,5" and "1,5;2,5;3,5": read as six columns, such a file would be silently wrong. Who writes
 // decimal points does not write decimal commas.
 bool has_decimal_commas(std::string_view line) {
@@ -50,35 +27,44 @@ bool has_decimal_commas(std::string_view line) {
   return inner && other;
 }
 
-// Reads up to the first point. Returns the names of the columns, if a line gives them; those of a comment
-// count only if there are as many as columns.
-std::vector<std::string> read_beginning(TextCursor& cursor, Cloud& cloud) {
-  std::vector<std::string> names;
-  if (cursor.rest().substr(0, kByteOrderMark.size()) == kByteOrderMark) cursor.at += kByteOrderMark.size();
-  for (;;) {
-    const std::string_view line = peek_line(cursor);
-    if (line.empty()) break;
-    if (cursor.lines == 0 && line.size() > 1 && line[line.size() - 2] == '\r') cloud.newline = "\r\n";
-    const std::string_view content = without_line_end(line);
-    const std::string_view prefix = prefix_of(content);
-    const auto words = words_of(content.substr(prefix.size()), Separators::space_comma);
-    const bool comment = is_blank_or_comment(line);
-    if (names_coordinates(words) && !cloud.xyz_style.names) {
-      names.assign(words.begin(), words.end());
-      cloud.xyz_style.names = std::string(prefix);
-      const std::size_t comma = content.find_first_of(",;\t");
-      cloud.xyz_style.separator = comma == std::string_view::npos ? ' ' : content[comma];
-      cloud.notes.push_back({std::string(content), 1});  // given up below if it turns out to be the names
-    } else if (comment) {
-      if (!words.empty()) cloud.notes.push_back({std::string(content)});
-    } else if (words.size() == 1 && parse_integer(words[0], Scalar::uint64) && !cloud.xyz_style.counted) {
-      cloud.xyz_style.counted = true;
-    } else {
-      break;
-    }
-    skip_line(cursor);
+// What parts the columns, by the first row: cells where they are numbers or empty, else words.
+Separators separators_of(std::string_view row) {
+  for (const Separators s : {Separators::semicolon, Separators::comma, Separators::tab}) {
+    const auto cells = words_of(row, s);
+    if (cells.size() > 1 && std::all_of(cells.begin(), cells.end(), [](std::string_view cell) {
+          return cell.empty() || parse_real(cell).has_value();
+        }))
+      return s;
   }
-  return names;
+  return Separators::space_comma;
+}
+
+// How many the first row has: at least three.
+std::size_t count_columns(const TextCursor& cursor, Separators separators) {
+  const std::string_view row = peek_line(cursor);
+  const std::string_view shown = row.substr(0, row.find_first_of("\r\n"));
+  const std::size_t line = cursor.lines + 1;
+  if (row.empty()) cursor.source.fail("line {}: expected points, found the end of the file", line);
+  const auto words = words_of(row, separators);
+  if (words.size() < 3)
+    cursor.source.fail("line {}: expected at least 3 columns, found {} in {}", line, words.size(),
+                       in_quotes(shown));
+  if (has_decimal_commas(row))
+    cursor.source.fail(
+        "line {}: expected decimal points and one kind of separator, found commas between digits in {}", line,
+        in_quotes(shown));
+  return words.size();
+}
+
+std::vector<Field> fields_of(const std::vector<std::string>& names, std::size_t columns) {
+  std::vector<Field> fields;
+  for (std::size_t k = 0; k < columns; ++k) {
+    std::string name = k < names.size() ? name_in_cell(names[k]) : "";
+    if (name.empty())
+      name = names.empty() && k < 3 ? std::string(1, char('x' + char(k))) : fmt::format("column_{}", k + 1);
+    fields.push_back({std::move(name), Scalar::float64});
+  }
+  return fields;
 }
 
 // What one row says of three columns being a normal: flags, one of them set, have its length, too.
@@ -127,43 +113,20 @@ Cloud read_xyz(const Source& source, const Context& context) {
   cloud.format = Format::xyz;
   cloud.encoding = Encoding::ascii;
   TextCursor cursor(source, 0, 0, context);
-  std::vector<std::string> names = read_beginning(cursor, cloud);
+  const std::vector<XyzNames> beginning = read_xyz_beginning(cursor, cloud);
   cloud.original_header.assign(cursor.all.data(), cursor.at);
-
-  const std::string_view first = peek_line(cursor);
-  if (first.empty()) source.fail("line {}: expected points, found the end of the file", cursor.lines + 1);
-  const auto words = words_of(first, Separators::space_comma);
-  if (words.size() < 3)
-    source.fail("line {}: expected at least 3 columns, found {} in {}", cursor.lines + 1, words.size(),
-                in_quotes(without_line_end(first)));
-  if (has_decimal_commas(first))
-    source.fail(
-        "line {}: expected decimal points and one kind of separator, found commas between digits in {}",
-        cursor.lines + 1, in_quotes(without_line_end(first)));
-
-  if (names.size() != words.size()) {
-    // Not this file's columns: an ordinary comment after all.
-    names.clear();
-    cloud.xyz_style.names.reset();
-  }
-  const auto names_line =
-      std::find_if(cloud.notes.begin(), cloud.notes.end(), [](const Note& n) { return n.element == 1; });
-  if (names_line != cloud.notes.end()) {
-    if (!names.empty())
-      cloud.notes.erase(names_line);
-    else
-      names_line->element = 0;
-  }
   Table table;
   table.name = "vertex";
-  table.separators = Separators::space_comma;
-  for (std::size_t k = 0; k < words.size(); ++k) {
-    std::string name = k < 3 ? std::string(1, char('x' + char(k))) : fmt::format("column_{}", k + 1);
-    if (!names.empty()) name = names[k];
-    table.fields.push_back({std::move(name), Scalar::float64});
-  }
+  table.separators = separators_of(peek_line(cursor));
+  const std::size_t columns = count_columns(cursor, table.separators);
+  const auto names = take_xyz_names(beginning, columns, table.separators, source, cloud);
+  table.fields = fields_of(names, columns);
   count_text_rows(table, cursor);
   read_text_rows(table, cursor, context);
+  if (const auto promised = cloud.xyz_style.counted; promised && *promised != table.count)
+    source.fail("line {}: expected {} points in all, as a line before the first one says, found {}; {}",
+                cursor.lines, *promised, table.count,
+                table.count < *promised ? "the file is cut off, or mend that number" : "mend that number");
   if (const std::size_t k = names.empty() ? unit_columns(table) : 0; k > 0)
     for (std::size_t axis = 0; axis < 3; ++axis) table.fields[k + axis].name = kPlyNormal[axis];
   cloud.tail = cursor.rest();
@@ -172,23 +135,6 @@ Cloud read_xyz(const Source& source, const Context& context) {
   cloud.width = cloud.size();
   cloud.original_canonical = xyz_header(cloud);
   return cloud;
-}
-
-std::string xyz_header(const Cloud& cloud) {
-  std::string out;
-  for (const Note& note : cloud.notes) out += note.line + cloud.newline;
-  if (cloud.xyz_style.names) {
-    out += *cloud.xyz_style.names;
-    bool first = true;
-    for (const Field& f : cloud.points().fields) {
-      if (!first) out += cloud.xyz_style.separator;
-      first = false;
-      out += f.name;
-    }
-    out += cloud.newline;
-  }
-  if (cloud.xyz_style.counted) out += fmt::format("{}{}", cloud.size(), cloud.newline);
-  return out;
 }
 
 void write_xyz(const Cloud& cloud, Sink& sink, const Context& context) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <charconv>
 #include <cstdio>
 #include <cstring>
 #include <optional>
@@ -30,13 +31,36 @@ constexpr const char* kExists = "exists already; `force` replaces it";
   fail(ErrorCode::cannot_write, "{}: {}", target.string(), why);
 }
 
-// The file that a chain of symbolic links ends at, which need not exist.
+// The open file that a path stands for by its number: /dev/stdout, /dev/fd/N and the like, which a shell
+// gives as the name of a pipe. What is behind it may have no name, or one of a file that the shell has
+// opened.
+std::optional<int> descriptor_of(const std::filesystem::path& path) {
+  if (path == "/dev/stdout") return STDOUT_FILENO;
+  if (path == "/dev/stderr") return STDERR_FILENO;
+  if (path.parent_path() != "/dev/fd" && path.parent_path() != "/proc/self/fd") return std::nullopt;
+  const std::string number = path.filename().string();
+  int descriptor = 0;
+  const char* const end = number.data() + number.size();
+  const auto [stop, error] = std::from_chars(number.data(), end, descriptor);
+  if (error != std::errc{} || stop != end) return std::nullopt;
+  return descriptor;
+}
+
+// Refuses an open file that cannot be written.
+void check_descriptor(const std::filesystem::path& shown, int descriptor) {
+  const int flags = ::fcntl(descriptor, F_GETFL);
+  if (flags < 0) refuse(shown, fmt::format("cannot write: {}", std::strerror(errno)));
+  if ((flags & O_ACCMODE) == O_RDONLY) refuse(shown, "cannot write: is open for reading only");
+}
+
+// The file that a chain of symbolic links ends at, which need not exist, or the name of an open one.
 std::filesystem::path follow_links(const std::filesystem::path& target) {
   constexpr int kMostLinks = 40;  // as Linux
   std::filesystem::path path = target;
   std::error_code error;
   for (int k = 0; k < kMostLinks; ++k) {
-    if (!std::filesystem::is_symlink(std::filesystem::symlink_status(path, error))) return path;
+    if (descriptor_of(path) || !std::filesystem::is_symlink(std::filesystem::symlink_status(path, error)))
+      return path;
     const std::filesystem::path next = std::filesystem::read_symlink(path, error);
     if (error) refuse(target, error.message());
     path = next.is_absolute() ? next : path.parent_path() / next;
@@ -78,11 +102,19 @@ std::optional<struct stat> check(const std::filesystem::path& shown, const std::
 }  // namespace
 
 void check_target(const std::filesystem::path& target, bool replace) {
-  check(target, follow_links(target), replace);
+  const std::filesystem::path file = follow_links(target);
+  if (const auto open = descriptor_of(file)) return check_descriptor(target, *open);
+  check(target, file, replace);
 }
 
 AtomicFile::AtomicFile(const std::filesystem::path& target, bool replace, const Context& context)
     : shown_(target), target_(follow_links(target)), replace_(replace), context_(context) {
+  if (const auto open = descriptor_of(target_)) {
+    check_descriptor(shown_, *open);
+    file_ = ::fcntl(*open, F_DUPFD_CLOEXEC, 0);
+    if (file_ < 0) fail(errno);
+    return;
+  }
   const auto present = check(shown_, target_, replace_);
   if (present && !S_ISREG(present->st_mode)) {
     file_ = ::open(target_.c_str(), O_WRONLY | O_CLOEXEC);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <functional>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -28,6 +29,33 @@ void forget_element(Cloud& cloud, std::size_t gone) {
     if (note.element == gone) note.field = 0;
     if (note.element > gone) --note.element;
   }
+}
+
+// Fields that programs write in lower and upper case alike; others of another case are other fields.
+constexpr std::array<std::string_view, 12> kAnyCase = {
+    "nx", "ny", "nz", "normal_x", "normal_y", "normal_z", "red", "green", "blue", "alpha", "rgb", "rgba"};
+
+bool same_but_for_case(std::string_view a, std::string_view b) {
+  const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; };
+  return a.size() == b.size() &&
+         std::equal(a.begin(), a.end(), b.begin(), [&](char c, char d) { return lower(c) == lower(d); });
+}
+
+template <class Same>
+std::optional<std::size_t> first_field(const Cloud& cloud, std::string_view name, Same&& same) {
+  const std::vector<Field>& fields = cloud.points().fields;
+  const auto found =
+      std::find_if(fields.begin(), fields.end(), [&](const Field& f) { return same(f.name, name); });
+  if (found == fields.end()) return std::nullopt;
+  return std::size_t(found - fields.begin());
+}
+
+// R, G and B are colours where all three are there; one of them alone may be anything.
+std::optional<std::size_t> colour_by_letter(const Cloud& cloud, std::string_view name) {
+  if (name != "red" && name != "green" && name != "blue") return std::nullopt;
+  for (const std::string_view letter : {"r", "g", "b"})
+    if (!first_field(cloud, letter, same_but_for_case)) return std::nullopt;
+  return first_field(cloud, name.substr(0, 1), same_but_for_case);
 }
 
 // Scaled whole numbers have a range and no NaN.
@@ -94,10 +122,10 @@ void set_positions(Cloud& cloud, const double* xyz, const Context& context) {
 }
 
 std::optional<std::size_t> find_field(const Cloud& cloud, std::string_view name) {
-  const std::vector<Field>& fields = cloud.points().fields;
-  for (std::size_t f = 0; f < fields.size(); ++f)
-    if (fields[f].name == name) return f;
-  return std::nullopt;
+  auto found = first_field(cloud, name, std::equal_to<>());
+  if (found || std::find(kAnyCase.begin(), kAnyCase.end(), name) == kAnyCase.end()) return found;
+  found = first_field(cloud, name, same_but_for_case);
+  return found ? found : colour_by_letter(cloud, name);
 }
 
 std::vector<double> field_values(const Cloud& cloud, std::size_t field, const Context& context) {
@@ -111,7 +139,7 @@ void set_field(Cloud& cloud, const std::string& name, Scalar type, const std::ve
   if (const auto present = find_field(cloud, name))
     scatter(cloud.points(), {*present}, values.data(), context);
   else
-    append_field(cloud.points(), Field{name, type}, values.data(), context);
+    add_field(cloud.points(), Field{name, type}, values.data(), context);
 }
 
 void check_field(const Cloud& cloud, const std::string& name, Scalar type) {

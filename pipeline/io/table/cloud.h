@@ -39,9 +39,10 @@ struct Note {
 
 /// What an XYZ file says before its first point, besides comments.
 struct XyzStyle {
-  bool counted = false;              ///< a line with the number of points (.pts)
-  std::optional<std::string> names;  ///< the start of a line that names the columns ("//", "# ", "")
-  char separator = ' ';              ///< between those names
+  std::optional<std::uint64_t> counted;  ///< the number of points, on a line of its own (.pts)
+  std::optional<std::string> names;      ///< the start of a line that names the columns ("//", "# ", "")
+  char separator = ' ';                  ///< between those names
+  std::vector<std::string> cells;        ///< those names as written, with quotes and units
 };
 
 /// A file in memory: every element and field, known or not.
@@ -93,7 +94,9 @@ std::size_t finite_rows(const std::vector<double>& xyz, const Context& context =
 /// logged. Scaled ones (LAS) are rounded to their scale; a warning is logged for what is beyond their range.
 void set_positions(Cloud& cloud, const double* xyz, const Context& context = {});
 
-/// The field of the points with that name (the first of several), or none.
+/// The field of the points with that name (the first of several), or none. The names of normals and colours
+/// (nx, normal_x, red, alpha, rgb, ...) stand for those in upper case, too, where none is written so; red,
+/// green and blue for R, G and B where all three are there.
 std::optional<std::size_t> find_field(const Cloud& cloud, std::string_view name);
 
 /// The values of a plain field, one double per point. \throw std::invalid_argument if it is a list or an

@@ -62,7 +62,7 @@ void scatter_text(Table& table, const std::vector<std::size_t>& which, const dou
       for (std::size_t k = 0; k < which.size(); ++k) {
         if (which[k] != f) continue;
         const double value = values[i * which.size() + k];
-        if (same(parse_real(words[0]).value(), value)) continue;
+        if (same(value_of(words[0]), value)) continue;
         out.append(copied, words[0].data());
         append_number(out, value, types[k]);
         copied = words[0].data() + words[0].size();
@@ -122,7 +122,7 @@ std::vector<double> gather(const Table& table, const std::vector<std::size_t>& w
       } else {
         for_each_field(table, table.row(i), [&](std::size_t f, const std::vector<std::string_view>& words) {
           for (std::size_t k = 0; k < which.size(); ++k)
-            if (which[k] == f) out[k] = parse_real(words[0]).value();
+            if (which[k] == f) out[k] = value_of(words[0]);
         });
       }
     }

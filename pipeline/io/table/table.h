@@ -65,6 +65,13 @@ void scatter(Table& table, const std::vector<std::size_t>& which, const double* 
 /// Appends a plain field with one value per row.
 void append_field(Table& table, const Field& field, const double* values, const Context& context);
 
+/// The same for every text: rows of cells get one more, in quotes where the one before it is.
+void add_field(Table& table, const Field& field, const double* values, const Context& context);
+
+/// Writes rows of text anew as words with one blank between them: an empty cell becomes "nan", a quoted one
+/// loses its quotes. Does nothing if they are such words or bytes.
+void make_words(Table& table, const Context& context);
+
 /// Keeps the rows `which` in that order.
 void select(Table& table, const std::vector<std::size_t>& which);
 

@@ -74,9 +74,42 @@ int significant_digits(std::string_view word) {
   return digits;
 }
 
+// The first separator that is not between quotes, or the end.
+const char* end_of_cell(const char* p, const char* end, char separator) {
+  bool quoted = false;
+  for (; p != end && (quoted || *p != separator); ++p) quoted = quoted != (*p == '"');
+  return p;
+}
+
+std::string_view without_blanks(std::string_view text) {
+  while (!text.empty() && is_separator(text.front(), Separators::space)) text.remove_prefix(1);
+  while (!text.empty() && is_separator(text.back(), Separators::space)) text.remove_suffix(1);
+  return text;
+}
+
+std::vector<std::string_view> cells_of(std::string_view line, char separator) {
+  std::vector<std::string_view> cells;
+  const char* p = line.data();
+  const char* const end = p + line.size();
+  for (bool more = true; more;) {
+    more = end_of_cell(p, end, separator) != end;
+    cells.push_back(next_cell(p, end, separator));
+  }
+  return cells;
+}
+
 }  // namespace
 
+std::string_view next_cell(const char*& p, const char* end, char separator) {
+  const char* const stop = end_of_cell(p, end, separator);
+  std::string_view cell = without_blanks({p, std::size_t(stop - p)});
+  p = stop == end ? end : stop + 1;
+  if (cell.size() < 2 || cell.front() != '"' || cell.back() != '"') return cell;
+  return without_blanks(cell.substr(1, cell.size() - 2));
+}
+
 std::vector<std::string_view> words_of(std::string_view line, Separators s) {
+  if (const char separator = cell_separator(s); separator != '\0') return cells_of(line, separator);
   std::vector<std::string_view> words;
   const char* p = line.data();
   const char* const end = p + line.size();
@@ -112,6 +145,10 @@ std::optional<double> parse_real(std::string_view word) {
   return parse_windows(word);
 }
 
+double value_of(std::string_view word) {
+  return word.empty() ? std::numeric_limits<double>::quiet_NaN() : parse_real(word).value();
+}
+
 std::optional<std::uint64_t> parse_integer(std::string_view word, Scalar type) {
   if (word.size() > 1 && word.front() == '+' && word[1] != '-' && word[1] != '+') word.remove_prefix(1);
   return with_type(type, [word](auto value) -> std::optional<std::uint64_t> {
@@ -128,7 +165,7 @@ bool is_value(std::string_view word, Scalar type) {
 
 void store_text(std::string_view word, Scalar type, char* p) {
   if (is_float(type)) {
-    store(type, p, parse_real(word).value());
+    store(type, p, value_of(word));
   } else {
     const std::uint64_t bits = parse_integer(word, type).value();
     std::memcpy(p, &bits, size_of(type));

@@ -14,8 +14,20 @@ namespace rfsmooth::pipeline::io {
 /// What stands between the values of a line.
 enum class Separators {
   space,        ///< blanks and tabs (PLY, PCD, OFF)
-  space_comma,  ///< also ',' and ';' (XYZ)
+  space_comma,  ///< also ',' and ';', several of them as one (XYZ whose rows mix them)
+  comma,        ///< ',' between cells, which may be empty or in quotes (XYZ, as are the next two)
+  semicolon,    ///< ';' between cells
+  tab,          ///< a tab between cells
 };
+
+/// What stands between cells; 0 where the values are words instead, none of which is empty.
+inline char cell_separator(Separators s) {
+  return s == Separators::comma ? ',' : s == Separators::semicolon ? ';' : s == Separators::tab ? '\t' : '\0';
+}
+
+/// The cell that begins at `p`, without blanks and quotes around it; may be empty. Moves `p` to the next one,
+/// or to `end`.
+std::string_view next_cell(const char*& p, const char* end, char separator);
 
 /// Whether c stands between two values.
 inline bool is_separator(char c, Separators s) {
@@ -23,15 +35,17 @@ inline bool is_separator(char c, Separators s) {
          (s == Separators::space_comma && (c == ',' || c == ';'));
 }
 
-/// The next word at or after `p`; empty (at `end`) if there is none. Moves `p` behind the word.
+/// The next word at or after `p`; empty (at `end`) if there is none. Moves `p` behind the word. Of a row of
+/// cells: the cell that begins at `p`.
 inline std::string_view next_word(const char*& p, const char* end, Separators s = Separators::space) {
+  if (const char separator = cell_separator(s); separator != '\0') return next_cell(p, end, separator);
   while (p != end && is_separator(*p, s)) ++p;
   const char* first = p;
   while (p != end && !is_separator(*p, s)) ++p;
   return {first, std::size_t(p - first)};
 }
 
-/// All words of a line.
+/// All words of a line, or all of its cells.
 std::vector<std::string_view> words_of(std::string_view line, Separators s = Separators::space);
 
 /// A number of rows and the like: digits only. None if it is anything else, or too large.
@@ -42,6 +56,9 @@ std::optional<std::uint64_t> parse_count(std::string_view word);
 /// else.
 std::optional<double> parse_real(std::string_view word);
 
+/// The value of a word that is_value accepts; of an empty cell: NaN.
+double value_of(std::string_view word);
+
 /// Parses a whole number in the range of the integer `type`; "3.0" and "1e3" are accepted. Returns its bits:
 /// two's complement, in the low bytes.
 std::optional<std::uint64_t> parse_integer(std::string_view word, Scalar type);
@@ -49,7 +66,8 @@ std::optional<std::uint64_t> parse_integer(std::string_view word, Scalar type);
 /// Whether `word` can be a value of `type`.
 bool is_value(std::string_view word, Scalar type);
 
-/// Stores the value of `word` (which must satisfy is_value) at `p` as `type`, floats rounded to nearest.
+/// Stores the value of `word` (which must satisfy is_value, or be an empty cell of a float) at `p` as `type`,
+/// floats rounded to nearest.
 void store_text(std::string_view word, Scalar type, char* p);
 
 /// Appends the fewest digits that give `value` back when read as `type`; "nan", "inf", "-inf".

@@ -225,5 +225,39 @@ TEST_F(Commands, CompareNeedsTwoFiles) {
   EXPECT_EQ(run({"compare", "a.ply", "b.ply"}).code, 3);
 }
 
+TEST_F(Commands, FilesInAFolderAreCalledAfterTheFormatThatTheyAreWrittenIn) {
+  const std::string rows = "0 0 0\n1 0 0\n0 1 0\n1 1 0.1\n2 0 0\n2 1 0.1\n";
+  for (const char* name : {"a.xyz", "scan.v2", "plain", "kept.ply.txt"}) put(name, rows);
+  ASSERT_EQ(
+      run({"denoise", "--format", "ply", "a.xyz", "scan.v2", "plain", "kept.ply.txt", "-o", "made/"}).code,
+      0);
+  for (const char* name : {"made/a.ply", "made/scan.v2.ply", "made/plain.ply", "made/kept.ply.ply"})
+    EXPECT_EQ(info(name)["format"], "ply") << name;
+  ASSERT_EQ(run({"denoise", "--format", "xyz", "kept.ply.txt", "scan.v2", "-o", "texts/"}).code, 0);
+  EXPECT_TRUE(there("texts/kept.ply.txt")) << "an extension of that format stays";
+  EXPECT_TRUE(there("texts/scan.v2.xyz"));
+  ASSERT_EQ(run({"denoise", "a.xyz", "plain", "-o", "same/"}).code, 0);
+  EXPECT_TRUE(there("same/a.xyz") && there("same/plain")) << "without --format as the inputs";
+}
+
+TEST_F(Commands, MeshesInAFolderArePlyEncodedAsTheInput) {
+  put("a.xyz", "0 0 0\n1 0 0\n0 1 0\n1 1 0.1\n2 0 0\n2 1 0.1\n");
+  put("b.ply", noisy_plane(5).bytes());
+  ASSERT_EQ(run({"mesh", "a.xyz", "b.ply", "-o", "meshes"}).code, 0);
+  EXPECT_EQ(info("meshes/a.ply")["encoding"], "ascii");
+  EXPECT_EQ(info("meshes/b.ply")["encoding"], "binary_little_endian");
+  ASSERT_EQ(run({"mesh", "a.xyz", "--encoding", "binary", "-o", "meshes", "--force"}).code, 0);
+  EXPECT_EQ(info("meshes/a.ply")["encoding"], "binary_little_endian");
+}
+
+TEST_F(Commands, TwoFilesThatWouldGetOneNameAreRefusedBeforeAnythingIsWritten) {
+  put("a.xyz", "0 0 0\n1 0 0\n0 1 0\n1 1 0.1\n");
+  put("a.ply", noisy_plane(5).bytes());
+  const Ran ran = run({"denoise", "--format", "pcd", "a.xyz", "a.ply", "-o", "made/"});
+  EXPECT_EQ(ran.code, 2);
+  EXPECT_THAT(ran.err, HasSubstr("a.xyz and a.ply would both be written to made/a.pcd"));
+  EXPECT_FALSE(there("made"));
+}
+
 }  // namespace
 }  // namespace rfsmooth::test

@@ -268,6 +268,10 @@ TEST_F(DenoiseCommand, ConfigErrorsAreNamed) {
   put("range.json", R"({"beta": 7})");
   EXPECT_EQ(run({"denoise", "--config", "range.json", "in.ply", "out.ply"}).code, 2);
   EXPECT_EQ(run({"denoise", "--config", "missing.json", "in.ply", "out.ply"}).code, 3);
+  put("huge.json", R"({"strength": 1e400})");
+  const Ran huge = run({"denoise", "--config", "huge.json", "in.ply", "out.ply"});
+  EXPECT_EQ(huge.code, 2);
+  EXPECT_THAT(huge.err, ::testing::AllOf(HasSubstr("huge.json: "), HasSubstr("too large")));
   EXPECT_FALSE(there("out.ply"));
 }
 

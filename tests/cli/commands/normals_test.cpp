@@ -140,6 +140,22 @@ TEST_F(NormalsCommand, UnitVectorsInColumnsWithoutNamesAreNormals) {
   }
 }
 
+TEST_F(NormalsCommand, NamesAsCloudCompareWritesThemAreKnown) {
+  put("in.txt", "//X Y Z R G B Nx Ny Nz\n" + columns("10 20 30 "));
+  const Ran kept = run({"denoise", "in.txt", "kept.txt"});
+  ASSERT_EQ(kept.code, 0) << kept.err;
+  EXPECT_THAT(kept.err, HasSubstr("stale"));
+  const Ran ran = run({"denoise", "--normals", "in.txt", "out.txt"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  const io::Cloud after = read(at("out.txt"));
+  EXPECT_THAT(field_names(after), ElementsAre("X", "Y", "Z", "R", "G", "B", "Nx", "Ny", "Nz"));
+  EXPECT_EQ(outward(after, {"Nx", "Ny", "Nz"}), 800);
+  ASSERT_EQ(run({"denoise", "in.txt", "out.las"}).code, 0);
+  const io::Cloud las = read(at("out.las"));
+  EXPECT_EQ(values(las, "red")[0], 2560) << "the place of colours, not extra bytes";
+  EXPECT_THAT(field_names(las), Not(::testing::Contains("R")));
+}
+
 TEST_F(NormalsCommand, ColumnsOfACubesNormalsAreNormalsToo) {
   std::string text;
   for (int i = 0; i < 100; ++i)

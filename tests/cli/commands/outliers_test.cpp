@@ -151,6 +151,20 @@ TEST_F(OutliersOption, RemoveKeepsTheGridOfAnOrganisedCloud) {
   for (const double moved : values_of(out, "displacement")) EXPECT_TRUE(moved >= 0 && moved < 2);
 }
 
+TEST_F(OutliersOption, AGridOfWholeNumbersIsLostAndThatIsSaid) {
+  std::string pcd = "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE I I I\nWIDTH 40\nHEIGHT 30\nDATA ascii\n";
+  for (int i = 0; i < 40 * 30; ++i)
+    pcd += fmt::format("{} {} {}\n", 100 * (i % 40), 100 * (i / 40), i == 615 ? 3000 : i * i % 7);
+  put("in.pcd", pcd);
+  const Ran ran = run({"denoise", "--outliers", "remove", "in.pcd", "out.pcd"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  EXPECT_THAT(ran.err, ::testing::AllOf(HasSubstr("1 outlier removed"), HasSubstr("the grid of 40 x 30 goes"),
+                                        HasSubstr("--outliers mark")));
+  const Ran marked = run({"denoise", "--outliers", "mark", "in.pcd", "marked.pcd"});
+  EXPECT_THAT(marked.err, ::testing::Not(HasSubstr("grid")));
+  EXPECT_THAT(take("marked.pcd"), HasSubstr("WIDTH 40\nHEIGHT 30\n"));
+}
+
 TEST_F(OutliersOption, SmoothLooksForNone) {
   clean({"--outliers", "smooth"});
   EXPECT_EQ(report()["counts"]["outliers"], 0);

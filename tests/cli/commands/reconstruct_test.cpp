@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -90,6 +91,26 @@ INSTANTIATE_TEST_SUITE_P(All, ReconstructMethods,
                            name.erase(std::remove(name.begin(), name.end(), '-'), name.end());
                            return name;
                          });
+
+TEST_P(ReconstructMethods, FindNoSurfaceInALine) {
+  std::string line;
+  for (int i = 0; i < 400; ++i) line += fmt::format("{},{},{}\n", 0.1 * i, 0.2 * i, 5 - 0.3 * i);
+  put("line.csv", line);
+  const Ran ran = run({"reconstruct", "--method", GetParam(), "line.csv", "out.ply"});
+  EXPECT_EQ(ran.code, 4) << ran.err;
+  EXPECT_THAT(ran.err, HasSubstr("line.csv: all points are on one line"));
+  EXPECT_FALSE(there("out.ply"));
+}
+
+TEST_F(Reconstruct, ATableWithCommasBecomesAPly) {
+  std::string table = "\"x\",\"y\",\"z\",\"i\"\n";
+  for (int i = 0; i < 900; ++i) table += fmt::format("{},{},0.{},\n", i % 30, i / 30, i * i % 7);
+  put("in.csv", table);
+  ASSERT_EQ(run({"reconstruct", "in.csv", "out.ply"}).code, 0);
+  const nlohmann::json out = nlohmann::json::parse(run({"info", "--json", "out.ply"}).out);
+  EXPECT_EQ(out["encoding"], "ascii");
+  EXPECT_EQ(out["finite"], out["points"]);
+}
 
 TEST_F(Reconstruct, ReportIsTakenBackByConfig) {
   ASSERT_EQ(run({"reconstruct", "--method", "advancing-front", "in.ply", "a.ply", "--no-denoise", "--report",

@@ -268,5 +268,18 @@ TEST_F(SmoothMesh, RidgesAreWrittenAsAField) {
   EXPECT_TRUE(same || opposite);
 }
 
+TEST_F(SmoothMesh, FacesWithACornerThatIsNotFiniteAreSaid) {
+  std::string mesh = bumpy_grid("");
+  const std::size_t first = mesh.find("end_header\n") + 11;
+  mesh.replace(first, mesh.find('\n', first) - first, "nan nan nan");
+  put("in.ply", mesh);
+  const Ran ran = run({"smooth-mesh", "in.ply", "out.ply"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  EXPECT_THAT(ran.err,
+              HasSubstr("in.ply: 1 faces with a corner that is not finite are left out of the work"));
+  put("in.ply", bumpy_grid(""));
+  EXPECT_EQ(run({"smooth-mesh", "in.ply", "out.ply", "--force"}).err.find("not finite"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace rfsmooth::test

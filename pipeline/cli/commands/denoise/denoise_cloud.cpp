@@ -42,8 +42,9 @@ enum class Leaving {
   as_nan    ///< they become NaN, as a sensor writes where it saw nothing, so that the cloud keeps its grid
 };
 
-bool keeps_grid(const pipeline::io::Cloud& cloud) {
-  bool has_nan = cloud.organised();
+/// Whether the coordinates can say that nothing was seen.
+bool can_be_nan(const pipeline::io::Cloud& cloud) {
+  bool has_nan = true;
   for (const std::size_t f : cloud.xyz) has_nan = has_nan && is_float(cloud.points().fields[f].type);
   return has_nan;
 }
@@ -51,7 +52,7 @@ bool keeps_grid(const pipeline::io::Cloud& cloud) {
 Leaving way_out(const DenoiseCommandOptions& options, const DenoiseReport& done,
                 const pipeline::io::Cloud& cloud) {
   if (!options.removes() || done.outliers == 0) return Leaving::none;
-  return keeps_grid(cloud) ? Leaving::as_nan : Leaving::as_rows;
+  return cloud.organised() && can_be_nan(cloud) ? Leaving::as_nan : Leaving::as_rows;
 }
 
 /// What became of a cloud, which itself still has its old positions.
@@ -147,6 +148,15 @@ void mark_outliers(pipeline::io::Cloud& cloud, const std::vector<char>& outlier,
   pipeline::io::set_field(cloud, kOutlier, pipeline::io::Scalar::uint8, flags, context);
 }
 
+/// An organised cloud whose coordinates have no NaN has no way to say that a place of its grid is empty.
+void warn_of_grid(const Job& job, const pipeline::io::Cloud& cloud, Console& console) {
+  if (cloud.organised())
+    console.warn(
+        fmt::format("{}: the coordinates are whole numbers, which cannot say that nothing was seen: with the "
+                    "outliers the grid of {} x {} goes, too (--outliers mark keeps it)",
+                    job.input, cloud.width, cloud.height));
+}
+
 void drop_outliers(pipeline::io::Cloud& cloud, const std::vector<char>& outlier, const Context& context) {
   std::vector<std::size_t> rows;
   for (std::size_t i = 0; i < outlier.size(); ++i)
@@ -236,7 +246,10 @@ std::string denoise_cloud(const DenoiseCommandOptions& options, Beside& beside, 
     page.command = beside.command;
     beside.page = pipeline::make_page(page, context);
   }
-  if (smoothed.leaving == Leaving::as_rows) drop_outliers(cloud, done.outlier, context);
+  if (smoothed.leaving == Leaving::as_rows) {
+    warn_of_grid(job, cloud, console);
+    drop_outliers(cloud, done.outlier, context);
+  }
   beside.trace = std::move(smoothed.report.trace);
   return summary(done, options);
 }

@@ -31,14 +31,14 @@ void check_denoise(const DenoiseCommandOptions& options, const Invocation& typed
   check(options.normals);
   options.trace.check(options.job.files, typed);
   if (!options.html) return;
-  if (plan_jobs(typed.arguments, options.job.files.output).size() > 1)
+  if (plan_cloud_jobs(typed.arguments, options.job.files).size() > 1)
     fail(ErrorCode::usage, "--html shows one cloud; several are named");
   check_no_cloud_target(*options.html, options.job.files.force, "page");
 }
 
 /// One cloud in tiles. \return the exit code, or none if it is to be smoothed as a whole.
 std::optional<int> denoise_in_tiles(const DenoiseCommandOptions& options, const Invocation& typed) {
-  const std::vector<Job> jobs = plan_jobs(typed.arguments, options.job.files.output);
+  const std::vector<Job> jobs = plan_cloud_jobs(typed.arguments, options.job.files);
   if (jobs.size() != 1) return std::nullopt;
   const Job& job = jobs.front();
   Console console(options.job.talk);

@@ -53,11 +53,19 @@ bool are_whole(const std::vector<double>& values, double low, double high) {
                      [&](double v) { return v >= low && v <= high && v == std::nearbyint(v); });
 }
 
+// The name of a place that a field's name stands for: a colour's in any case, or the field's own.
+std::string_view plain_name(const Cloud& plain, std::size_t f) {
+  for (const std::string_view colour : kColours)
+    if (find_field(plain, colour) == f) return colour;
+  return plain.points().fields[f].name;
+}
+
 std::optional<Taken> place_of(const Cloud& plain, std::size_t f, const std::vector<Taken>& before,
                               const Context& context) {
   const Field& field = plain.points().fields[f];
+  const std::string_view name = plain_name(plain, f);
   for (const Place& place : places()) {
-    if (place.name != field.name || !field.is_plain()) continue;
+    if (place.name != name || !field.is_plain()) continue;
     const bool used = std::any_of(before.begin(), before.end(), [&](const Taken& t) {
       return t.place.field == place.field && t.place.shift == place.shift;
     });
@@ -138,7 +146,7 @@ Sorted sort_fields(const Cloud& plain, const Context& context) {
   Sorted out;
   const std::vector<Field>& fields = plain.points().fields;
   for (std::size_t f = 0; f < fields.size(); ++f) {
-    const bool packed = fields[f].name == "rgb" && fields[f].is_plain() && size_of(fields[f].type) == 4;
+    const bool packed = find_field(plain, "rgb") == f && fields[f].is_plain() && size_of(fields[f].type) == 4;
     if (std::find(plain.xyz.begin(), plain.xyz.end(), f) != plain.xyz.end()) continue;
     if (auto place = place_of(plain, f, out.taken, context))
       out.taken.push_back(std::move(*place));
