@@ -159,6 +159,26 @@ TEST_F(Tiles, WhatCannotBeDoneIsRefusedWithWhatToDo) {
   EXPECT_THAT(later.err, HasSubstr("tiles plan"));
 }
 
+// Of rows before the points that the file only promises; 2^64 - 100 of them end before they begin.
+TEST_F(Tiles, RowsThatAreNotThereAreRefusedWithTheirElementAndPlace) {
+  for (const std::string count : {"40000000", "3000000000", "10000000000000", "18446744073709551516"}) {
+    const std::string bytes =
+        "ply\nformat binary_little_endian 1.0\nelement pad " + count +
+        "\nproperty uchar a\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\n"
+        "end_header\n" +
+        std::string(50, '\0');
+    put("in.ply", bytes);
+    RunSetup piped;
+    piped.input = bytes;
+    for (const Ran& ran :
+         {run({"tiles", "plan", "in.ply", "job"}), run({"tiles", "plan", "/dev/stdin", "job"}, piped)}) {
+      EXPECT_EQ(ran.code, 3) << ran.err;
+      EXPECT_THAT(ran.err, HasSubstr("expected " + count + " rows of element 'pad', 1 bytes each, found 50"));
+    }
+    EXPECT_FALSE(there("job"));
+  }
+}
+
 TEST_F(Tiles, AJobWhoseListsDoNotFitIsRefusedWithOneLineThatSaysWhich) {
   put("in.ply", strip(0.4).bytes());
   settled({"in.ply"}, "job");
