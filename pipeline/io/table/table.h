@@ -65,7 +65,7 @@ void scatter(Table& table, const std::vector<std::size_t>& which, const double* 
 /// Appends a plain field with one value per row.
 void append_field(Table& table, const Field& field, const double* values, const Context& context);
 
-/// Keeps the rows `which` in that order.
+/// Keeps the rows `which` in that order. O(rows and interludes).
 void select(Table& table, const std::vector<std::size_t>& which);
 
 /// Keeps the fields `which`, in that order. Text rows are rewritten, values separated by a blank.
