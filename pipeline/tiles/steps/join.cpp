@@ -22,13 +22,17 @@ namespace rfsmooth::pipeline::tiles {
 
 namespace {
 
-/// The records of all tiles, by rows.
+/// The records of all tiles, by rows, from row `from` on.
 template <class T>
 class OfAllTiles {
  public:
-  OfAllTiles(const Job& job, std::filesystem::path (Job::*of_tile)(std::size_t) const, const Context& context)
+  OfAllTiles(const Job& job, std::filesystem::path (Job::*of_tile)(std::size_t) const, std::uint64_t from,
+             const Context& context)
       : context_(context) {
-    for (std::size_t t = 0; t < job.tiles.size(); ++t) readers_.emplace_back((job.*of_tile)(t), context_);
+    for (std::size_t t = 0; t < job.tiles.size(); ++t) {
+      readers_.emplace_back((job.*of_tile)(t), context_);
+      if (from > 0) readers_.back().skip_to(from);
+    }
   }
   /// Calls `visit(row - first, record, tile)` for rows [first, first + count), in no order. Forward only.
   template <class Visit>
@@ -37,7 +41,7 @@ class OfAllTiles {
     for (std::size_t t = 0; t < readers_.size(); ++t)
       for (const T* r = readers_[t].peek(); r != nullptr && r->row < first + count; r = readers_[t].peek()) {
         readers_[t].next();
-        if (r->row >= first) visit(std::size_t(r->row - first), *r, t);  // else of an input before this one
+        visit(std::size_t(r->row - first), *r, t);
       }
   }
 
@@ -46,14 +50,15 @@ class OfAllTiles {
   std::vector<ReaderOf<T>> readers_;
 };
 
-/// Patches the rows of the inputs with the results of all tiles.
+/// Patches the rows of the inputs, from row `from` on, with the results of all tiles.
 class Patcher {
  public:
-  Patcher(const Job& job, const Context& context) : places_(job, &Job::done, context) {}
+  Patcher(const Job& job, std::uint64_t from, const Context& context)
+      : places_(job, &Job::done, from, context) {}
   /// With normals, which must be there.
   void add_normals(const Job& job, const Context& context) {
     reversed_ = find_sides(job, context);
-    normals_.emplace(job, &Job::normals, context);
+    normals_.emplace(job, &Job::normals, 0, context);
   }
   /// `first`: the row of the cloud that `rows` begins with.
   void patch(const RowFile& file, std::uint64_t first, std::uint64_t count, io::Bytes& rows) {
@@ -99,7 +104,7 @@ struct OpenInput {
 
 /// Refines the scale of a LAS file to `step`, unless nothing of it moved.
 io::RefinedScale refine_moved(const Job& job, OpenInput& input, double step, const Context& context) {
-  OfAllTiles<Record> places(job, &Job::done, context);
+  OfAllTiles<Record> places(job, &Job::done, input.before, context);
   Ends ends;
   bool moved = false;
   const RowFile& file = input.file;
@@ -116,7 +121,7 @@ io::RefinedScale refine_moved(const Job& job, OpenInput& input, double step, con
 
 /// The box of the coordinates as they will be written, for the header of a LAS file.
 void find_box(const Job& job, OpenInput& input, const Context& context) {
-  Patcher patcher(job, context);
+  Patcher patcher(job, input.before, context);
   Ends ends;
   const RowFile& file = input.file;
   file.for_each_piece(context, [&](std::uint64_t first, std::size_t count, io::Bytes& rows) {
@@ -169,7 +174,7 @@ std::vector<Joined> join_job(const Job& job, const std::vector<std::string>& out
     if (!is_run(job, t, normals, context)) refuse_step(job, fmt::format("tile {} is not smoothed yet", t));
   const DenoiseReport settled = settled_of(job).report;
   std::vector<Joined> joined;
-  Patcher patcher(job, context);
+  Patcher patcher(job, 0, context);
   if (normals) patcher.add_normals(job, context);
   std::uint64_t before = 0;
   for (std::size_t i = 0; i < job.inputs.size(); ++i) {

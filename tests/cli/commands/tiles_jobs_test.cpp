@@ -3,6 +3,7 @@
 #include <atomic>
 #include <csignal>
 #include <future>
+#include <limits>
 
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
@@ -135,6 +136,57 @@ TEST_F(Tiles, ACoarseScaleOfALasFileIsRefinedAsForTheWholeCloud) {
   const Ran other = run({"tiles", "join", "job", "out.ply"});
   EXPECT_EQ(other.code, 2);
   EXPECT_THAT(other.err, HasSubstr("keeps its format"));
+}
+
+// Each has its scale and its box from the results of its own rows; reading those of all inputs for each of
+// them took as long as there are inputs.
+TEST_F(Tiles, ManyLasFilesAreJoinedAsOneAndInTheTimeOfOne) {
+  constexpr int kFiles = kSanitized ? 8 : 100, kSide = kSanitized ? 80 : 200, kColumns = 200;
+  constexpr double kScale = 0.01;
+  std::mt19937_64 engine(9);
+  std::normal_distribution<double> noise(0, 0.3);
+  LasBytes all;
+  all.scale = {kScale, kScale, kScale};
+  for (int i = 0; i < kSide * kColumns; ++i) {
+    all.xyz.push_back({});
+    const double at[] = {i / kColumns + noise(engine), i % kColumns + noise(engine), noise(engine)};
+    for (std::size_t k = 0; k < 3; ++k) all.xyz.back()[k] = std::int32_t(std::lround(at[k] / kScale));
+  }
+  put("all.las", all.bytes());
+  std::vector<std::string> names;
+  const std::size_t each = all.xyz.size() / kFiles;
+  for (std::size_t f = 0; f < kFiles; ++f) {
+    LasBytes part = all;
+    const auto first = all.xyz.begin() + std::ptrdiff_t(f * each);
+    part.xyz.assign(first, first + std::ptrdiff_t(each));
+    names.push_back("part" + std::to_string(f) + ".las");
+    put(names.back(), part.bytes());
+  }
+  settled({"all.las"}, "one");
+  step_of_all("run", "one");
+  settled(names, "many");
+  step_of_all("run", "many");
+  const Ran one = run({"tiles", "join", "--keep-scale", "one", "one.las"}),
+            many = run({"tiles", "join", "--keep-scale", "many", "out"});
+  EXPECT_EQ(one.code, 0) << one.err;
+  EXPECT_EQ(many.code, 0) << many.err;
+  if (!kSanitized) {
+    EXPECT_LT(many.processor_seconds, 4 * one.processor_seconds + 0.5);
+  }
+  const std::string whole = take("one.las");
+  EXPECT_FALSE(whole == take("all.las"));
+  const std::size_t before = all.points(), row = all.row();
+  constexpr std::size_t kPlace = 12;  // bytes of a row
+  for (std::size_t f = 0; f < kFiles; ++f) {
+    const std::string part = take("out/" + names[f]);
+    std::int32_t low = std::numeric_limits<std::int32_t>::max();
+    for (std::size_t i = 0; i < each; ++i) {
+      low = std::min(low, LasBytes::get<std::int32_t>(part, before + i * row));
+      ASSERT_EQ(part.compare(before + i * row, kPlace, whole, before + (f * each + i) * row, kPlace), 0) << f;
+    }
+    constexpr std::size_t kLowXAt = 187;
+    EXPECT_NEAR(LasBytes::get<double>(part, kLowXAt), all.offset[0] + kScale * low, kScale / 10) << f;
+  }
 }
 
 TEST_F(Tiles, WhatCannotBeDoneIsRefusedWithWhatToDo) {
