@@ -22,7 +22,7 @@ namespace rfsmooth::pipeline::tiles {
 
 namespace {
 
-/// The records of all tiles, by rows, from row `from` on.
+/// The records of all tiles, by rows, from row `from` on; repeats have those of the first row at their place.
 template <class T>
 class OfAllTiles {
  public:
@@ -33,6 +33,10 @@ class OfAllTiles {
       readers_.emplace_back((job.*of_tile)(t), context_);
       if (from > 0) readers_.back().skip_to(from);
     }
+    if (job.repeated.empty()) return;
+    for (const RepeatedPlace& place : job.repeated) find_first(job, of_tile, place);
+    repeats_.emplace(job.repeats(), context_);
+    repeats_->skip_to(from);
   }
   /// Calls `visit(row - first, record, tile)` for rows [first, first + count), in no order. Forward only.
   template <class Visit>
@@ -43,11 +47,46 @@ class OfAllTiles {
         readers_[t].next();
         visit(std::size_t(r->row - first), *r, t);
       }
+    if (repeats_) visit_repeats(first, count, visit);
   }
 
  private:
+  /// What became of the first row at a place, and the tile that this is in.
+  struct AtPlace {
+    Eigen::Vector3d at;
+    T record;
+    std::size_t tile;
+  };
+
+  void find_first(const Job& job, std::filesystem::path (Job::*of_tile)(std::size_t) const,
+                  const RepeatedPlace& place) {
+    for (std::size_t t = 0; t < job.tiles.size(); ++t) {
+      ReaderOf<T> reader((job.*of_tile)(t), context_);
+      reader.skip_to(place.first);
+      const T* const r = reader.peek();
+      if (r != nullptr && r->row == place.first) return first_.push_back({place.at, *r, t});
+    }
+    fail(ErrorCode::internal, "row {} is in no tile", place.first);
+  }
+
+  template <class Visit>
+  void visit_repeats(std::uint64_t first, std::uint64_t count, Visit& visit) {
+    for (const Record* r = repeats_->peek(); r != nullptr && r->row < first + count; r = repeats_->peek()) {
+      repeats_->next();
+      const Eigen::Vector3d at = place(*r);
+      const auto same =
+          std::find_if(first_.begin(), first_.end(), [&](const AtPlace& other) { return other.at == at; });
+      if (same == first_.end()) fail(ErrorCode::internal, "row {} repeats no other", r->row);
+      T record = same->record;
+      record.row = r->row;
+      visit(std::size_t(r->row - first), record, same->tile);
+    }
+  }
+
   const Context& context_;
   std::vector<ReaderOf<T>> readers_;
+  std::vector<AtPlace> first_;
+  std::optional<RecordReader> repeats_;
 };
 
 /// Patches the rows of the inputs, from row `from` on, with the results of all tiles.

@@ -80,7 +80,7 @@ Settled settle_sample(const Job& job, Sample sample, const DenoiseOptions& optio
   how.statistics->box = job.box;
   if (!sample.measured.empty()) how.statistics = measure_points(std::move(sample.measured), how, context);
   const std::size_t n = sample.smoothed.size() / 3;
-  if (n < job.points) how.statistics->points = std::size_t(job.points);
+  if (n < job.in_tiles()) how.statistics->points = std::size_t(job.in_tiles());
   std::vector<double> smooth = sample.smoothed;
   Settled settled;
   settled.report = value_or_throw(denoise(smooth.data(), n, how, context));
