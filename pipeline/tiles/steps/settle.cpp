@@ -144,7 +144,9 @@ Settled read_settled(const std::filesystem::path& path) {
   try {
     Settled settled = settled_of_json(ordered_json::parse(file));
     std::vector<std::string> wrong = check(settled.report.statistics);
-    if (!(settled.halo >= 0 && settled.radii >= 0 && settled.widest >= 1 && settled.widest < kNone))
+    constexpr double kFarthest = 1e100;  // no cloud is larger (rfs_mesh/points.h)
+    if (!(settled.halo >= 0 && settled.halo <= kFarthest && settled.radii > 0 && settled.radii <= kFarthest &&
+          settled.widest >= 1 && settled.widest < kNone))
       wrong.emplace_back("halo, halo_radii or widest: is no length or no number of points");
     if (!wrong.empty()) fail(ErrorCode::input_unreadable, "{}: {}", path.string(), wrong.front());
     return settled;

@@ -245,9 +245,16 @@ TEST_F(Tiles, AJobWhoseListsDoNotFitIsRefusedWithOneLineThatSaysWhich) {
   EXPECT_EQ(sites.code, 3);
   EXPECT_THAT(sites.err, HasSubstr("statistics.json: noise: sigma at 0"));
   EXPECT_EQ(std::count(sites.err.begin(), sites.err.end(), '\n'), 1) << sites.err;
-  const Ran widest = run_with([](auto& json) { json["widest"] = 0; });
-  EXPECT_EQ(widest.code, 3);
-  EXPECT_THAT(widest.err, HasSubstr("statistics.json: halo"));
+  for (const char* name : {"widest", "halo_radii"}) {
+    const Ran none = run_with([&](auto& json) { json[name] = 0; });
+    EXPECT_EQ(none.code, 3);
+    EXPECT_THAT(none.err, HasSubstr("statistics.json: halo"));
+  }
+  const Ran tails = run_with([](auto& json) {
+    json["statistics"]["tails"] = {{"share", 0.5}, {"times", 0}, {"narrow", 0}, {"together", 1}};
+  });
+  EXPECT_EQ(tails.code, 3);
+  EXPECT_THAT(tails.err, HasSubstr("statistics.json: tails"));
 }
 
 TEST_F(Tiles, AFullDiskIsAnErrorAndTheWorkGoesOnWhenThereIsRoom) {
