@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cstring>
 
 #include "base/parallel.h"
 #include "pipeline/io/table/rows.h"

@@ -148,15 +148,10 @@ io::RefinedScale RowFile::refine_scale(double step, const std::array<double, 3>&
   for (std::size_t axis = 0; axis < 3; ++axis) {
     io::Field& field = field_[axis];
     const double a = (low[axis] - field.offset) / field.scale, b = (high[axis] - field.offset) / field.scale;
-    done.before[axis] = field.scale;
-    change_[axis] = io::finer_scale(field, step, std::min(a, b), std::max(a, b));
-    if (change_[axis].power > 0) {
-      io::change_scale(field, change_[axis]);
-      io::las::put_number(head_, io::las::kScaleAt + 8 * axis, field.scale);
-      io::las::put_number(head_, io::las::kOffsetAt + 8 * axis, field.offset);
-    }
-    done.after[axis] = field.scale;
-    done.shift[axis] = change_[axis].shift;
+    change_[axis] = io::refine_axis(field, axis, step, std::min(a, b), std::max(a, b), done);
+    if (change_[axis].power == 0) continue;
+    io::las::put_number(head_, io::las::kScaleAt + 8 * axis, field.scale);
+    io::las::put_number(head_, io::las::kOffsetAt + 8 * axis, field.offset);
   }
   return done;
 }

@@ -1,7 +1,6 @@
 #include "pipeline/tiles/files/statistics_json.h"
 
 #include <array>
-#include <cmath>
 
 namespace rfsmooth::pipeline::tiles {
 

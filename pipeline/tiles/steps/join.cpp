@@ -206,26 +206,27 @@ void check_inputs(const Job& job) {
 
 }  // namespace
 
-std::vector<Joined> join_job(const Job& job, const std::vector<std::string>& outputs, bool force,
-                             bool keep_scale, bool normals, const Context& context) {
+std::vector<Joined> join_job(const Job& job, const std::vector<std::string>& outputs, const JoinOptions& how,
+                             const Context& context) {
   check_inputs(job);
   for (std::size_t t = 0; t < job.tiles.size(); ++t)
-    if (!is_run(job, t, normals, context)) refuse_step(job, fmt::format("tile {} is not smoothed yet", t));
+    if (!is_run(job, t, how.normals, context))
+      refuse_step(job, fmt::format("tile {} is not smoothed yet", t));
   const DenoiseReport settled = settled_of(job).report;
   std::vector<Joined> joined;
   Patcher patcher(job, 0, context);
-  if (normals) patcher.add_normals(job, context);
+  if (how.normals) patcher.add_normals(job, context);
   std::uint64_t before = 0;
   for (std::size_t i = 0; i < job.inputs.size(); ++i) {
     OpenInput input = {RowFile(job.inputs[i].path, context), before};
     check_format(input.file.format(), outputs[i]);
-    if (normals) input.file.need_normals();
+    if (how.normals) input.file.need_normals();
     Joined& done = joined.emplace_back();
     done.las = input.file.format() == io::Format::las;
     done.noise = settled.noise;
     done.noise_left = settled.noise_left;
-    if (done.las) done.scale = prepare_las(job, input, keep_scale, settled, context);
-    write_joined(job, input, outputs[i], force, patcher, context);
+    if (done.las) done.scale = prepare_las(job, input, how.keep_scale, settled, context);
+    write_joined(job, input, outputs[i], how.force, patcher, context);
     before += input.file.rows();
   }
   if (patcher.patched() != job.points)

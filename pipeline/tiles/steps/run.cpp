@@ -95,13 +95,6 @@ void narrow(const Job& job, std::size_t tile, std::uint64_t most, const Context&
   }
 }
 
-/// A tile's points and those around it.
-struct Gathered {
-  std::vector<Record> own;
-  std::vector<Around> around;  ///< for normals only
-  std::vector<double> xyz;     ///< n x 3, the tile's own first
-};
-
 Gathered gather(const Job& job, std::size_t tile, const Settled& settled, bool normals, std::uint64_t most,
                 const Context& context) {
   Gathered points;
@@ -147,7 +140,8 @@ void run_tile(const Job& job, std::size_t tile, const DenoiseOptions& options,
   const Settled settled = settled_of(job);
   if (is_run(job, tile, normals.has_value(), context)) return;
   const double began = processor_seconds();
-  auto [own, around, xyz] = gather(job, tile, settled, normals.has_value(), most, context);
+  Gathered points = gather(job, tile, settled, normals.has_value(), most, context);
+  auto& [own, around, xyz] = points;
   std::vector<char> outlier;
   if (!own.empty()) {
     DenoiseOptions how = options;
@@ -157,7 +151,7 @@ void run_tile(const Job& job, std::size_t tile, const DenoiseOptions& options,
   ordered_json cost = {{"around", xyz.size() / 3 - own.size()}, {"seconds", 0}};
   cost.update(moves_of(job, own, xyz, outlier));
   if (normals)  // from within the widest patch, where those of both tiles are good
-    cost.update(write_normals(job, tile, own, around, xyz, *normals, settled.halo / kHaloRadii, context));
+    cost.update(write_normals(job, tile, points, *normals, settled.halo / kHaloRadii, context));
   RecordWriter writer(job.done(tile), context);
   for (std::size_t i = 0; i < own.size(); ++i)
     writer.add({own[i].row, xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]});
