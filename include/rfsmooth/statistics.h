@@ -2,6 +2,9 @@
 /// not is measured and entered. So the statistics that a run fills in give the same bytes when used again,
 /// and parts of a cloud that are smoothed one by one with the statistics of the whole fit together. Plain
 /// values: thread safe as those are.
+///
+/// Ranges are those that `check` asks for. A length is 0 or from 1e-150 to 1e100, a number of neighbours or
+/// members below 2^32 - 1.
 #pragma once
 
 #include <cstddef>
@@ -16,30 +19,34 @@ namespace rfsmooth {
 /// How wide the quadrics are that connecting stands on, and what they show of the noise: at most what
 /// NoiseModel says of it.
 struct NoiseScale {
-  double sigma = 0;            ///< along the normal, world units
-  std::size_t neighbours = 0;  ///< m: what a quadric needs
-  double radius = 0;           ///< median distance to the m-th neighbour, world units
+  double sigma = 0;            ///< along the normal, world units; a length
+  std::size_t neighbours = 0;  ///< m: what a quadric needs; at least 1 where sigma is above 0
+  double radius = 0;           ///< median distance to the m-th neighbour, world units; a length
 };
 
 /// The noise of a cloud: one figure, and what differs from it from place to place. Measured once, it tells
 /// outliers from others, and connecting and smoothing go by it.
 struct NoiseModel {
-  double sigma = 0;    ///< standard deviation along the normal, world units: typical of the cloud
-  double shape = 0;    ///< part of the scatter taken off as shape, 0 to 0.6; above half little is sure
-  double spacing = 0;  ///< mean distance to the nearest neighbour, of up to 50,000 points
-  double apart = 0;    ///< the distance to the nearest neighbour that 99 of 100 of them keep, at least
+  /// Standard deviation along the normal, world units: typical of the cloud. A length; above 0 there is a
+  /// site and a spacing above 0.
+  double sigma = 0;
+  /// Part of the scatter taken off as shape: 0 to 0.6, above half little is sure. At most 1.
+  double shape = 0;
+  double spacing = 0;          ///< mean distance to the nearest neighbour, of up to 50,000 points; a length
+  double apart = 0;            ///< the distance to their nearest that 99 of 100 of these keep; a length
   std::size_t neighbours = 0;  ///< of the fits that it was measured by
-  double shared = 1;  ///< points that say as much as one, since they share the noise; 1: each its own
+  /// Points that say as much as one, since they share the noise: 1, each its own, or more.
+  double shared = 1;
   /// Set where the nearest points lie along a line, as on the rings of a spinning laser: how many neighbours
-  /// reach across to other lines and are a piece of the surface.
+  /// reach across to other lines and are a piece of the surface. At least 1.
   std::optional<std::size_t> across;
-  double step = 0;       ///< typical distance between depths that come in steps, world units; 0: none
+  double step = 0;       ///< typical distance between depths that come in steps, a length; 0: none
   bool on_grid = false;  ///< whether the points are on a grid of that step, as voxels' centres are
-  /// Places, around the middle of the box; one where noise and density are even.
+  /// Places, around the middle of the box, coordinates within 1e100; one where noise and density are even.
   std::vector<Eigen::Vector3d> sites;
-  std::vector<double> at_sites;  ///< sigma there, world units
+  std::vector<double> at_sites;  ///< sigma there, one for each site; lengths
   /// Mean distance to the nearest neighbour there if points are more than twice as dense as on the mean, else
-  /// `spacing`; empty: they are nowhere.
+  /// `spacing`; lengths above 0; empty: they are nowhere.
   std::vector<double> spacing_at_sites;
   /// 1 where more neighbours show no more scatter, so that it is no detail, however small; else 0; empty: it
   /// is nowhere so.
@@ -54,34 +61,38 @@ struct Statistics {
   };
   /// Points several times noisier than their neighbours.
   struct Tails {
-    double share = 0;     ///< of the points; 0: none
-    double times = 1;     ///< their standard deviation over that of the others
-    double narrow = 1;    ///< standard deviation of the others over what was measured for all
-    double together = 0;  ///< how many times more of the neighbours of far points are far than of all points
+    double share = 0;   ///< of the points, below 1; 0: none
+    double times = 1;   ///< their standard deviation over that of the others, 1 to 10,000
+    double narrow = 1;  ///< standard deviation of the others over what was measured for all, above 0
+    /// How many times more of the neighbours of far points are far than of all points; 0 or more.
+    double together = 0;
   };
-  /// A scale of smoothing: patches of so many points, around seeds that are left of so many thinnings.
+  /// A scale of smoothing: patches of so many points, 1 or more, around seeds that are left of so many
+  /// thinnings, 1 to 64.
   struct Scale {
     std::size_t members = 0, thinnings = 0;
   };
   /// A pass over all scales; clouds with tails take two.
   struct Pass {
-    std::vector<double> reductions;  ///< of the residual, by each polynomial of the guide's fairing
+    std::vector<double> reductions;  ///< of the residual, by the guide's polynomials; between 0 and 1
     std::optional<Scale> narrow;     ///< stands for the data where points share their noise
     static constexpr std::size_t kMostScales = 15;
-    std::vector<Scale> scales;   ///< ascending, at most kMostScales
-    std::vector<double> shares;  ///< of the cloud that the data and each scale serve best
+    std::vector<Scale> scales;  ///< ascending, at most kMostScales
+    /// Of the cloud that the data and each scale serve best: none, or one more than scales, 0 or more each,
+    /// and not all 0.
+    std::vector<double> shares;
   };
   /// Walls thinner than the noise.
   struct Sheets {
-    double evidence = 0;  ///< nats for two sheets against louder noise, at the best variance
-    double variance = 1;  ///< of the noise that leaves, over what was measured
+    double evidence = 0;  ///< nats for two sheets against louder noise, at the best variance; finite
+    double variance = 1;  ///< of the noise that leaves, over what was measured; above 0
   };
 
   std::optional<Box> box;
-  std::optional<std::size_t> points;  ///< of the whole cloud: finite, distinct, without outliers
-  std::optional<double> reach;        ///< median distance to the eighth neighbour, with outliers
+  std::optional<std::size_t> points;  ///< of the whole cloud: finite, distinct, without outliers; 1 or more
+  std::optional<double> reach;        ///< median distance to the eighth neighbour, with outliers; a length
   std::optional<NoiseScale> scale;  ///< of the quadrics that connecting stands on, for the louder parts, too
-  std::optional<double> spacing;    ///< mean distance to the nearest neighbour, of all points
+  std::optional<double> spacing;    ///< mean distance to the nearest neighbour, of all points; a length
   std::optional<NoiseModel> noise;
   std::optional<Tails> tails;
   std::vector<Pass> passes;

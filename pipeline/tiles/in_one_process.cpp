@@ -133,21 +133,20 @@ std::uint64_t finite_rows(const std::string& path, const Context& context) {
   return finite;
 }
 
-SmoothedInTiles smooth_in_tiles(const std::string& input, const std::string& output, bool force,
-                                bool keep_scale, const Within& how, const DenoiseOptions& options,
+SmoothedInTiles smooth_in_tiles(const TiledRun& run, const Within& how, const DenoiseOptions& options,
                                 const std::optional<NormalsOptions>& normals, const Context& context) {
   constexpr double kPlan = 0.03, kSettled = 0.1, kJoin = 0.98;  // shares of the time, for the bar
   check_for_tiles(options);
-  io::check_target(output, force);
+  io::check_target(run.output, run.force);
   SmoothedInTiles done;
-  RowFile file(input, context);
+  RowFile file(run.input, context);
   done.had_normals = file.has_normals();
   if (normals) file.need_normals();  // refused before the work
-  const fs::path target(output);
+  const fs::path target(run.output);
   const PassingFolder folder(target.parent_path() / fmt::format(".{}.tiles-{}",
                                                                 target.filename().string().substr(0, 200),
                                                                 ::getpid()));
-  Job job = plan_job({input}, folder.path(), how.plan, nullptr, part_of(context, 0, kPlan));
+  Job job = plan_job({run.input}, folder.path(), how.plan, nullptr, part_of(context, 0, kPlan));
   check_sizes(job, how.plan);
   for (std::size_t t = 0; t < job.tiles.size(); ++t) measure_tile(job, t, part_of(context, kPlan, kPlan));
   settle_job(job, options, part_of(context, kPlan, kSettled));
@@ -159,8 +158,9 @@ SmoothedInTiles smooth_in_tiles(const std::string& input, const std::string& out
     context.report("tiles", kSettled + each * double(t + 1));
   }
   done.report = report_of(job, options);
-  done.joined =
-      join_job(job, {output}, force, keep_scale, normals.has_value(), part_of(context, kJoin, 1)).front();
+  done.joined = join_job(job, {run.output}, {run.force, run.keep_scale, normals.has_value()},
+                         part_of(context, kJoin, 1))
+                    .front();
   return done;
 }
 

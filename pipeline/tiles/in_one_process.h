@@ -39,6 +39,13 @@ std::optional<InPieces> in_pieces(const std::string& path, const Context& contex
 /// Its rows whose coordinates are finite. Reads all of it. \throw Failure.
 std::uint64_t finite_rows(const std::string& path, const Context& context);
 
+/// A file to smooth in tiles.
+struct TiledRun {
+  std::string input, output;
+  bool force = false;       ///< replaces a file in the place of the output
+  bool keep_scale = false;  ///< of JoinOptions
+};
+
 /// What there is to say of a cloud smoothed in tiles.
 struct SmoothedInTiles {
   Joined joined;
@@ -46,12 +53,11 @@ struct SmoothedInTiles {
   bool had_normals = false;  ///< whether the input has fields of that name
 };
 
-/// Smooths `input` to `output` in tiles, in a folder beside the output. Tiles that are more than how.most
+/// Smooths a file in tiles, in a folder beside the output. Tiles that are more than how.most
 /// points with what lies around them are halved; where that does not help, less is taken around them. Reports
 /// one stage, "tiles". The folder stays after an error or a cancel of the caller's only if it cannot be
 /// removed. \throw Failure.
-SmoothedInTiles smooth_in_tiles(const std::string& input, const std::string& output, bool force,
-                                bool keep_scale, const Within& how, const DenoiseOptions& options,
+SmoothedInTiles smooth_in_tiles(const TiledRun& run, const Within& how, const DenoiseOptions& options,
                                 const std::optional<NormalsOptions>& normals, const Context& context);
 
 }  // namespace rfsmooth::pipeline::tiles

@@ -41,6 +41,12 @@ struct Tile {
   std::uint64_t points = 0;
 };
 
+/// A place that many rows share (repeats.h): the first is in a tile, the others are not.
+struct RepeatedPlace {
+  Eigen::Vector3d at = Eigen::Vector3d::Zero();
+  std::uint64_t first = 0, others = 0;  ///< a row of the cloud, and how many more rows there are
+};
+
 /// What the plan says.
 struct Job {
   std::filesystem::path folder;
@@ -50,11 +56,26 @@ struct Job {
   std::uint64_t sample = 0;    ///< points that are smoothed for the statistics
   std::uint64_t measured = 0;  ///< points whose noise and spacing are measured
   std::vector<Tile> tiles;
+  std::vector<RepeatedPlace> repeated;
   nlohmann::ordered_json options;  ///< of denoise, as the command keeps them
+
+  /// Finite rows that are in tiles.
+  std::uint64_t in_tiles() const {
+    std::uint64_t rows = points;
+    for (const RepeatedPlace& place : repeated) rows -= place.others;
+    return rows;
+  }
+  /// Rows at the place of a row that is in a tile.
+  std::uint64_t rows_with(std::uint64_t row) const {
+    for (const RepeatedPlace& place : repeated)
+      if (place.first == row) return 1 + place.others;
+    return 1;
+  }
 
   using Path = std::filesystem::path;
   Path settled() const { return folder / "statistics.json"; }         ///< the statistics and the halo
   Path cut(std::size_t t) const { return of_tile("cut", t); }         ///< the points of tile t
+  Path repeats() const { return folder / "cut" / "repeats"; }         ///< the rows in no tile
   Path sampled(std::size_t t) const { return of_tile("sample", t); }  ///< its part of the sample
   Path done(std::size_t t) const { return of_tile("done", t); }       ///< its points, smoothed
   Path normals(std::size_t t) const { return of_tile("done", t, ".normals"); }  ///< theirs, if asked for

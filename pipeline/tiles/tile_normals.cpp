@@ -98,9 +98,9 @@ void link_pieces(const Job& job, std::size_t tile, const ordered_json& met, cons
 
 }  // namespace
 
-ordered_json write_normals(const Job& job, std::size_t tile, const std::vector<Record>& own,
-                           const std::vector<Around>& around, const std::vector<double>& xyz,
+ordered_json write_normals(const Job& job, std::size_t tile, const Gathered& points,
                            const NormalsOptions& options, double reach, const Context& context) {
+  const auto& [own, around, xyz] = points;
   const std::size_t n = xyz.size() / 3;
   std::vector<double> normals(3 * n);
   std::vector<Index> part, number(n, kNone);  // of a part: its piece

@@ -28,11 +28,17 @@ struct Around {
   std::size_t tile = 0;
 };
 
-/// Writes the normals of a tile's points, and those of the points `around` it that are within `reach` (world
-/// units). `xyz`: the smoothed places, the tile's own first; `around`: of the others, by tile, rows
-/// ascending. Returns what is to be known of the pieces, for `find_sides`. \throw Failure.
-nlohmann::ordered_json write_normals(const Job& job, std::size_t tile, const std::vector<Record>& own,
-                                     const std::vector<Around>& around, const std::vector<double>& xyz,
+/// A tile's points and those around it.
+struct Gathered {
+  std::vector<Record> own;
+  std::vector<Around> around;  ///< for normals only: of the others, by tile, rows ascending
+  std::vector<double> xyz;     ///< n x 3, the tile's own first
+};
+
+/// Writes the normals of a tile's points, whose `xyz` are smoothed, and those of the points around it that
+/// are within `reach` (world units). Returns what is to be known of the pieces, for `find_sides`. \throw
+/// Failure.
+nlohmann::ordered_json write_normals(const Job& job, std::size_t tile, const Gathered& points,
                                      const NormalsOptions& options, double reach, const Context& context);
 
 /// Whether a tile's normals are there and complete.

@@ -1,6 +1,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <random>
 
 #include <gmock/gmock.h>
@@ -392,11 +393,57 @@ TEST(Denoise, StatisticsThatNoCloudHasAreRefused) {
   expect_refused([](Statistics& s) { s.passes[0].shares.pop_back(); }, "passes");
   expect_refused(
       [](Statistics& s) {
+        for (double& share : s.passes[0].shares) share = 0;
+      },
+      "shares");
+  expect_refused([](Statistics& s) { s.passes[0].shares[0] = -1; }, "shares");
+  expect_refused([](Statistics& s) { s.passes[0].reductions.push_back(0); }, "reduction");
+  expect_refused(
+      [](Statistics& s) {
+        s.noise->sites.clear();
+        s.noise->at_sites.clear();
+        s.noise->spacing_at_sites.clear();
+        s.noise->told_at_sites.clear();
+      },
+      "no site");
+  expect_refused([](Statistics& s) { s.noise->spacing = 0; }, "spacing");
+  expect_refused([](Statistics& s) { s.noise->sigma = 1e200; }, "no length");
+  expect_refused([](Statistics& s) { s.noise->shape = 2; }, "shape");
+  expect_refused([](Statistics& s) { s.noise->sites[0][1] = 1e308; }, "farther away");
+  expect_refused([](Statistics& s) { s.noise->sites[0][2] = std::nan(""); }, "farther away");
+  expect_refused([](Statistics& s) { s.noise->spacing_at_sites.assign(s.noise->sites.size(), 0); },
+                 "the spacing none above 0");
+  expect_refused([](Statistics& s) { s.tails = {0.5, 0, 1, 1}; }, "tails: times");
+  expect_refused([](Statistics& s) { s.tails = {0.5, 1e9, 1, 1}; }, "tails: times");
+  expect_refused([](Statistics& s) { s.tails = {0.5, 3, 0, 1}; }, "tails: narrow");
+  expect_refused([](Statistics& s) { s.tails = {1, 3, 1, 1}; }, "tails: share");
+  expect_refused([](Statistics& s) { s.tails = {0.5, 3, 1, -1}; }, "tails: together");
+  expect_refused([](Statistics& s) { s.sheets = {8, 0}; }, "sheets: variance");
+  expect_refused([](Statistics& s) { s.sheets = {std::nan(""), 1}; }, "sheets: evidence");
+  expect_refused([](Statistics& s) { s.scale = {0.1, 0, 0.1}; }, "scale: neighbours");
+  expect_refused([](Statistics& s) { s.scale = {0.1, 20, std::nan("")}; }, "scale: sigma or radius");
+  expect_refused([](Statistics& s) { s.reach = -1; }, "reach");
+  expect_refused([](Statistics& s) { s.spacing = std::numeric_limits<double>::infinity(); }, "spacing");
+  expect_refused([](Statistics& s) { s.points = 0; }, "points");
+  expect_refused(
+      [](Statistics& s) {
         Statistics::Pass& pass = s.passes[0];
         pass.scales.resize(Statistics::Pass::kMostScales + 1, pass.scales[0]);
         pass.shares.clear();
       },
       "passes");
+}
+
+TEST(Denoise, WhatARunFindsAreStatisticsHoweverFewPointsThereAre) {
+  std::mt19937_64 engine(6);
+  std::normal_distribution<double> normal(0, 1);
+  for (const double scale : {0.0, 1e-9, 1.0, 1e9})
+    for (const std::size_t n : {1, 2, 3, 5, 9, 17, 40, 100, 300}) {
+      SCOPED_TRACE(testing::Message() << n << " points, times " << scale);
+      Flat xyz;
+      for (std::size_t i = 0; i < 3 * n; ++i) xyz.push_back((i % 3 == 2 ? 0.05 : 1) * scale * normal(engine));
+      EXPECT_THAT(check(run(xyz, {}).statistics), ::testing::IsEmpty());
+    }
 }
 
 // Where far points stand together it is shape, not tails, and a part of a cloud is told so by the whole.

@@ -54,7 +54,9 @@ io::Table table_of(const std::vector<FieldText>& fields, const Rows& rows, std::
   table.name = "vertex";
   table.count = count;
   for (const auto& [name, type, values] : fields) table.fields.push_back({name, scalar_of(type), values});
-  if (rows.size() != count * table.row_size()) throw std::invalid_argument("the rows have another size");
+  const std::size_t size = table.row_size();
+  if (size == 0 ? rows.size() != 0 : rows.size() % size != 0 || rows.size() / size != count)
+    throw std::invalid_argument("the rows have another size");
   table.data.resize(rows.size());
   if (rows.size() > 0) std::memcpy(table.data.data(), rows.data(), rows.size());
   return table;
@@ -129,8 +131,9 @@ bool same_column(const io::Table& one, const io::Table& other, std::size_t field
   return true;
 }
 
-/// `now`, which the text of a file says with more digits than its type holds, but for what is not as
-/// `before`.
+/// The values to write into a column of text. \param before what numpy was given: the file's values, rounded
+/// to the type of the column. \param given what numpy gave back. \param now the file's values with all digits
+/// of the text; they stay where `given` is the same as `before`.
 std::vector<double> changed(const std::vector<double>& before, const std::vector<double>& given,
                             std::vector<double> now) {
   for (std::size_t i = 0; i < now.size(); ++i)

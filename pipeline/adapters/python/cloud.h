@@ -1,4 +1,4 @@
-/// Clouds between numpy and the library: rows of fields as a numpy array of bytes has them.
+/// The Python class of clouds. Their rows go to numpy and come back as one array of bytes.
 #pragma once
 
 #include <nanobind/nanobind.h>

@@ -123,8 +123,8 @@ void join_tiles(const TilesOptions& options, const std::vector<std::string>& arg
   std::vector<std::string> inputs, outputs;
   for (const auto& input : job.inputs) inputs.push_back(input.path);
   for (const cli::Job& file : plan_jobs(inputs, arguments[1])) outputs.push_back(file.output);
-  const auto joined = pipeline::tiles::join_job(job, outputs, options.force, options.keep_scale,
-                                                planned_options(job).normals.normals, context);
+  const auto joined = pipeline::tiles::join_job(
+      job, outputs, {options.force, options.keep_scale, planned_options(job).normals.normals}, context);
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     tell_scale(job.inputs[i].path, joined[i].scale, joined[i].noise, joined[i].noise_left, console);
     if (joined[i].las) warn_of_index(outputs[i], console);

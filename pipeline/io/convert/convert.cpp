@@ -1,7 +1,6 @@
 #include "pipeline/io/convert/convert.h"
 
 #include <algorithm>
-#include <optional>
 #include <string_view>
 #include <utility>
 

@@ -6,6 +6,16 @@
 
 namespace rfsmooth::pipeline::io {
 
+void find_vertex(Cloud& cloud, const Source& source) {
+  std::string others;
+  for (cloud.vertex = 0; cloud.vertex < cloud.elements.size(); ++cloud.vertex) {
+    const std::string& name = cloud.elements[cloud.vertex].name;
+    if (name == "vertex") return;
+    others += (others.empty() ? "" : ", ") + in_quotes(name);
+  }
+  source.fail("expected an element 'vertex', found {}", others.empty() ? "no element" : others);
+}
+
 void find_coordinates(Cloud& cloud, const Source& source, const Context& context) {
   const std::vector<Field>& fields = cloud.points().fields;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -35,14 +45,7 @@ void find_coordinates(Cloud& cloud, const Source& source, const Context& context
 Cloud read_ply(const Source& source, const Context& context) {
   HeaderLines lines(source, context);
   Cloud cloud = read_ply_header(lines);
-  cloud.vertex = cloud.elements.size();
-  for (std::size_t e = cloud.elements.size(); e-- > 0;)
-    if (cloud.elements[e].name == "vertex") cloud.vertex = e;
-  if (cloud.vertex == cloud.elements.size()) {
-    std::string there;
-    for (const Table& t : cloud.elements) there += (there.empty() ? "" : ", ") + in_quotes(t.name);
-    source.fail("expected an element 'vertex', found {}", there.empty() ? "no element" : there);
-  }
+  find_vertex(cloud, source);
   find_coordinates(cloud, source, context);
 
   if (cloud.encoding == Encoding::ascii) {

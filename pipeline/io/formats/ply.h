@@ -21,8 +21,9 @@ std::string ply_header(const Cloud& cloud, Encoding encoding);
 /// Writes a PLY file; an encoding other than the cloud's converts the rows on the way.
 void write_ply(const Cloud& cloud, Encoding encoding, Sink& sink, const Context& context);
 
-/// Whether a PLY header can carry a field of that name (one word).
-bool is_ply_name(std::string_view name);
+/// Finds the element of the points, the first that is called 'vertex'. \throw Failure through `source` if
+/// there is none, naming the elements there are.
+void find_vertex(Cloud& cloud, const Source& source);
 
 /// Finds x, y, z among the points' fields: plain, lower case before upper case, the first of several.
 /// \throw Failure through `source` if one is missing, naming the fields there are; warns of several.

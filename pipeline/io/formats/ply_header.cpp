@@ -81,13 +81,6 @@ void append_notes(std::string& out, const Cloud& cloud, std::size_t element, std
 
 }  // namespace
 
-bool is_ply_name(std::string_view name) {
-  if (name.empty()) return false;
-  for (const char c : name)
-    if (c <= ' ' || c == '\x7f') return false;
-  return true;
-}
-
 Cloud read_ply_header(HeaderLines& lines) {
   Cloud cloud;
   cloud.format = Format::ply;

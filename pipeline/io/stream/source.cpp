@@ -67,7 +67,13 @@ Source::~Source() {
   if (file_ >= 0) ::close(file_);
 }
 
+void Source::check_range(std::uint64_t offset, std::size_t n) const {
+  const std::uint64_t left = size_ - std::min(size_, offset);
+  if (n > left) fail("byte {}: expected {} bytes, found {}", offset, n, left);
+}
+
 void Source::read(std::uint64_t offset, char* out, std::size_t n, const Context& context) const {
+  check_range(offset, n);
   if (file_ < 0) {
     if (n > 0) std::memcpy(out, bytes_.data() + offset, n);
     return;
@@ -85,6 +91,7 @@ void Source::read(std::uint64_t offset, char* out, std::size_t n, const Context&
 }
 
 Bytes Source::read(std::uint64_t offset, std::size_t n, const Context& context) const {
+  check_range(offset, n);
   Bytes bytes(n);
   read(offset, bytes.data(), n, context);
   return bytes;

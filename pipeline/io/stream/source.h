@@ -31,7 +31,8 @@ class Source {
   const std::string& name() const { return name_; }
   std::uint64_t size() const { return size_; }
 
-  /// Reads `n` bytes at `offset` (both inside the file). \throw Failure if the file shrank or cannot be read.
+  /// Reads `n` bytes at `offset`. \throw Failure if the file does not have them or cannot be read; nothing is
+  /// allocated for bytes beyond its size.
   void read(std::uint64_t offset, char* out, std::size_t n, const Context& context) const;
   Bytes read(std::uint64_t offset, std::size_t n, const Context& context) const;
 
@@ -43,6 +44,8 @@ class Source {
   }
 
  private:
+  void check_range(std::uint64_t offset, std::size_t n) const;
+
   std::string name_;
   std::uint64_t size_ = 0;
   int file_ = -1;

@@ -1,7 +1,6 @@
 #include "pipeline/io/table/cloud.h"
 
 #include <algorithm>
-#include <cstring>
 #include <functional>
 #include <stdexcept>
 

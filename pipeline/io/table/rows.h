@@ -19,6 +19,10 @@ struct BinaryCursor {
   std::uint64_t held_from = 0;
 };
 
+/// The byte behind the binary rows of a table without lists, whose first is at `offset`. \throw Failure
+/// naming the byte, what was expected and what was found, if the file ends before.
+std::uint64_t end_of_rows(const Table& table, std::uint64_t offset, const Source& source);
+
 /// Reads table.count rows of table.fields. The promised size is checked against the file before anything is
 /// allocated. \throw Failure naming the byte, what was expected and what was found.
 void read_binary_rows(Table& table, BinaryCursor& cursor, const Context& context);

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cstring>
 
 #include "base/parallel.h"
 #include "pipeline/io/table/rows.h"
@@ -33,14 +32,10 @@ void swap_fixed(const std::vector<Field>& fields, std::size_t row_size, char* da
 }
 
 void read_fixed(Table& table, BinaryCursor& cursor, const Context& context) {
-  const std::size_t size = table.row_size();
-  const std::uint64_t left = cursor.source.size() - cursor.offset;
-  if (size == 0 || table.count > left / size)
-    cursor.source.fail("byte {}: expected {} rows of element '{}', {} bytes each, found {} bytes",
-                       cursor.offset, table.count, table.name, size, left);
-  table.data = cursor.source.read(cursor.offset, table.count * size, context);
-  if (cursor.big_endian) swap_fixed(table.fields, size, table.data.data(), table.count, context);
-  cursor.offset += table.data.size();
+  const std::uint64_t end = end_of_rows(table, cursor.offset, cursor.source);
+  table.data = cursor.source.read(cursor.offset, std::size_t(end - cursor.offset), context);
+  if (cursor.big_endian) swap_fixed(table.fields, table.row_size(), table.data.data(), table.count, context);
+  cursor.offset = end;
 }
 
 // Rows with lists have no size one could know beforehand: walk them.
@@ -111,6 +106,16 @@ void swap_lists(Table& table) {
 }
 
 }  // namespace
+
+std::uint64_t end_of_rows(const Table& table, std::uint64_t offset, const Source& source) {
+  if (table.count == 0) return offset;
+  const std::size_t size = table.row_size();
+  const std::uint64_t left = source.size() - std::min(source.size(), offset);
+  if (size == 0 || table.count > left / size)
+    source.fail("byte {}: expected {} rows of element '{}', {} bytes each, found {} bytes", offset,
+                table.count, table.name, size, left);
+  return offset + table.count * size;
+}
 
 void read_binary_rows(Table& table, BinaryCursor& cursor, const Context& context) {
   if (table.count == 0) return;

@@ -72,7 +72,7 @@ void add_field(Table& table, const Field& field, const double* values, const Con
 /// loses its quotes. Does nothing if they are such words or bytes.
 void make_words(Table& table, const Context& context);
 
-/// Keeps the rows `which` in that order.
+/// Keeps the rows `which` in that order. O(rows and interludes).
 void select(Table& table, const std::vector<std::size_t>& which);
 
 /// Keeps the fields `which`, in that order. Text rows are rewritten, values separated by a blank.

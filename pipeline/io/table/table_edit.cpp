@@ -148,9 +148,10 @@ void select(Table& table, const std::vector<std::size_t>& which) {
     if (table.text && (row.empty() || row.back() != '\n') && data.size() < size) data.push_back('\n');
     if (!table.start.empty()) start.push_back(data.size());
   }
-  // Comments stay in front of the first kept row that stood behind them in the file.
+  // Comments stay in front of the first kept row that stood behind them in the file. They are ascending, so
+  // what was before one of them need not be looked at again for the next.
+  std::size_t k = 0;
   for (Interlude& note : table.interludes) {
-    std::size_t k = 0;
     while (k < which.size() && which[k] < note.row) ++k;
     note.row = k;
   }

@@ -33,6 +33,9 @@ ordered_json json_of_job(const Job& job, const PlanOptions& how) {
   json["tiles"] = ordered_json::array();
   for (const Tile& tile : job.tiles)
     json["tiles"].push_back({{"points", tile.points}, {"box", json_of(tile.box)}});
+  for (const RepeatedPlace& place : job.repeated)
+    json["repeated"].push_back(
+        {{"first", place.first}, {"others", place.others}, {"at", json_of_place(place.at)}});
   return json;
 }
 
@@ -60,6 +63,9 @@ Job job_of(const ordered_json& json, const std::filesystem::path& folder) {
       job.inputs.push_back({input.at("path"), input.at("rows"), input.at("bytes"), input.at("changed")});
     for (const auto& tile : json.at("tiles"))
       job.tiles.push_back({box_of(tile.at("box")), tile.at("points")});
+    if (!json.contains("repeated")) return job;
+    for (const auto& place : json.at("repeated"))
+      job.repeated.push_back({place_of(place.at("at")), place.at("first"), place.at("others")});
   } catch (const nlohmann::json::exception& error) {
     refuse_plan(folder, error);
   }

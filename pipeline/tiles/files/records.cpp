@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstring>
 #include <utility>
 
@@ -80,6 +81,24 @@ ReaderOf<T>::ReaderOf(std::filesystem::path path, const Context& context)
   const auto trailer = trailer_of<T>(source, context_);
   if (!trailer) source.fail("is not complete; the step that makes it makes it again");
   count_ = trailer->count;
+}
+
+template <class T>
+void ReaderOf<T>::skip_to(std::uint64_t row) {
+  static_assert(offsetof(T, row) == 0);
+  const io::Source source(path_, context_);
+  std::uint64_t end = count_;
+  while (at_ < end) {
+    const std::uint64_t middle = at_ + (end - at_) / 2;
+    std::uint64_t there = 0;
+    source.read(middle * sizeof(T), reinterpret_cast<char*>(&there), sizeof there, context_);
+    if (there < row)
+      at_ = middle + 1;
+    else
+      end = middle;
+  }
+  from_ = at_;
+  held_.clear();
 }
 
 template <class T>

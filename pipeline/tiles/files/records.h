@@ -7,7 +7,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <vector>
 
@@ -66,6 +65,8 @@ class ReaderOf {
   /// \throw Failure (input_unreadable) if the file is missing or of a size that it cannot have.
   explicit ReaderOf(std::filesystem::path path, const Context& context);
   std::uint64_t size() const { return count_; }
+  /// Moves on to the first record of that row or one behind it, where rows are ascending. O(log n) reads.
+  void skip_to(std::uint64_t row);
   /// The next record, or null behind the last.
   const T* peek();
   void next() { ++at_; }

@@ -13,6 +13,7 @@
 #include "pipeline/io/formats/pcd.h"
 #include "pipeline/io/formats/ply.h"
 #include "pipeline/io/point_fields.h"
+#include "pipeline/io/table/rows.h"
 #include "pipeline/viewpoint.h"
 
 namespace rfsmooth::pipeline::tiles {
@@ -29,6 +30,15 @@ namespace {
 }  // namespace
 
 RowFile::RowFile(const std::filesystem::path& path, const Context& context) : source_(path, context) {
+  open(context);
+}
+
+RowFile::RowFile(std::string_view bytes, std::string name, const Context& context)
+    : source_(bytes, std::move(name)) {
+  open(context);
+}
+
+void RowFile::open(const Context& context) {
   format_ = io::detect_format(source_, context);
   switch (format_) {
     case io::Format::ply:
@@ -55,9 +65,6 @@ RowFile::RowFile(const std::filesystem::path& path, const Context& context) : so
     default:
       refuse_pieces(source_.name(), "is text");
   }
-  if (row_ == 0 || rows_ > (source_.size() - at_) / row_)
-    source_.fail("byte {}: expected {} points of {} bytes each, found {} bytes", at_, rows_, row_,
-                 source_.size() - at_);
   const io::Bytes head = source_.read(0, std::size_t(at_), context);
   head_.assign(head.data(), head.size());
 }
@@ -66,23 +73,19 @@ void RowFile::open_table(io::Cloud cloud, std::uint64_t at, const Context& conte
   if (cloud.encoding != io::Encoding::binary_little_endian)
     refuse_pieces(source_.name(), fmt::format("its encoding is {}", io::name_of(cloud.encoding)));
   header_bytes_ = std::size_t(at);
-  std::size_t vertex = 0;
-  while (vertex < cloud.elements.size() && cloud.format == io::Format::ply &&
-         cloud.elements[vertex].name != "vertex")
-    ++vertex;
-  if (vertex == cloud.elements.size()) source_.fail("expected an element 'vertex', found none");
-  cloud.vertex = vertex;
+  if (cloud.format == io::Format::ply) io::find_vertex(cloud, source_);
   io::find_coordinates(cloud, source_, context);
-  for (std::size_t e = 0; e <= vertex; ++e)
+  for (std::size_t e = 0; e <= cloud.vertex; ++e) {
     if (cloud.elements[e].has_lists()) refuse_pieces(source_.name(), "it has lists before or in its points");
-  for (std::size_t e = 0; e < vertex; ++e) at += cloud.elements[e].count * cloud.elements[e].row_size();
+    at_ = at;
+    at = io::end_of_rows(cloud.elements[e], at, source_);
+  }
   header_ = std::move(cloud);
   const io::Table& points = header_.points();
   for (std::size_t axis = 0; axis < 3; ++axis) {
     field_[axis] = points.fields[header_.xyz[axis]];
     offset_[axis] = points.offset_of(header_.xyz[axis]);
   }
-  at_ = at;
   rows_ = points.count;
   row_ = points.row_size();
 }
@@ -145,15 +148,10 @@ io::RefinedScale RowFile::refine_scale(double step, const std::array<double, 3>&
   for (std::size_t axis = 0; axis < 3; ++axis) {
     io::Field& field = field_[axis];
     const double a = (low[axis] - field.offset) / field.scale, b = (high[axis] - field.offset) / field.scale;
-    done.before[axis] = field.scale;
-    change_[axis] = io::finer_scale(field, step, std::min(a, b), std::max(a, b));
-    if (change_[axis].power > 0) {
-      io::change_scale(field, change_[axis]);
-      io::las::put_number(head_, io::las::kScaleAt + 8 * axis, field.scale);
-      io::las::put_number(head_, io::las::kOffsetAt + 8 * axis, field.offset);
-    }
-    done.after[axis] = field.scale;
-    done.shift[axis] = change_[axis].shift;
+    change_[axis] = io::refine_axis(field, axis, step, std::min(a, b), std::max(a, b), done);
+    if (change_[axis].power == 0) continue;
+    io::las::put_number(head_, io::las::kScaleAt + 8 * axis, field.scale);
+    io::las::put_number(head_, io::las::kOffsetAt + 8 * axis, field.offset);
   }
   return done;
 }

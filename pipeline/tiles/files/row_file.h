@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
@@ -26,6 +27,8 @@ class RowFile {
  public:
   /// \throw Failure: input_unreadable, or usage for a file that cannot be read in pieces.
   RowFile(const std::filesystem::path& path, const Context& context);
+  /// The same of a file's bytes, which must outlive it.
+  RowFile(std::string_view bytes, std::string name, const Context& context);
 
   std::uint64_t rows() const { return rows_; }
   io::Format format() const { return format_; }
@@ -81,6 +84,7 @@ class RowFile {
   /// Bytes of rows [first, first + count).
   io::Bytes read(std::uint64_t first, std::size_t count, const Context& context) const;
   void copy_tail(io::Sink& to, const Context& context) const;
+  void open(const Context& context);
   void open_table(io::Cloud cloud, std::uint64_t at, const Context& context);
 
   /// A field in a row.

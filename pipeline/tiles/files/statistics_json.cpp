@@ -1,7 +1,6 @@
 #include "pipeline/tiles/files/statistics_json.h"
 
 #include <array>
-#include <cmath>
 
 namespace rfsmooth::pipeline::tiles {
 
@@ -11,14 +10,6 @@ using nlohmann::ordered_json;
 
 constexpr std::array<const char*, 4> kNotSmoothed = {"no-iterations", "no-strength", "too-few-points",
                                                      "too-little-noise"};  // in the order of NotSmoothed
-
-ordered_json json_of_place(const Eigen::Vector3d& p) {
-  return {p[0], p[1], p[2]};
-}
-
-Eigen::Vector3d place_of(const ordered_json& json) {
-  return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()};
-}
 
 ordered_json json_of_scale(const NoiseScale& scale) {
   return {{"sigma", scale.sigma}, {"neighbours", scale.neighbours}, {"radius", scale.radius}};
@@ -87,6 +78,14 @@ Statistics::Pass pass_of(const ordered_json& json) {
 }
 
 }  // namespace
+
+ordered_json json_of_place(const Eigen::Vector3d& p) {
+  return {p[0], p[1], p[2]};
+}
+
+Eigen::Vector3d place_of(const ordered_json& json) {
+  return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()};
+}
 
 ordered_json json_of(const Statistics::Box& box) {
   return {json_of_place(box.low), json_of_place(box.high)};

@@ -8,6 +8,11 @@
 
 namespace rfsmooth::pipeline::tiles {
 
+/// Three numbers.
+nlohmann::ordered_json json_of_place(const Eigen::Vector3d& p);
+/// \throw nlohmann::json::exception where something is missing or of another kind.
+Eigen::Vector3d place_of(const nlohmann::ordered_json& json);
+
 /// Its two corners.
 nlohmann::ordered_json json_of(const Statistics::Box& box);
 

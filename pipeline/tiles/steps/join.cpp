@@ -22,13 +22,21 @@ namespace rfsmooth::pipeline::tiles {
 
 namespace {
 
-/// The records of all tiles, by rows.
+/// The records of all tiles, by rows, from row `from` on; repeats have those of the first row at their place.
 template <class T>
 class OfAllTiles {
  public:
-  OfAllTiles(const Job& job, std::filesystem::path (Job::*of_tile)(std::size_t) const, const Context& context)
+  OfAllTiles(const Job& job, std::filesystem::path (Job::*of_tile)(std::size_t) const, std::uint64_t from,
+             const Context& context)
       : context_(context) {
-    for (std::size_t t = 0; t < job.tiles.size(); ++t) readers_.emplace_back((job.*of_tile)(t), context_);
+    for (std::size_t t = 0; t < job.tiles.size(); ++t) {
+      readers_.emplace_back((job.*of_tile)(t), context_);
+      if (from > 0) readers_.back().skip_to(from);
+    }
+    if (job.repeated.empty()) return;
+    for (const RepeatedPlace& place : job.repeated) find_first(job, of_tile, place);
+    repeats_.emplace(job.repeats(), context_);
+    repeats_->skip_to(from);
   }
   /// Calls `visit(row - first, record, tile)` for rows [first, first + count), in no order. Forward only.
   template <class Visit>
@@ -37,23 +45,59 @@ class OfAllTiles {
     for (std::size_t t = 0; t < readers_.size(); ++t)
       for (const T* r = readers_[t].peek(); r != nullptr && r->row < first + count; r = readers_[t].peek()) {
         readers_[t].next();
-        if (r->row >= first) visit(std::size_t(r->row - first), *r, t);  // else of an input before this one
+        visit(std::size_t(r->row - first), *r, t);
       }
+    if (repeats_) visit_repeats(first, count, visit);
   }
 
  private:
+  /// What became of the first row at a place, and the tile that this is in.
+  struct AtPlace {
+    Eigen::Vector3d at;
+    T record;
+    std::size_t tile;
+  };
+
+  void find_first(const Job& job, std::filesystem::path (Job::*of_tile)(std::size_t) const,
+                  const RepeatedPlace& place) {
+    for (std::size_t t = 0; t < job.tiles.size(); ++t) {
+      ReaderOf<T> reader((job.*of_tile)(t), context_);
+      reader.skip_to(place.first);
+      const T* const r = reader.peek();
+      if (r != nullptr && r->row == place.first) return first_.push_back({place.at, *r, t});
+    }
+    fail(ErrorCode::internal, "row {} is in no tile", place.first);
+  }
+
+  template <class Visit>
+  void visit_repeats(std::uint64_t first, std::uint64_t count, Visit& visit) {
+    for (const Record* r = repeats_->peek(); r != nullptr && r->row < first + count; r = repeats_->peek()) {
+      repeats_->next();
+      const Eigen::Vector3d at = place(*r);
+      const auto same =
+          std::find_if(first_.begin(), first_.end(), [&](const AtPlace& other) { return other.at == at; });
+      if (same == first_.end()) fail(ErrorCode::internal, "row {} repeats no other", r->row);
+      T record = same->record;
+      record.row = r->row;
+      visit(std::size_t(r->row - first), record, same->tile);
+    }
+  }
+
   const Context& context_;
   std::vector<ReaderOf<T>> readers_;
+  std::vector<AtPlace> first_;
+  std::optional<RecordReader> repeats_;
 };
 
-/// Patches the rows of the inputs with the results of all tiles.
+/// Patches the rows of the inputs, from row `from` on, with the results of all tiles.
 class Patcher {
  public:
-  Patcher(const Job& job, const Context& context) : places_(job, &Job::done, context) {}
+  Patcher(const Job& job, std::uint64_t from, const Context& context)
+      : places_(job, &Job::done, from, context) {}
   /// With normals, which must be there.
   void add_normals(const Job& job, const Context& context) {
     reversed_ = find_sides(job, context);
-    normals_.emplace(job, &Job::normals, context);
+    normals_.emplace(job, &Job::normals, 0, context);
   }
   /// `first`: the row of the cloud that `rows` begins with.
   void patch(const RowFile& file, std::uint64_t first, std::uint64_t count, io::Bytes& rows) {
@@ -99,7 +143,7 @@ struct OpenInput {
 
 /// Refines the scale of a LAS file to `step`, unless nothing of it moved.
 io::RefinedScale refine_moved(const Job& job, OpenInput& input, double step, const Context& context) {
-  OfAllTiles<Record> places(job, &Job::done, context);
+  OfAllTiles<Record> places(job, &Job::done, input.before, context);
   Ends ends;
   bool moved = false;
   const RowFile& file = input.file;
@@ -116,7 +160,7 @@ io::RefinedScale refine_moved(const Job& job, OpenInput& input, double step, con
 
 /// The box of the coordinates as they will be written, for the header of a LAS file.
 void find_box(const Job& job, OpenInput& input, const Context& context) {
-  Patcher patcher(job, context);
+  Patcher patcher(job, input.before, context);
   Ends ends;
   const RowFile& file = input.file;
   file.for_each_piece(context, [&](std::uint64_t first, std::size_t count, io::Bytes& rows) {
@@ -162,26 +206,27 @@ void check_inputs(const Job& job) {
 
 }  // namespace
 
-std::vector<Joined> join_job(const Job& job, const std::vector<std::string>& outputs, bool force,
-                             bool keep_scale, bool normals, const Context& context) {
+std::vector<Joined> join_job(const Job& job, const std::vector<std::string>& outputs, const JoinOptions& how,
+                             const Context& context) {
   check_inputs(job);
   for (std::size_t t = 0; t < job.tiles.size(); ++t)
-    if (!is_run(job, t, normals, context)) refuse_step(job, fmt::format("tile {} is not smoothed yet", t));
+    if (!is_run(job, t, how.normals, context))
+      refuse_step(job, fmt::format("tile {} is not smoothed yet", t));
   const DenoiseReport settled = settled_of(job).report;
   std::vector<Joined> joined;
-  Patcher patcher(job, context);
-  if (normals) patcher.add_normals(job, context);
+  Patcher patcher(job, 0, context);
+  if (how.normals) patcher.add_normals(job, context);
   std::uint64_t before = 0;
   for (std::size_t i = 0; i < job.inputs.size(); ++i) {
     OpenInput input = {RowFile(job.inputs[i].path, context), before};
     check_format(input.file.format(), outputs[i]);
-    if (normals) input.file.need_normals();
+    if (how.normals) input.file.need_normals();
     Joined& done = joined.emplace_back();
     done.las = input.file.format() == io::Format::las;
     done.noise = settled.noise;
     done.noise_left = settled.noise_left;
-    if (done.las) done.scale = prepare_las(job, input, keep_scale, settled, context);
-    write_joined(job, input, outputs[i], force, patcher, context);
+    if (done.las) done.scale = prepare_las(job, input, how.keep_scale, settled, context);
+    write_joined(job, input, outputs[i], how.force, patcher, context);
     before += input.file.rows();
   }
   if (patcher.patched() != job.points)

@@ -18,11 +18,16 @@ struct Joined {
   double noise = 0, noise_left = 0;  ///< for which it was
 };
 
-/// Needs every tile run. `outputs`: one for each input, of its format. Files in their place are replaced if
-/// `force`. LAS: scales that are coarse for what is left of the noise are refined, unless `keep_scale` or
-/// nothing moved. `normals`: whether the tiles were run with them. Returns one for each input. \throw Failure
-/// (usage) naming the first tile that is not.
-std::vector<Joined> join_job(const Job& job, const std::vector<std::string>& outputs, bool force,
-                             bool keep_scale, bool normals, const Context& context);
+/// How to join.
+struct JoinOptions {
+  bool force = false;       ///< replaces files in the place of the outputs
+  bool keep_scale = false;  ///< of LAS: does not refine scales that are coarse for what is left of the noise
+  bool normals = false;     ///< whether the tiles were run with them
+};
+
+/// Needs every tile run. `outputs`: one for each input, of its format. A scale of LAS is refined only where
+/// something moved. Returns one for each input. \throw Failure (usage) naming the first tile that is not.
+std::vector<Joined> join_job(const Job& job, const std::vector<std::string>& outputs, const JoinOptions& how,
+                             const Context& context);
 
 }  // namespace rfsmooth::pipeline::tiles

@@ -9,7 +9,7 @@ namespace rfsmooth::pipeline::tiles {
 
 void keep_middle(const Job& job, std::size_t tile, std::uint64_t wanted, std::vector<Record>& points) {
   using Eigen::Vector3d;
-  const double share = double(wanted) / double(job.points);
+  const double share = double(wanted) / double(job.in_tiles());
   const auto kept = std::size_t(std::ceil(share * double(job.tiles[tile].points)));
   if (kept >= points.size() || points.empty()) return;
   const Vector3d middle = 0.5 * (job.tiles[tile].box.low + job.tiles[tile].box.high);

@@ -15,6 +15,7 @@
 #include "pipeline/tiles/files/job_json.h"
 #include "pipeline/tiles/files/records.h"
 #include "pipeline/tiles/files/row_file.h"
+#include "pipeline/tiles/repeats.h"
 
 namespace rfsmooth::pipeline::tiles {
 
@@ -62,6 +63,35 @@ void for_each_point(const std::vector<JobInput>& inputs, const char* stage, doub
     });
   }
 }
+
+/// Places of a sample, each once. Memory: that of twice as many as there are.
+class DistinctPlaces {
+ public:
+  /// \param expected places at most, as long as none come again
+  explicit DistinctPlaces(std::size_t expected) : merge_at_(expected) { places_.reserve(expected); }
+  void add(const Vector3d& p) {
+    if (places_.size() == merge_at_) {
+      merge();
+      merge_at_ = std::max(merge_at_, 2 * places_.size());
+    }
+    places_.push_back(p);
+  }
+  std::vector<Vector3d> take() {
+    merge();
+    return std::move(places_);
+  }
+
+ private:
+  void merge() {
+    std::sort(places_.begin(), places_.end(), [](const Vector3d& a, const Vector3d& b) {
+      return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
+    });
+    places_.erase(std::unique(places_.begin(), places_.end()), places_.end());
+  }
+
+  std::vector<Vector3d> places_;
+  std::size_t merge_at_;
+};
 
 /// A tree of cuts: inner nodes have an axis and a place, leaves the number of a tile.
 class Cuts {
@@ -165,8 +195,9 @@ class TileWriter {
   Tile tile_;
 };
 
-/// Writes every finite row into the file of its tile. Memory: 32 KB a tile, of at most kOpen.
-void cut_rows(Job& job, const Cuts& cuts, const Context& context) {
+/// Writes every finite row into the file of its tile, or into that of the repeats. Memory: 32 KB a tile, of
+/// at most kOpen.
+void cut_rows(Job& job, const Cuts& cuts, RepeatsWriter& repeats, const Context& context) {
   job.tiles.assign(cuts.tiles(), {});
   for (std::size_t first = 0; first < cuts.tiles(); first += kOpen) {
     const std::size_t count = std::min(kOpen, cuts.tiles() - first);
@@ -176,11 +207,37 @@ void cut_rows(Job& job, const Cuts& cuts, const Context& context) {
     const auto done = [&](std::size_t tiles) { return 0.5 + 0.5 * double(tiles) / double(cuts.tiles()); };
     for_each_point(job.inputs, "plan", done(first), done(first + count), context,
                    [&](std::uint64_t row, const Vector3d& p) {
+                     if (repeats.take(row, p)) return;
                      const std::size_t t = cuts.tile_of(p);
                      if (t >= first && t < first + count) writers[t - first]->add({row, p[0], p[1], p[2]});
                    });
     for (std::size_t t = 0; t < count; ++t) job.tiles[first + t] = writers[t]->commit();
   }
+}
+
+/// What the first reading of the inputs finds.
+struct Survey {
+  AlignedBox3d box;
+  std::uint64_t points = 0;      // finite rows
+  std::vector<Vector3d> sample;  // distinct places, one of so many
+  std::vector<Vector3d> shared;  // places that many rows are at
+};
+
+Survey survey_inputs(const std::vector<JobInput>& inputs, std::uint64_t rows, std::uint64_t one_in,
+                     const Context& context) {
+  constexpr std::uint64_t kShared = 1000;  // one of so many rows: what fewer share makes no tile larger
+  Survey survey;
+  DistinctPlaces sample(std::size_t(std::min(rows, 2 * kPlanned)));
+  SharedPlaces places;
+  for_each_point(inputs, "plan", 0, 0.5, context, [&](std::uint64_t, const Vector3d& p) {
+    survey.box.extend(p);
+    ++survey.points;
+    places.add(p);
+    if (number_of(p) % one_in == 0) sample.add(p);
+  });
+  survey.sample = sample.take();
+  survey.shared = places.counted(std::max<std::uint64_t>(2, rows / kShared));
+  return survey;
 }
 
 }  // namespace
@@ -195,22 +252,17 @@ Job plan_job(const std::vector<std::string>& inputs, const fs::path& folder, con
   make_folders(job);
   std::uint64_t rows = 0;
   for (const JobInput& input : job.inputs) rows += input.rows;
-  AlignedBox3d box;
-  std::vector<Vector3d> sample;
   const std::uint64_t one_in = std::max<std::uint64_t>(1, rows / kPlanned);
-  sample.reserve(std::size_t(std::min(rows, 2 * kPlanned)));
-  for_each_point(job.inputs, "plan", 0, 0.5, context, [&](std::uint64_t, const Vector3d& p) {
-    box.extend(p);
-    ++job.points;
-    if (number_of(p) % one_in == 0) sample.push_back(p);
-  });
-  if (job.points == 0) fail(ErrorCode::no_usable_points, "none of the points is finite");
-  job.box = {box.min(), box.max()};
-  job.sample = std::min(job.points, how.sample_points);
-  job.measured = std::min(job.points, kMeasuredOverSmoothed * how.sample_points);
-  const double share = double(sample.size()) / double(job.points);
-  const auto most = std::size_t(std::max(1.0, share * double(how.tile_points)));
-  cut_rows(job, Cuts(std::move(sample), most), context);
+  Survey survey = survey_inputs(job.inputs, rows, one_in, context);
+  if (survey.points == 0) fail(ErrorCode::no_usable_points, "none of the points is finite");
+  job.points = survey.points;
+  job.box = {survey.box.min(), survey.box.max()};
+  RepeatsWriter repeats(survey.shared, job, context);
+  const auto most = std::size_t(std::max<std::uint64_t>(1, how.tile_points / one_in));
+  cut_rows(job, Cuts(std::move(survey.sample), most), repeats, context);
+  repeats.commit(job);
+  job.sample = std::min(job.in_tiles(), how.sample_points);
+  job.measured = std::min(job.in_tiles(), kMeasuredOverSmoothed * how.sample_points);
   value_or_throw(io::write_bytes(json_of_job(job, how).dump(1) + '\n', plan_file(folder), true, context));
   return job;
 }

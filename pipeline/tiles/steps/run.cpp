@@ -95,13 +95,6 @@ void narrow(const Job& job, std::size_t tile, std::uint64_t most, const Context&
   }
 }
 
-/// A tile's points and those around it.
-struct Gathered {
-  std::vector<Record> own;
-  std::vector<Around> around;  ///< for normals only
-  std::vector<double> xyz;     ///< n x 3, the tile's own first
-};
-
 Gathered gather(const Job& job, std::size_t tile, const Settled& settled, bool normals, std::uint64_t most,
                 const Context& context) {
   Gathered points;
@@ -116,20 +109,20 @@ Gathered gather(const Job& job, std::size_t tile, const Settled& settled, bool n
   return points;
 }
 
-/// How a tile's points moved, and how many have no surface near them. `now`, `outlier`: theirs come first.
-ordered_json moves_of(const std::vector<Record>& own, const std::vector<double>& now,
+/// How a tile's points moved, and how many have no surface near them, with their repeats. `now`, `outlier`:
+/// theirs come first.
+ordered_json moves_of(const Job& job, const std::vector<Record>& own, const std::vector<double>& now,
                       const std::vector<char>& outlier) {
-  std::size_t moved = 0;
+  std::uint64_t moved = 0, strays = 0;
   double squares = 0, largest = 0;
   for (std::size_t i = 0; i < own.size(); ++i) {
     const Vector3d move = Vector3d(now[3 * i], now[3 * i + 1], now[3 * i + 2]) - place(own[i]);
-    moved += std::size_t(move.squaredNorm() > 0);
-    squares += move.squaredNorm();
+    const std::uint64_t rows = job.rows_with(own[i].row);
+    moved += move.squaredNorm() > 0 ? rows : 0;
+    strays += !outlier.empty() && outlier[i] != 0 ? rows : 0;
+    squares += double(rows) * move.squaredNorm();
     largest = std::max(largest, move.norm());
   }
-  const auto strays =
-      outlier.empty() ? 0
-                      : std::count(outlier.begin(), outlier.begin() + std::ptrdiff_t(own.size()), char(1));
   return {{"moved", moved}, {"squares", squares}, {"largest", largest}, {"outliers", strays}};
 }
 
@@ -147,7 +140,8 @@ void run_tile(const Job& job, std::size_t tile, const DenoiseOptions& options,
   const Settled settled = settled_of(job);
   if (is_run(job, tile, normals.has_value(), context)) return;
   const double began = processor_seconds();
-  auto [own, around, xyz] = gather(job, tile, settled, normals.has_value(), most, context);
+  Gathered points = gather(job, tile, settled, normals.has_value(), most, context);
+  auto& [own, around, xyz] = points;
   std::vector<char> outlier;
   if (!own.empty()) {
     DenoiseOptions how = options;
@@ -155,9 +149,9 @@ void run_tile(const Job& job, std::size_t tile, const DenoiseOptions& options,
     outlier = value_or_throw(denoise(xyz.data(), xyz.size() / 3, how, context)).outlier;
   }
   ordered_json cost = {{"around", xyz.size() / 3 - own.size()}, {"seconds", 0}};
-  cost.update(moves_of(own, xyz, outlier));
+  cost.update(moves_of(job, own, xyz, outlier));
   if (normals)  // from within the widest patch, where those of both tiles are good
-    cost.update(write_normals(job, tile, own, around, xyz, *normals, settled.halo / kHaloRadii, context));
+    cost.update(write_normals(job, tile, points, *normals, settled.halo / kHaloRadii, context));
   RecordWriter writer(job.done(tile), context);
   for (std::size_t i = 0; i < own.size(); ++i)
     writer.add({own[i].row, xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]});

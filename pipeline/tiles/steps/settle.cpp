@@ -80,7 +80,7 @@ Settled settle_sample(const Job& job, Sample sample, const DenoiseOptions& optio
   how.statistics->box = job.box;
   if (!sample.measured.empty()) how.statistics = measure_points(std::move(sample.measured), how, context);
   const std::size_t n = sample.smoothed.size() / 3;
-  if (n < job.points) how.statistics->points = std::size_t(job.points);
+  if (n < job.in_tiles()) how.statistics->points = std::size_t(job.in_tiles());
   std::vector<double> smooth = sample.smoothed;
   Settled settled;
   settled.report = value_or_throw(denoise(smooth.data(), n, how, context));
@@ -144,7 +144,9 @@ Settled read_settled(const std::filesystem::path& path) {
   try {
     Settled settled = settled_of_json(ordered_json::parse(file));
     std::vector<std::string> wrong = check(settled.report.statistics);
-    if (!(settled.halo >= 0 && settled.radii >= 0 && settled.widest >= 1 && settled.widest < kNone))
+    constexpr double kFarthest = 1e100;  // no cloud is larger (rfs_mesh/points.h)
+    if (!(settled.halo >= 0 && settled.halo <= kFarthest && settled.radii > 0 && settled.radii <= kFarthest &&
+          settled.widest >= 1 && settled.widest < kNone))
       wrong.emplace_back("halo, halo_radii or widest: is no length or no number of points");
     if (!wrong.empty()) fail(ErrorCode::input_unreadable, "{}: {}", path.string(), wrong.front());
     return settled;

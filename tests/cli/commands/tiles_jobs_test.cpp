@@ -3,6 +3,7 @@
 #include <atomic>
 #include <csignal>
 #include <future>
+#include <limits>
 
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
@@ -137,6 +138,57 @@ TEST_F(Tiles, ACoarseScaleOfALasFileIsRefinedAsForTheWholeCloud) {
   EXPECT_THAT(other.err, HasSubstr("keeps its format"));
 }
 
+// Each has its scale and its box from the results of its own rows; reading those of all inputs for each of
+// them took as long as there are inputs.
+TEST_F(Tiles, ManyLasFilesAreJoinedAsOneAndInTheTimeOfOne) {
+  constexpr int kFiles = kSanitized ? 8 : 100, kSide = kSanitized ? 80 : 200, kColumns = 200;
+  constexpr double kScale = 0.01;
+  std::mt19937_64 engine(9);
+  std::normal_distribution<double> noise(0, 0.3);
+  LasBytes all;
+  all.scale = {kScale, kScale, kScale};
+  for (int i = 0; i < kSide * kColumns; ++i) {
+    all.xyz.push_back({});
+    const double at[] = {i / kColumns + noise(engine), i % kColumns + noise(engine), noise(engine)};
+    for (std::size_t k = 0; k < 3; ++k) all.xyz.back()[k] = std::int32_t(std::lround(at[k] / kScale));
+  }
+  put("all.las", all.bytes());
+  std::vector<std::string> names;
+  const std::size_t each = all.xyz.size() / kFiles;
+  for (std::size_t f = 0; f < kFiles; ++f) {
+    LasBytes part = all;
+    const auto first = all.xyz.begin() + std::ptrdiff_t(f * each);
+    part.xyz.assign(first, first + std::ptrdiff_t(each));
+    names.push_back("part" + std::to_string(f) + ".las");
+    put(names.back(), part.bytes());
+  }
+  settled({"all.las"}, "one");
+  step_of_all("run", "one");
+  settled(names, "many");
+  step_of_all("run", "many");
+  const Ran one = run({"tiles", "join", "--keep-scale", "one", "one.las"}),
+            many = run({"tiles", "join", "--keep-scale", "many", "out"});
+  EXPECT_EQ(one.code, 0) << one.err;
+  EXPECT_EQ(many.code, 0) << many.err;
+  if (!kSanitized) {
+    EXPECT_LT(many.processor_seconds, 4 * one.processor_seconds + 0.5);
+  }
+  const std::string whole = take("one.las");
+  EXPECT_FALSE(whole == take("all.las"));
+  const std::size_t before = all.points(), row = all.row();
+  constexpr std::size_t kPlace = 12;  // bytes of a row
+  for (std::size_t f = 0; f < kFiles; ++f) {
+    const std::string part = take("out/" + names[f]);
+    std::int32_t low = std::numeric_limits<std::int32_t>::max();
+    for (std::size_t i = 0; i < each; ++i) {
+      low = std::min(low, LasBytes::get<std::int32_t>(part, before + i * row));
+      ASSERT_EQ(part.compare(before + i * row, kPlace, whole, before + (f * each + i) * row, kPlace), 0) << f;
+    }
+    constexpr std::size_t kLowXAt = 187;
+    EXPECT_NEAR(LasBytes::get<double>(part, kLowXAt), all.offset[0] + kScale * low, kScale / 10) << f;
+  }
+}
+
 TEST_F(Tiles, WhatCannotBeDoneIsRefusedWithWhatToDo) {
   put("in.xyz", "1 2 3\n4 5 6\n");
   const Ran text = run({"tiles", "plan", "in.xyz", "job"});
@@ -159,6 +211,26 @@ TEST_F(Tiles, WhatCannotBeDoneIsRefusedWithWhatToDo) {
   EXPECT_THAT(later.err, HasSubstr("tiles plan"));
 }
 
+// Of rows before the points that the file only promises; 2^64 - 100 of them end before they begin.
+TEST_F(Tiles, RowsThatAreNotThereAreRefusedWithTheirElementAndPlace) {
+  for (const std::string count : {"40000000", "3000000000", "10000000000000", "18446744073709551516"}) {
+    const std::string bytes =
+        "ply\nformat binary_little_endian 1.0\nelement pad " + count +
+        "\nproperty uchar a\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\n"
+        "end_header\n" +
+        std::string(50, '\0');
+    put("in.ply", bytes);
+    RunSetup piped;
+    piped.input = bytes;
+    for (const Ran& ran :
+         {run({"tiles", "plan", "in.ply", "job"}), run({"tiles", "plan", "/dev/stdin", "job"}, piped)}) {
+      EXPECT_EQ(ran.code, 3) << ran.err;
+      EXPECT_THAT(ran.err, HasSubstr("expected " + count + " rows of element 'pad', 1 bytes each, found 50"));
+    }
+    EXPECT_FALSE(there("job"));
+  }
+}
+
 TEST_F(Tiles, AJobWhoseListsDoNotFitIsRefusedWithOneLineThatSaysWhich) {
   put("in.ply", strip(0.4).bytes());
   settled({"in.ply"}, "job");
@@ -173,9 +245,16 @@ TEST_F(Tiles, AJobWhoseListsDoNotFitIsRefusedWithOneLineThatSaysWhich) {
   EXPECT_EQ(sites.code, 3);
   EXPECT_THAT(sites.err, HasSubstr("statistics.json: noise: sigma at 0"));
   EXPECT_EQ(std::count(sites.err.begin(), sites.err.end(), '\n'), 1) << sites.err;
-  const Ran widest = run_with([](auto& json) { json["widest"] = 0; });
-  EXPECT_EQ(widest.code, 3);
-  EXPECT_THAT(widest.err, HasSubstr("statistics.json: halo"));
+  for (const char* name : {"widest", "halo_radii"}) {
+    const Ran none = run_with([&](auto& json) { json[name] = 0; });
+    EXPECT_EQ(none.code, 3);
+    EXPECT_THAT(none.err, HasSubstr("statistics.json: halo"));
+  }
+  const Ran tails = run_with([](auto& json) {
+    json["statistics"]["tails"] = {{"share", 0.5}, {"times", 0}, {"narrow", 0}, {"together", 1}};
+  });
+  EXPECT_EQ(tails.code, 3);
+  EXPECT_THAT(tails.err, HasSubstr("statistics.json: tails"));
 }
 
 TEST_F(Tiles, AFullDiskIsAnErrorAndTheWorkGoesOnWhenThereIsRoom) {

@@ -1,5 +1,7 @@
 /// rfsmooth denoise --memory: in tiles where the memory is less.
+#include <array>
 #include <cmath>
+#include <cstring>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -109,6 +111,35 @@ TEST_F(Tiles, RowsThatAreNotFiniteTakeNoMemory) {
   const Ran ran = run({"denoise", "--memory", "80M", "in.ply", "out.ply"});
   EXPECT_EQ(ran.code, 0);
   EXPECT_THAT(ran.err, Not(HasSubstr("in tiles")));
+}
+
+// A scanner's (0, 0, 0) for what it did not see, where it stands.
+TEST_F(Tiles, RowsAtOnePlaceTakeNoMemoryAndStayTogether) {
+  const BinaryPly plane = noisy_plane(300);
+  BinaryPly unseen = plane;
+  unseen.xyz.clear();
+  for (std::size_t i = 0; i < plane.size(); ++i) {
+    unseen.xyz.insert(unseen.xyz.end(), {0, 0, 1000, 0, 0, 1000});
+    unseen.xyz.insert(unseen.xyz.end(), plane.xyz.begin() + std::ptrdiff_t(3 * i),
+                      plane.xyz.begin() + std::ptrdiff_t(3 * i + 3));
+  }
+  put("in.ply", unseen.bytes());
+  const Ran ran = run({"denoise", "--memory", "90M", "in.ply", "out.ply"});
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  EXPECT_THAT(ran.err, HasSubstr("in tiles"));
+  EXPECT_THAT(ran.err, HasSubstr("270000 points, 270000 finite; 180000 outliers"));
+  const std::string out = take("out.ply");
+  double before = 0, after = 0;
+  for (std::size_t i = 0; i < unseen.size(); ++i) {
+    std::array<float, 3> now{};
+    std::memcpy(now.data(), out.data() + unseen.header().size() + i * BinaryPly::kRow, sizeof now);
+    if (i % 3 < 2)
+      ASSERT_EQ(now, (std::array<float, 3>{0, 0, 1000})) << i;
+    else
+      after += double(now[2]) * double(now[2]);
+    before += i % 3 < 2 ? 0 : double(unseen.xyz[3 * i + 2]) * double(unseen.xyz[3 * i + 2]);
+  }
+  EXPECT_LT(after, before / 10);
 }
 
 TEST_F(Tiles, WhatCannotGoInTilesIsRefusedWhereTheMemoryIsLess) {

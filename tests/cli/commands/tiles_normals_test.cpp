@@ -1,5 +1,6 @@
 /// rfsmooth tiles --normals: on one side across tiles.
 #include <cstring>
+#include <string_view>
 
 #include "tests/cli/support/tile_jobs.h"
 
@@ -66,6 +67,49 @@ TEST_F(Tiles, NormalsAreOutwardAcrossTilesAndOneTileHasThoseOfTheWholeCloud) {
     EXPECT_TRUE(take(cloud.output()) == many);
     std::filesystem::remove(at(cloud.output()));
   }
+}
+
+// The same job but for the rows that repeat one place on the surface; the last of two files has more of them.
+TEST_F(Tiles, RowsAtOnePlaceBecomeWhatTheFirstOfThemDoes) {
+  RichCloud once = strip(0.4);
+  const std::array<double, 3> shared = {11, 12, 1.5};
+  once.xyz.insert(once.xyz.begin(), shared.begin(), shared.end());
+  RichCloud often = once;
+  often.xyz.clear();
+  for (std::size_t i = 0; i < once.size(); ++i) {
+    const auto row = once.xyz.begin() + std::ptrdiff_t(3 * i);
+    often.xyz.insert(often.xyz.end(), row, row + 3);
+    often.xyz.insert(often.xyz.end(), shared.begin(), shared.end());
+  }
+  RichCloud first = often, last = often;
+  const std::size_t cut = 3 * (often.size() / 2);
+  first.xyz.resize(cut);
+  last.xyz.erase(last.xyz.begin(), last.xyz.begin() + std::ptrdiff_t(cut));
+  put("once.ply", once.bytes());
+  put("first.ply", first.bytes());
+  put("last.ply", last.bytes());
+  const std::string expected = joined({"once.ply"}, "one", "one.ply", kTile, "1000000", "--normals");
+  joined({"first.ply", "last.ply"}, "two", "out", kTile, "1000000", "--normals");
+  EXPECT_GT(tiles_of("two").size(), 4u);
+  const std::size_t normal = 12, wide = once.row_bytes() + normal;
+  const auto places_of = [&](const std::string& bytes) {  // of rows, and their normals
+    constexpr std::string_view kEnd = "end_header\n";
+    std::vector<std::string> rows;
+    for (std::size_t at = bytes.find(kEnd) + kEnd.size(); at < bytes.size(); at += wide)
+      rows.push_back(bytes.substr(at, once.coordinate_bytes()) + bytes.substr(at + once.row_bytes(), normal));
+    return rows;
+  };
+  const std::vector<std::string> one = places_of(expected);
+  std::vector<std::string> two = places_of(take("out/first.ply"));
+  for (const std::string& row : places_of(take("out/last.ply"))) two.push_back(row);
+  ASSERT_EQ(two.size(), 2 * one.size());
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    ASSERT_TRUE(two[2 * i] == one[i]) << i;
+    ASSERT_TRUE(two[2 * i + 1] == one[0]) << i;
+  }
+  EXPECT_NE(one[0].substr(0, once.coordinate_bytes()),
+            once.row(once.bytes(), 0).substr(0, once.coordinate_bytes()))
+      << "it was smoothed";
 }
 
 TEST_F(Tiles, NormalsFaceTheViewpointAndElseTheSameSideInAllTiles) {

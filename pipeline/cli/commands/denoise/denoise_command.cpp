@@ -50,7 +50,7 @@ std::optional<int> denoise_in_tiles(const DenoiseCommandOptions& options, const 
   console.say(fmt::format("{}: too large for {:.3g} GB: smoothed in tiles of {} points", job.input,
                           double(*memory) / 1e9, how.plan.tile_points));
   const pipeline::tiles::SmoothedInTiles done = pipeline::tiles::smooth_in_tiles(
-      job.input, job.output, options.job.files.force, options.keep_scale, how, options.denoise,
+      {job.input, job.output, options.job.files.force, options.keep_scale}, how, options.denoise,
       normals_in_tiles(options.normals, {job.input}, context), context);
   tell_scale(job.input, done.joined.scale, done.report.noise, done.report.noise_left, console);
   if (done.joined.las) warn_of_index(job.output, console);

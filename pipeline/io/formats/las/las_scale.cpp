@@ -57,14 +57,18 @@ ScaleChange finest(const Span& span, int power) {
   return {};
 }
 
-void apply(Table& points, std::size_t axis, const ScaleChange& change, const Context& context) {
-  context.check_stop();
-  Context to_the_end = context;  // in place: all rows or none
-  to_the_end.stop = nullptr;
+// The change of an axis to steps of at most `step`.
+ScaleChange finer_scale(const Field& field, double step, const Span& span) {
+  if (!(step > 0) || std::abs(field.scale) <= step || !(span.low <= span.high)) return {};
+  // Rounded up, but for what division adds to a power of ten.
+  const int power = int(std::ceil(std::log10(std::abs(field.scale) / step) - 1e-9));
+  return finest(span, std::clamp(power, 0, kMostPowers));
+}
+
+void change_integers(Table& points, std::size_t axis, const ScaleChange& change, const Context& context) {
   const std::size_t size = points.row_size();
-  for_each_index(to_the_end, points.count,
+  for_each_index(context, points.count,
                  [&](std::size_t i) { change_integer(points.data.data() + i * size + 4 * axis, change); });
-  change_scale(points.fields[axis], change);
 }
 
 }  // namespace
@@ -99,16 +103,18 @@ double finest_needed(double noise, double left) {
   return (left < noise ? left : noise / 10) / 2;
 }
 
-ScaleChange finer_scale(const Field& field, double step, double low, double high) {
-  if (!(step > 0) || std::abs(field.scale) <= step) return {};
-  // Rounded up, but for what division adds to a power of ten.
-  const int power = int(std::ceil(std::log10(std::abs(field.scale) / step) - 1e-9));
-  return las::finest({low, high}, std::clamp(power, 0, las::kMostPowers));
-}
-
-void change_scale(Field& field, const ScaleChange& change) {
-  field.offset += change.shift * field.scale;
-  field.scale = times_power_of_ten(field.scale, -change.power);
+ScaleChange refine_axis(Field& field, std::size_t axis, double step, double low, double high,
+                        RefinedScale& done) {
+  const ScaleChange change = las::finer_scale(field, step, {low, high});
+  done.before[axis] = field.scale;
+  done.shift[axis] = change.shift;
+  if (change.power > 0) {
+    const double scale = times_power_of_ten(field.scale, -change.power);  // first: memory may run out
+    field.offset += change.shift * field.scale;
+    field.scale = scale;
+  }
+  done.after[axis] = field.scale;
+  return change;
 }
 
 void change_integer(char* at, const ScaleChange& change) {
@@ -124,16 +130,15 @@ RefinedScale refine_scale(Cloud& las, double step, const double* xyz, const Cont
   using namespace las;  // NOLINT(google-build-using-namespace)
   RefinedScale done;
   Table& points = las.points();
+  Context to_the_end = context;  // in place: all rows or none
+  to_the_end.stop = nullptr;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const double scale = points.fields[axis].scale;
-    done.before[axis] = done.after[axis] = scale;
-    if (!(step > 0) || std::abs(scale) <= step || points.count == 0) continue;
-    const Span span = span_in_steps(points, axis, xyz, context);
-    const ScaleChange change = finer_scale(points.fields[axis], step, span.low, span.high);
-    if (change.power == 0) continue;
-    apply(points, axis, change, context);
-    done.after[axis] = points.fields[axis].scale;
-    done.shift[axis] = change.shift;
+    Field& field = points.fields[axis];
+    const Span span =
+        step > 0 && std::abs(field.scale) > step ? span_in_steps(points, axis, xyz, context) : Span{};
+    context.check_stop();
+    const ScaleChange change = refine_axis(field, axis, step, span.low, span.high, done);
+    if (change.power > 0) change_integers(points, axis, change, to_the_end);
   }
   return done;
 }

@@ -30,12 +30,11 @@ struct ScaleChange {
   double shift = 0;
 };
 
-/// The change of an axis to steps of at most `step`, as far as its integers fit into 32 bits. `low`, `high`:
-/// the ends of its old and new coordinates, in old steps.
-ScaleChange finer_scale(const Field& field, double step, double low, double high);
-
-/// Changes the field, but no integers.
-void change_scale(Field& field, const ScaleChange& change);
+/// Gives the field of an axis steps of at most `step`, as far as its integers fit into 32 bits, and enters
+/// the axis into `done`. Returns how its integers are to be changed. `low`, `high`: the ends of its old and
+/// new coordinates, in old steps; low > high where there are none.
+ScaleChange refine_axis(Field& field, std::size_t axis, double step, double low, double high,
+                        RefinedScale& done);
 
 /// Changes an integer, in place: 4 bytes.
 void change_integer(char* at, const ScaleChange& change);
