@@ -248,5 +248,25 @@ TEST_P(Robustness, IsDenoised) {
   }
 }
 
+// Coordinates of any order of magnitude side by side: patches of one place, and others that no number of
+// standard deviations measures.
+TEST(EveryOrderOfMagnitude, GivesFinitePoints) {
+  for (const int most : {40, 60})
+    for (unsigned seed = 1; seed <= 4; ++seed) {
+      SCOPED_TRACE(testing::Message() << "up to 2^" << most << ", seed " << seed);
+      std::mt19937_64 engine(seed);
+      std::uniform_int_distribution<int> power(-most, most);
+      std::vector<double> xyz(3 * 1000);
+      for (double& x : xyz) x = std::ldexp(1, power(engine));
+      AutomaticOptions automatic;
+      automatic.noise = Length{0.1, false};
+      DenoiseOptions options;
+      options.flow.flow = automatic;
+      const auto result = denoise(xyz.data(), xyz.size() / 3, options, {});
+      ASSERT_TRUE(result.ok()) << result.error().message;
+      for (const double x : xyz) ASSERT_TRUE(std::isfinite(x));
+    }
+}
+
 }  // namespace
 }  // namespace rfsmooth::pipeline
