@@ -80,6 +80,7 @@ void alternate(Mesh& mesh, const Constraints& constraints, const DenoiseOptions&
     if (swaps > 0 && flow) flow->connectivity_changed(mesh, context);
   }
   context.report("smooth", 1);
+  if (flow) report.solver = flow->solver();
   if (first)
     enter(*first, *found, report);
   else if (steps == 0)

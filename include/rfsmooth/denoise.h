@@ -78,6 +78,7 @@ struct DenoiseReport {
   double equalized_largest = 0;  ///< the farthest
   double guide_strength = 0;     ///< of the automatic smoother's guide, dimensionless; 0 for flows
   double tail_times = 1;  ///< noise of the noisiest points (heavy tails) over that of the others; 1: no tails
+  SolverSummary solver;   ///< of implicit flows
   std::size_t stranded = 0;          ///< points that the guide's fairing had left beside the surface
   double largest_move = 0;           ///< world units
   double rms_move = 0;               ///< over the finite rows, world units

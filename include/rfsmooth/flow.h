@@ -26,10 +26,20 @@ struct TraceRow {
   double largest_move = 0;       ///< of this step
 };
 
+/// How the solves of an implicit flow ended, all steps together; the defaults are those of explicit flows,
+/// which solve nothing.
+struct SolverSummary {
+  int iterations = 0;     ///< products with the matrix
+  double residual = 0;    ///< the largest at the end of a solve, relative to the right side
+  bool converged = true;  ///< whether each is within the tolerance, or as small as rounding leaves it
+  /// Adds those of a further flow or step.
+  SolverSummary& operator+=(const SolverSummary& other);
+};
+
 /// What a run did.
 struct FlowReport {
   int steps = 0;
-  int solver_iterations = 0;    ///< implicit flows: products with the matrix, all steps together
+  SolverSummary solver;
   double largest_move = 0;      ///< world units
   std::vector<TraceRow> trace;  ///< steps + 1 rows if asked for (FlowOptions::trace)
 };
@@ -95,8 +105,8 @@ class Flow {
   /// Told that the connectivity changed (edge swaps) while the vertices stayed the same.
   virtual void connectivity_changed(const Mesh&, const Context&) {}
 
-  /// Solver iterations (products with the matrix) of all steps so far; 0 for explicit flows.
-  virtual int solver_iterations() const { return 0; }
+  /// Of all steps so far.
+  virtual SolverSummary solver() const { return {}; }
 
   /// Whether the flow heeds the constraints it was made with itself; if not, `make_flow` wraps it.
   virtual bool applies_constraints() const { return false; }
