@@ -196,6 +196,7 @@ void land_tails(const double* xyz, const std::vector<double>& strength, const De
     report.outlier[i] = 0;
     --report.outliers;
   }
+  if (report.outliers == 0) report.outlier.clear();
 }
 
 /// \throw Failure for stated noise that is larger than the whole cloud, which has no surface then; most
