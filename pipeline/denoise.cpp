@@ -325,6 +325,14 @@ DenoiseReport run(double* xyz, std::size_t n, const DenoiseOptions& options, con
   return report;
 }
 
+/// \throw Failure for clouds of which the patches over all points would be more than 2^32: 14 lie over each.
+void refuse_too_many(std::size_t n) {
+  constexpr std::size_t kMostPoints = 300'000'000;
+  if (n > kMostPoints)
+    fail(ErrorCode::usage, "{} points; at most {} are smoothed at once, larger clouds in tiles", n,
+         kMostPoints);
+}
+
 /// The same for clouds of any size; those that are far too large or too small in other units.
 DenoiseReport run_in_working_units(double* xyz, std::size_t n, const DenoiseOptions& options,
                                    const Context& context, const std::vector<double>& strength) {
@@ -364,6 +372,7 @@ Result<DenoiseReport> denoise(double* xyz, std::size_t n, const DenoiseOptions& 
   for (const double s : strength)
     if (!(s >= 0 && s <= 1)) throw std::invalid_argument("a strength is outside [0, 1]");
   return guarded([&] {
+    refuse_too_many(n);
     value_or_throw(validate(options));
     value_or_throw(validate(options.flow));
     refuse_for_clouds(options.flow.modifiers);

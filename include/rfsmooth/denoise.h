@@ -97,6 +97,7 @@ struct DenoiseReport {
 /// `xyz` is untouched. Same bytes out for any number of threads and any order of the rows.
 /// `strength`: n, in [0, 1]: 0 = the row stays, 1 = smoothed fully; empty = all 1 (Desbrun et al. 1999, 2.7).
 /// Finite points may extend over 1e-100 to 1e100; the same cloud in other units comes out the same in those.
+/// At most 300 million points; cut larger clouds into tiles (`rfsmooth tiles`).
 /// Errors: usage, no_usable_points, out_of_memory, cancelled. O(n log n + steps n). \throw
 /// std::invalid_argument for strengths of another number or outside [0, 1]. Thread-safe on distinct arrays.
 Result<DenoiseReport> denoise(double* xyz, std::size_t n, const DenoiseOptions& options,

@@ -195,6 +195,13 @@ TEST(Denoise, WrongOptionsAreNamed) {
   EXPECT_THAT(result.error().message, ::testing::HasSubstr("alpha"));
 }
 
+TEST(Denoise, MorePointsThanItCanCountAreRefusedBeforeTheyAreRead) {
+  const auto result = denoise(nullptr, 300'000'001, {}, {});
+  ASSERT_FALSE(result.ok());
+  EXPECT_EQ(result.error().code, ErrorCode::usage);
+  EXPECT_THAT(result.error().message, ::testing::HasSubstr("at most 300000000"));
+}
+
 TEST(Denoise, NothingUsableIsAnError) {
   EXPECT_EQ(denoise(nullptr, 0, hc(), {}).error().code, ErrorCode::no_usable_points);
   Flat xyz(6, std::nan(""));
