@@ -1,7 +1,6 @@
 #include "smoothing/automatic/patches/patches.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
