@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -20,6 +21,13 @@ std::optional<Error> check_choice(const OptionInfo& info, std::size_t value) {
   if (value < info.choices.size()) return std::nullopt;
   return Error{ErrorCode::usage,
                fmt::format("`{}` must be one of: {}", info.name, fmt::join(info.choices, ", "))};
+}
+
+std::optional<Error> check_word(const OptionInfo& info, const std::string& value) {
+  const auto& words = info.choices;
+  if (words.empty() || std::find(words.begin(), words.end(), value) != words.end()) return std::nullopt;
+  return Error{ErrorCode::usage,
+               fmt::format("`{}` is '{}'; it must be one of: {}", info.name, value, fmt::join(words, ", "))};
 }
 
 std::optional<Error> check_direction(const OptionInfo& info, const Eigen::Vector3d& value) {

@@ -1,5 +1,5 @@
-/// Quantiles and the median: always one of the values. They reorder the values. O(n). Thread safe for
-/// different values.
+/// Quantiles and the median: always one of the values, not a mean of two. They reorder the values, none of
+/// which may be NaN. O(n). Thread safe for different values.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,8 @@
 
 namespace rfsmooth {
 
-/// The value of [first, last) with `share` (0 to 1) of the others below it, rounded down: at least one value.
+/// The value of [first, last) that has `share` (0 to 1) of the other values below it, their number rounded
+/// down. Precondition: there is a value.
 template <class Iterator>
 double quantile(Iterator first, Iterator last, double share) {
   const Iterator at = first + std::ptrdiff_t(share * double(last - first - 1));

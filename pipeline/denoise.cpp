@@ -13,6 +13,7 @@
 #include "base/stopwatch.h"
 #include "pipeline/measure_points.h"
 #include "pipeline/outliers.h"
+#include "pipeline/units/units.h"
 #include "rfs_mesh/connect/connect.h"
 #include "rfs_mesh/connect/edge_swap.h"
 #include "rfs_mesh/levels.h"
@@ -80,6 +81,7 @@ void alternate(Mesh& mesh, const Constraints& constraints, const DenoiseOptions&
     if (swaps > 0 && flow) flow->connectivity_changed(mesh, context);
   }
   context.report("smooth", 1);
+  if (flow) report.solver = flow->solver();
   if (first)
     enter(*first, *found, report);
   else if (steps == 0)
@@ -194,6 +196,7 @@ void land_tails(const double* xyz, const std::vector<double>& strength, const De
     report.outlier[i] = 0;
     --report.outliers;
   }
+  if (report.outliers == 0) report.outlier.clear();
 }
 
 /// \throw Failure for stated noise that is larger than the whole cloud, which has no surface then; most
@@ -204,9 +207,9 @@ void refuse_noise_beyond(const Statistics::Box& box, double spacing, const Denoi
   const double noise = automatic->noise->resolve(spacing), size = (box.high - box.low).norm();
   if (noise > size && size > 0)
     fail(ErrorCode::usage,
-         "`noise` is {:.4g}, more than the whole cloud, which is {:.4g} from corner to corner; it takes the "
+         "`noise` is more than the whole cloud, {:.4g} times what it is from corner to corner; it takes the "
          "units of the coordinates, or times the spacing as in 0.5x",
-         noise, size);
+         noise / size);
 }
 
 /// The points to work on.
@@ -322,6 +325,31 @@ DenoiseReport run(double* xyz, std::size_t n, const DenoiseOptions& options, con
   return report;
 }
 
+/// \throw Failure for clouds of which the patches over all points would be more than 2^32: 14 lie over each.
+void refuse_too_many(std::size_t n) {
+  constexpr std::size_t kMostPoints = 300'000'000;
+  if (n > kMostPoints)
+    fail(ErrorCode::usage, "{} points; at most {} are smoothed at once, larger clouds in tiles", n,
+         kMostPoints);
+}
+
+/// The same for clouds of any size; those that are far too large or too small in other units.
+DenoiseReport run_in_working_units(double* xyz, std::size_t n, const DenoiseOptions& options,
+                                   const Context& context, const std::vector<double>& strength) {
+  const double unit = working_unit(xyz, n, context);
+  if (unit == 1) return run(xyz, n, options, context, strength);
+  std::vector<double> before(xyz, xyz + 3 * n);
+  for (double& x : before) x *= unit;
+  std::vector<double> after = before;
+  DenoiseOptions scaled = options;
+  change_units(scaled, unit);
+  DenoiseReport report = run(after.data(), n, scaled, context, strength);
+  for (std::size_t i = 0; i < after.size(); ++i)
+    if (std::isfinite(after[i]) && after[i] != before[i]) xyz[i] = after[i] / unit;
+  change_units(report, 1 / unit);
+  return report;
+}
+
 /// \throw Failure for what needs a surface without the holes that a rough mesh has between its umbrellas.
 void refuse_for_clouds(const Modifiers& modifiers) {
   if (modifiers.boundary != Boundary::free)
@@ -344,6 +372,7 @@ Result<DenoiseReport> denoise(double* xyz, std::size_t n, const DenoiseOptions& 
   for (const double s : strength)
     if (!(s >= 0 && s <= 1)) throw std::invalid_argument("a strength is outside [0, 1]");
   return guarded([&] {
+    refuse_too_many(n);
     value_or_throw(validate(options));
     value_or_throw(validate(options.flow));
     refuse_for_clouds(options.flow.modifiers);
@@ -351,7 +380,7 @@ Result<DenoiseReport> denoise(double* xyz, std::size_t n, const DenoiseOptions& 
       if (const auto wrong = check(*options.statistics); !wrong.empty())
         fail(ErrorCode::usage, "`statistics`: {}", wrong.front());
     DenoiseReport report;
-    in_arena(context, [&] { report = run(xyz, n, options, context, strength); });
+    in_arena(context, [&] { report = run_in_working_units(xyz, n, options, context, strength); });
     return report;
   });
 }
@@ -360,11 +389,15 @@ Statistics pipeline::measure_points(std::vector<double> xyz, const DenoiseOption
                                     const Context& context) {
   DenoiseReport report;
   in_arena(context, [&] {
+    const double unit = working_unit(xyz.data(), xyz.size() / 3, context);
+    for (double& x : xyz) x *= unit;
     if (options.statistics) report.statistics = *options.statistics;
+    change_units(report.statistics, unit);
     rfs_mesh::WorkingCloud cloud = prepare(xyz.data(), xyz.size() / 3, options, context, report);
     std::vector<double>().swap(xyz);
     const Searched found = search(cloud, int(rfs_mesh::kRing), options, context, report);
     rfs_mesh::measure_cloud(*found.index, found.near, report.statistics, context);
+    change_units(report.statistics, 1 / unit);
   });
   return report.statistics;
 }

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <limits>
 #include <memory>
 
 #include <fmt/format.h>
@@ -6,16 +7,27 @@
 #include <rfsmooth/mesh.h>
 
 #include "base/collect.h"
+#include "base/fail.h"
 #include "base/parallel.h"
 
 namespace rfsmooth {
 
 namespace {
 
-/// Adds up start[1..n] in place, blocks in parallel.
+/// \throw Failure if rows of so many items together have no place for their starts.
+void refuse_too_many(std::size_t items) {
+  if (items > std::numeric_limits<Index>::max())
+    fail(ErrorCode::usage,
+         "{} neighbours in all; a mesh has at most {}: cut the cloud into tiles, or take fewer faces", items,
+         std::numeric_limits<Index>::max());
+}
+
+/// Adds up start[1..n] in place, blocks in parallel. \throw Failure if the sum is more than an Index holds.
 void prefix_sum(std::vector<Index>& start, const Context& context) {
   constexpr std::size_t kBlock = std::size_t{1} << 16;
   const std::size_t n = start.size() - 1;
+  refuse_too_many(
+      sum_over(context, start.size(), std::size_t{0}, [&](std::size_t i) { return std::size_t(start[i]); }));
   std::vector<Index> total((n + kBlock - 1) / kBlock + 1, 0);
   for_blocks(context, n, kBlock, [&](std::size_t b, std::size_t e) {
     for (std::size_t i = b + 1; i < e; ++i) start[i + 1] += start[i];
@@ -120,6 +132,7 @@ Adjacency make_adjacency(std::size_t n, const std::vector<Edge>& edges, const Co
 
 Adjacency joined(const Adjacency& one, const Adjacency& other, const Context& context) {
   const std::size_t n = one.size();
+  refuse_too_many(one.items.size() + other.items.size());
   Adjacency rows;
   rows.start.resize(n + 1);
   for_each_index(context, n + 1, [&](std::size_t i) { rows.start[i] = one.start[i] + other.start[i]; });

@@ -48,14 +48,15 @@ Extent extent_of(const Input& input, const Context& context) {
       });
 }
 
+constexpr double kLargestSide = 1e100, kSmallestSide = 1e-100;
+
 /// The largest side of the box; a failure where its square would not be a number.
-double largest_side(const Eigen::AlignedBox3d& box) {
-  constexpr double kLargest = 1e100, kSmallest = 1e-100;
-  const double side = (0.5 * box.max() - 0.5 * box.min()).maxCoeff() * 2;
-  if (side > kLargest || (side > 0 && side < kSmallest))
+double usable_side(const Statistics::Box& box) {
+  const double side = largest_side(box);
+  if (!is_in_range(side))
     throw Failure({ErrorCode::no_usable_points,
                    fmt::format("the points extend over {:g}; rescale the cloud to between {:g} and {:g}",
-                               side, kSmallest, kLargest)});
+                               side, kSmallestSide, kLargestSide)});
   return side;
 }
 
@@ -81,12 +82,12 @@ WorkingCloud make(const Input& input, const Statistics::Box* box, const Context&
           {ErrorCode::usage, "a point is outside the box of the statistics: they are of another cloud"});
     extent.box = whole;
   }
-  const auto rows = morton_order<Index>(
-      n, [&](std::size_t i) { return input[i]; }, extent.box.min(), largest_side(extent.box),
-      [&](Index a, Index b) { return compare(input[a], input[b]); }, context);
-
   WorkingCloud cloud;
   cloud.box = {extent.box.min(), extent.box.max()};
+  const auto rows = morton_order<Index>(
+      n, [&](std::size_t i) { return input[i]; }, extent.box.min(), usable_side(cloud.box),
+      [&](Index a, Index b) { return compare(input[a], input[b]); }, context);
+
   cloud.origin = 0.5 * extent.box.min() + 0.5 * extent.box.max();
   cloud.of_input.assign(n, kNone);
   cloud.points.reserve(extent.finite);
@@ -104,6 +105,20 @@ WorkingCloud make(const Input& input, const Statistics::Box* box, const Context&
 }
 
 }  // namespace
+
+std::optional<Statistics::Box> finite_box(const double* xyz, std::size_t n, const Context& context) {
+  const Extent extent = extent_of({xyz, n}, context);
+  if (extent.finite == 0) return {};
+  return Statistics::Box{extent.box.min(), extent.box.max()};
+}
+
+double largest_side(const Statistics::Box& box) {
+  return (0.5 * box.high - 0.5 * box.low).maxCoeff() * 2;
+}
+
+bool is_in_range(double side) {
+  return side == 0 || (side >= kSmallestSide && side <= kLargestSide);
+}
 
 Result<WorkingCloud> make_working_cloud(const double* xyz, std::size_t n, const Context& context,
                                         const Statistics::Box* box) {

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -29,6 +30,15 @@ struct WorkingCloud {
 
   std::size_t finite() const;  ///< input rows that have a working point
 };
+
+/// The box of the finite ones of n x 3 coordinates; none if none is. O(n), parallel.
+std::optional<Statistics::Box> finite_box(const double* xyz, std::size_t n, const Context& context);
+
+/// Infinite where the side is no double.
+double largest_side(const Statistics::Box& box);
+
+/// Whether the squares of lengths up to such a side are numbers: 1e-100 to 1e100, and 0.
+bool is_in_range(double side);
 
 /// Builds the working cloud of n x 3 row-major coordinates in world units. Rows with a NaN or infinite
 /// coordinate are left out. Subtracting the origin loses no precision that matters: only differences of

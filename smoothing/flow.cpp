@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include <rfsmooth/flow.h>
@@ -101,6 +103,13 @@ std::unique_ptr<Flow> compose(const FlowMaker& make, const Mesh& mesh, const Flo
 
 }  // namespace
 
+SolverSummary& SolverSummary::operator+=(const SolverSummary& other) {
+  iterations += other.iterations;
+  residual = std::max(residual, other.residual);
+  converged = converged && other.converged;
+  return *this;
+}
+
 const std::vector<AnyFlow>& flows() {
   static const std::vector<AnyFlow> all = one_of_each(static_cast<AnyFlow*>(nullptr));
   return all;
@@ -177,7 +186,7 @@ FlowReport run(Mesh& mesh, const FlowOptions& options, const Context& context,
     flow->step(mesh, context);
     tracer.add(mesh, context);
   }
-  report.solver_iterations = flow->solver_iterations();
+  report.solver = flow->solver();
   return report;
 }
 

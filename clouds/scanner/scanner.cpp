@@ -145,7 +145,8 @@ class Scanner {
 
 }  // namespace
 
-std::vector<Return> scan(const Shape& shape, const ScannerOptions& options, const Context& context) {
+std::vector<Return> scan(const Shape& shape, const ScannerOptions& options, std::uint64_t seed,
+                         const Context& context) {
   value_or_throw(validate(options));
   if (options.distance <= shape.radius())
     throw Failure({ErrorCode::usage, "distance: the scanner stands inside the shape; its radius is " +
@@ -159,7 +160,7 @@ std::vector<Return> scan(const Shape& shape, const ScannerOptions& options, cons
       [&](std::size_t i) {
         const std::size_t view = i / per_view, row = i % per_view / std::size_t(options.columns);
         const std::size_t column = i % std::size_t(options.columns);
-        Random random(context.seed * 0xd1342543de82ef95u + i);
+        Random random(seed * 0xd1342543de82ef95u + i);
         Return out = scanner.measure(views[view], double(column) - 0.5 * (options.columns - 1),
                                      double(row) - 0.5 * (options.rows - 1), random);
         const double radius = shape.radius();

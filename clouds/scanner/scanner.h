@@ -75,6 +75,7 @@ struct Return {
 /// Returns of all views, view after view, row after row; `none` where nothing was hit. Parallel over rays,
 /// same bytes for any number of threads: every ray draws from its own generator. \throw Failure (usage) if an
 /// option is out of range.
-std::vector<Return> scan(const Shape& shape, const ScannerOptions& options, const Context& context);
+std::vector<Return> scan(const Shape& shape, const ScannerOptions& options, std::uint64_t seed,
+                         const Context& context);
 
 }  // namespace rfsmooth::clouds

@@ -96,9 +96,7 @@ std::unique_ptr<Shape> find_shape(const std::string& name) {
 }
 
 void run_scan(const Files& files, const ScannerOptions& options, std::uint64_t seed, bool organised) {
-  Context context;
-  context.seed = seed;
-  const std::vector<Return> returns = scan(*find_shape(files.shape), options, context);
+  const std::vector<Return> returns = scan(*find_shape(files.shape), options, seed, {});
   files.write(measured_cloud(returns, options, organised), files.out);
   if (!files.truth.empty()) files.write(true_cloud(returns, options, organised), files.truth);
 }

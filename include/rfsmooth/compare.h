@@ -8,7 +8,10 @@
 ///   evenness          = standard deviation / mean of the distances to the nearest other point
 ///   normal error      = mean angle to the true normal, of the nearest face or clean point
 ///
-/// P2M exists to stand beside published tables only; compare methods by p2s and CD.
+/// P2M exists to stand beside published tables only; compare methods by p2s and CD. CD is that of Fan, Su and
+/// Guibas 2017, "A point set generation network for 3D object reconstruction from a single image", section
+/// 4.1, with means for their sums; P2M is as Luo and Hu 2021, "Score-based point cloud denoising", take it
+/// (PyTorch3D's point_mesh_face_distance).
 ///
 /// Units: the cloud's own. `on_unit_sphere` rescales to the unit sphere of the truth (the clean cloud if
 /// there is one, else the mesh's vertices): centre of its bounding box, largest distance from there = 1.

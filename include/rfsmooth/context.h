@@ -1,10 +1,9 @@
-/// Everything a call needs that is not data: threads, seed, progress, cancelling, log sink. There is no
-/// global state; a Context is passed to every long-running function. Copyable; safe to share between calls as
-/// long as its callbacks are.
+/// Everything a call needs that is not data: threads, progress, cancelling, log sink. There is no global
+/// state; a Context is passed to every long-running function. Copyable; safe to share between calls as long
+/// as its callbacks are.
 #pragma once
 
 #include <atomic>
-#include <cstdint>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -20,19 +19,17 @@ struct StageTime {
   double seconds = 0;
 };
 
-/// What every stage is given beside its data: threads, seed, callbacks.
+/// What every stage is given beside its data: threads and callbacks.
 struct Context {
-  /// Number of threads; 0 = all cores. The result is the same for every value.
+  /// Number of threads; 0 or less: all cores. The result is the same for every value.
   int threads = 0;
-
-  /// Seed of everything random: nothing in the library draws random numbers without it.
-  std::uint64_t seed = 1;
 
   /// Called on the caller's thread with the stage's name and the share done in [0, 1]; return false to
   /// cancel.
   std::function<bool(std::string_view stage, double fraction)> progress;
 
-  /// Receives what the library has to say; nothing is printed if empty.
+  /// Receives what the library has to say, as `progress` on the caller's thread and never from inside a
+  /// parallel loop; nothing is printed if empty.
   std::function<void(LogLevel, const std::string&)> log;
 
   /// Polled by every parallel loop; set it (from a signal handler, say) to stop within a fraction of a

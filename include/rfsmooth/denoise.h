@@ -78,6 +78,7 @@ struct DenoiseReport {
   double equalized_largest = 0;  ///< the farthest
   double guide_strength = 0;     ///< of the automatic smoother's guide, dimensionless; 0 for flows
   double tail_times = 1;  ///< noise of the noisiest points (heavy tails) over that of the others; 1: no tails
+  SolverSummary solver;   ///< of implicit flows
   std::size_t stranded = 0;          ///< points that the guide's fairing had left beside the surface
   double largest_move = 0;           ///< world units
   double rms_move = 0;               ///< over the finite rows, world units
@@ -95,6 +96,8 @@ struct DenoiseReport {
 /// are written: a row gets its own value plus the displacement of its working point. On an error or cancel
 /// `xyz` is untouched. Same bytes out for any number of threads and any order of the rows.
 /// `strength`: n, in [0, 1]: 0 = the row stays, 1 = smoothed fully; empty = all 1 (Desbrun et al. 1999, 2.7).
+/// Finite points may extend over 1e-100 to 1e100; the same cloud in other units comes out the same in those.
+/// At most 300 million points; cut larger clouds into tiles (`rfsmooth tiles`).
 /// Errors: usage, no_usable_points, out_of_memory, cancelled. O(n log n + steps n). \throw
 /// std::invalid_argument for strengths of another number or outside [0, 1]. Thread-safe on distinct arrays.
 Result<DenoiseReport> denoise(double* xyz, std::size_t n, const DenoiseOptions& options,

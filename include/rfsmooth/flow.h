@@ -26,10 +26,20 @@ struct TraceRow {
   double largest_move = 0;       ///< of this step
 };
 
+/// How the solves of an implicit flow ended, all steps together; the defaults are those of explicit flows,
+/// which solve nothing.
+struct SolverSummary {
+  int iterations = 0;     ///< products with the matrix
+  double residual = 0;    ///< the largest at the end of a solve, relative to the right side
+  bool converged = true;  ///< whether each is within the tolerance, or as small as rounding leaves it
+  /// Adds those of a further flow or step.
+  SolverSummary& operator+=(const SolverSummary& other);
+};
+
 /// What a run did.
 struct FlowReport {
   int steps = 0;
-  int solver_iterations = 0;    ///< implicit flows: products with the matrix, all steps together
+  SolverSummary solver;
   double largest_move = 0;      ///< world units
   std::vector<TraceRow> trace;  ///< steps + 1 rows if asked for (FlowOptions::trace)
 };
@@ -46,8 +56,8 @@ struct NoiseSummary {
 
 /// Why everything stays where it is.
 enum class NotSmoothed {
-  no_iterations,     ///< as the options ask
-  no_strength,       ///< the same
+  no_iterations,     ///< the options ask for none
+  no_strength,       ///< the strength in the options is 0
   too_few_points,    ///< for the automatic flow, which looks at 32 neighbours
   too_little_noise,  ///< to be told from shape
 };
@@ -89,14 +99,15 @@ class Flow {
   Flow& operator=(const Flow&) = delete;
 
   /// One step: writes mesh.positions, leaves the connectivity. Deterministic; parallel over vertices. Given
-  /// finite positions it leaves finite positions, whatever the mesh.
+  /// finite positions it leaves finite positions, whatever the mesh. \throw Failure (cancelled) if
+  /// `context.stop` is set; the positions may be of a part of the step then.
   virtual void step(Mesh& mesh, const Context& context) = 0;
 
   /// Told that the connectivity changed (edge swaps) while the vertices stayed the same.
   virtual void connectivity_changed(const Mesh&, const Context&) {}
 
-  /// Solver iterations (products with the matrix) of all steps so far; 0 for explicit flows.
-  virtual int solver_iterations() const { return 0; }
+  /// Of all steps so far.
+  virtual SolverSummary solver() const { return {}; }
 
   /// Whether the flow heeds the constraints it was made with itself; if not, `make_flow` wraps it.
   virtual bool applies_constraints() const { return false; }
@@ -126,12 +137,12 @@ Result<Done> validate(const FlowOptions& options);
 std::optional<int> support_rings(const FlowOptions& options);
 
 /// Starts a flow on `mesh`, whose current positions are the original points. Validates the options.
-/// Errors: usage. \throw std::invalid_argument for constraints that do not fit the mesh.
+/// Errors: usage, cancelled. \throw std::invalid_argument for constraints that do not fit the mesh.
 Result<std::unique_ptr<Flow>> make_flow(const Mesh& mesh, const FlowOptions& options, const Context& context,
                                         const Constraints& constraints = {});
 
-/// The same for the flow that `make` makes in the place of the one in `options`, which has only its step
-/// length (of the threshold) to say.
+/// The same with a flow of your own: `make` makes it, and the modifiers of `options` go around it. Of the
+/// flow in `options` only the step length is used, by which the threshold measures speeds.
 Result<std::unique_ptr<Flow>> make_flow(const FlowMaker& make, const Mesh& mesh, const FlowOptions& options,
                                         const Context& context, const Constraints& constraints = {});
 

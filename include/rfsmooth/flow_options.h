@@ -124,8 +124,8 @@ struct LaplacianOptions {
   double lambda = 1;             ///< multiplies the step of every anchor
   double alpha = 0.5;            ///< weight of the anchor; only where there is one
   Anchor anchor = Anchor::none;  ///< with `original` and alpha > 0 it converges
-  UmbrellaWeights weights = UmbrellaWeights::equal;
-  Update update = Update::simultaneous;
+  UmbrellaWeights weights = UmbrellaWeights::equal;  ///< of the neighbours in the umbrella
+  Update update = Update::simultaneous;  ///< whether vertices see the new places of those before them
 
   std::unique_ptr<Flow> start(const Mesh&, const Constraints&, const Context&) const;
   std::optional<int> rings() const {
@@ -148,10 +148,10 @@ struct LaplacianOptions {
 struct HcOptions {
   static constexpr FlowInfo kInfo{
       "hc", "Laplacian steps pushed back by the mean difference; keeps size and shape", "Vollmer 4"};
-  int iterations = 10;
-  double alpha = 0;   ///< of the original against the current point; with 0 ten steps are 10 (1 - beta) L^2
-  double beta = 0.6;  ///< a vertex's own difference; the paper's bound for convergence is 0.5
-  Update update = Update::simultaneous;
+  int iterations = 10;  ///< steps
+  double alpha = 0;     ///< of the original against the current point; with 0 ten steps are 10 (1 - beta) L^2
+  double beta = 0.6;    ///< a vertex's own difference; the paper's bound for convergence is 0.5
+  Update update = Update::simultaneous;  ///< whether vertices see the new places of those before them
 
   std::unique_ptr<Flow> start(const Mesh&, const Constraints&, const Context&) const;
   std::optional<int> rings() const {
@@ -170,11 +170,11 @@ struct HcOptions {
 struct HcLimitOptions {
   static constexpr FlowInfo kInfo{"hc-limit", "what HC converges to, in one solve",
                                   "Vollmer 4, theorem 5.2; our derivation"};
-  int iterations = 1;
-  double alpha = 0.04;  ///< HC's, above 0; (1 - beta) / alpha = 10 weighs the fairness
-  double beta = 0.6;    ///< HC's, above 0.5
-  double tolerance = 1e-5;
-  Norm norm = Norm::l2;
+  int iterations = 1;       ///< steps
+  double alpha = 0.04;      ///< HC's, above 0; (1 - beta) / alpha = 10 weighs the fairness
+  double beta = 0.6;        ///< HC's, above 0.5
+  double tolerance = 1e-5;  ///< residual to stop at, relative to the right side
+  Norm norm = Norm::l2;     ///< of the residual
 
   std::unique_ptr<Flow> start(const Mesh&, const Constraints&, const Context&) const;
   template <class Self, class Visit>
@@ -192,10 +192,10 @@ struct TaubinOptions {
   static constexpr FlowInfo kInfo{"taubin",
                                   "alternates shrinking and inflating steps; keeps volume, may leave waves",
                                   "Ohtake (6); Desbrun 2.1"};
-  int iterations = 10;
+  int iterations = 10;     ///< steps
   double lambda = 0.6307;  ///< of the shrinking step; Desbrun's figure 4, pass band 0.1
   double mu = 0.6732;      ///< of the inflating step, above lambda
-  UmbrellaWeights weights = UmbrellaWeights::equal;
+  UmbrellaWeights weights = UmbrellaWeights::equal;  ///< of the neighbours in the umbrella
 
   std::unique_ptr<Flow> start(const Mesh&, const Constraints&, const Context&) const;
   std::optional<int> rings() const { return 2; }
@@ -212,7 +212,7 @@ struct TaubinOptions {
 struct BilaplacianOptions {
   static constexpr FlowInfo kInfo{"bilaplacian", "descends the thin-plate energy; shrinks little",
                                   "Ohtake 2"};
-  int iterations = 10;
+  int iterations = 10;  ///< steps
   double lambda = 0.4;  ///< stable up to 0.5
 
   std::unique_ptr<Flow> start(const Mesh&, const Constraints&, const Context&) const;
@@ -229,10 +229,10 @@ struct CurvatureOptions {
   static constexpr FlowInfo kInfo{
       "curvature", "along the normal by the mean curvature; leaves flat parts and the sampling alone",
       "Desbrun (14), 5.5; Ohtake (7), (8)"};
-  int iterations = 10;
-  double lambda = 0.25;     ///< on a regular mesh half of what is stable
-  bool normalised = false;  ///< divided by the sum of the cotangents; stable up to lambda = 1
-  Scheme scheme = Scheme::safe;
+  int iterations = 10;           ///< steps
+  double lambda = 0.25;          ///< on a regular mesh half of what is stable
+  bool normalised = false;       ///< divided by the sum of the cotangents; stable up to lambda = 1
+  Scheme scheme = Scheme::safe;  ///< bounded steps, or as the paper prints it
 
   std::unique_ptr<Flow> start(const Mesh&, const Constraints&, const Context&) const;
   template <class Self, class Visit>
@@ -249,16 +249,16 @@ struct CurvatureOptions {
 struct ImplicitOptions {
   static constexpr FlowInfo kInfo{"implicit", "one stable linear solve per step, of first to fourth order",
                                   "Desbrun 2.3-2.7, 4, 5"};
-  int iterations = 1;
-  double dt = 10;  ///< any size is stable
-  OperatorKind op = OperatorKind::umbrella;
-  int order = 2;                 ///< power of the operator; 2 is the paper's recommendation (2.6)
+  int iterations = 1;                        ///< steps
+  double dt = 10;                            ///< any size is stable
+  OperatorKind op = OperatorKind::umbrella;  ///< the Laplacian
+  int order = 2;                             ///< power of the operator; 2 is the paper's recommendation (2.6)
   double mixture = 0;            ///< share of the first power beside the order-th; negative enhances
   bool keep_weights = false;     ///< weights of the first mesh for all steps
   Scheme scheme = Scheme::safe;  ///< printed: the curvature operator's area, and L x of fixed vertices is 0
                                  ///< inside L (L x) too, where safe counts how the surface bends there
-  double tolerance = 1e-5;
-  Norm norm = Norm::l2;
+  double tolerance = 1e-5;       ///< residual to stop at, relative to the right side
+  Norm norm = Norm::l2;          ///< of the residual
 
   std::unique_ptr<Flow> start(const Mesh&, const Constraints&, const Context&) const;
   template <class Self, class Visit>
@@ -284,10 +284,10 @@ struct ModifiedCurvatureOptions {
   static constexpr FlowInfo kInfo{"modified-curvature",
                                   "curvature flow that evens the sampling by the umbrella's tangential part",
                                   "Ohtake (11)"};
-  int iterations = 10;
-  double lambda = 0.25;
-  double tangential = 1;  ///< weight of the tangential part
-  Scheme scheme = Scheme::safe;
+  int iterations = 10;           ///< steps
+  double lambda = 0.25;          ///< step length, dimensionless
+  double tangential = 1;         ///< weight of the tangential part
+  Scheme scheme = Scheme::safe;  ///< bounded steps, or as the paper prints it
 
   std::unique_ptr<Flow> start(const Mesh&, const Constraints&, const Context&) const;
   template <class Self, class Visit>
@@ -305,11 +305,11 @@ struct MedianDirectionOptions {
   static constexpr FlowInfo kInfo{
       "median-direction", "curvature flow moving towards the neighbours' mean; smooths and evens edges",
       "Ohtake (12), (13)"};
-  int iterations = 4;  ///< more round edges more than they smooth
-  double lambda = 0.25;
+  int iterations = 4;         ///< more round edges more than they smooth
+  double lambda = 0.25;       ///< step length, dimensionless
   double least_cosine = 0.1;  ///< the paper's epsilon: where the two directions are nearer to a right angle
                               ///< a vertex stays
-  Scheme scheme = Scheme::safe;
+  Scheme scheme = Scheme::safe;  ///< bounded steps, or as the paper prints it
 
   std::unique_ptr<Flow> start(const Mesh&, const Constraints&, const Context&) const;
   template <class Self, class Visit>
@@ -331,7 +331,7 @@ struct DirectionalOptions {
       "curvature flow along one direction, for closed meshes: smooths the side that faces it, roughens the "
       "other, keeps the volume; takes little noise from clouds",
       "Zhao-Xu (3), (33)"};
-  int iterations = 4;
+  int iterations = 4;    ///< steps
   double lambda = 0.05;  ///< in units of the squared mean edge length
   int power = 0;         ///< m of the energy, the integral of H^(2m), that falls; only without a direction
   std::optional<Eigen::Vector3d> direction;  ///< any length; empty = the one in which the energy falls
@@ -354,11 +354,11 @@ struct LocalDirectionalOptions {
                                   "diffusion weighted by Gauss curvature on each one-ring, for meshes whose "
                                   "corners and saddles must stay; takes little noise from clouds",
                                   "Zhao-Xu (34)-(36)"};
-  int iterations = 8;
-  double lambda = 0.005;  ///< the paper's figure 3
-  double eps = 0.05;      ///< Gauss curvature that counts as flat, 1 / (mean edge length)^2
-  int power = 0;          ///< m of the energy, the integral of H^(2m) over each one-ring
-  Scheme scheme = Scheme::safe;
+  int iterations = 8;            ///< steps
+  double lambda = 0.005;         ///< the paper's figure 3
+  double eps = 0.05;             ///< Gauss curvature that counts as flat, 1 / (mean edge length)^2
+  int power = 0;                 ///< m of the energy, the integral of H^(2m) over each one-ring
+  Scheme scheme = Scheme::safe;  ///< bounded steps, or as the paper prints it
 
   std::unique_ptr<Flow> start(const Mesh&, const Constraints&, const Context&) const;
   template <class Self, class Visit>
@@ -378,11 +378,11 @@ struct DiscreteFairingOptions {
   static constexpr FlowInfo kInfo{"discrete-fairing",
                                   "thin-plate smoothing spline from divided differences in local charts",
                                   "Kobbelt 4"};
-  int iterations = 1;
-  double dt = 1;  ///< weight of the energy against the data
-  Chart chart = Chart::mixed;
-  double tolerance = 1e-5;
-  Norm norm = Norm::l2;
+  int iterations = 1;          ///< steps
+  double dt = 1;               ///< weight of the energy against the data
+  Chart chart = Chart::mixed;  ///< how neighbours get their parameters
+  double tolerance = 1e-5;     ///< residual to stop at, relative to the right side
+  Norm norm = Norm::l2;        ///< of the residual
 
   std::unique_ptr<Flow> start(const Mesh&, const Constraints&, const Context&) const;
   template <class Self, class Visit>
@@ -412,13 +412,13 @@ using AnyFlow = std::variant<AutomaticOptions,          //
 
 /// What goes around any flow, after each of its steps.
 struct Modifiers {
-  bool push_back = false;                  ///< HC's second half (pushback.h)
-  double push_alpha = 0, push_beta = 0.6;  ///< its weights, HC's own defaults; only with push_back
-  ThresholdKind threshold = ThresholdKind::none;
+  bool push_back = false;                         ///< HC's second half (pushback.h)
+  double push_alpha = 0, push_beta = 0.6;         ///< its weights, HC's own defaults; only with push_back
+  ThresholdKind threshold = ThresholdKind::none;  ///< of the speed, below which vertices stay
   double threshold_value = 0.1;  ///< of the constant one, x mean edge length of the first mesh per unit step
   int threshold_every = 5;       ///< steps between recomputing the ring thresholds
-  Preserve preserve = Preserve::none;
-  Boundary boundary = Boundary::free;
+  Preserve preserve = Preserve::none;  ///< what is restored after every step
+  Boundary boundary = Boundary::free;  ///< what happens at edges with one face
 
   /// Whether any of them does anything.
   bool any() const {
@@ -449,8 +449,8 @@ struct Modifiers {
 
 /// How to smooth: a flow with its options, and modifiers around it.
 struct FlowOptions {
-  AnyFlow flow = AutomaticOptions();
-  Modifiers modifiers = {};
+  AnyFlow flow = AutomaticOptions();  ///< which flow, with its options
+  Modifiers modifiers = {};           ///< what goes around it
   bool trace = false;  ///< measure the mesh after every step, for the report; costs about a step's time
 
   /// Visitors that can take the whole, because they know every flow and not only the one chosen, get it.

@@ -2,7 +2,9 @@
 /// (which may cross and overlap itself, may be open, non-orientable and non-manifold at vertices) as well as
 /// a mesh read from a file. Functions that take a const mesh are thread safe; a mesh is changed by one caller
 /// at a time. They are parallel, with the same result for any number of threads, and O(n + m) for n vertices
-/// and m faces or edges unless they say otherwise. \throw Failure (cancelled) if `context.stop` is set.
+/// and m faces or edges unless they say otherwise. \throw Failure (cancelled) if `context.stop` is set,
+/// (usage) for rings or faces around vertices of 2^32 entries in all: those of 2.1 billion edges, or 1.4
+/// billion faces.
 #pragma once
 
 #include <array>

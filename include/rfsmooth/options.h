@@ -11,7 +11,7 @@
 ///
 /// Field types: bool, int, double, std::string, Length, Eigen::Vector3d (a direction of any length but zero),
 /// enumerations, and std::optional of them (empty = chosen from the data). The words of an enumeration are
-/// the `choices`: its values are their indices.
+/// the `choices`: its values are their indices. A string with `choices` is one of them.
 ///
 /// Errors name an option as the table does, between backticks: "`alpha` is 2; it must be between 0 and 1".
 /// Thread safe: no state is kept.
@@ -38,7 +38,7 @@ struct OptionInfo {
   std::string_view unit;  ///< "", "steps", "x spacing", "world units or x spacing", ...
   double min = -std::numeric_limits<double>::infinity();  ///< inclusive
   double max = std::numeric_limits<double>::infinity();   ///< inclusive
-  std::vector<std::string_view> choices = {};             ///< of an enumeration: the word of each value
+  std::vector<std::string_view> choices = {};  ///< the word of each value of an enumeration, or of a string
 };
 
 /// The table's entry of an enumeration.
@@ -65,6 +65,8 @@ namespace detail {
 std::optional<Error> check_range(const OptionInfo& info, double value);
 /// The same for a value of an enumeration.
 std::optional<Error> check_choice(const OptionInfo& info, std::size_t value);
+/// The same for a word; any if there are no choices.
+std::optional<Error> check_word(const OptionInfo& info, const std::string& value);
 /// The same for a direction.
 std::optional<Error> check_direction(const OptionInfo& info, const Eigen::Vector3d& value);
 
@@ -81,7 +83,7 @@ struct Validator {
   void operator()(const OptionInfo& info, const Eigen::Vector3d& value) {
     note(check_direction(info, value));
   }
-  void operator()(const OptionInfo&, const std::string&) {}
+  void operator()(const OptionInfo& info, const std::string& value) { note(check_word(info, value)); }
   template <class Enumeration, std::enable_if_t<std::is_enum_v<Enumeration>, int> = 0>
   void operator()(const OptionInfo& info, Enumeration value) {
     note(check_choice(info, std::size_t(value)));

@@ -20,8 +20,10 @@ namespace rfsmooth {
 
 /// How to reconstruct.
 struct ReconstructOptions {
-  std::string method = "poisson";  ///< for callers who look methods up; `reconstruct` runs what it is given
-  bool denoise = true;             ///< take the noise out first
+  /// One of "poisson", "advancing-front", "ball-pivoting". `reconstruct` runs the SurfaceMethod that it is
+  /// given; a program that has several of them looks the one up that is called so.
+  std::string method = "poisson";
+  bool denoise = true;  ///< take the noise out first
   /// Poisson: faces with a corner farther than this from every point go. On the development shapes with 2 %
   /// noise the holes that it leaves can be filled from 2.5 spacings on; more leaves more of the flaps that
   /// Poisson invents where normals disagree.

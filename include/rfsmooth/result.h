@@ -61,7 +61,8 @@ class [[nodiscard]] Result {
 /// What a step without a value returns.
 struct Done {};
 
-/// Thrown inside the library to unwind to the front door; never leaves it (see `guarded`).
+/// Thrown inside the library to unwind to the front door, which makes it a Result (see `guarded`). It leaves
+/// only functions that return no Result, and those say so: Flow::step, and all of mesh.h.
 struct Failure : std::runtime_error {
   explicit Failure(Error e) : std::runtime_error(e.message), error(std::move(e)) {}
   Error error;

@@ -103,6 +103,7 @@ int run_program(int argc, const char* const* argv, const std::vector<Command>& c
 int run_program(int argc, const char* const* argv, const Command& command) {
   std::vector<const char*> words(argv, argv + argc);
   const bool version = argc == 2 && std::string_view(argv[1]) == "--version";
+  if (words.empty()) words.push_back("rfsmooth");  // a caller may leave out even the name of the program
   if (!version) words.insert(words.begin() + 1, command.name.c_str());
   return run_program(int(words.size()), words.data(), std::vector<Command>{command});
 }

@@ -1,7 +1,6 @@
 #include "pipeline/surface/pinches.h"
 
 #include <algorithm>
-#include <utility>
 #include <vector>
 
 #include "base/disjoint_sets.h"

@@ -1,7 +1,5 @@
 #include "rfs_mesh/fit/plane_normal.h"
 
-#include <cmath>
-
 #include <Eigen/Geometry>
 
 #include "base/linear/symmetric_eigen.h"

@@ -1,7 +1,6 @@
 #include "rfs_mesh/normals/visible.h"
 
 #include <algorithm>
-#include <cmath>
 #include <unordered_map>
 
 #include "base/parallel.h"

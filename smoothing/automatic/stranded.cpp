@@ -213,16 +213,28 @@ std::vector<char> beside_moved(const MovingGuide& surface, const NeighborTable& 
   return beside;
 }
 
-/// Moves the points (stranded.h) and returns which. `near`: of where the guide was; rows of moved points are
-/// no longer right. \param first set to the number of those that were found at first
-std::vector<Index> move_stranded(const Positions& points, const Adjacency& rings,
-                                 const std::vector<double>& most, MovingGuide& surface, NeighborTable& near,
-                                 Positions& guide, std::size_t& first, const Context& context) {
+/// A guide and those of its points that are moved.
+struct Landing {
+  Landing(const Positions& guide, const Context& context)
+      : surface(guide, context), near(surface.before().nearest(HeightField::kNear, context)) {}
+
+  /// Moves the points (stranded.h) and returns which. Once.
+  std::vector<Index> move_stranded(const Positions& points, const Adjacency& rings,
+                                   const std::vector<double>& most, Positions& guide, const Context& context);
+
+  MovingGuide surface;
+  NeighborTable near;     ///< of where the guide was; rows of moved points are no longer right
+  std::size_t found = 0;  ///< stranded points at first
+};
+
+std::vector<Index> Landing::move_stranded(const Positions& points, const Adjacency& rings,
+                                          const std::vector<double>& most, Positions& guide,
+                                          const Context& context) {
   std::vector<Index> moved;
   if (near.k < HeightField::kNear) return moved;
   for (int round = 0; round < kStrandedRounds; ++round) {
     const std::vector<Index> stranded = find_stranded(rings, guide, near, context);
-    if (round == 0) first = stranded.size();
+    if (round == 0) found = stranded.size();
     if (stranded.empty() || guide.size() - stranded.size() <= std::size_t(HeightField::kNear)) break;
     // None of them is part of the surface that they are put onto, wherever it was put before.
     std::vector<Index> others;
@@ -251,23 +263,18 @@ std::vector<Index> move_stranded(const Positions& points, const Adjacency& rings
 
 Landed land_stranded(const Positions& points, const Adjacency& rings, const std::vector<double>& most,
                      Positions& guide, const Context& context) {
-  MovingGuide surface(guide, context);
-  NeighborTable near = surface.before().nearest(HeightField::kNear, context);
-  std::size_t first = 0;
+  Landing landing(guide, context);
   std::vector<char> beside;
-  if (!move_stranded(points, rings, most, surface, near, guide, first, context).empty())
-    beside = beside_moved(surface, near, context);
-  rfs_mesh::SpatialIndex index(guide, surface.release_tree(), context);
-  if (!beside.empty()) index.renew(near, beside, context);
-  return {first, std::move(near), index.release_tree()};
+  if (!landing.move_stranded(points, rings, most, guide, context).empty())
+    beside = beside_moved(landing.surface, landing.near, context);
+  rfs_mesh::SpatialIndex index(guide, landing.surface.release_tree(), context);
+  if (!beside.empty()) index.renew(landing.near, beside, context);
+  return {landing.found, std::move(landing.near), index.release_tree()};
 }
 
 void land_stranded_only(const Positions& points, const Adjacency& rings, const std::vector<double>& most,
                         Positions& guide, const Context& context) {
-  MovingGuide surface(guide, context);
-  NeighborTable near = surface.before().nearest(HeightField::kNear, context);
-  std::size_t first = 0;
-  move_stranded(points, rings, most, surface, near, guide, first, context);
+  Landing(guide, context).move_stranded(points, rings, most, guide, context);
 }
 
 }  // namespace rfsmooth::smoothing

@@ -135,16 +135,15 @@ class Walls {
 
 }  // namespace
 
-ThinWalls part_thin_walls(const HeightField& field, const Positions& data, const std::vector<Index>& seeds,
-                          std::size_t members, const rfs_mesh::NoiseField& noise, Positions& smooth,
-                          std::optional<bool>& parted, const Context& context) {
+void part_thin_walls(const HeightField& field, const Positions& data, const std::vector<Index>& seeds,
+                     std::size_t members, const rfs_mesh::NoiseField& noise, Positions& smooth,
+                     std::optional<bool>& parted, const Context& context) {
   if (data.size() != field.size() || smooth.size() != field.size() || noise.local.size() != field.size())
     throw std::invalid_argument("part_thin_walls: the field and what belongs to its points differ in number");
-  ThinWalls done;
   const double most = double(seeds.size()) * double(kWidestLook * members);  // points they can reach
   const bool enough = parted ? *parted : most >= kLeastSheetShare * double(field.size());
   if (!parted) parted = false;
-  if (seeds.empty() || !enough) return done;
+  if (seeds.empty() || !enough) return;
   const bool known = *parted;
   std::vector<Mean> means(field.size());
   for (std::size_t wider = 1; wider <= kWidestLook; wider *= 2) {
@@ -153,17 +152,14 @@ ThinWalls part_thin_walls(const HeightField& field, const Positions& data, const
       sparse = rfs_mesh::thin(field.guide(), sparse, context);
     const Walls walls(field, data, smooth, noise, std::min(wider * members, field.size()));
     walls.look(sparse, means, context);
-    done.patches += sparse.size();
   }
   const auto covered = [](const Mean& mean) { return mean.weight >= kLeastCovered; };
   const auto points = std::size_t(std::count_if(means.begin(), means.end(), covered));
-  if (!known && double(points) < kLeastSheetShare * double(means.size())) return done;
+  if (!known && double(points) < kLeastSheetShare * double(means.size())) return;
   parted = true;
-  done.points = points;
   for_each_index(context, means.size(), [&](std::size_t i) {
     if (covered(means[i])) smooth[i] += means[i].move / means[i].weight;
   });
-  return done;
 }
 
 }  // namespace rfsmooth::smoothing

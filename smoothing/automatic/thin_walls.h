@@ -18,20 +18,14 @@
 
 namespace rfsmooth::smoothing {
 
-/// What was done.
-struct ThinWalls {
-  std::size_t patches = 0;  ///< tried
-  std::size_t points = 0;   ///< put onto one of two sheets
-};
-
 /// Moves points of `smooth` (n x 3: where the points of the field are, smoothed) onto the nearer sheet.
 /// \param data n x 3, as measured. \param seeds ascending: places where patches of `members` points see more
 /// than one sheet (patches.h). \param noise where its field is above its figure, the figure is taken: walls
 /// make the field too high. O(s m) for s seeds of m members, 20 bytes for each member in a wall. Parallel,
 /// the same bits for any number of threads. \param parted whether there are such walls: taken if it is there,
 /// else found and entered.
-ThinWalls part_thin_walls(const HeightField& field, const Positions& data, const std::vector<Index>& seeds,
-                          std::size_t members, const rfs_mesh::NoiseField& noise, Positions& smooth,
-                          std::optional<bool>& parted, const Context& context);
+void part_thin_walls(const HeightField& field, const Positions& data, const std::vector<Index>& seeds,
+                     std::size_t members, const rfs_mesh::NoiseField& noise, Positions& smooth,
+                     std::optional<bool>& parted, const Context& context);
 
 }  // namespace rfsmooth::smoothing

@@ -36,21 +36,18 @@ class LocalDirectionalSpeed : public Speed {
 
   void evaluate(const Mesh& mesh, Positions& speed, const Context& context) override {
     const std::size_t n = mesh.positions.size();
-    if (fans_.faces.size() != n) {
-      fans_ = fans_of(mesh, context);
-      interior_ = interior_vertices(mesh, fans_.faces, context);
-    }
-    const Operator op = curvature(mesh, fans_.faces, context, options_.scheme);
+    known_.find(mesh, context);
+    const Operator op = curvature(mesh, known_.faces(), context, options_.scheme);
     Positions Hn;
     apply(mesh.one_ring, op, mesh.positions, Hn, context);
     const Curvatures curvatures = curvatures_of(mesh, op, Hn, context);
     std::vector<char> against;
-    const Positions normal = unsigned_normals(mesh, fans_, context, &against);
+    const Positions normal = unsigned_normals(mesh, known_.fans(), context, &against);
     Positions integrand(n);
     for_each_index(context, n, [&](std::size_t i) { integrand[i] = curvatures.energy[i] * normal[i]; });
     speed.assign(n, Vector3d::Zero());
     for_each_index(context, n, [&](std::size_t i) {
-      if (interior_[i] == 0) return;
+      if (!known_.is_interior(i)) return;
       const Vector3d b = one_ring_integral(mesh, integrand, against, i);
       if (!(b.norm() > 0)) return;
       const double w = weight(curvatures.gauss[i], curvatures.mean_square[i]);
@@ -63,7 +60,7 @@ class LocalDirectionalSpeed : public Speed {
     });
   }
 
-  void connectivity_changed(const Mesh&, const Context&) override { fans_ = {}; }
+  void connectivity_changed(const Mesh&, const Context&) override { known_.forget(); }
 
  private:
   /// Of each vertex, lengths in h.
@@ -78,10 +75,11 @@ class LocalDirectionalSpeed : public Speed {
     const std::size_t n = mesh.positions.size();
     const std::vector<double> area = options_.scheme == Scheme::safe
                                          ? op.mass
-                                         : curvature(mesh, fans_.faces, context).mass;  // twice the mixed
+                                         : curvature(mesh, known_.faces(), context).mass;  // twice the mixed
     Curvatures of{std::vector<double>(n, 0), std::vector<double>(n), std::vector<double>(n)};
     for_each_index(context, n, [&](std::size_t i) {
-      if (interior_[i] != 0) of.gauss[i] = op.unit * angle_deficit(mesh, fans_.faces, Index(i)) * 2 / area[i];
+      if (known_.is_interior(i))
+        of.gauss[i] = op.unit * angle_deficit(mesh, known_.faces(), Index(i)) * 2 / area[i];
       const double m = options_.power, K = of.gauss[i],
                    H2 = of.mean_square[i] = op.unit * Hn[i].squaredNorm();
       of.energy[i] = area[i] * std::pow(4 * H2, m) * (m > 0 ? 6 * m * (2 * H2 - K) + 2 * H2 : 2 * H2);
@@ -92,7 +90,7 @@ class LocalDirectionalSpeed : public Speed {
   /// The sum of the integrand over a vertex and its neighbours, each with its normal on the vertex's side.
   Vector3d one_ring_integral(const Mesh& mesh, const Positions& integrand, const std::vector<char>& against,
                              std::size_t i) const {
-    const Adjacency& around = fans_.faces;
+    const Adjacency& around = known_.faces();
     const auto row = around[i];
     /// Whether face number f runs against the normal of its vertex v.
     const auto opposed = [&](Index f, std::size_t v) {
@@ -117,8 +115,7 @@ class LocalDirectionalSpeed : public Speed {
   }
 
   LocalDirectionalOptions options_;
-  Fans fans_;
-  std::vector<char> interior_;
+  KnownFans known_;
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-/// What flows have in common whose steps are solves: the options of the solver, the count of its iterations,
+/// What flows have in common whose steps are solves: the options of the solver, what its solves took,
 /// and that constraints are part of the system. A flow is for one thread at a time.
 #pragma once
 
@@ -9,7 +9,7 @@ namespace rfsmooth::smoothing {
 /// A flow whose steps are solves.
 class SolvedFlow : public Flow {
  public:
-  int solver_iterations() const override { return iterations_; }
+  SolverSummary solver() const override { return solved_; }
   bool applies_constraints() const override { return true; }
 
  protected:
@@ -21,12 +21,14 @@ class SolvedFlow : public Flow {
   }
 
   /// Adds up what a solve took.
-  void count(const SolverReport& report) { iterations_ += report.iterations; }
+  void count(const SolverReport& report) {
+    solved_ += {report.iterations, report.residual, report.converged};
+  }
 
   SolverOptions solver_;
 
  private:
-  int iterations_ = 0;
+  SolverSummary solved_;
 };
 
 }  // namespace rfsmooth::smoothing

@@ -1,6 +1,8 @@
 #include "smoothing/integrators/solver.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "base/parallel.h"
@@ -30,6 +32,12 @@ double relative(double norm, double goal, double tolerance) {
   return goal > 0 ? norm / goal * tolerance : 0;
 }
 
+/// The norm of what rounding leaves of a residual where the terms of A x are so large.
+double rounding_of(double terms) {
+  constexpr double kRoundings = 8;  // in a row of neighbours, one on top of the other
+  return kRoundings * std::numeric_limits<double>::epsilon() * terms;
+}
+
 }  // namespace
 
 SolverReport conjugate_gradients(const Product& product, const std::vector<double>& diagonal,
@@ -50,7 +58,14 @@ SolverReport conjugate_gradients(const Product& product, const std::vector<doubl
       context, n, scales, [&](std::size_t i) -> const Vector3d& { return r[i] = allowed(i, b[i] - y[i]); });
   const Iterated done = conjugate_gradient_iteration<Vector3d>(context, product, scales, r, sums, x, allowed,
                                                                goal, options.max_iterations);
-  return {done.iterations, relative(done.norm, goal, options.tolerance), done.norm <= goal};
+  // A is positive semi-definite: its largest eigenvalue is about twice the largest of its diagonal.
+  double largest = 0;
+  for (std::size_t i = 0; i < n; ++i) largest = std::max(largest, diagonal[i] / mass[i]);
+  const double terms = 2 * largest * std::sqrt(residual_sums(context, n, scales, [&](std::size_t i) {
+                                                 return Vector3d(mass[i] * x[i]);
+                                               }).square);
+  return {done.iterations, relative(done.norm, goal, options.tolerance),
+          done.norm <= std::max(goal, rounding_of(terms))};
 }
 
 namespace {
@@ -94,7 +109,8 @@ class FairingSolve {
     }
     if (!polynomials_alone) report.reductions.clear();
     report.residual = relative(norm, goal_, options_.tolerance);
-    report.converged = norm <= goal_;
+    report.converged =
+        norm <= std::max(goal_, rounding_of(largest_eigenvalue() * goal_ / options_.tolerance));
     return report;
   }
 
@@ -135,6 +151,20 @@ class FairingSolve {
   static constexpr double kSlack = 0.95;
 
   double data(std::size_t i) const { return s_.data.empty() ? s_.op.mass[i] : s_.data[i]; }
+
+  /// Of M^-1 A, at most: S has none above twice its largest diagonal over the mass.
+  double largest_eigenvalue() const {
+    double of_s = 0;
+    for (std::size_t i = 0; i < n_; ++i) {
+      double diagonal = s_.op.weight.empty() ? double(s_.rows.degree(i)) : 0;
+      for (Index k = s_.rows.start[i]; k < s_.rows.start[i + 1] && !s_.op.weight.empty(); ++k)
+        diagonal += std::abs(s_.op.weight[k]);
+      of_s = std::max(of_s, 2 * diagonal / s_.op.mass[i]);
+    }
+    double sum = 1, power = 1;
+    for (const double a : s_.a) sum += std::abs(a) * (power *= of_s);
+    return sum;
+  }
 
   /// The norm of a residual given by vertex.
   template <class Residual>

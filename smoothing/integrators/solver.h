@@ -34,7 +34,7 @@ namespace rfsmooth::smoothing {
 /// When to stop.
 struct SolverOptions {
   double tolerance = 1e-5;    ///< of the residual, relative to the centred right side
-  int max_iterations = 5000;  ///< then the last iterate is returned with converged = false
+  int max_iterations = 5000;  ///< then the last iterate is returned as it is
   /// Not empty: what each polynomial reduces the residual to, instead of the tolerance.
   std::vector<double> reductions = {};
   bool linf = false;  ///< stop on the largest instead of the root mean square residual
@@ -42,9 +42,9 @@ struct SolverOptions {
 
 /// How it ended.
 struct SolverReport {
-  int iterations = 0;   ///< products with A in the iteration
-  double residual = 0;  ///< at the end; relative, in the norm of the options
-  bool converged = false;
+  int iterations = 0;      ///< products with A in the iteration
+  double residual = 0;     ///< at the end; relative, in the norm of the options
+  bool converged = false;  ///< within the tolerance, or as near as rounding lets the residual come to 0
   std::vector<double> reductions = {};  ///< of each polynomial; empty if anything else was needed
 };
 

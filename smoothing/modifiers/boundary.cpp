@@ -153,7 +153,10 @@ class BoundaryCurve : public WrappedFlow {
     if (first_) inner_->step(mesh, context);
   }
 
-  int solver_iterations() const override { return inner_->solver_iterations() + along_->solver_iterations(); }
+  SolverSummary solver() const override {
+    SolverSummary both = inner_->solver();
+    return both += along_->solver();
+  }
 
  private:
   std::unique_ptr<Flow> along_;

@@ -39,7 +39,7 @@ class Threshold : public WrappedFlow {
 
   void connectivity_changed(const Mesh& mesh, const Context& context) override {
     WrappedFlow::connectivity_changed(mesh, context);
-    fans_ = {};
+    known_.forget();
   }
   bool applies_constraints() const override { return inner_->applies_constraints(); }
 
@@ -47,17 +47,14 @@ class Threshold : public WrappedFlow {
   /// n: h^2 |H|, the length of the curvature vector times h^2; at rims of its part along the normal.
   std::vector<double> bending(const Mesh& mesh, const Context& context) {
     const std::size_t n = mesh.positions.size();
-    if (fans_.faces.size() != n) {
-      fans_ = fans_of(mesh, context);
-      interior_ = interior_vertices(mesh, fans_.faces, context);
-    }
-    const Operator op = curvature(mesh, fans_.faces, context, rule_.scheme);
-    const Positions normal = unsigned_normals(mesh, fans_, context);
+    known_.find(mesh, context);
+    const Operator op = curvature(mesh, known_.faces(), context, rule_.scheme);
+    const Positions normal = unsigned_normals(mesh, known_.fans(), context);
     Positions Hn;
     apply(mesh.one_ring, op, mesh.positions, Hn, context);
     std::vector<double> bend(n);
     for_each_index(context, n, [&](std::size_t i) {
-      const bool whole = interior_[i] != 0 || rule_.scheme == Scheme::printed;
+      const bool whole = known_.is_interior(i) || rule_.scheme == Scheme::printed;
       bend[i] = op.unit * (whole ? Hn[i].norm() : std::abs(Hn[i].dot(normal[i])));
     });
     return bend;
@@ -87,8 +84,7 @@ class Threshold : public WrappedFlow {
   ThresholdRule rule_;
   double unit_;
   int steps_ = 0;
-  Fans fans_;
-  std::vector<char> interior_;
+  KnownFans known_;
   Positions before_;
   std::vector<double> speed_, threshold_;
 };

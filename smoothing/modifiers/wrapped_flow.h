@@ -20,7 +20,7 @@ class WrappedFlow : public Flow {
   void connectivity_changed(const Mesh& mesh, const Context& context) override {
     inner_->connectivity_changed(mesh, context);
   }
-  int solver_iterations() const override { return inner_->solver_iterations(); }
+  SolverSummary solver() const override { return inner_->solver(); }
 
  protected:
   std::unique_ptr<Flow> inner_;

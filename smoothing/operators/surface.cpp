@@ -235,6 +235,12 @@ std::vector<Face> oriented_faces(const Mesh& mesh, Refuse&& refuse) {
 
 }  // namespace
 
+void KnownFans::find(const Mesh& mesh, const Context& context) {
+  if (fans_.faces.size() == mesh.positions.size()) return;
+  fans_ = fans_of(mesh, context);
+  interior_ = interior_vertices(mesh, fans_.faces, context);
+}
+
 std::vector<Face> closed_and_oriented(const Mesh& mesh, const char* what) {
   const auto refuse = [what](Flaw, const std::string& why) {
     throw Failure({ErrorCode::usage, fmt::format("{} needs a closed, orientable mesh; {}", what, why)});

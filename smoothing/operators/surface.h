@@ -1,5 +1,5 @@
-/// Normals, angle deficits and orientation of a mesh, for the flows driven by curvature. Thread safe: no
-/// state is kept.
+/// Normals, angle deficits and orientation of a mesh, for the flows driven by curvature. Functions are thread
+/// safe: they keep no state.
 #pragma once
 
 #include <vector>
@@ -32,6 +32,24 @@ Positions unsigned_normals(const Mesh& mesh, const Fans& fans, const Context& co
 
 /// n: 1 where every edge at the vertex has exactly two faces. Only there the angle deficit has a meaning.
 std::vector<char> interior_vertices(const Mesh& mesh, const Adjacency& vertex_faces, const Context& context);
+
+/// The fans of a mesh and its interior vertices, kept from step to step while its connectivity stays. One
+/// thread at a time.
+class KnownFans {
+ public:
+  /// Finds them, unless they are known. A mesh of another number of vertices is another one.
+  void find(const Mesh& mesh, const Context& context);
+  /// To be called when the connectivity changed.
+  void forget() { fans_ = {}; }
+
+  const Fans& fans() const { return fans_; }
+  const Adjacency& faces() const { return fans_.faces; }               ///< around each vertex
+  bool is_interior(std::size_t i) const { return interior_[i] != 0; }  ///< by interior_vertices
+
+ private:
+  Fans fans_;
+  std::vector<char> interior_;
+};
 
 /// 2 pi - sum of the angles at vertex i: Gauss curvature times mixed area at interior vertices.
 double angle_deficit(const Mesh& mesh, const Adjacency& vertex_faces, Index i);

@@ -196,6 +196,13 @@ TEST(Denoise, WrongOptionsAreNamed) {
   EXPECT_THAT(result.error().message, ::testing::HasSubstr("alpha"));
 }
 
+TEST(Denoise, MorePointsThanItCanCountAreRefusedBeforeTheyAreRead) {
+  const auto result = denoise(nullptr, 300'000'001, {}, {});
+  ASSERT_FALSE(result.ok());
+  EXPECT_EQ(result.error().code, ErrorCode::usage);
+  EXPECT_THAT(result.error().message, ::testing::HasSubstr("at most 300000000"));
+}
+
 TEST(Denoise, NothingUsableIsAnError) {
   EXPECT_EQ(denoise(nullptr, 0, hc(), {}).error().code, ErrorCode::no_usable_points);
   Flat xyz(6, std::nan(""));
@@ -293,15 +300,34 @@ TEST(Denoise, AStrayStaysAndDragsNobody) {
   EXPECT_LE(with.largest_move, 2 * without.largest_move);
 }
 
-// One point in twenty has four times the noise of the others. Some of them stand so far off that they look
-// like outliers; the three strays do, too, and are.
-TEST(Denoise, PointsOfTheTailsAreSmoothedAndStraysStay) {
-  std::mt19937_64 engine(5);
+/// A plane in which one point in twenty has four times the noise of the others. Some of them stand so far off
+/// that they look like outliers.
+Positions plane_with_tails(unsigned seed) {
+  std::mt19937_64 engine(seed);
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> place(0, 70);
   Positions points;
   for (int i = 0; i < 5000; ++i)
     points.emplace_back(place(engine), place(engine), (i % 20 == 0 ? 4 : 1) * 0.35 * normal(engine));
+  return points;
+}
+
+TEST(Denoise, FlagsOfOutliersAreThereIfAnyIs) {
+  std::size_t without = 0;
+  for (unsigned seed = 1; seed <= 8; ++seed) {
+    SCOPED_TRACE(seed);
+    Flat xyz = flat(plane_with_tails(seed));
+    const DenoiseReport report = run(xyz, {});
+    EXPECT_GT(report.tail_times, 1);
+    EXPECT_EQ(report.outlier.empty(), report.outliers == 0);
+    without += report.outliers == 0;
+  }
+  EXPECT_GT(without, 0u);
+}
+
+// The three strays look like outliers, too, and are.
+TEST(Denoise, PointsOfTheTailsAreSmoothedAndStraysStay) {
+  Positions points = plane_with_tails(5);
   const Positions strays = {{20, 20, 30}, {40, 30, -40}, {50, 60, 35}};
   points.insert(points.end(), strays.begin(), strays.end());
   const Flat before = flat(points);

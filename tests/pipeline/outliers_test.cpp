@@ -151,7 +151,7 @@ TEST(Outliers, MixedPixelsAreFound) {
   for (const char* name : {"torus", "l_part"}) {
     Positions points;
     std::vector<char> mixed, surface;
-    for (const auto& seen : clouds::scan(*clouds::make_shape(name), options, {})) {
+    for (const auto& seen : clouds::scan(*clouds::make_shape(name), options, 1, {})) {
       if (seen.kind == clouds::ReturnKind::none) continue;
       points.push_back(seen.measured);
       surface.push_back(seen.kind == clouds::ReturnKind::surface);

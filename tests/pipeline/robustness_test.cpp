@@ -248,5 +248,101 @@ TEST_P(Robustness, IsDenoised) {
   }
 }
 
+/// The ball, a power of ten or two times as large.
+struct Sized {
+  std::vector<double> xyz;  ///< over the size
+  DenoiseReport report;
+};
+
+Sized sized_ball(double size, const DenoiseOptions& options) {
+  Sized sized;
+  for (const Vector3d& p : ball(7000, size).rows) sized.xyz.insert(sized.xyz.end(), p.begin(), p.end());
+  auto result = denoise(sized.xyz.data(), sized.xyz.size() / 3, options, {});
+  EXPECT_TRUE(result.ok()) << result.error().message;
+  sized.report = std::move(result).value();
+  for (double& x : sized.xyz) x /= size;
+  return sized;
+}
+
+/// Root mean square distance between the points of two.
+double apart(const Sized& one, const Sized& other) {
+  double sum = 0;
+  for (std::size_t i = 0; i < one.xyz.size(); ++i) sum += std::pow(other.xyz[i] - one.xyz[i], 2);
+  return std::sqrt(sum / (double(one.xyz.size()) / 3));
+}
+
+TEST(AnySize, TheSameShapeComesOutTheSame) {
+  const Sized usual = sized_ball(1, {});
+  EXPECT_GT(usual.report.moved, 6000u);
+  for (const double size : {1e-99, 1e-60, 1e-45, 1e-38, 1e-20, 1e20, 1e60, 1e99}) {
+    SCOPED_TRACE(size);
+    const Sized other = sized_ball(size, {});
+    EXPECT_NEAR(double(other.report.moved), double(usual.report.moved), 5);
+    EXPECT_NEAR(other.report.noise / size, usual.report.noise, 1e-6);
+    EXPECT_NEAR(other.report.spacing / size, usual.report.spacing, 1e-9);
+    EXPECT_NEAR(other.report.rms_move / size, usual.report.rms_move, 0.01 * usual.report.noise);
+    // Coordinates that are rounded differently make another mesh here and there.
+    EXPECT_LT(apart(usual, other), 0.2 * usual.report.noise);
+  }
+}
+
+// Powers of two round nothing, so what is measured is the same to the last bit.
+TEST(AnySize, StatedNoiseStatisticsAndTraceHaveTheUnitOfTheCloud) {
+  const auto options_of = [](double size) {
+    AutomaticOptions automatic;
+    automatic.noise = Length{0.01 * size, false};
+    DenoiseOptions options;
+    options.flow.flow = automatic;
+    options.flow.trace = true;
+    return options;
+  };
+  const Sized usual = sized_ball(1, options_of(1));
+  for (const double size : {0x1p-200, 0x1p-60, 0x1p60, 0x1p200}) {
+    SCOPED_TRACE(size);
+    const Sized other = sized_ball(size, options_of(size));
+    EXPECT_LT(apart(usual, other), 1e-6);
+    EXPECT_EQ(other.report.noise, 0.01 * size);
+    EXPECT_EQ(other.report.measured.typical, usual.report.measured.typical * size);
+    EXPECT_EQ(other.report.statistics.box->high[0], usual.report.statistics.box->high[0] * size);
+    EXPECT_EQ(other.report.statistics.noise->sigma, usual.report.statistics.noise->sigma * size);
+    EXPECT_NEAR(other.report.trace[1].area / size / size, usual.report.trace[1].area, 1e-6);
+    const Sized again = sized_ball(size, other.report.effective);
+    EXPECT_EQ(again.xyz, other.xyz);
+  }
+}
+
+TEST(AnySize, FlowsAndFarStraysToo) {
+  DenoiseOptions options;
+  options.flow.flow = HcOptions();
+  EXPECT_EQ(sized_ball(0x1p150, options).xyz, sized_ball(1, options).xyz);
+  Hard cloud = ball(7000);
+  cloud.rows.emplace_back(1e30, 0, 0);
+  std::vector<double> xyz;
+  for (const Vector3d& p : cloud.rows) xyz.insert(xyz.end(), p.begin(), p.end());
+  const auto result = denoise(xyz.data(), xyz.size() / 3, {}, {});
+  ASSERT_TRUE(result.ok()) << result.error().message;
+  EXPECT_EQ(xyz[3 * 7000], 1e30);
+}
+
+// Coordinates of any order of magnitude side by side: patches of one place, and others that no number of
+// standard deviations measures.
+TEST(EveryOrderOfMagnitude, GivesFinitePoints) {
+  for (const int most : {40, 60})
+    for (unsigned seed = 1; seed <= 4; ++seed) {
+      SCOPED_TRACE(testing::Message() << "up to 2^" << most << ", seed " << seed);
+      std::mt19937_64 engine(seed);
+      std::uniform_int_distribution<int> power(-most, most);
+      std::vector<double> xyz(3 * 1000);
+      for (double& x : xyz) x = std::ldexp(1, power(engine));
+      AutomaticOptions automatic;
+      automatic.noise = Length{0.1, false};
+      DenoiseOptions options;
+      options.flow.flow = automatic;
+      const auto result = denoise(xyz.data(), xyz.size() / 3, options, {});
+      ASSERT_TRUE(result.ok()) << result.error().message;
+      for (const double x : xyz) ASSERT_TRUE(std::isfinite(x));
+    }
+}
+
 }  // namespace
 }  // namespace rfsmooth::pipeline

@@ -19,7 +19,8 @@ namespace rfsmooth::open3d {
 /// Vertices and triangles in order, in the mesh's frame; loose edges have no counterpart. With `normals` (one
 /// per vertex) each triangle is turned to the side of its corners' normals, which become the vertices': a
 /// viewer that hides back faces then shows no holes that are not there. O(n + m). \throw
-/// std::invalid_argument for normals of another number.
+/// std::invalid_argument for normals of another number, std::length_error from 2^31 vertices on, which Open3D
+/// does not count.
 std::shared_ptr<::open3d::geometry::TriangleMesh> to_triangle_mesh(const Mesh& mesh,
                                                                    const Positions& normals = {});
 

@@ -15,7 +15,9 @@
 /// as after PCL's NormalEstimation.
 ///
 /// Errors are told as denoise.h says, and so are threads. `output` may be the input cloud if In = Out.
-/// Compiled for the pairs below; for others, your own types too, include
+/// Compiled from PointXYZ, PointXYZI, PointXYZRGB, PointXYZRGBA and PointXYZL to the type with the same
+/// fields and a normal (of PointXYZRGBA, PointXYZRGBNormal), and from PointNormal, PointXYZINormal and
+/// PointXYZRGBNormal to themselves. For other pairs, your own types too, include
 /// "rfsmooth/pcl/impl/denoise_surface.hpp".
 #pragma once
 

@@ -1,3 +1,4 @@
+#include <limits>
 #include <stdexcept>
 
 #include <open3d/geometry/PointCloud.h>
@@ -23,20 +24,20 @@ std::shared_ptr<TriangleMesh> make(const PointCloud& cloud, const ConnectOptions
   const rfs_mesh::WorkingCloud working = value_or_throw(
       rfs_mesh::make_working_cloud(n == 0 ? nullptr : cloud.points_.front().data(), n, context));
   Connection connection = value_or_throw(rfsmooth::connect(working.points, options, context));
-  Positions sides;
+  Positions found;  // n: normals
   for (std::size_t p = 0; p < connection.surfaces.size(); ++p) {
-    sides.push_back(connection.surfaces[p].normal);
+    found.push_back(connection.surfaces[p].normal);
     connection.mesh.positions[p] =
         connection.surfaces[p].shadow;  // the noise of an edge says nothing of sides
   }
-  rfs_mesh::orient(connection.mesh, connection.emst, connection.bridges, {}, sides, context);
+  rfs_mesh::orient(connection.mesh, connection.emst, connection.bridges, {}, found, context);
 
   const auto [row, rank] = pipeline::row_order(working);
   Mesh mesh;
   Positions normals;
   for (const std::size_t i : row) {
     mesh.positions.push_back(cloud.points_[i]);
-    normals.push_back(sides[working.of_input[i]]);
+    normals.push_back(found[working.of_input[i]]);
   }
   mesh.faces = connection.mesh.faces;
   for (auto& face : mesh.faces)
@@ -50,6 +51,8 @@ std::shared_ptr<TriangleMesh> make(const PointCloud& cloud, const ConnectOptions
 }  // namespace
 
 std::shared_ptr<TriangleMesh> to_triangle_mesh(const Mesh& mesh, const Positions& normals) {
+  if (mesh.positions.size() > std::size_t(std::numeric_limits<int>::max()))
+    throw std::length_error("Open3D counts vertices by int: a mesh has at most 2^31 - 1");
   const bool turn = !normals.empty();
   if (turn && normals.size() != mesh.positions.size())
     throw std::invalid_argument("the normals are not one per vertex");

@@ -9,6 +9,7 @@
 #include "base/fail.h"
 #include "base/stopwatch.h"
 #include "pipeline/cli/commands/command.h"
+#include "pipeline/cli/console/solver_said.h"
 #include "pipeline/cli/console/trace_file.h"
 #include "pipeline/cli/files/cloud_jobs.h"
 #include "pipeline/cli/files/constraint_fields.h"
@@ -151,6 +152,7 @@ std::string smooth_file(const SmoothMeshCommandOptions& options, std::vector<Tra
   flow.trace = options.trace.trace.has_value();
   auto done = value_or_fail(rfsmooth::smooth(file.mesh, flow, context, constraints), job.input);
   trace = std::move(done.trace);
+  tell_solver(job.input, done.solver, console);
   bool moved = false;
   const std::vector<double> rows = file.moved_rows(moved);
   const std::size_t points = cloud.size(), faces = file.mesh.faces.size();
@@ -175,7 +177,8 @@ std::string smooth_file(const SmoothMeshCommandOptions& options, std::vector<Tra
                      {"written_points", cloud.size()},
                      {"written_faces", file.mesh.faces.size()},
                      {"steps", done.steps},
-                     {"solver_iterations", done.solver_iterations}};
+                     {"solver_iterations", done.solver.iterations}};
+  entry["solver"] = json_of(done.solver);
   entry["largest_move"] = done.largest_move;
   return fmt::format("{} vertices, {} faces; {} steps; largest move {:.4g}", points, faces, done.steps,
                      done.largest_move);

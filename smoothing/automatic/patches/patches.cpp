@@ -1,7 +1,6 @@
 #include "smoothing/automatic/patches/patches.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -23,7 +22,8 @@ namespace {
 
 constexpr std::size_t kAxis = 12;                      // nearest points whose normals make the patch's axis
 constexpr float kWeightUnit = 65535, kRounded = 0.5F;  // of the weights kept
-constexpr float kCovered = 0.2F * kWeightUnit;         // least weight of the best patch over a point
+constexpr double kOnePlace = 1e-6;  // sigma: members of so small a patch are one place; it is flat
+constexpr float kCovered = 0.2F * kWeightUnit;  // least weight of the best patch over a point
 constexpr std::size_t kPowers[6][2] = {{0, 0}, {1, 0}, {0, 1}, {2, 0}, {1, 1}, {0, 2}};  // of u and v
 constexpr double kRough = 0.1;  // variance beyond the noise's, sigma^2: there is more than one sheet
 constexpr std::size_t kMostForMissing = 8;  // times the patches given: 4 cost rotor 3 % of p2s
@@ -176,7 +176,8 @@ Eigen::Vector3d Patches::axis_at(Index seed) const {
   return sum_of_normals.cast<double>().normalized();
 }
 
-Patches::Members Patches::gather(std::size_t s, Workspace& work, Index* member, Weight* weight) {
+Patches::Members Patches::gather(std::size_t s, double sigma, Workspace& work, Index* member,
+                                 Weight* weight) {
   Patch& patch = memory_.patches_[s];
   rfs_mesh::WideNeighbors& near = work.near;
   near.find(patch.centre);
@@ -184,9 +185,13 @@ Patches::Members Patches::gather(std::size_t s, Workspace& work, Index* member, 
   // A little beyond the farthest point, so that it counts.
   const float square = std::max(1.1F * near.farthest(), std::numeric_limits<float>::min());
   const PatchAxes flat = field_.on_lines() ? along_line(near, axis, square) : patch_axes(axis);
-  const float shrink = 1 / std::sqrt(square);  // from the lengths of `near` to radii
+  float shrink = 1 / std::sqrt(square);  // from the lengths of `near` to radii
   Members all;
   all.radius = near.unit() / double(shrink);
+  if (all.radius < kOnePlace * sigma) {
+    all.radius = kOnePlace * sigma;
+    shrink = float(near.unit() / all.radius);
+  }
   patch.radius = float(all.radius);
   const Eigen::Vector3f along = axis.cast<float>(), u = flat.u.cast<float>() * shrink,
                         v = flat.v.cast<float>() * shrink, up = along * shrink;
@@ -233,7 +238,7 @@ std::size_t Patches::fit_one(std::size_t s, double sigma, Workspace& work, Index
   patch.quadric.fill(0);
   patch.spread.fill(0);
   patch.spread_u4 = 0;
-  const Members all = gather(s, work, member, weight);
+  const Members all = gather(s, sigma, work, member, weight);
   if (!(all.sum > 0)) return 0;
   const std::size_t size = padded(members_);
   QuadricSums sums;

@@ -103,7 +103,7 @@ class Patches {
   std::size_t fit_one(std::size_t s, double sigma, Workspace& work, Index* member, Weight* weight);
   Eigen::Vector3d axis_at(Index seed) const;  ///< the mean normal about it, unit
   /// The members of patch s, and its frame.
-  Members gather(std::size_t s, Workspace& work, Index* member, Weight* weight);
+  Members gather(std::size_t s, double sigma, Workspace& work, Index* member, Weight* weight);
   void cover_missing(const std::vector<double>& sigma, Covering& covering, const Context& context);
   void count(std::size_t first, std::size_t last, Covering& covering, const Context& context);
   void transpose(const Covering& covering, const Context& context);

@@ -29,6 +29,8 @@ constexpr std::size_t kOwnMean = 60;  // from this many members on, patches aver
 constexpr float kNearEvidence = 10;   // nats per sigma^2 of a near mean
 constexpr float kPatchEvidence = 0.25F;  // the same of a patch mean, per member (Leung and Barron's 1/4)
 constexpr float kTolerated = 0.15F;      // sigma^2: what a near mean scatters by without meaning anything
+constexpr float kFarthest =
+    1e12F;  // sigma: errors count as this at most, so that sums of squares stay finite
 
 std::vector<float> heights(const HeightField& field, const Context& context) {
   std::vector<float> all(field.size());
@@ -76,7 +78,8 @@ Scale try_scale(const HeightField& field, std::size_t members, const std::vector
       members, patches.predict(context), std::vector<float>(field.size()), {}, patches.with_several_sheets()};
   const Prediction& prediction = scale.prediction;
   for_each_index(context, field.size(), [&](std::size_t i) {
-    const float e = (field.local()[i].height - prediction.height[i]) / float(sigma[i]);
+    const float off = (field.local()[i].height - prediction.height[i]) / float(sigma[i]),
+                e = std::clamp(off, -kFarthest, kFarthest);
     const float of_all = own_of_all(prediction.own[i], shared);
     const float risk = prediction.covered[i] != 0 ? e * e + 2 * of_all - 1 : before[i];
     scale.worse[i] = precision.empty() || precision[i] > 0 ? risk - before[i] : 0;

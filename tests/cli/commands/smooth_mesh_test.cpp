@@ -20,18 +20,21 @@ constexpr int kMeshSide = 9;
 /// cell.
 std::string bumpy_grid(
     const std::string& properties,
-    const std::function<std::string(int, int)>& columns = [](int, int) { return ""; }) {
-  std::string text = "ply\nformat ascii 1.0\nelement vertex " + std::to_string(kMeshSide * kMeshSide) +
+    const std::function<std::string(int, int)>& columns = [](int, int) { return ""; }, int side = kMeshSide) {
+  const int middle = side / 2;
+  std::string text = "ply\nformat ascii 1.0\nelement vertex " + std::to_string(side * side) +
                      "\nproperty double x\nproperty double y\nproperty double z\n" + properties +
-                     "element face " + std::to_string(2 * (kMeshSide - 1) * (kMeshSide - 1)) +
+                     "element face " + std::to_string(2 * (side - 1) * (side - 1)) +
                      "\nproperty list uchar int vertex_indices\nend_header\n";
-  for (int i = 0; i < kMeshSide; ++i)
-    for (int j = 0; j < kMeshSide; ++j)
+  for (int i = 0; i < side; ++i)
+    for (int j = 0; j < side; ++j) {
+      const int u = i - middle, v = j - middle;
       text += std::to_string(i) + " " + std::to_string(j) + " " +
-              std::to_string(std::exp(-0.3 * ((i - 4) * (i - 4) + (j - 4) * (j - 4)))) + columns(i, j) + "\n";
-  for (int i = 0; i + 1 < kMeshSide; ++i)
-    for (int j = 0; j + 1 < kMeshSide; ++j) {
-      const int a = i * kMeshSide + j, b = a + 1, c = a + kMeshSide, d = c + 1;
+              std::to_string(std::exp(-0.3 * (u * u + v * v))) + columns(i, j) + "\n";
+    }
+  for (int i = 0; i + 1 < side; ++i)
+    for (int j = 0; j + 1 < side; ++j) {
+      const int a = i * side + j, b = a + 1, c = a + side, d = c + 1;
       for (const auto& f : {std::array{a, c, b}, std::array{b, c, d}})
         text += "3 " + std::to_string(f[0]) + " " + std::to_string(f[1]) + " " + std::to_string(f[2]) + "\n";
     }
@@ -106,6 +109,35 @@ TEST_F(SmoothMesh, DenoiseTakesStrengthsFromAFieldToo) {
     EXPECT_GT(moved, 0.01) << flow;
   }
   EXPECT_EQ(run({"denoise", "in.ply", "new.ply", "--strength-field", "t"}).code, 2);
+}
+
+// The condition number grows with dt and with the fourth power of the eigenvalues.
+TEST_F(SmoothMesh, ASolveThatDoesNotGetThereIsToldAndReported) {
+  const auto report_of = [&](const char* command, std::vector<std::string> options) {
+    options.insert(options.begin(), {command, "in.ply", "out.ply", "--force", "--flow", "implicit",
+                                     "--iterations", "1", "--report", "-"});
+    const Ran ran = run(options);
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    const auto solver = nlohmann::json::parse(ran.out).at("solver");
+    EXPECT_EQ(ran.err.find("warning: in.ply: the solver stopped") == std::string::npos,
+              solver.at("converged").get<bool>())
+        << ran.err;
+    return solver;
+  };
+  put("in.ply", bumpy_grid(
+                    "", [](int, int) { return ""; }, 40));
+  for (const char* command : {"smooth-mesh", "denoise"}) {
+    SCOPED_TRACE(command);
+    const auto far = report_of(command, {"--order", "4", "--dt", "1e9", "--tolerance", "1e-6"});
+    EXPECT_FALSE(far.at("converged").get<bool>());
+    EXPECT_GT(far.at("residual").get<double>(), 1e-6);
+    const auto near = report_of(command, {"--order", "2", "--tolerance", "1e-6"});
+    EXPECT_TRUE(near.at("converged").get<bool>());
+    EXPECT_LE(near.at("residual").get<double>(), 1e-6);
+    EXPECT_GT(near.at("iterations").get<int>(), 1);
+  }
+  const auto rounded = report_of("smooth-mesh", {"--order", "1", "--dt", "1e6", "--tolerance", "1e-14"});
+  EXPECT_TRUE(rounded.at("converged").get<bool>()) << "as near as doubles get";
 }
 
 TEST_F(SmoothMesh, AxisAndPlaneFieldsLetVerticesSlide) {

@@ -11,6 +11,7 @@
 #include "pipeline/cli/commands/denoise/within_memory.h"
 #include "pipeline/cli/console/report.h"
 #include "pipeline/cli/console/scale_said.h"
+#include "pipeline/cli/console/solver_said.h"
 #include "pipeline/cli/files/constraint_fields.h"
 #include "pipeline/cli/files/memory.h"
 #include "pipeline/io/formats/las/las_scale.h"
@@ -184,6 +185,7 @@ void enter(const DenoiseReport& done, const DenoiseCommandOptions& options, orde
   entry["guide_strength"] = done.guide_strength;
   entry["tail_times"] = done.tail_times;
   entry["equalized"] = {{"rms", done.equalized_rms}, {"largest", done.equalized_largest}};
+  entry["solver"] = json_of(done.solver);
   entry["largest_move"] = done.largest_move;
   entry["rms_move"] = done.rms_move;
 }
@@ -192,6 +194,7 @@ void tell(const DenoiseReport& done, const DenoiseCommandOptions& options, const
           const CloudTask& task) {
   tell_points(done, options, pipeline::io::has_normals(cloud), is_written_as_las(options, cloud, task.job),
               task.job, task.console);
+  tell_solver(task.job.input, done.solver, task.console);
   task.console.detail(fmt::format("{} faces, {} edges, {} bridges, {} points without a face, {} swaps",
                                   done.faces, done.edges, done.bridges, done.faceless, done.swaps));
 }

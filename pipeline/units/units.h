@@ -1,0 +1,24 @@
+/// Clouds of any size: lengths are kept as floats in many places, which hold 1e-38 to 1e38 and whose squares
+/// hold less. A cloud far outside of that is smoothed in other units, a power of two times its own, so that
+/// no digit is lost on the way there and back. Thread safe: no state is kept.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include <rfsmooth/context.h>
+#include <rfsmooth/denoise.h>
+
+namespace rfsmooth::pipeline {
+
+/// What to multiply the n x 3 coordinates by: 1 where most points are within 1e-12 to 1e12 of their middle,
+/// or all of them are at one place; else a power of two that brings them to about 1. Single strays do not
+/// count. The same for any order of the rows. O(n).
+double working_unit(const double* xyz, std::size_t n, const Context& context);
+
+/// Multiplies every length by `unit`, a power of two: areas by its square, volumes by its cube.
+void change_units(DenoiseOptions& options, double unit);
+void change_units(Statistics& statistics, double unit);
+void change_units(DenoiseReport& report, double unit);
+
+}  // namespace rfsmooth::pipeline
