@@ -62,7 +62,7 @@ struct Sheet {
 
   /// From a measured noise of `sigma`.
   HiddenSheets split(double sigma, bool with_tails = false) {
-    Residuals left{std::vector<float>(height.size()), sigma, with_tails};
+    Residuals left{std::vector<float>(height.size()), sigma, 0, with_tails};
     for (std::size_t i = 0; i < height.size(); ++i)
       left.scores[i] = float(std::clamp((field->height(i) - double(height[i])) / sigma, -5.0, 5.0));
     std::optional<Statistics::Sheets> known;
