@@ -58,14 +58,15 @@ SolverReport conjugate_gradients(const Product& product, const std::vector<doubl
       context, n, scales, [&](std::size_t i) -> const Vector3d& { return r[i] = allowed(i, b[i] - y[i]); });
   const Iterated done = conjugate_gradient_iteration<Vector3d>(context, product, scales, r, sums, x, allowed,
                                                                goal, options.max_iterations);
-  // A is positive semi-definite: its largest eigenvalue is about twice the largest of its diagonal.
-  double largest = 0;
-  for (std::size_t i = 0; i < n; ++i) largest = std::max(largest, diagonal[i] / mass[i]);
-  const double terms = 2 * largest * std::sqrt(residual_sums(context, n, scales, [&](std::size_t i) {
-                                                 return Vector3d(mass[i] * x[i]);
-                                               }).square);
+  const auto terms = [&] {
+    // A is positive semi-definite: its largest eigenvalue is about twice the largest of its diagonal.
+    double largest = 0;
+    for (std::size_t i = 0; i < n; ++i) largest = std::max(largest, diagonal[i] / mass[i]);
+    const auto weighed = [&](std::size_t i) { return Vector3d(mass[i] * x[i]); };
+    return 2 * largest * std::sqrt(residual_sums(context, n, scales, weighed).square);
+  };
   return {done.iterations, relative(done.norm, goal, options.tolerance),
-          done.norm <= std::max(goal, rounding_of(terms))};
+          done.norm <= goal || done.norm <= rounding_of(terms())};
 }
 
 namespace {
@@ -110,7 +111,7 @@ class FairingSolve {
     if (!polynomials_alone) report.reductions.clear();
     report.residual = relative(norm, goal_, options_.tolerance);
     report.converged =
-        norm <= std::max(goal_, rounding_of(largest_eigenvalue() * goal_ / options_.tolerance));
+        norm <= goal_ || norm <= rounding_of(largest_eigenvalue() * goal_ / options_.tolerance);
     return report;
   }
 
