@@ -164,7 +164,7 @@ void put_rows(io::Cloud& cloud, const std::vector<FieldText>& fields, const Rows
       values = changed(io::gather(before, {f}, {}), values, io::gather(table, {fixed[f]}, {}));
       io::scatter(table, {fixed[f]}, values.data(), {});
     } else {
-      io::add_field(table, given.fields[f], values.data(), {});
+      io::append_field(table, given.fields[f], values.data(), {});
     }
   }
 }

@@ -34,9 +34,6 @@ std::vector<XyzNames> read_xyz_beginning(TextCursor& cursor, Cloud& cloud);
 std::vector<std::string> take_xyz_names(const std::vector<XyzNames>& lines, std::size_t columns,
                                         Separators separators, const Source& source, Cloud& cloud);
 
-/// The cells or words of a line, with the quotes around them.
-std::vector<std::string_view> raw_cells(std::string_view line, Separators separators);
-
 /// The name in a cell of names, without quotes and unit, a blank inside it as '_'.
 std::string name_in_cell(std::string_view cell);
 

@@ -9,7 +9,6 @@ namespace rfsmooth::pipeline::io {
 namespace {
 
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-constexpr std::string_view kBlanks = " \t";
 
 std::string_view without_line_end(std::string_view line) {
   while (!line.empty() && (line.back() == '\n' || line.back() == '\r')) line.remove_suffix(1);
@@ -44,7 +43,7 @@ bool names_coordinates(const Cells& cells) {
 bool names_coordinates(std::string_view line) {
   for (const Separators s :
        {Separators::space_comma, Separators::comma, Separators::semicolon, Separators::tab})
-    if (names_coordinates(raw_cells(line, s))) return true;
+    if (names_coordinates(words_as_written(line, s))) return true;
   return false;
 }
 
@@ -68,33 +67,15 @@ void need_line_feeds(const TextCursor& cursor, std::string_view content) {
 
 }  // namespace
 
-std::vector<std::string_view> raw_cells(std::string_view line, Separators s) {
-  std::vector<std::string_view> cells = words_of(line, s);
-  // words_of takes the quotes off: put them back where they stand in the line.
-  for (std::string_view& cell : cells)
-    if (cell.data() > line.data() && cell.data()[-1] == '"' && cell_separator(s) != '\0')
-      if (const std::size_t end = std::size_t(cell.data() - line.data()) + cell.size();
-          end < line.size() && line[end] == '"')
-        cell = {cell.data() - 1, cell.size() + 2};
-  return cells;
-}
-
 std::string name_in_cell(std::string_view cell) {
-  const auto trim = [&] {
-    cell.remove_prefix(std::min(cell.find_first_not_of(kBlanks), cell.size()));
-    cell = cell.substr(0, cell.find_last_not_of(kBlanks) + 1);
-  };
-  trim();
-  if (cell.size() >= 2 && cell.front() == '"' && cell.back() == '"') cell = cell.substr(1, cell.size() - 2);
-  trim();
+  cell = without_quotes(without_blanks(cell));
   if (!cell.empty() && (cell.back() == ']' || cell.back() == ')'))
     if (const std::size_t unit = cell.rfind(cell.back() == ']' ? '[' : '(');
         unit != std::string_view::npos && unit > 0)
       cell = cell.substr(0, unit);
-  trim();
-  std::string name(cell);
+  std::string name(without_blanks(cell));
   std::replace_if(
-      name.begin(), name.end(), [](char c) { return kBlanks.find(c) != std::string_view::npos; }, '_');
+      name.begin(), name.end(), [](char c) { return c == ' ' || c == '\t'; }, '_');
   return name;
 }
 
@@ -130,7 +111,7 @@ std::vector<std::string> take_xyz_names(const std::vector<XyzNames>& lines, std:
                                         Separators separators, const Source& source, Cloud& cloud) {
   for (const XyzNames& names : lines)
     for (const Separators s : {separators, Separators::space_comma}) {
-      const Cells cells = raw_cells(names.line, s);
+      const Cells cells = words_as_written(names.line, s);
       if (cells.size() != columns || !names_coordinates(cells)) continue;
       const std::size_t between = names.line.find_first_of(",;\t");
       cloud.xyz_style.names = names.prefix;
@@ -141,12 +122,11 @@ std::vector<std::string> take_xyz_names(const std::vector<XyzNames>& lines, std:
       return cloud.xyz_style.cells;
     }
   for (const XyzNames& names : lines)
-    if (const Cells cells = raw_cells(names.line, separators);
+    if (const Cells cells = words_as_written(names.line, separators);
         !names.comment || is_misfit(cells, names.line, columns))
       source.fail(
           "line {}: expected names for {} columns, as the rows have, found {} in {}; name every column, or "
-          "take "
-          "the line out if the first three are x, y, z",
+          "take the line out if the first three are x, y, z",
           names.number, columns, cells.size(), in_quotes(names.line));
   return {};
 }

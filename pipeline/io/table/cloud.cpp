@@ -138,7 +138,7 @@ void set_field(Cloud& cloud, const std::string& name, Scalar type, const std::ve
   if (const auto present = find_field(cloud, name))
     scatter(cloud.points(), {*present}, values.data(), context);
   else
-    add_field(cloud.points(), Field{name, type}, values.data(), context);
+    append_field(cloud.points(), Field{name, type}, values.data(), context);
 }
 
 void check_field(const Cloud& cloud, const std::string& name, Scalar type) {

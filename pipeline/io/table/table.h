@@ -62,11 +62,8 @@ Lists gather_lists(const Table& table, std::size_t field, const Context& context
 void scatter(Table& table, const std::vector<std::size_t>& which, const double* values,
              const Context& context);
 
-/// Appends a plain field with one value per row.
+/// Appends a plain field with one value per row. A cell of text is in quotes where the one before it is.
 void append_field(Table& table, const Field& field, const double* values, const Context& context);
-
-/// The same for every text: rows of cells get one more, in quotes where the one before it is.
-void add_field(Table& table, const Field& field, const double* values, const Context& context);
 
 /// Writes rows of text anew as words with one blank between them: an empty cell becomes "nan", a quoted one
 /// loses its quotes. Does nothing if they are such words or bytes.

@@ -8,9 +8,22 @@ namespace {
 
 // Behind the last value of a text row: where its trailing blanks and line end begin.
 std::size_t content_size(std::string_view row, Separators separators) {
+  const auto is_behind = [&](char c) {
+    // A tab may belong to an empty last cell.
+    return cell_separator(separators) != '\0' ? c == ' ' || c == '\r' || c == '\n'
+                                              : is_separator(c, separators);
+  };
   std::size_t n = row.size();
-  while (n > 0 && is_separator(row[n - 1], separators)) --n;
+  while (n > 0 && is_behind(row[n - 1])) --n;
   return n;
+}
+
+// What to put between a row's values.
+char separator_in(std::string_view row, Separators separators) {
+  if (const char of_cells = cell_separator(separators); of_cells != '\0') return of_cells;
+  const std::size_t comma =
+      separators == Separators::space_comma ? row.find_first_of(",;") : std::string_view::npos;
+  return comma == std::string_view::npos ? ' ' : row[comma];
 }
 
 }  // namespace
@@ -25,11 +38,11 @@ void append_field(Table& table, const Field& field, const double* values, const 
     rebuild(table, context, [&](std::size_t i, std::string& out) {
       const std::string_view row = old.row(i);
       const std::size_t n = content_size(row, old.separators);
-      out.append(row.substr(0, n));
-      const std::size_t comma =
-          old.separators == Separators::space_comma ? row.find_first_of(",;") : std::string_view::npos;
-      out += comma == std::string_view::npos ? ' ' : row[comma];
+      const bool quoted = cell_separator(old.separators) != '\0' && n > 0 && row[n - 1] == '"';
+      out.append(row.substr(0, n)) += separator_in(row, old.separators);
+      if (quoted) out += '"';
       append_number(out, values[i], field.type);
+      if (quoted) out += '"';
       out.append(row.substr(n));
     });
   } else {
@@ -129,6 +142,21 @@ void project(Table& table, const std::vector<std::size_t>& which, const Context&
   table.ragged = false;
   if (table.text) table.separators = Separators::space;
   if (!table.text && !table.has_lists()) table.start.clear();
+}
+
+void make_words(Table& table, const Context& context) {
+  if (!table.text || table.separators == Separators::space) return;
+  const Table& old = table;
+  rebuild(table, context, [&](std::size_t i, std::string& out) {
+    bool first = true;
+    for (const std::string_view word : words_of(old.row(i), old.separators)) {
+      if (!first) out += ' ';
+      first = false;
+      out.append(word.empty() ? "nan" : word);
+    }
+    out += '\n';
+  });
+  table.separators = Separators::space;
 }
 
 void select(Table& table, const std::vector<std::size_t>& which) {

@@ -1,5 +1,6 @@
 #include "pipeline/io/table/text.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
@@ -81,10 +82,12 @@ const char* end_of_cell(const char* p, const char* end, char separator) {
   return p;
 }
 
-std::string_view without_blanks(std::string_view text) {
-  while (!text.empty() && is_separator(text.front(), Separators::space)) text.remove_prefix(1);
-  while (!text.empty() && is_separator(text.back(), Separators::space)) text.remove_suffix(1);
-  return text;
+// The cell that begins at p, with its quotes. Moves p to the next one, or to the end.
+std::string_view next_as_written(const char*& p, const char* end, char separator) {
+  const char* const stop = end_of_cell(p, end, separator);
+  const std::string_view cell = without_blanks({p, std::size_t(stop - p)});
+  p = stop == end ? end : stop + 1;
+  return cell;
 }
 
 std::vector<std::string_view> cells_of(std::string_view line, char separator) {
@@ -93,22 +96,35 @@ std::vector<std::string_view> cells_of(std::string_view line, char separator) {
   const char* const end = p + line.size();
   for (bool more = true; more;) {
     more = end_of_cell(p, end, separator) != end;
-    cells.push_back(next_cell(p, end, separator));
+    cells.push_back(next_as_written(p, end, separator));
   }
   return cells;
 }
 
 }  // namespace
 
-std::string_view next_cell(const char*& p, const char* end, char separator) {
-  const char* const stop = end_of_cell(p, end, separator);
-  std::string_view cell = without_blanks({p, std::size_t(stop - p)});
-  p = stop == end ? end : stop + 1;
+std::string_view without_blanks(std::string_view text) {
+  while (!text.empty() && is_separator(text.front(), Separators::space)) text.remove_prefix(1);
+  while (!text.empty() && is_separator(text.back(), Separators::space)) text.remove_suffix(1);
+  return text;
+}
+
+std::string_view without_quotes(std::string_view cell) {
   if (cell.size() < 2 || cell.front() != '"' || cell.back() != '"') return cell;
   return without_blanks(cell.substr(1, cell.size() - 2));
 }
 
+std::string_view next_cell(const char*& p, const char* end, char separator) {
+  return without_quotes(next_as_written(p, end, separator));
+}
+
 std::vector<std::string_view> words_of(std::string_view line, Separators s) {
+  std::vector<std::string_view> words = words_as_written(line, s);
+  if (cell_separator(s) != '\0') std::transform(words.begin(), words.end(), words.begin(), without_quotes);
+  return words;
+}
+
+std::vector<std::string_view> words_as_written(std::string_view line, Separators s) {
   if (const char separator = cell_separator(s); separator != '\0') return cells_of(line, separator);
   std::vector<std::string_view> words;
   const char* p = line.data();

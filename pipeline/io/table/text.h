@@ -35,6 +35,12 @@ inline bool is_separator(char c, Separators s) {
          (s == Separators::space_comma && (c == ',' || c == ';'));
 }
 
+/// Without blanks, tabs and line ends around it.
+std::string_view without_blanks(std::string_view text);
+
+/// A cell without the quotes around it, and without blanks inside these.
+std::string_view without_quotes(std::string_view cell);
+
 /// The next word at or after `p`; empty (at `end`) if there is none. Moves `p` behind the word. Of a row of
 /// cells: the cell that begins at `p`.
 inline std::string_view next_word(const char*& p, const char* end, Separators s = Separators::space) {
@@ -47,6 +53,9 @@ inline std::string_view next_word(const char*& p, const char* end, Separators s 
 
 /// All words of a line, or all of its cells.
 std::vector<std::string_view> words_of(std::string_view line, Separators s = Separators::space);
+
+/// The same with the quotes around cells.
+std::vector<std::string_view> words_as_written(std::string_view line, Separators s);
 
 /// A number of rows and the like: digits only. None if it is anything else, or too large.
 std::optional<std::uint64_t> parse_count(std::string_view word);

@@ -7,6 +7,7 @@
 
 #include "pipeline/io/io.h"
 #include "pipeline/io/point_fields.h"
+#include "tests/pipeline/io/as_text.h"
 
 namespace rfsmooth::pipeline::io {
 namespace {
@@ -27,12 +28,6 @@ Cloud table_of(const std::string& text) {
   return cloud.ok() ? cloud.value() : make_cloud(nullptr, 0);
 }
 
-std::string written_as(const Cloud& cloud, Format format) {
-  WriteOptions options;
-  options.format = format;
-  return serialize_cloud(cloud, options, {}).value();
-}
-
 std::string refusal_of(const std::string& text) {
   const auto cloud = parse_cloud(text, "in.csv", {}, {});
   return cloud.ok() ? "read: " + text : cloud.error().message;
@@ -51,14 +46,10 @@ TEST_P(NamedTable, IsReadByItsNamesAndComesBack) {
   Cloud cloud = table_of(text);
   EXPECT_EQ(columns_of(cloud), columns);
   ASSERT_EQ(positions(cloud), (std::vector<double>{1, 2, 3, 4, 5, 6})) << text;
-  EXPECT_EQ(written_as(cloud, Format::xyz), text);
-  const double moved[] = {1, 2, 3, 4, 5.25, 6};
-  set_positions(cloud, moved);
-  std::string expected = text;
-  expected.replace(expected.rfind('5'), 1, "5.25");
-  EXPECT_EQ(written_as(cloud, Format::xyz), expected);
-  const Cloud ply = table_of(written_as(cloud, Format::ply));
-  EXPECT_EQ(positions(ply), std::vector<double>(moved, moved + 6)) << "as PLY";
+  EXPECT_EQ(as(cloud, Format::xyz), text);
+  expect_that_y_comes_back(cloud, text, "5.25");
+  const Cloud ply = table_of(as(cloud, Format::ply));
+  EXPECT_EQ(positions(ply), (std::vector<double>{1, 2, 3, 4, 5.25, 6})) << "as PLY";
   EXPECT_EQ(columns_of(ply), columns) << "as PLY";
 }
 
@@ -86,7 +77,7 @@ TEST(Xyz, AnEmptyCellOfACoordinateIsAPointThatIsNotFiniteAndStays) {
     EXPECT_EQ(xyz, (std::vector<double>{1, 2, 0, 4, 5, 6})) << text;
     EXPECT_EQ(finite_rows(positions(cloud)), 1U);
     set_positions(cloud, positions(cloud).data());
-    EXPECT_EQ(written_as(cloud, Format::xyz), text);
+    EXPECT_EQ(as(cloud, Format::xyz), text);
   }
 }
 
@@ -94,7 +85,7 @@ TEST(Xyz, AFieldMoreIsACellMore) {
   const auto with_mark = [](const std::string& text) {
     Cloud cloud = table_of(text);
     set_field(cloud, "mark", Scalar::float64, {0.5, 1.5});
-    const std::string after = written_as(cloud, Format::xyz);
+    const std::string after = as(cloud, Format::xyz);
     EXPECT_EQ(field_values(table_of(after), cloud.points().fields.size() - 1),
               (std::vector<double>{0.5, 1.5}))
         << after;
@@ -117,7 +108,7 @@ TEST(Xyz, NamesThatDoNotMatchTheRowsAreRefused) {
         << text;
   for (const std::string text : {"# x y z in metres\n1 2 3\n4 5 6\n", "# x y z i\n1 2 3 4 5\n4 5 6 7 8\n",
                                  "# columns: x y z\n1 2 3 4\n4 5 6 4\n"})
-    EXPECT_EQ(written_as(table_of(text), Format::xyz), text) << "an ordinary comment";
+    EXPECT_EQ(as(table_of(text), Format::xyz), text) << "an ordinary comment";
 }
 
 TEST(Xyz, ARowOfOtherCellsThanTheFirstIsRefused) {
