@@ -48,8 +48,6 @@ Extent extent_of(const Input& input, const Context& context) {
       });
 }
 
-constexpr double kLargestSide = 1e100, kSmallestSide = 1e-100;
-
 /// The largest side of the box; a failure where its square would not be a number.
 double usable_side(const Statistics::Box& box) {
   const double side = largest_side(box);

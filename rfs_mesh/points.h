@@ -34,10 +34,13 @@ struct WorkingCloud {
 /// The box of the finite ones of n x 3 coordinates; none if none is. O(n), parallel.
 std::optional<Statistics::Box> finite_box(const double* xyz, std::size_t n, const Context& context);
 
+/// Between these, the squares of lengths up to the side of a box are numbers.
+inline constexpr double kLargestSide = 1e100, kSmallestSide = 1e-100;
+
 /// Infinite where the side is no double.
 double largest_side(const Statistics::Box& box);
 
-/// Whether the squares of lengths up to such a side are numbers: 1e-100 to 1e100, and 0.
+/// Whether a side is between them, or 0.
 bool is_in_range(double side);
 
 /// Builds the working cloud of n x 3 row-major coordinates in world units. Rows with a NaN or infinite

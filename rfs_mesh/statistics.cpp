@@ -9,12 +9,13 @@
 #include <rfsmooth/mesh.h>
 #include <rfsmooth/statistics.h>
 
+#include "rfs_mesh/points.h"
+
 namespace rfsmooth {
 
 namespace {
 
-// World units: no cloud is larger (points.h), and what is shorter has a square without its digits.
-constexpr double kLongest = 1e100, kShortest = 1e-150;
+constexpr double kShortest = 1e-150;  // world units: what is shorter has a square without its digits
 
 // The work of a law of tails grows with how wide they are (smoothing/automatic/tails); those of clouds are
 // three to ten times as wide.
@@ -38,7 +39,7 @@ bool is_within(double v, double low, double high) {
 }
 
 bool is_length(double v) {
-  return v == 0 || is_within(v, kShortest, kLongest);
+  return v == 0 || is_within(v, kShortest, rfs_mesh::kLargestSide);
 }
 
 bool is_some_length(double v) {
@@ -71,7 +72,7 @@ bool is_box(const Statistics::Box& box) {
 
 /// Of a cloud around its origin.
 bool is_site(const Eigen::Vector3d& p) {
-  return (p.array().abs() <= kLongest).all();
+  return (p.array().abs() <= rfs_mesh::kLargestSide).all();
 }
 
 void check_sites(const NoiseModel& noise, Wrong& wrong) {

@@ -16,9 +16,11 @@ namespace rfsmooth::pipeline {
 /// count. The same for any order of the rows. O(n).
 double working_unit(const double* xyz, std::size_t n, const Context& context);
 
-/// Multiplies every length by `unit`, a power of two: areas by its square, volumes by its cube.
+/// Multiplies every length of the options by `unit`, a power of two.
 void change_units(DenoiseOptions& options, double unit);
+/// The same of statistics.
 void change_units(Statistics& statistics, double unit);
+/// The same of a report: areas by its square, volumes by its cube.
 void change_units(DenoiseReport& report, double unit);
 
 }  // namespace rfsmooth::pipeline

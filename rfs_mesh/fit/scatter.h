@@ -42,14 +42,14 @@ struct Scatter {
   double together = 1;  ///< of the kRing nearest points, those above the quadric count 1, those below -1:
                         ///< the sum's square over kRing. Its mean is 1 where every point errs by itself,
                         ///< kRing where they err the same way. Without window
-  double flatness =
-      kNormalFlatness;  ///< fourth moment of the residuals over the square of the second: 3 of a normal
-                        ///< distribution, 1.8 of an even one, 1 of two sheets. Without window
-  double lean = 0;      ///< third moment of the residuals squared, over the cube of the second: 0 of a
-                        ///< symmetric distribution. Without window
-  double middle =
-      kNormalMiddle;   ///< share of the weight within half a deviation of the quadric: 0.383 of a normal
-                       ///< distribution, 0.289 of an even one, 0 of two sheets. Without window
+  /// Fourth moment of the residuals over the square of the second: 3 of a normal distribution, 1.8 of an even
+  /// one, 1 of two sheets. Without window.
+  double flatness = kNormalFlatness;
+  double lean = 0;  ///< third moment of the residuals squared, over the cube of the second: 0 of a
+                    ///< symmetric distribution. Without window
+  /// Share of the weight within half a deviation of the quadric: 0.383 of a normal distribution, 0.289 of an
+  /// even one, 0 of two sheets. Without window.
+  double middle = kNormalMiddle;
   double within = 0;   ///< s^2 also where the window cuts off so much that the place says nothing; 0: too
                        ///< few points are left within it to tell
   double breadth = 0;  ///< variance of the neighbours across their longest axis over that along it, 0 to 1

@@ -18,6 +18,7 @@
 #include "pipeline/tiles/steps/measure.h"
 #include "rfs_mesh/connect/umbrella.h"
 #include "rfs_mesh/levels.h"
+#include "rfs_mesh/points.h"
 
 namespace rfsmooth::pipeline::tiles {
 
@@ -144,9 +145,8 @@ Settled read_settled(const std::filesystem::path& path) {
   try {
     Settled settled = settled_of_json(ordered_json::parse(file));
     std::vector<std::string> wrong = check(settled.report.statistics);
-    constexpr double kFarthest = 1e100;  // no cloud is larger (rfs_mesh/points.h)
-    if (!(settled.halo >= 0 && settled.halo <= kFarthest && settled.radii > 0 && settled.radii <= kFarthest &&
-          settled.widest >= 1 && settled.widest < kNone))
+    if (!(settled.halo >= 0 && settled.halo <= rfs_mesh::kLargestSide && settled.radii > 0 &&
+          settled.radii <= rfs_mesh::kLargestSide && settled.widest >= 1 && settled.widest < kNone))
       wrong.emplace_back("halo, halo_radii or widest: is no length or no number of points");
     if (!wrong.empty()) fail(ErrorCode::input_unreadable, "{}: {}", path.string(), wrong.front());
     return settled;

@@ -29,8 +29,7 @@ constexpr std::size_t kOwnMean = 60;  // from this many members on, patches aver
 constexpr float kNearEvidence = 10;   // nats per sigma^2 of a near mean
 constexpr float kPatchEvidence = 0.25F;  // the same of a patch mean, per member (Leung and Barron's 1/4)
 constexpr float kTolerated = 0.15F;      // sigma^2: what a near mean scatters by without meaning anything
-constexpr float kFarthest =
-    1e12F;  // sigma: errors count as this at most, so that sums of squares stay finite
+constexpr float kFarthest = 1e12F;       // sigma: most that an error counts as, for finite sums of squares
 
 std::vector<float> heights(const HeightField& field, const Context& context) {
   std::vector<float> all(field.size());
