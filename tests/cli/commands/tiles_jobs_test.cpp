@@ -80,10 +80,7 @@ TEST_F(Tiles, SameBytesForWorkersInAnyOrderAgainAndAfterKillsAndDamage) {
 
 TEST_F(Tiles, AFolderOfFilesIsOneCloud) {
   const RichCloud all = strip(0.4);
-  RichCloud first = all, second = all;
-  const std::size_t cut = 3 * (all.size() / 3);
-  first.xyz.resize(cut);
-  second.xyz.erase(second.xyz.begin(), second.xyz.begin() + std::ptrdiff_t(cut));
+  const auto [first, second] = all.cut_at(all.size() / 3);
   put("all.ply", all.bytes());
   put("a.ply", first.bytes());
   put("b.ply", second.bytes());

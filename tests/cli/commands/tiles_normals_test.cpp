@@ -81,10 +81,7 @@ TEST_F(Tiles, RowsAtOnePlaceBecomeWhatTheFirstOfThemDoes) {
     often.xyz.insert(often.xyz.end(), row, row + 3);
     often.xyz.insert(often.xyz.end(), shared.begin(), shared.end());
   }
-  RichCloud first = often, last = often;
-  const std::size_t cut = 3 * (often.size() / 2);
-  first.xyz.resize(cut);
-  last.xyz.erase(last.xyz.begin(), last.xyz.begin() + std::ptrdiff_t(cut));
+  const auto [first, last] = often.cut_at(often.size() / 2);
   put("once.ply", once.bytes());
   put("first.ply", first.bytes());
   put("last.ply", last.bytes());

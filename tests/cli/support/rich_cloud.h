@@ -6,6 +6,7 @@
 #include <cstring>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace rfsmooth::test {
@@ -20,6 +21,14 @@ struct RichCloud {
   std::size_t row_bytes() const { return coordinate_bytes() + 20; }
   const char* name() const { return pcd ? "in.pcd" : "in.ply"; }
   const char* output() const { return pcd ? "out.pcd" : "out.ply"; }
+
+  /// The rows before that one, and those from it on.
+  std::pair<RichCloud, RichCloud> cut_at(std::size_t row) const {
+    RichCloud first = *this, second = *this;
+    first.xyz.resize(3 * row);
+    second.xyz.erase(second.xyz.begin(), second.xyz.begin() + std::ptrdiff_t(3 * row));
+    return {first, second};
+  }
 
   std::string header() const {
     const std::string n = std::to_string(size());
