@@ -88,9 +88,9 @@ std::vector<XyzNames> read_xyz_beginning(TextCursor& cursor, Cloud& cloud) {
     if (line.empty()) break;
     if (cursor.lines == 0 && line.size() > 1 && line[line.size() - 2] == '\r') cloud.newline = "\r\n";
     const std::string_view content = without_line_end(line);
-    need_line_feeds(cursor, content);
     const std::string_view prefix = prefix_of(content), rest = content.substr(prefix.size());
     const bool comment = is_blank_or_comment(line);
+    if (!comment) need_line_feeds(cursor, content);  // the comments of other formats may hold a CR
     const auto words = words_of(rest);
     if (!named && names_coordinates(rest)) {
       named = !comment;

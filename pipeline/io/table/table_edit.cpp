@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <stdexcept>
 
 #include "pipeline/io/table/table.h"
@@ -144,8 +145,18 @@ void project(Table& table, const std::vector<std::size_t>& which, const Context&
   if (!table.text && !table.has_lists()) table.start.clear();
 }
 
+namespace {
+
+/// Whether a CR stands anywhere but before an LF: between words it is a blank.
+bool has_lone_return(const Bytes& text) {
+  const auto is_lone = [](char c, char next) { return c == '\r' && next != '\n'; };
+  return std::adjacent_find(text.begin(), text.end(), is_lone) != text.end();
+}
+
+}  // namespace
+
 void make_words(Table& table, const Context& context) {
-  if (!table.text || table.separators == Separators::space) return;
+  if (!table.text || (table.separators == Separators::space && !has_lone_return(table.data))) return;
   const Table& old = table;
   rebuild(table, context, [&](std::size_t i, std::string& out) {
     bool first = true;

@@ -128,6 +128,8 @@ TEST(Xyz, ANumberOfPointsThatIsNotTheRowsIsRefused) {
 TEST(Xyz, LinesThatEndInCarriageReturnsAloneAreRefused) {
   for (const std::string text : {"1 2 3\r4 5 6\r", "x y z\r1 2 3\r4 5 6\r", "1,2,3\r4,5,6"})
     EXPECT_THAT(refusal_of(text), AllOf(HasSubstr("line 1"), HasSubstr("CR alone"))) << text;
+  const std::string comment = "# scan\rof a room\n1 2 3\n4 5 6\n";
+  EXPECT_EQ(as(table_of(comment), Format::xyz), comment) << "other formats' comments may hold a CR";
 }
 
 }  // namespace
