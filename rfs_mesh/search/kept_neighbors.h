@@ -11,7 +11,7 @@
 
 namespace rfsmooth::rfs_mesh {
 
-/// What was found around one place: 16 bytes a point. Not for several threads at once.
+/// What was found around one place: 4 bytes a point. Not for several threads at once.
 class KeptNeighbors {
  public:
   /// \param most points to keep: twice as many as will be asked for after the place has moved. Where more are
@@ -25,10 +25,12 @@ class KeptNeighbors {
  private:
   bool find(const SpatialIndex& index, const Eigen::Vector3d& place, std::size_t m,
             std::vector<Neighbor>& out) const;
+  void seen_from(const SpatialIndex& index, const Eigen::Vector3d& place, std::size_t m,
+                 std::vector<Neighbor>& out) const;
 
   std::size_t most_;
   Eigen::Vector3d at_ = Eigen::Vector3d::Zero();
-  std::vector<Neighbor> kept_;  ///< the nearest of at_, ascending
+  std::vector<Index> kept_;  ///< the nearest of at_, ascending
 };
 
 }  // namespace rfsmooth::rfs_mesh

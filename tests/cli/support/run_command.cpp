@@ -136,6 +136,7 @@ Ran run_program(const std::string& program, const std::vector<std::string>& argu
   }
   const auto seconds = [](const timeval& t) { return double(t.tv_sec) + 1e-6 * double(t.tv_usec); };
   ran.processor_seconds = seconds(usage.ru_utime) + seconds(usage.ru_stime);
+  ran.peak = std::size_t(usage.ru_maxrss) * 1024;
   ran.seconds = std::chrono::duration<double>(Clock::now() - start).count();
   if (interrupted)
     ran.seconds_after_interrupt = std::chrono::duration<double>(Clock::now() - *interrupted).count();

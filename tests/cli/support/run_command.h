@@ -11,6 +11,7 @@ struct Ran {
   std::string out, err;
   double seconds = 0, processor_seconds = 0;  ///< their ratio: how many threads were at work
   double seconds_after_interrupt = 0;         ///< from the signal to the end; 0 without one
+  std::size_t peak = 0;                       ///< resident bytes, at least those of the test that started it
 };
 
 struct RunSetup {
