@@ -7,6 +7,7 @@
 
 #include "base/quantile.h"
 #include "rfs_mesh/levels.h"
+#include "rfs_mesh/noise/scatter_statistics.h"
 
 namespace rfsmooth::smoothing {
 
@@ -17,7 +18,6 @@ constexpr double kLeastFar = 0.003;
 // s: what lies beyond is a stray and does not say how wide the tails are.
 constexpr double kFarthestTail = 12;
 constexpr double kMostInTails = 0.35;  // more is noise that differs over the cloud
-constexpr double kTwice = 2.1;         // least `times`: less is a scale that varies a little
 constexpr int kTailRounds = 50;
 
 /// Standard deviation of a normal distribution with the same median of absolute values.
@@ -137,7 +137,8 @@ Statistics::Tails find_tails(const std::vector<float>& residuals, const std::vec
     narrow = sums[0] / weights[0];
     wide = sums[1] / weights[1];
   }
-  if (share > kMostInTails || wide < kTwice * kTwice * narrow) return tails;
+  if (share > kMostInTails) return tails;
+  if (wide < rfs_mesh::kLouder * rfs_mesh::kLouder * narrow) return tails;  // a scale that varies a little
   tails.share = share;
   tails.times = std::sqrt(wide / narrow);
   tails.narrow = std::min(1.0, std::sqrt(narrow) * unit);
