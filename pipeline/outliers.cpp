@@ -7,9 +7,9 @@
 #include <limits>
 #include <optional>
 
-#include "base/linear/symmetric_eigen.h"
 #include "base/parallel.h"
 #include "base/quantile.h"
+#include "rfs_mesh/fit/principal_axes.h"
 #include "rfs_mesh/levels.h"
 #include "rfs_mesh/noise/noise.h"
 #include "rfs_mesh/search/neighbors.h"
@@ -46,17 +46,10 @@ Plane fit_plane(const Positions& points, const std::vector<Neighbor>& near) {
   constexpr std::size_t kOnAnyPlane = 3;
   Plane plane;
   if (near.size() <= kOnAnyPlane) return plane;
-  for (const Neighbor& q : near) plane.centre += points[q.index];
-  plane.centre /= double(near.size());
-  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-  for (const Neighbor& q : near) {
-    const Eigen::Vector3d d = points[q.index] - plane.centre;
-    spread += d * d.transpose();
-  }
-  spread /= double(near.size() - kOnAnyPlane);
-  const SymmetricEigen<3> eigen = symmetric_eigen(spread);
-  plane.normal = eigen.vectors.col(0);
-  plane.variances = eigen.values.cwiseMax(0);
+  const auto [mean, axes] = rfs_mesh::principal_axes(points, near);
+  plane.centre = mean;
+  plane.normal = axes.vectors.col(0);
+  plane.variances = axes.values.cwiseMax(0) / double(near.size() - kOnAnyPlane);
   return plane;
 }
 

@@ -6,9 +6,9 @@
 #include <stdexcept>
 #include <vector>
 
-#include "base/linear/symmetric_eigen.h"
 #include "base/parallel.h"
 #include "base/quantile.h"
+#include "rfs_mesh/fit/principal_axes.h"
 #include "rfs_mesh/levels.h"
 #include "rfs_mesh/normals/winding.h"
 #include "rfs_mesh/sample.h"
@@ -18,7 +18,6 @@ namespace rfsmooth::rfs_mesh {
 
 namespace {
 
-using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 // Chosen on the closed development shapes at 50,000 points, without noise and after 1 %
@@ -32,15 +31,7 @@ constexpr double kThinnest = 1e-9;  // of C's eigenvalues, beside the largest
 
 /// Where the point i of `near`, which holds it and its neighbours, lies about their middle.
 Vector3d out_of_middle(const Positions& points, std::size_t i, const std::vector<Neighbor>& near) {
-  Vector3d mean = Vector3d::Zero();
-  for (const Neighbor& q : near) mean += points[q.index];
-  mean /= double(near.size());
-  Matrix3d covariance = Matrix3d::Zero();
-  for (const Neighbor& q : near) {
-    const Vector3d d = points[q.index] - mean;
-    covariance += d * d.transpose();
-  }
-  const SymmetricEigen<3> axes = symmetric_eigen(covariance);
+  const auto [mean, axes] = principal_axes(points, near);
   const double largest = axes.values[2];
   if (!(largest > 0)) return Vector3d::Zero();
   Vector3d offset = axes.vectors.transpose() * (points[i] - mean);

@@ -7,8 +7,8 @@
 
 #include <Eigen/Cholesky>
 
-#include "base/avx2.h"
 #include "base/linear/small_cholesky.h"
+#include "rfs_mesh/fit/quadric_moments.h"
 
 namespace rfsmooth::rfs_mesh {
 
@@ -18,8 +18,6 @@ using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 using Vector9 = Eigen::Matrix<double, 9, 1>;
 using Matrix9 = Eigen::Matrix<double, 9, 9>;
-
-typedef double FourOfPair __attribute__((vector_size(4 * sizeof(double))));
 
 constexpr int kPairRounds = 12;
 constexpr double kRidgeOfPair = 1e-6;    // of the normal equations, beside the weights
@@ -87,25 +85,6 @@ struct PairColumns {
   }
 };
 
-/// Of w f f^T (lower half) and w z f.
-RFSMOOTH_AVX2
-void sum_quadric_of(const std::vector<SheetPoint>& points, Matrix6& a, Vector6& right) {
-  FourOfPair first[4] = {}, last[3] = {}, of_heights = {}, of_heights_end = {};  // rows 0 to 3, 4 and 5 twice
-  for (const SheetPoint& p : points) {
-    const double f[6] = {1, p.u, p.v, p.u * p.u, p.u * p.v, p.v * p.v};
-    const FourOfPair start = {f[0], f[1], f[2], f[3]}, end = {f[4], f[5], f[4], f[5]};
-    for (int column = 0; column < 4; ++column) first[column] += p.weight * start * f[column];
-    for (int column = 0; column < 6; column += 2)
-      last[column / 2] += p.weight * end * FourOfPair{f[column], f[column], f[column + 1], f[column + 1]};
-    of_heights += p.weight * p.height * start;
-    of_heights_end += p.weight * p.height * end;
-  }
-  for (int column = 0; column < 6; ++column)
-    for (int row = column; row < 6; ++row)
-      a(row, column) = row < 4 ? first[column][row] : last[column / 2][row - 4 + 2 * (column % 2)];
-  for (int row = 0; row < 6; ++row) right[row] = row < 4 ? of_heights[row] : of_heights_end[row - 4];
-}
-
 }  // namespace
 
 SheetPair::SheetPair(std::vector<SheetPoint>& points) {
@@ -133,13 +112,17 @@ double SheetPair::nearer(const SheetPoint& p) const {
 }
 
 void SheetPair::fit_one(std::vector<SheetPoint>& points) {
-  Matrix6 a = Matrix6::Zero();
-  Vector6 right;
-  sum_quadric_of(points, a, right);
-  a.diagonal().array() += kRidgeOfPair * weights_;
-  moments_ = a;
-  heights_ = right;
-  middle_ = SmallCholesky<6>(a).solve(right);
+  QuadricMoments<double> moments;
+  QuadricHeights<double> heights;
+  for (const SheetPoint& p : points) {
+    moments.add(p.u, p.v, p.weight);
+    heights.add(p.u, p.v, p.weight * p.height);
+  }
+  const auto itself = [](double sum) { return sum; };
+  moments_ = moments.matrix(itself);
+  moments_.diagonal().array() += kRidgeOfPair * weights_;
+  heights_ = heights.vector(itself);
+  middle_ = SmallCholesky<6>(moments_).solve(heights_);
   for (const SheetPoint& p : points) single_ += p.weight * std::pow(p.height - middle(p), 2);
   single_ /= weights_;
   const double d = std::sqrt(std::max(0.0, squared_apart(single_, 1)));

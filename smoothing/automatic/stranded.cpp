@@ -7,8 +7,8 @@
 #include <optional>
 #include <utility>
 
-#include "base/linear/symmetric_eigen.h"
 #include "base/parallel.h"
+#include "rfs_mesh/fit/principal_axes.h"
 #include "rfs_mesh/levels.h"
 #include "rfs_mesh/search/neighbors.h"
 #include "smoothing/automatic/patches/height_field.h"
@@ -145,20 +145,11 @@ std::vector<Index> find_stranded(const Adjacency& rings, const Positions& guide,
 /// p projected onto the plane through the points `near` of some place, ascending.
 Eigen::Vector3d project(const Positions& guide, const std::vector<Neighbor>& near, const Eigen::Vector3d& p) {
   const double square = 1.05 * near.back().squared_distance;
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-  double weights = 0;
-  for (const auto& q : near) {
-    const double w = square > 0 ? 1 - q.squared_distance / square : 1;
-    centre += w * guide[q.index];
-    weights += w;
-  }
-  centre /= weights;
-  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-  for (const auto& q : near) {
-    const Eigen::Vector3d d = guide[q.index] - centre;
-    spread += (square > 0 ? 1 - q.squared_distance / square : 1) * d * d.transpose();
-  }
-  const Eigen::Vector3d normal = symmetric_eigen(spread).vectors.col(0);
+  const auto weight = [square](const Neighbor& q) {
+    return square > 0 ? 1 - q.squared_distance / square : 1;
+  };
+  const auto [centre, axes] = rfs_mesh::principal_axes(guide, near, weight);
+  const Eigen::Vector3d normal = axes.vectors.col(0);
   return p - normal * normal.dot(p - centre);
 }
 
