@@ -51,7 +51,7 @@ class DiscreteFairing : public SolvedFlow {
       });
     };
     const Positions start = x;
-    count(conjugate_gradients(product, diagonal, w, b, x, allowed_, solver_, context));
+    count(conjugate_gradients({product, diagonal, w}, b, x, allowed_, solver_, context));
     for_each_index(context, n, [&](std::size_t i) {
       const Vector3d p = mesh.positions[i] + allowed_(i, x[i] - start[i]);
       if (p.allFinite()) mesh.positions[i] = p;

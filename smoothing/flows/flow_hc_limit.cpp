@@ -111,9 +111,9 @@ class HcLimit : public SolvedFlow {
       at[i] = mesh.positions[i] - centre;
       if (!system.stays(i)) x[i] = at[i];
     });
-    count(conjugate_gradients([&](const Positions& from, Positions& to) { return system.multiply(from, to); },
-                              system.diagonal(), system.mass(), system.right_side(original, at), x, {},
-                              solver_, context));
+    const Product product = [&](const Positions& from, Positions& to) { return system.multiply(from, to); };
+    count(conjugate_gradients({product, system.diagonal(), system.mass()}, system.right_side(original, at), x,
+                              {}, solver_, context));
     for_each_index(context, n, [&](std::size_t i) {
       if (const Vector3d p = x[i] + centre; !system.stays(i) && p.allFinite()) mesh.positions[i] = p;
     });

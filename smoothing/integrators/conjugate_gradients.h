@@ -76,20 +76,35 @@ struct Iterated {
   double norm = 0;  ///< of the recursive residual
 };
 
-/// Solves A x = b from r = b - A x (its allowed part, with its `sums`) until the norm of r is at most `goal`.
-/// `product(p, y)` sets y = A p and returns p . y. A breakdown stops at the last iterate.
+/// The allowed part of b - A x, n rows, and its sums.
+template <class Vector>
+struct Residual {
+  Vectors<Vector>& r;
+  ResidualSums sums;
+};
+
+/// When the iteration is to end: at a norm of the residual, or after so many rounds.
+struct Until {
+  double norm;
+  int iterations;
+};
+
+/// Solves A x = b from a residual, which follows x. `product(p, y)` sets y = A p and returns p . y. A
+/// breakdown stops at the last iterate.
 template <class Vector, class Product>
-Iterated conjugate_gradient_iteration(const Context& context, Product&& product,
-                                      const Scales<typename Vector::Scalar>& scales, Vectors<Vector>& r,
-                                      ResidualSums sums, Vectors<Vector>& x, const AllowedMoves& allowed,
-                                      double goal, int max_iterations) {
+Iterated conjugate_gradient_iteration(Product&& product, const Scales<typename Vector::Scalar>& scales,
+                                      const Residual<Vector>& from, Vectors<Vector>& x,
+                                      const AllowedMoves& allowed, const Until& until,
+                                      const Context& context) {
   using Scalar = typename Vector::Scalar;
+  Vectors<Vector>& r = from.r;
+  ResidualSums sums = from.sums;
   const std::size_t n = r.size();
   Vectors<Vector> p(n), y(n);
   Iterated done;
   // x follows one pass behind, in the pass that reads the old direction anyway.
   double previous = 0, alpha = 0;
-  while (done.iterations < max_iterations && std::sqrt(sums.square) > goal) {
+  while (done.iterations < until.iterations && std::sqrt(sums.square) > until.norm) {
     const Scalar beta = done.iterations == 0 ? Scalar(0) : Scalar(sums.rz / previous), step = Scalar(alpha);
     const bool first = done.iterations == 0;
     for_each_index(context, n, [&](std::size_t i) {

@@ -40,11 +40,11 @@ double rounding_of(double terms) {
 
 }  // namespace
 
-SolverReport conjugate_gradients(const Product& product, const std::vector<double>& diagonal,
-                                 const std::vector<double>& mass, const Positions& b, Positions& x,
+SolverReport conjugate_gradients(const LinearSystem& system, const Positions& b, Positions& x,
                                  const AllowedMoves& allowed, const SolverOptions& options,
                                  const Context& context) {
   const std::size_t n = b.size();
+  const std::vector<double>&diagonal = system.diagonal, &mass = system.mass;
   Scales<double> scales{Numbers<double>(Eigen::Index(n)),
                         norm_weights<double>(mass, 1, options.linf, context), options.linf};
   for_each_index(context, n, [&](std::size_t i) { scales.inverse[Eigen::Index(i)] = 1 / diagonal[i]; });
@@ -53,11 +53,11 @@ SolverReport conjugate_gradients(const Product& product, const std::vector<doubl
                                       return b[i];
                                     }).square);
   Positions r(n), y(n);
-  product(x, y);
+  system.product(x, y);
   const ResidualSums sums = residual_sums(
       context, n, scales, [&](std::size_t i) -> const Vector3d& { return r[i] = allowed(i, b[i] - y[i]); });
-  const Iterated done = conjugate_gradient_iteration<Vector3d>(context, product, scales, r, sums, x, allowed,
-                                                               goal, options.max_iterations);
+  const Iterated done = conjugate_gradient_iteration<Vector3d>(system.product, scales, {r, sums}, x, allowed,
+                                                               {goal, options.max_iterations}, context);
   const auto terms = [&] {
     // A is positive semi-definite: its largest eigenvalue is about twice the largest of its diagonal.
     double largest = 0;
@@ -279,9 +279,8 @@ class FairingSolve {
     const double goal = std::max(kSlack * goal_, kCorrection * norm) / norm_unit_;
     iterations +=
         conjugate_gradient_iteration<Vector4f>(
-            context_,
             [&](const Vectors<Vector4f>& u, Vectors<Vector4f>& v) { return matrix_->multiply(u, v); },
-            scales_, r, sums, d, allowed_, goal, options_.max_iterations - iterations)
+            scales_, {r, sums}, d, allowed_, {goal, options_.max_iterations - iterations}, context_)
             .iterations;
     for_each_index(context_, n_, [&](std::size_t i) { move(i, length_ * d[i].head<3>().cast<double>()); });
   }
@@ -301,8 +300,8 @@ class FairingSolve {
     const ResidualSums sums =
         residual_sums(context_, n_, scales, [&](std::size_t i) -> const Vector3d& { return r[i]; });
     const Iterated done = conjugate_gradient_iteration<Vector3d>(
-        context_, [&](const Positions& u, Positions& v) { return matrix.multiply(u, v); }, scales, r, sums, d,
-        allowed_, goal_ / norm_unit_, options_.max_iterations - iterations);
+        [&](const Positions& u, Positions& v) { return matrix.multiply(u, v); }, scales, {r, sums}, d,
+        allowed_, {goal_ / norm_unit_, options_.max_iterations - iterations}, context_);
     iterations += done.iterations;
     for_each_index(context_, n_, [&](std::size_t i) { move(i, length_ * d[i]); });
     return done.norm * norm_unit_;

@@ -52,10 +52,15 @@ struct SolverReport {
 /// blocks.
 using Product = std::function<double(const Positions& x, Positions& y)>;
 
-/// Solves A x = b from the start x; hard constraints hold relative to it. `diagonal` is A's, positive; `mass`
-/// defines the norm of the residual. Memory of 5 n-vectors.
-SolverReport conjugate_gradients(const Product& product, const std::vector<double>& diagonal,
-                                 const std::vector<double>& mass, const Positions& b, Positions& x,
+/// The matrix of A x = b by what it does. The referenced objects must outlive the calls.
+struct LinearSystem {
+  Product product;                      ///< of A
+  const std::vector<double>& diagonal;  ///< n: of A, positive
+  const std::vector<double>& mass;      ///< n: defines the norm of the residual
+};
+
+/// Solves A x = b from the start x; hard constraints hold relative to it. Memory of 5 n-vectors.
+SolverReport conjugate_gradients(const LinearSystem& system, const Positions& b, Positions& x,
                                  const AllowedMoves& allowed, const SolverOptions& options,
                                  const Context& context);
 

@@ -92,7 +92,7 @@ void minimise(Mesh& mesh, std::size_t given, const std::vector<Edge>& curve, con
     differences.apply(x, y, context);
     return sum_over(context, n, 0.0, [&](std::size_t i) { return x[i].dot(y[i]); });
   };
-  conjugate_gradients(product, diagonal, diagonal, b, d, allowed, solver, context);
+  conjugate_gradients({product, diagonal, diagonal}, b, d, allowed, solver, context);
   for_each_index(context, mesh.positions.size(), [&](std::size_t i) {
     const Vector3d p = mesh.positions[i] + allowed(i, d[i]);
     if (p.allFinite()) mesh.positions[i] = p;
