@@ -66,7 +66,7 @@ void scatter(Table& table, const std::vector<std::size_t>& which, const double* 
 void append_field(Table& table, const Field& field, const double* values, const Context& context);
 
 /// Writes rows of text anew as words with one blank between them: an empty cell becomes "nan", a quoted one
-/// loses its quotes, a CR within a row is a blank. Does nothing to other words and to bytes.
+/// loses its quotes, tabs and CRs within a row are blanks. Does nothing to other words and to bytes.
 void make_words(Table& table, const Context& context);
 
 /// Keeps the rows `which` in that order. O(rows and interludes).

@@ -147,16 +147,17 @@ void project(Table& table, const std::vector<std::size_t>& which, const Context&
 
 namespace {
 
-/// Whether a CR stands anywhere but before an LF: between words it is a blank.
-bool has_lone_return(const Bytes& text) {
-  const auto is_lone = [](char c, char next) { return c == '\r' && next != '\n'; };
-  return std::adjacent_find(text.begin(), text.end(), is_lone) != text.end();
+/// Whether a tab stands anywhere, or a CR anywhere but before an LF: in text without a header the one parts
+/// cells, the other lines, where here both are blanks between words.
+bool has_other_blanks(const Bytes& text) {
+  const auto is_other = [](char c, char next) { return c == '\t' || (c == '\r' && next != '\n'); };
+  return std::adjacent_find(text.begin(), text.end(), is_other) != text.end();
 }
 
 }  // namespace
 
 void make_words(Table& table, const Context& context) {
-  if (!table.text || (table.separators == Separators::space && !has_lone_return(table.data))) return;
+  if (!table.text || (table.separators == Separators::space && !has_other_blanks(table.data))) return;
   const Table& old = table;
   rebuild(table, context, [&](std::size_t i, std::string& out) {
     bool first = true;
