@@ -41,6 +41,8 @@ inline int read_write_read(pipeline::io::Format format, const std::uint8_t* data
     io::ReadOptions back;
     back.format = to;
     const std::string name(io::name_of(to));
+    // A record of LAS holds 65,535 bytes.
+    if (!text.ok() && text.error().message.find("no room for so many fields") != std::string::npos) continue;
     if (!text.ok()) throw std::logic_error("not converted to " + name + ": " + text.error().message);
     // XYZ has no way to say "no points".
     if (to == io::Format::xyz && cloud.value().size() == 0) continue;
