@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -13,7 +14,9 @@
 
 namespace rfsmooth::fuzz {
 
-inline int read_write_read(pipeline::io::Format format, const std::uint8_t* data, std::size_t size) {
+/// \param format to read as; none: found by content
+inline int read_write_read(std::optional<pipeline::io::Format> format, const std::uint8_t* data,
+                           std::size_t size) {
   namespace io = pipeline::io;
   const Context context = [] {
     Context c;
@@ -25,6 +28,7 @@ inline int read_write_read(pipeline::io::Format format, const std::uint8_t* data
   auto cloud = io::parse_cloud({reinterpret_cast<const char*>(data), size}, "fuzz", options, context);
   if (!cloud.ok()) return 0;
   const std::string once = io::serialize_cloud(cloud.value(), {}, context).value();
+  options.format = cloud.value().format;
   const auto again = io::parse_cloud(once, "again", options, context);
   if (!again.ok()) throw std::logic_error("written, then refused: " + again.error().message);
   if (io::serialize_cloud(again.value(), {}, context).value() != once)

@@ -27,6 +27,13 @@ char separator_in(std::string_view row, Separators separators) {
   return comma == std::string_view::npos ? ' ' : row[comma];
 }
 
+// Whether a tab stands anywhere, or a CR anywhere but before an LF: in text without a header the one parts
+// cells, the other lines, where here both are blanks between words.
+bool has_other_blanks(const Bytes& text) {
+  const auto is_other = [](char c, char next) { return c == '\t' || (c == '\r' && next != '\n'); };
+  return std::adjacent_find(text.begin(), text.end(), is_other) != text.end();
+}
+
 }  // namespace
 
 void append_field(Table& table, const Field& field, const double* values, const Context& context) {
@@ -144,17 +151,6 @@ void project(Table& table, const std::vector<std::size_t>& which, const Context&
   if (table.text) table.separators = Separators::space;
   if (!table.text && !table.has_lists()) table.start.clear();
 }
-
-namespace {
-
-/// Whether a tab stands anywhere, or a CR anywhere but before an LF: in text without a header the one parts
-/// cells, the other lines, where here both are blanks between words.
-bool has_other_blanks(const Bytes& text) {
-  const auto is_other = [](char c, char next) { return c == '\t' || (c == '\r' && next != '\n'); };
-  return std::adjacent_find(text.begin(), text.end(), is_other) != text.end();
-}
-
-}  // namespace
 
 void make_words(Table& table, const Context& context) {
   if (!table.text || (table.separators == Separators::space && !has_other_blanks(table.data))) return;

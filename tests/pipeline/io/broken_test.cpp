@@ -180,7 +180,9 @@ TEST(Corpus, IsReplayed) {
     bytes << in.rdbuf();
     const std::string content = bytes.str();
     SCOPED_TRACE(entry.path());
-    for (const Format format : {Format::ply, Format::pcd, Format::xyz, Format::off, Format::las})
+    for (const std::optional<Format> format :
+         {std::optional<Format>{}, std::optional{Format::ply}, std::optional{Format::pcd},
+          std::optional{Format::xyz}, std::optional{Format::off}, std::optional{Format::las}})
       fuzz::read_write_read(format, reinterpret_cast<const std::uint8_t*>(content.data()), content.size());
   }
   EXPECT_GE(seen, 4u);
