@@ -214,7 +214,7 @@ NoiseModel measure_noise(const SpatialIndex& index, const Context& context,
   noise.spacing = mean_spacing(nearest, context);
   if (!nearest.empty()) noise.apart = quantile(nearest, kNearer);
   if (index.points().size() <= kNeighbourhood) return noise;
-  std::optional<DepthSteps> steps = find_depth_steps(index.points(), scanner);
+  std::optional<DepthSteps> steps = find_depth_steps(index, scanner);
   const std::optional<DepthSteps> grid = find_grid(std::move(nearest));
   // Before a wall a camera's points are on a grid, too, of its pixels; a turned grid has few values of each
   // coordinate, too, far nearer to each other.

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <random>
 
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 using namespace rfsmooth;
@@ -12,7 +13,8 @@ namespace {
 
 std::optional<DepthSteps> find_depth_steps(const Positions& points,
                                            const std::optional<Eigen::Vector3d>& scanner = std::nullopt) {
-  return rfs_mesh::find_depth_steps(points, scanner);
+  const Context context;
+  return rfs_mesh::find_depth_steps(rfs_mesh::SpatialIndex(points, context), scanner);
 }
 
 /// Random points; the coordinates of `axes` are whole multiples of `step`.
@@ -32,22 +34,70 @@ TEST(DepthSteps, AreFoundInWhicheverCoordinateHasThem) {
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     const auto steps = find_depth_steps(stepped(0.05, {axis}));
     ASSERT_TRUE(steps);
-    EXPECT_EQ(steps->axis, axis);
+    EXPECT_EQ(steps->direction, Eigen::Vector3d::Unit(axis));
     EXPECT_EQ(steps->depths.size(), 21);
     EXPECT_NEAR(steps->typical, 0.05, 1e-12);
   }
 }
 
-TEST(DepthSteps, AreThoseOfTheDepthWhereACameraSeesAWall) {
+/// What a camera sees of a wall that leans and is rough: whole centimetres of depth.
+Positions wall() {
   Positions points;
   for (int u = -160; u < 160; ++u)
     for (int v = -120; v < 120; ++v) {
       const double z = 2 + 0.01 * ((u * u + 3 * (v + 120)) % 7);
       points.emplace_back(u * z / 350, v * z / 350, z);
     }
-  const auto steps = find_depth_steps(points);
+  return points;
+}
+
+/// A wavy wall in front of a camera that knows whole centimetres: terraces of many points.
+Positions terraces() {
+  Positions points;
+  for (int u = -160; u < 160; ++u)
+    for (int v = -120; v < 120; ++v) {
+      const double z = 0.01 * std::round(100 * (2 + 0.0002 * u + 0.0006 * v + 0.03 * std::sin(u / 30.0)));
+      points.emplace_back(u * z / 350, v * z / 350, z);
+    }
+  return points;
+}
+
+const Eigen::Matrix3d kTurn =
+    Eigen::AngleAxisd(1.1, Eigen::Vector3d(1, 2, -1).normalized()).toRotationMatrix();
+
+/// Turned and moved, in coordinates of single precision.
+Positions turned(Positions points) {
+  for (Eigen::Vector3d& p : points)
+    p = Eigen::Vector3f((kTurn * p + Eigen::Vector3d(4, -2, 3)).cast<float>()).cast<double>();
+  return points;
+}
+
+TEST(DepthSteps, AreFoundInACloudThatWasTurned) {
+  const auto as_taken = find_depth_steps(terraces()), steps = find_depth_steps(turned(terraces()));
+  ASSERT_TRUE(as_taken && steps);
+  EXPECT_NEAR(std::abs(steps->direction.dot(kTurn.col(2))), 1, 1e-12);
+  EXPECT_NEAR(steps->typical, 0.01, 1e-5);
+  EXPECT_EQ(steps->depths.size(), as_taken->depths.size());
+  const Eigen::Vector3d at = turned({{0.1, 0.1, 2}}).front();
+  EXPECT_NEAR(steps->sigma(at, kTurn.col(2)), 0.01 / std::sqrt(12.0), 1e-5);
+  EXPECT_NEAR(steps->sigma(at, kTurn.col(0)), 0, 1e-7);
+}
+
+TEST(DepthSteps, AreNoneInATurnedGridAndTurnedFreePoints) {
+  EXPECT_FALSE(find_depth_steps(turned(stepped(0.05, {}))));
+  EXPECT_FALSE(find_depth_steps(turned(stepped(0.05, {0, 1, 2}))));
+  Positions smooth;  // a ball, of which every neighbourhood is nearly flat
+  for (int i = 0; i < 20000; ++i) {
+    const double z = 1 - (2 * i + 1) / 20000.0, r = std::sqrt(1 - z * z), turn = 2.399963 * i;
+    smooth.emplace_back(r * std::cos(turn), r * std::sin(turn), z);
+  }
+  EXPECT_FALSE(find_depth_steps(turned(smooth)));
+}
+
+TEST(DepthSteps, AreThoseOfTheDepthWhereACameraSeesAWall) {
+  const auto steps = find_depth_steps(wall());
   ASSERT_TRUE(steps);
-  EXPECT_EQ(steps->axis, 2);
+  EXPECT_EQ(steps->direction, Eigen::Vector3d::UnitZ());
   EXPECT_EQ(steps->depths.size(), 7);
   EXPECT_NEAR(steps->typical, 0.01, 1e-12);
 }

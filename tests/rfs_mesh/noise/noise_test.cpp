@@ -254,6 +254,18 @@ TEST(Noise, OfDepthsInStepsIsTheirRoundingToo) {
     }
 }
 
+TEST(Noise, OfDepthsInStepsIsTheSameWhereTheCloudWasTurned) {
+  const Eigen::Matrix3f turn =
+      Eigen::AngleAxisf(1.1F, Eigen::Vector3f(1, 2, -1).normalized()).toRotationMatrix();
+  for (const double slope : {0.02, 0.1}) {
+    const Positions points = depth_image(slope, 0.5, 0.125);
+    Positions there;
+    for (const auto& p : points) there.push_back((turn * p.cast<float>()).cast<double>());
+    const double here = measured(points).sigma;
+    EXPECT_NEAR(measured(there).sigma / here, 1, 0.02) << slope;
+  }
+}
+
 TEST(Noise, OfScanLinesRoundedToTenthsIsThatAcrossThem) {
   std::mt19937_64 engine(7);
   std::normal_distribution<double> normal;
