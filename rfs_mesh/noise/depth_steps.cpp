@@ -2,7 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <utility>
 
+#include "rfs_mesh/fit/principal_axes.h"
+#include "rfs_mesh/levels.h"
 #include "rfs_mesh/noise/scatter_statistics.h"
 #include "rfs_mesh/noise/step_directions.h"
 #include "rfs_mesh/sample.h"
@@ -16,65 +20,108 @@ constexpr std::size_t kPointsOfStep = 10;  // in the mean: free coordinates hard
 // to 11 sqrt(n) in a cloud of n points as deep as wide. All points of the real scans tell steps of one that
 // these do not: of 1.5 where the noise is 2.4.
 constexpr std::size_t kLookedAt = 20000;
-constexpr std::size_t kFewestSteps = 4;  // fewer are the sides of a box
+constexpr std::size_t kFewestSteps = 4;                                 // fewer are the sides of a box
+constexpr std::size_t kNoMoreALine = kNarrowestPatch * kNeighbourhood;  // points that are no more a line
 // Of the largest depth: how far two that are the same lie apart where files keep seven digits of each
 // coordinate.
 constexpr double kSevenDigits = 2e-6;
 
-/// Fills `steps`, which knows along what, with those that points have there; false if they have none.
-/// \param some up to kLookedAt points. \param same depths that differ by no more than this are one.
-bool fill_steps(const Positions& some, double same, DepthSteps& steps) {
-  std::vector<double> all(some.size());
-  std::transform(some.begin(), some.end(), all.begin(), [&](const auto& p) { return steps.depth(p); });
-  std::vector<double> depths = all;
-  std::sort(depths.begin(), depths.end());
-  std::size_t count = 0;
-  for (const double depth : depths)
-    if (count == 0 || depth - depths[count - 1] > same) depths[count++] = depth;
-  depths.resize(count);
-  if (count < kFewestSteps || count * kPointsOfStep >= all.size()) return false;
-  steps.depths = std::move(depths);
-  std::vector<double> gaps;
-  for (const double depth : all) gaps.push_back(steps.gap(depth));
-  steps.typical = quantile(gaps, 0.5);
-  // Free depths that rounding runs together are hardly farther apart than that.
-  return steps.typical > 2 * same;
+/// Of sorted depths the first of each run of those that are the same, if there are `fewest` of them or more.
+std::vector<double> commonest(const std::vector<double>& sorted, double same, std::size_t fewest) {
+  std::vector<double> depths;
+  for (std::size_t begin = 0, end = 0; begin < sorted.size(); begin = end) {
+    while (end < sorted.size() && sorted[end] - sorted[begin] <= same) ++end;
+    if (end - begin >= fewest) depths.push_back(sorted[begin]);
+  }
+  return depths;
 }
 
-/// Those of `directions` along which there are steps.
-std::vector<DepthSteps> steps_along(const Positions& directions, const Positions& some, double same) {
-  std::vector<DepthSteps> all;
+/// How many points the steps of a cloud have.
+enum class Steps { kAll, kPart };
+
+/// Fills terraces, which know along what, with the steps that all points have there, or that a part of them
+/// has. False if there are none. \param some up to kLookedAt points.
+bool fill(const Positions& some, Steps steps, Terraces& terraces) {
+  std::vector<double> all(some.size());
+  std::transform(some.begin(), some.end(), all.begin(), [&](const auto& p) { return terraces.depth(p); });
+  std::sort(all.begin(), all.end());
+  terraces.depths = commonest(all, terraces.same, steps == Steps::kAll ? 1 : kPointsOfStep);
+  if (terraces.depths.size() < kFewestSteps || terraces.depths.size() * kPointsOfStep >= all.size())
+    return false;
+  std::vector<double> gaps;
+  for (const Eigen::Vector3d& p : some)
+    if (terraces.hold(p)) gaps.push_back(terraces.gap(terraces.depth(p)));
+  terraces.typical = quantile(gaps, 0.5);
+  // Free depths that rounding runs together are hardly farther apart than that.
+  return terraces.typical > 2 * terraces.same && double(gaps.size()) > kLeastPart * double(some.size());
+}
+
+/// Those along some directions that have any, the largest steps first.
+std::vector<Terraces> terraces_along(const Positions& directions, const Positions& some, Steps steps,
+                                     double same) {
+  std::vector<Terraces> all;
   for (const Eigen::Vector3d& direction : directions) {
-    DepthSteps steps;
-    steps.direction = direction;
-    if (fill_steps(some, same, steps)) all.push_back(std::move(steps));
+    Terraces terraces;
+    terraces.direction = direction;
+    terraces.same = same;
+    if (fill(some, steps, terraces)) all.push_back(std::move(terraces));
   }
+  std::stable_sort(all.begin(), all.end(),
+                   [](const auto& a, const auto& b) { return a.typical > b.typical; });
   return all;
 }
 
 /// Whether the steps along another direction are at the commonest depth, too, as those of a grid are: as many
 /// as a draw from all of them would show. A camera's columns are at other places at any other depth, so there
 /// it shows a kFewestSteps-th (4) or less of these. The limit is twice the one and half of the other.
-bool is_same_at_depths(const Positions& points, const DepthSteps& depth, const DepthSteps& other) {
-  std::vector<std::size_t> count(depth.depths.size(), 0);
-  for (const Eigen::Vector3d& p : points) ++count[depth.nearest(depth.depth(p))];
-  const auto commonest = std::size_t(std::max_element(count.begin(), count.end()) - count.begin());
-  std::vector<std::size_t> there;
+bool is_same_at_depths(const Positions& points, const Terraces& depth, const Terraces& other) {
+  std::vector<std::vector<std::size_t>> there(depth.depths.size());
   for (const Eigen::Vector3d& p : points)
-    if (depth.nearest(depth.depth(p)) == commonest) there.push_back(other.nearest(other.depth(p)));
-  const auto values = double(other.depths.size()), drawn = double(there.size());
-  std::sort(there.begin(), there.end());
-  there.erase(std::unique(there.begin(), there.end()), there.end());
-  return 2 * double(there.size()) > values * (1 - std::exp(-drawn / values));
+    if (depth.hold(p) && other.hold(p))
+      there[depth.nearest(depth.depth(p))].push_back(other.nearest(other.depth(p)));
+  std::vector<std::size_t>& most =
+      *std::max_element(there.begin(), there.end(), [](auto& a, auto& b) { return a.size() < b.size(); });
+  const auto values = double(other.depths.size()), drawn = double(most.size());
+  std::sort(most.begin(), most.end());
+  most.erase(std::unique(most.begin(), most.end()), most.end());
+  return drawn > 0 && 2 * double(most.size()) > values * (1 - std::exp(-drawn / values));
 }
 
-/// That with the largest steps of all, at least one; none if they are those of a grid.
-std::optional<DepthSteps> of_depth(std::vector<DepthSteps> all, const Positions& some) {
-  const auto depth = std::max_element(all.begin(), all.end(),
-                                      [](const auto& a, const auto& b) { return a.typical < b.typical; });
-  for (auto other = all.begin(); other != all.end(); ++other)
-    if (other != depth && is_same_at_depths(some, *depth, *other)) return {};
-  return std::move(*depth);
+/// What of these is depth: not those of a grid, and of points that several hold, as a camera's columns do,
+/// the first.
+std::vector<Terraces> of_depth(std::vector<Terraces> all, const Positions& some) {
+  std::vector<bool> grid(all.size(), false);
+  for (std::size_t a = 0; a < all.size(); ++a)
+    for (std::size_t b = a + 1; b < all.size(); ++b)
+      if (is_same_at_depths(some, all[a], all[b])) grid[a] = grid[b] = true;
+  std::vector<Terraces> found;
+  Positions free = some;
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    if (grid[k]) continue;
+    const auto held =
+        std::partition(free.begin(), free.end(), [&](const auto& p) { return !all[k].hold(p); });
+    if (!(double(free.end() - held) > kLeastPart * double(some.size()))) continue;
+    free.erase(held, free.end());
+    found.push_back(std::move(all[k]));
+  }
+  return found;
+}
+
+/// Whether they are the profiles of a line scanner: planes through the surface, which faces them nowhere,
+/// farther apart than the points of a profile.
+bool are_profiles(const Terraces& terraces, const SpatialIndex& index) {
+  std::size_t looked_at = 0, facing = 0;
+  std::vector<double> apart;
+  std::vector<Neighbor> near;
+  for (const Eigen::Vector3d& p : sample(index.points(), kPlacesOfCloud)) {
+    if (!terraces.hold(p)) continue;
+    index.nearest(p, int(std::min(kNoMoreALine, index.points().size())), near);
+    const Eigen::Vector3d normal = principal_axes(index.points(), near).axes.vectors.col(0);
+    ++looked_at;
+    facing += std::size_t(std::abs(normal.dot(terraces.direction)) > kSameSheet);
+    apart.push_back(std::sqrt(near[1].squared_distance));
+  }
+  return double(facing) <= kLeastPart * double(looked_at) && terraces.typical > quantile(apart, 0.5);
 }
 
 /// The farthest that a point is from `from`.
@@ -90,45 +137,72 @@ double rounding_noise(double step) {
   return step / std::sqrt(12.0);
 }
 
-double DepthSteps::depth(const Eigen::Vector3d& at) const {
+double Terraces::depth(const Eigen::Vector3d& at) const {
   return scanner ? (at - *scanner).norm() : direction.dot(at);
 }
 
-std::size_t DepthSteps::nearest(double depth) const {
+std::size_t Terraces::nearest(double depth) const {
   const auto above = std::size_t(std::lower_bound(depths.begin(), depths.end(), depth) - depths.begin());
   if (above == 0) return 0;
   if (above == depths.size() || depth - depths[above - 1] < depths[above] - depth) return above - 1;
   return above;
 }
 
-double DepthSteps::gap(double depth) const {
+bool Terraces::hold(const Eigen::Vector3d& at) const {
+  const double d = depth(at);
+  return std::abs(d - depths[nearest(d)]) <= same;
+}
+
+double Terraces::gap(double depth) const {
   const std::size_t at = nearest(depth), low = at > 0 ? at - 1 : 0,
                     high = std::min(depths.size() - 1, at + 1);
   return (depths[high] - depths[low]) / double(high - low);
 }
 
-double DepthSteps::sigma(const Eigen::Vector3d& at, const Eigen::Vector3d& normal) const {
-  if (on_grid) return rounding_noise(typical);
+double Terraces::sigma(const Eigen::Vector3d& at, const Eigen::Vector3d& normal) const {
   const Eigen::Vector3d ray = scanner ? Eigen::Vector3d((at - *scanner).normalized()) : direction;
   return rounding_noise(std::abs(normal.dot(ray)) * gap(depth(at)));
+}
+
+DepthSteps::DepthSteps(std::vector<Terraces> terraces, const SpatialIndex& index)
+    : typical_(terraces.front().typical), terraces_(std::move(terraces)) {
+  const Positions some = sample(index.points(), kLookedAt);
+  const auto held = std::count_if(some.begin(), some.end(),
+                                  [&](const Eigen::Vector3d& p) { return terraces_.front().hold(p); });
+  if (double(held) < (1 - kLeastPart) * double(some.size())) index_ = &index;
+}
+
+double DepthSteps::sigma(const Eigen::Vector3d& at, const Eigen::Vector3d& normal) const {
+  if (on_grid()) return rounding_noise(typical_);
+  if (index_ == nullptr) return terraces_.front().sigma(at, normal);
+  std::vector<Neighbor> near;
+  index_->nearest(at, 1, near);
+  const Eigen::Vector3d& point = index_->points()[near.front().index];
+  const auto of = std::find_if(terraces_.begin(), terraces_.end(),
+                               [&](const Terraces& terraces) { return terraces.hold(point); });
+  return of != terraces_.end() ? of->sigma(at, normal) : 0;
 }
 
 std::optional<DepthSteps> find_depth_steps(const SpatialIndex& index,
                                            const std::optional<Eigen::Vector3d>& scanner) {
   const Positions some = sample(index.points(), kLookedAt);
-  std::vector<DepthSteps> found =
-      steps_along({Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ()}, some, 0);
-  if (found.empty() && scanner) {
-    DepthSteps steps;
-    steps.scanner = scanner;
-    if (fill_steps(some, kSevenDigits * farthest(some, *scanner), steps)) found.push_back(std::move(steps));
+  const Positions axes = {Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ()};
+  std::vector<Terraces> all = terraces_along(axes, some, Steps::kAll, 0);
+  for (std::size_t k = 1; k < all.size(); ++k)
+    if (is_same_at_depths(some, all.front(), all[k])) return {};
+  if (!all.empty()) return DepthSteps({std::move(all.front())}, index);
+  if (scanner) {
+    Terraces shells;
+    shells.scanner = scanner;
+    shells.same = kSevenDigits * farthest(some, *scanner);
+    if (fill(some, Steps::kAll, shells)) return DepthSteps({std::move(shells)}, index);
   }
-  if (found.empty()) {
-    const double same = kSevenDigits * farthest(some, some.front());
-    found = steps_along(step_directions(index, same), some, same);
-  }
-  if (found.empty()) return {};
-  return of_depth(std::move(found), some);
+  const double same = kSevenDigits * farthest(some, some.front());
+  all = of_depth(terraces_along(step_directions(index, same), some, Steps::kPart, same), some);
+  const auto profiles = [&](const Terraces& terraces) { return are_profiles(terraces, index); };
+  all.erase(std::remove_if(all.begin(), all.end(), profiles), all.end());
+  if (all.empty()) return {};
+  return DepthSteps(std::move(all), index);
 }
 
 std::optional<DepthSteps> find_grid(std::vector<double> nearest) {
@@ -136,10 +210,7 @@ std::optional<DepthSteps> find_grid(std::vector<double> nearest) {
   if (nearest.empty()) return {};
   const double most = quantile(nearest, 0.75), least = quantile(nearest, 0.25);
   if (!(most - least < kSame * least)) return {};
-  DepthSteps steps;
-  steps.on_grid = true;
-  steps.typical = least;
-  return steps;
+  return DepthSteps(least);
 }
 
 }  // namespace rfsmooth::rfs_mesh

@@ -1,12 +1,14 @@
 /// Depths in steps: a camera that measures by disparity or by time knows few depths, and its points lie on
 /// terraces; a laser scanner that tells whole centimetres puts them on shells around itself.
 ///
-/// Found where a coordinate has a tenth as many values as there are points, or else the distance from the
-/// scanner has, or else some other direction (step_directions.h). Of several it is the one with the largest
-/// steps: before a wall a camera knows so few depths that the columns of its image leave few values across,
-/// too, other ones at every depth. Where they are the same at every depth, the points are on a grid of their
-/// own, and depth has no steps. Between two steps every depth is as likely, so a surface of normal n has
-/// noise of at least |n . ray| gap / sqrt(12) from them.
+/// Terraces are found where a coordinate has a tenth as many values as there are points, or else the distance
+/// from the scanner has, or else some other direction (step_directions.h); or where so many points have these
+/// values, and others, as of other cameras, lie free between them. Of several coordinates it is the one with
+/// the largest steps: before a wall a camera knows so few depths that the columns of its image leave few
+/// values across, too, other ones at every depth. Where they are the same at every depth, the points are on a
+/// grid of their own, and depth has no steps; where no surface faces them, they are profiles of a line
+/// scanner. Between two steps every depth is as likely, so a surface of normal n has noise of at least
+/// |n . ray| gap / sqrt(12) from them.
 #pragma once
 
 #include <optional>
@@ -19,13 +21,13 @@ namespace rfsmooth::rfs_mesh {
 /// Standard deviation of what rounding to steps of one size adds.
 double rounding_noise(double step);
 
-/// The steps along one direction, of the distance from the scanner, or of a grid.
-struct DepthSteps {
+/// The steps along one direction, or of the distance from a scanner.
+struct Terraces {
   Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< unit; depth is along it
   std::optional<Eigen::Vector3d> scanner;                ///< if there, depth is the distance from it
-  /// Whether they are those of a grid in space: points are off by as much along any normal.
-  bool on_grid = false;
-  std::vector<double> depths;  ///< ascending, at least two; of a grid none
+  std::vector<double> depths;                            ///< ascending, at least two
+  double same = 0;     ///< depths that differ by no more than this are one, world units
+  double typical = 0;  ///< the gap in the middle of the points on them
 
   /// Of a point.
   double depth(const Eigen::Vector3d& at) const;
@@ -33,14 +35,40 @@ struct DepthSteps {
   /// Which of `depths` is nearest to a depth. O(log n).
   std::size_t nearest(double depth) const;
 
+  /// Whether a point is on one of them. O(log n).
+  bool hold(const Eigen::Vector3d& at) const;
+
   /// Mean distance of the steps on both sides of the one nearest to a depth. O(log n).
   double gap(double depth) const;
 
   /// Standard deviation along the normal of a surface there.
   double sigma(const Eigen::Vector3d& at, const Eigen::Vector3d& normal) const;
+};
 
-  /// The gap in the middle of the points that were looked at.
-  double typical = 0;
+/// The steps of a cloud: of one camera or scanner, of several that saw parts of it, or of a grid.
+class DepthSteps {
+ public:
+  /// Those of a grid in space: points are off by as much along any normal.
+  explicit DepthSteps(double grid) : typical_(grid) {}
+
+  /// \param terraces at least one; a point is of the first that hold it. \param index keeps a reference.
+  DepthSteps(std::vector<Terraces> terraces, const SpatialIndex& index);
+
+  bool on_grid() const { return terraces_.empty(); }
+  bool on_shells() const { return !on_grid() && terraces_.front().scanner; }
+  const std::vector<Terraces>& terraces() const { return terraces_; }  ///< none of a grid
+
+  /// The gap in the middle of the points that were looked at, of the first terraces.
+  double typical() const { return typical_; }
+
+  /// Standard deviation along the normal of a surface there: by the terraces of the nearest point, 0 if it is
+  /// on none. O(1); O(log n) where not all points are on the same.
+  double sigma(const Eigen::Vector3d& at, const Eigen::Vector3d& normal) const;
+
+ private:
+  double typical_;
+  std::vector<Terraces> terraces_;
+  const SpatialIndex* index_ = nullptr;  ///< null: all points are on the first
 };
 
 /// Looks at up to 20,000 points. Nothing where there are no steps. \param scanner where it may have stood.

@@ -218,10 +218,10 @@ NoiseModel measure_noise(const SpatialIndex& index, const Context& context,
   const std::optional<DepthSteps> grid = find_grid(std::move(nearest));
   // Before a wall a camera's points are on a grid, too, of its pixels; a turned grid has few values of each
   // coordinate, too, far nearer to each other.
-  if (grid && !(steps && steps->typical > grid->typical)) steps = grid;
+  if (grid && !(steps && steps->typical() > grid->typical())) steps = grid;
   if (steps) {
-    noise.step = steps->typical;
-    noise.on_grid = steps->on_grid;
+    noise.step = steps->typical();
+    noise.on_grid = steps->on_grid();
   }
   measure(index, steps ? &*steps : nullptr, noise, context);
   return noise;

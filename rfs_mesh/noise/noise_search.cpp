@@ -179,7 +179,7 @@ std::vector<std::size_t> points_to_fit(Places& places, const NoiseStart& start) 
 NoiseStart search_noise(Places& places, const DepthSteps* steps) {
   NoiseStart start;
   std::vector<Scatter> all = places.fits(start.m);
-  find_surface(places, all, steps != nullptr && !steps->scanner, start);
+  find_surface(places, all, steps != nullptr && !steps->on_shells(), start);
   if (start.m > kNarrowestPatch || start.on_lines) all = places.fits(points_to_fit(places, start));
   const double narrow = median_radius(places, start.m);
   start.least = 1e-9 * narrow;

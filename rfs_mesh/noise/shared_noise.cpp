@@ -174,7 +174,7 @@ SharedNoise find_shared_noise(Places& places, const NoiseStart& start, const Dep
   if (calm.m.empty()) return found;  // nothing scatters, or too few points to tell
   // A neighbourhood within one terrace sees nothing of the steps, so the noise may grow steeply. The shells
   // of a laser scanner are finer than its noise.
-  const bool terraces = steps != nullptr && !steps->scanner;
+  const bool terraces = steps != nullptr && !steps->on_shells();
   // What a window from below saw much less of at the same m is the distance of two sheets.
   if (!terraces && kLouder * kLouder * start.sigma * start.sigma < calm.seen.front()) return found;
   double sill = 0, surely = 0;

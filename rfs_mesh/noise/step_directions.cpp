@@ -14,39 +14,37 @@ namespace rfsmooth::rfs_mesh {
 
 namespace {
 
-constexpr std::size_t kMostDirections = 3;
-constexpr std::size_t kTried = 256;  // planes, of all places: the direction of one place in ten is among them
-constexpr std::size_t kPairs = 20000;  // of points from all over the cloud
+/// A point and one of its neighbours.
+struct Pair {
+  Eigen::Vector3d point, offset;
+};
 
 bool is_level(const Eigen::Vector3d& offset, const Eigen::Vector3d& direction, double same) {
   return std::abs(direction.dot(offset)) <= same;
 }
 
-std::size_t count_level(const Positions& offsets, const Eigen::Vector3d& direction, double same) {
-  return std::size_t(std::count_if(offsets.begin(), offsets.end(),
-                                   [&](const Eigen::Vector3d& d) { return is_level(d, direction, same); }));
+std::size_t count_level(const std::vector<Pair>& pairs, const Eigen::Vector3d& direction, double same) {
+  return std::size_t(std::count_if(pairs.begin(), pairs.end(),
+                                   [&](const Pair& pair) { return is_level(pair.offset, direction, same); }));
 }
 
-/// Enters the normal of the plane through a point that holds the most of its neighbours, at these offsets, if
-/// so many are no chance.
-void enter_plane(const Positions& offsets, double same, Positions& planes) {
-  std::size_t most = kFewestOfQuadric - 1;  // and the point itself
-  Eigen::Vector3d best;
-  bool found = false;
-  for (std::size_t j = 0; j < offsets.size(); ++j)
+/// Enters the normal of the plane through a point that holds the most of its neighbours, if so many are no
+/// chance. \param pairs of the point.
+void enter_plane(const std::vector<Pair>& pairs, double same, Positions& planes) {
+  std::size_t most = kFewestOfQuadric - 2;  // and the point itself
+  Eigen::Vector3d best = Eigen::Vector3d::Zero();
+  for (std::size_t j = 0; j < pairs.size(); ++j)
     for (std::size_t k = 0; k < j; ++k) {
-      const Eigen::Vector3d across = offsets[j].cross(offsets[k]);
+      const Eigen::Vector3d &first = pairs[j].offset, &second = pairs[k].offset, across = first.cross(second);
       const double area = across.norm();
-      // Of two in a line, or half in a line, rounding makes the plane.
-      if (!(2 * area > offsets[j].norm() * offsets[k].norm())) continue;
+      if (!(2 * area > first.norm() * second.norm())) continue;  // in a line rounding makes the plane
       const Eigen::Vector3d normal = across / area;
-      const std::size_t count = count_level(offsets, normal, same);
-      if (count < most + (found ? 1 : 0)) continue;
+      const std::size_t count = count_level(pairs, normal, same);
+      if (count <= most) continue;
       most = count;
       best = normal;
-      found = true;
     }
-  if (found) planes.push_back(best);
+  if (!best.isZero()) planes.push_back(best);
 }
 
 /// What the least of all these offsets are along.
@@ -56,8 +54,8 @@ Eigen::Vector3d least_along(const Positions& offsets) {
   return symmetric_eigen(spread).vectors.col(0);
 }
 
-/// The direction, to more digits: from points that are far apart on one terrace. \param step between two of
-/// them, world units.
+/// The direction, to more digits: from points that are far apart on one terrace. \param points on terraces.
+/// \param step between two of them, world units.
 Eigen::Vector3d refined(Positions points, const Eigen::Vector3d& direction, double step) {
   std::sort(points.begin(), points.end(), [&](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
     return direction.dot(a) < direction.dot(b);
@@ -72,37 +70,49 @@ Eigen::Vector3d refined(Positions points, const Eigen::Vector3d& direction, doub
   return least_along(offsets);
 }
 
+/// The direction that these pairs are level along, about which so much is known. \param step between two
+/// terraces, world units; 0: there is but one.
+Eigen::Vector3d direction_of(const std::vector<Pair>& level, double step) {
+  Positions points, offsets;
+  for (const Pair& pair : level) {
+    offsets.push_back(pair.offset);
+    points.push_back(pair.point);
+    points.push_back(pair.point + pair.offset);
+  }
+  const Eigen::Vector3d near_by = least_along(offsets);
+  return step > 0 ? refined(std::move(points), near_by, step) : near_by;
+}
+
 }  // namespace
 
 Positions step_directions(const SpatialIndex& index, double same) {
-  Positions planes, offsets, of_one;
+  Positions planes;
+  std::vector<Pair> pairs, of_one;
   std::vector<Neighbor> near;
   for (const Eigen::Vector3d& p : sample(index.points(), kPlacesOfCloud)) {
     index.nearest(p, int(kNarrowestPatch), near);
     of_one.clear();
     for (const Neighbor& q : near)
-      if (q.squared_distance > 0) of_one.push_back(index.points()[q.index] - p);
+      if (q.squared_distance > 0) of_one.push_back({p, index.points()[q.index] - p});
     enter_plane(of_one, same, planes);
-    offsets.insert(offsets.end(), of_one.begin(), of_one.end());
+    pairs.insert(pairs.end(), of_one.begin(), of_one.end());
   }
-  const double least = kLeastPart * double(offsets.size());
-  planes = sample(planes, kTried);
+  // One scan of ten, a tenth of whose neighbours are level.
+  const double fewest = kLeastPart * kLeastPart * double(pairs.size());
   Positions directions;
-  while (directions.size() < kMostDirections && !planes.empty()) {
+  while (!planes.empty()) {
     std::vector<std::size_t> level;
-    for (const Eigen::Vector3d& plane : planes) level.push_back(count_level(offsets, plane, same));
+    for (const Eigen::Vector3d& plane : planes) level.push_back(count_level(pairs, plane, same));
     const auto best = std::max_element(level.begin(), level.end());
-    if (!(double(*best) > least)) break;
+    if (!(double(*best) > fewest)) break;
     const Eigen::Vector3d rough = planes[std::size_t(best - level.begin())];
-    const auto others = std::partition(offsets.begin(), offsets.end(),
-                                       [&](const Eigen::Vector3d& d) { return is_level(d, rough, same); });
+    const auto others = std::partition(pairs.begin(), pairs.end(),
+                                       [&](const Pair& pair) { return is_level(pair.offset, rough, same); });
     std::vector<double> apart;
-    for (auto d = others; d != offsets.end(); ++d) apart.push_back(std::abs(rough.dot(*d)));
-    const Eigen::Vector3d near_by = least_along(Positions(offsets.begin(), others));
-    directions.push_back(apart.empty()
-                             ? near_by
-                             : refined(sample(index.points(), kPairs), near_by, quantile(apart, kLeastPart)));
-    offsets.erase(offsets.begin(), others);
+    for (auto pair = others; pair != pairs.end(); ++pair) apart.push_back(std::abs(rough.dot(pair->offset)));
+    const double step = apart.empty() ? 0 : quantile(apart, kLeastPart);
+    directions.push_back(direction_of({pairs.begin(), others}, step));
+    pairs.erase(pairs.begin(), others);
   }
   return directions;
 }

@@ -1,19 +1,20 @@
 /// Which way depths in steps lie (depth_steps.h), of a cloud that was turned since: registered to other
-/// scans, levelled, or put upright.
+/// scans, levelled, or put upright; or of several such clouds together.
 ///
-/// Points of one terrace lie in a plane, to all the digits that their file has, and all terraces face the
-/// same way. So neighbours tell: a plane through a point and two of its nearest that holds kFewestOfQuadric
-/// of them is no chance, and a direction along which a tenth of all neighbours are level is that of the
-/// steps, or of a grid. The columns of a camera's image lie in planes, too, but each faces another way.
+/// Points of one terrace lie in a plane, to all the digits that their file has, and all terraces of a camera
+/// face the same way. So neighbours tell: a plane through a point and two of its nearest that holds
+/// kFewestOfQuadric of them is no chance, and the direction along which most neighbours are level is that of
+/// the steps, or of a grid. The columns of a camera's image lie in planes, too, but each faces another way.
 #pragma once
 
 #include "rfs_mesh/search/neighbors.h"
 
 namespace rfsmooth::rfs_mesh {
 
-/// Up to three, unit vectors, those that more neighbours are level along first; their signs mean nothing.
-/// None of a cloud whose coordinates are free. \param same how far apart two points on one terrace may be
-/// along its normal, world units, > 0. O(log n): looks at about a thousand places. Deterministic.
+/// Unit vectors, those that more neighbours are level along first; their signs mean nothing. They may mean
+/// nothing, too, of a cloud of exact planes. None if coordinates are free. \param same how far apart two
+/// points on one terrace may be along its normal, world units, > 0. O(log n): looks at a thousand places.
+/// Deterministic.
 Positions step_directions(const SpatialIndex& index, double same);
 
 }  // namespace rfsmooth::rfs_mesh

@@ -126,7 +126,7 @@ struct Sites {
   bool on_lines;
   double apart;  ///< NoiseModel::apart
 
-  bool on_grid() const { return steps != nullptr && steps->on_grid; }
+  bool on_grid() const { return steps != nullptr && steps->on_grid(); }
 
   /// What depths in steps add there by their rounding, world units.
   double rounding_around(std::size_t s, const std::vector<Scatter>& all) const {

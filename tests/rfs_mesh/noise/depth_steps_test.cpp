@@ -7,14 +7,21 @@
 #include <gtest/gtest.h>
 
 using namespace rfsmooth;
-using rfs_mesh::DepthSteps;
+using rfs_mesh::SpatialIndex;
+using rfs_mesh::Terraces;
 
 namespace {
 
-std::optional<DepthSteps> find_depth_steps(const Positions& points,
-                                           const std::optional<Eigen::Vector3d>& scanner = std::nullopt) {
+/// The only terraces of the points, if they have any.
+std::optional<Terraces> find_terraces(const Positions& points,
+                                      const std::optional<Eigen::Vector3d>& scanner = std::nullopt) {
   const Context context;
-  return rfs_mesh::find_depth_steps(rfs_mesh::SpatialIndex(points, context), scanner);
+  const SpatialIndex index(points, context);
+  const auto steps = rfs_mesh::find_depth_steps(index, scanner);
+  if (!steps) return {};
+  EXPECT_EQ(steps->terraces().size(), 1);
+  EXPECT_EQ(steps->typical(), steps->terraces().front().typical);
+  return steps->terraces().front();
 }
 
 /// Random points; the coordinates of `axes` are whole multiples of `step`.
@@ -32,7 +39,7 @@ Positions stepped(double step, const std::vector<Eigen::Index>& axes) {
 
 TEST(DepthSteps, AreFoundInWhicheverCoordinateHasThem) {
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    const auto steps = find_depth_steps(stepped(0.05, {axis}));
+    const auto steps = find_terraces(stepped(0.05, {axis}));
     ASSERT_TRUE(steps);
     EXPECT_EQ(steps->direction, Eigen::Vector3d::Unit(axis));
     EXPECT_EQ(steps->depths.size(), 21);
@@ -73,7 +80,7 @@ Positions turned(Positions points) {
 }
 
 TEST(DepthSteps, AreFoundInACloudThatWasTurned) {
-  const auto as_taken = find_depth_steps(terraces()), steps = find_depth_steps(turned(terraces()));
+  const auto as_taken = find_terraces(terraces()), steps = find_terraces(turned(terraces()));
   ASSERT_TRUE(as_taken && steps);
   EXPECT_NEAR(std::abs(steps->direction.dot(kTurn.col(2))), 1, 1e-12);
   EXPECT_NEAR(steps->typical, 0.01, 1e-5);
@@ -83,19 +90,51 @@ TEST(DepthSteps, AreFoundInACloudThatWasTurned) {
   EXPECT_NEAR(steps->sigma(at, kTurn.col(0)), 0, 1e-7);
 }
 
+TEST(DepthSteps, OfTwoCamerasAreThoseOfEachWhereItLooked) {
+  Positions points = terraces();
+  const Positions second = turned(terraces());  // beside the first
+  points.insert(points.end(), second.begin(), second.end());
+  const Eigen::Vector3d of_first(0.1, 0.1, 2), of_second = turned({of_first}).front(), beside(-5, 0, 0);
+  std::mt19937_64 engine(5);
+  std::uniform_real_distribution<double> uniform;
+  for (int i = 0; i < 20000; ++i)  // of a sensor without steps
+    points.emplace_back(beside + Eigen::Vector3d(uniform(engine), uniform(engine), uniform(engine)));
+  const Context context;
+  const SpatialIndex index(points, context);
+  const auto steps = rfs_mesh::find_depth_steps(index, {});
+  ASSERT_TRUE(steps);
+  ASSERT_EQ(steps->terraces().size(), 2);
+  EXPECT_NEAR(steps->typical(), 0.01, 1e-5);
+  const double rounding = 0.01 / std::sqrt(12.0);
+  EXPECT_NEAR(steps->sigma(of_first, {0, 0, 1}), rounding, 1e-5);
+  EXPECT_NEAR(steps->sigma(of_first, {1, 0, 0}), 0, 1e-7);
+  EXPECT_NEAR(steps->sigma(of_second, kTurn.col(2)), rounding, 1e-5);
+  EXPECT_NEAR(steps->sigma(of_second, kTurn.col(0)), 0, 1e-7);
+  EXPECT_EQ(steps->sigma(beside, {0, 0, 1}), 0);
+}
+
+TEST(DepthSteps, AreNotTheProfilesOfALineScanner) {
+  std::mt19937_64 engine(5);
+  std::normal_distribution<double> normal(0, 0.02);
+  Positions points;
+  for (double y = 0; y < 2; y += 0.1)
+    for (double x = 0; x < 2; x += 0.005) points.emplace_back(x + 0.1 * normal(engine), y, normal(engine));
+  EXPECT_FALSE(find_terraces(turned(points)));
+}
+
 TEST(DepthSteps, AreNoneInATurnedGridAndTurnedFreePoints) {
-  EXPECT_FALSE(find_depth_steps(turned(stepped(0.05, {}))));
-  EXPECT_FALSE(find_depth_steps(turned(stepped(0.05, {0, 1, 2}))));
+  EXPECT_FALSE(find_terraces(turned(stepped(0.05, {}))));
+  EXPECT_FALSE(find_terraces(turned(stepped(0.05, {0, 1, 2}))));
   Positions smooth;  // a ball, of which every neighbourhood is nearly flat
   for (int i = 0; i < 20000; ++i) {
     const double z = 1 - (2 * i + 1) / 20000.0, r = std::sqrt(1 - z * z), turn = 2.399963 * i;
     smooth.emplace_back(r * std::cos(turn), r * std::sin(turn), z);
   }
-  EXPECT_FALSE(find_depth_steps(turned(smooth)));
+  EXPECT_FALSE(find_terraces(turned(smooth)));
 }
 
 TEST(DepthSteps, AreThoseOfTheDepthWhereACameraSeesAWall) {
-  const auto steps = find_depth_steps(wall());
+  const auto steps = find_terraces(wall());
   ASSERT_TRUE(steps);
   EXPECT_EQ(steps->direction, Eigen::Vector3d::UnitZ());
   EXPECT_EQ(steps->depths.size(), 7);
@@ -103,15 +142,15 @@ TEST(DepthSteps, AreThoseOfTheDepthWhereACameraSeesAWall) {
 }
 
 TEST(DepthSteps, AreNoneInFreePointsAndOnAGrid) {
-  EXPECT_FALSE(find_depth_steps(stepped(0.05, {})));
-  EXPECT_FALSE(find_depth_steps(stepped(0.05, {0, 1})));
-  EXPECT_FALSE(find_depth_steps(stepped(0.05, {0, 1, 2})));
-  EXPECT_FALSE(find_depth_steps(stepped(1e-5, {2})));  // as many values as points
-  Positions lines;                                     // of which a sample has few points of each
+  EXPECT_FALSE(find_terraces(stepped(0.05, {})));
+  EXPECT_FALSE(find_terraces(stepped(0.05, {0, 1})));
+  EXPECT_FALSE(find_terraces(stepped(0.05, {0, 1, 2})));
+  EXPECT_FALSE(find_terraces(stepped(1e-5, {2})));  // as many values as points
+  Positions lines;                                  // of which a sample has few points of each
   for (int i = 0; i < 100; ++i)
     for (int j = 0; j < 1500; ++j) lines.emplace_back(0.3 * i, 0.01 * j, 1e-3 * std::sin(i + j * j));
-  EXPECT_FALSE(find_depth_steps(lines));
-  EXPECT_FALSE(find_depth_steps(stepped(1, {2})));  // two planes
+  EXPECT_FALSE(find_terraces(lines));
+  EXPECT_FALSE(find_terraces(stepped(1, {2})));  // two planes
 }
 
 TEST(Grid, IsFoundWhereMostAreAsFarFromTheirNearest) {
@@ -120,8 +159,8 @@ TEST(Grid, IsFoundWhereMostAreAsFarFromTheirNearest) {
   for (std::size_t i = 0; i < nearest.size(); i += 12) nearest[i] *= std::sqrt(2.0);
   const auto grid = rfs_mesh::find_grid(nearest);
   ASSERT_TRUE(grid);
-  EXPECT_TRUE(grid->on_grid);
-  EXPECT_NEAR(grid->typical, 0.05, 1e-6);
+  EXPECT_TRUE(grid->on_grid());
+  EXPECT_NEAR(grid->typical(), 0.05, 1e-6);
   for (const Eigen::Vector3d& normal : {Eigen::Vector3d(0, 0, 1), Eigen::Vector3d(0.6, 0, -0.8)})
     EXPECT_NEAR(grid->sigma({1, 2, 3}, normal), 0.05 / std::sqrt(12.0), 1e-6);
 }
@@ -152,7 +191,7 @@ Positions shells(double step, const Eigen::Vector3d& scanner) {
 
 TEST(DepthSteps, AreFoundInTheDistanceFromTheScanner) {
   const Eigen::Vector3d scanner(-2, 7, 0.3);
-  const auto steps = find_depth_steps(shells(0.01, scanner), scanner);
+  const auto steps = find_terraces(shells(0.01, scanner), scanner);
   ASSERT_TRUE(steps);
   EXPECT_EQ(steps->depths.size(), 201);
   EXPECT_NEAR(steps->typical, 0.01, 1e-6);
@@ -164,17 +203,17 @@ TEST(DepthSteps, AreFoundInTheDistanceFromTheScanner) {
 
 TEST(DepthSteps, AreNoneFromElsewhereNorInFreeRanges) {
   const Eigen::Vector3d scanner(-2, 7, 0.3), elsewhere(-2, 7, 0.5);
-  EXPECT_FALSE(find_depth_steps(shells(0.01, scanner)));
-  EXPECT_FALSE(find_depth_steps(shells(0.01, scanner), elsewhere));
-  EXPECT_FALSE(find_depth_steps(shells(0, scanner), scanner));
-  EXPECT_FALSE(find_depth_steps(shells(1e-4, scanner), scanner));  // as many as points
+  EXPECT_FALSE(find_terraces(shells(0.01, scanner)));
+  EXPECT_FALSE(find_terraces(shells(0.01, scanner), elsewhere));
+  EXPECT_FALSE(find_terraces(shells(0, scanner), scanner));
+  EXPECT_FALSE(find_terraces(shells(1e-4, scanner), scanner));  // as many as points
   Positions far = shells(0, scanner);  // of seven digits only those are left that all share
   for (auto& p : far) p += Eigen::Vector3d(1e6, 1e6, 0);
-  EXPECT_FALSE(find_depth_steps(far, Eigen::Vector3d(0, 0, 0)));
+  EXPECT_FALSE(find_terraces(far, Eigen::Vector3d(0, 0, 0)));
 }
 
 TEST(DepthSteps, TheirNoiseIsThatOfRoundingAlongTheNormal) {
-  const auto steps = find_depth_steps(stepped(0.05, {2}));
+  const auto steps = find_terraces(stepped(0.05, {2}));
   ASSERT_TRUE(steps);
   const Eigen::Vector3d at(0, 0, 0.4), slanted = Eigen::Vector3d(0, 1, 1).normalized();
   EXPECT_NEAR(steps->sigma(at, {0, 0, 1}), 0.05 / std::sqrt(12.0), 1e-12);
@@ -183,7 +222,7 @@ TEST(DepthSteps, TheirNoiseIsThatOfRoundingAlongTheNormal) {
 }
 
 TEST(DepthSteps, TheGapIsThatOfTheDepth) {
-  DepthSteps steps;
+  Terraces steps;
   steps.depths = {0, 1, 2, 4, 8};
   EXPECT_EQ(steps.gap(1), 1);
   EXPECT_EQ(steps.gap(2), 1.5);
