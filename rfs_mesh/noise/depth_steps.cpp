@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <utility>
 
 #include "rfs_mesh/fit/principal_axes.h"
@@ -36,6 +37,13 @@ std::vector<double> commonest(const std::vector<double>& sorted, double same, st
   return depths;
 }
 
+/// Of sorted depths so many as are the same nowhere by chance if they are spread evenly.
+std::size_t more_than_chance(const std::vector<double>& sorted, double same) {
+  const double range = sorted.back() - sorted.front(),
+               mean = range > 0 ? double(sorted.size()) * same / range : 0;
+  return std::max(kPointsOfStep, std::size_t(mean + kNoiseReach * std::sqrt(mean)));
+}
+
 /// How many points the steps of a cloud have.
 enum class Steps { kAll, kPart };
 
@@ -45,7 +53,8 @@ bool fill(const Positions& some, Steps steps, Terraces& terraces) {
   std::vector<double> all(some.size());
   std::transform(some.begin(), some.end(), all.begin(), [&](const auto& p) { return terraces.depth(p); });
   std::sort(all.begin(), all.end());
-  terraces.depths = commonest(all, terraces.same, steps == Steps::kAll ? 1 : kPointsOfStep);
+  terraces.depths =
+      commonest(all, terraces.same, steps == Steps::kAll ? 1 : more_than_chance(all, terraces.same));
   if (terraces.depths.size() < kFewestSteps || terraces.depths.size() * kPointsOfStep >= all.size())
     return false;
   std::vector<double> gaps;
@@ -131,6 +140,21 @@ double farthest(const Positions& points, const Eigen::Vector3d& from) {
   return most;
 }
 
+/// What a file rounds coordinates to: to seven digits, or to decimals, which no two coordinates are nearer
+/// than.
+double rounding_of(const Positions& some) {
+  const double digits = kSevenDigits * farthest(some, some.front());
+  double least = std::numeric_limits<double>::infinity();
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    std::vector<double> values;
+    for (const Eigen::Vector3d& p : some) values.push_back(p[axis]);
+    std::sort(values.begin(), values.end());
+    for (std::size_t i = 1; i < values.size(); ++i)
+      if (const double gap = values[i] - values[i - 1]; gap > digits) least = std::min(least, gap);
+  }
+  return std::isfinite(least) ? least : digits;
+}
+
 }  // namespace
 
 double rounding_noise(double step) {
@@ -197,8 +221,9 @@ std::optional<DepthSteps> find_depth_steps(const SpatialIndex& index,
     shells.same = kSevenDigits * farthest(some, *scanner);
     if (fill(some, Steps::kAll, shells)) return DepthSteps({std::move(shells)}, index);
   }
-  const double same = kSevenDigits * farthest(some, some.front());
-  all = of_depth(terraces_along(step_directions(index, same), some, Steps::kPart, same), some);
+  // Neighbours differ by that; what is rounded in three coordinates lies within twice as much along any line.
+  const double rounding = rounding_of(some);
+  all = of_depth(terraces_along(step_directions(index, rounding), some, Steps::kPart, 2 * rounding), some);
   const auto profiles = [&](const Terraces& terraces) { return are_profiles(terraces, index); };
   all.erase(std::remove_if(all.begin(), all.end(), profiles), all.end());
   if (all.empty()) return {};

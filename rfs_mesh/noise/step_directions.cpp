@@ -55,32 +55,30 @@ Eigen::Vector3d least_along(const Positions& offsets) {
 }
 
 /// The direction, to more digits: from points that are far apart on one terrace. \param points on terraces.
-/// \param step between two of them, world units.
-Eigen::Vector3d refined(Positions points, const Eigen::Vector3d& direction, double step) {
+/// \param within how far apart along it points that follow each other on a terrace are, world units.
+Eigen::Vector3d refined(Positions points, const Eigen::Vector3d& direction, double within) {
   std::sort(points.begin(), points.end(), [&](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
     return direction.dot(a) < direction.dot(b);
   });
   Positions offsets;  // from the middle of each terrace
   for (std::size_t begin = 0, end = 0; begin < points.size(); begin = end) {
     Eigen::Vector3d sum = points[end++];
-    while (end < points.size() && is_level(points[end] - points[end - 1], direction, step / 4))
+    while (end < points.size() && is_level(points[end] - points[end - 1], direction, within))
       sum += points[end++];
     for (std::size_t i = begin; i < end; ++i) offsets.push_back(points[i] - sum / double(end - begin));
   }
   return least_along(offsets);
 }
 
-/// The direction that these pairs are level along, about which so much is known. \param step between two
-/// terraces, world units; 0: there is but one.
-Eigen::Vector3d direction_of(const std::vector<Pair>& level, double step) {
+/// The direction that these pairs are level along. \param within see refined().
+Eigen::Vector3d direction_of(const std::vector<Pair>& level, double within) {
   Positions points, offsets;
   for (const Pair& pair : level) {
     offsets.push_back(pair.offset);
     points.push_back(pair.point);
     points.push_back(pair.point + pair.offset);
   }
-  const Eigen::Vector3d near_by = least_along(offsets);
-  return step > 0 ? refined(std::move(points), near_by, step) : near_by;
+  return refined(std::move(points), least_along(offsets), within);
 }
 
 }  // namespace
@@ -111,7 +109,7 @@ Positions step_directions(const SpatialIndex& index, double same) {
     std::vector<double> apart;
     for (auto pair = others; pair != pairs.end(); ++pair) apart.push_back(std::abs(rough.dot(pair->offset)));
     const double step = apart.empty() ? 0 : quantile(apart, kLeastPart);
-    directions.push_back(direction_of({pairs.begin(), others}, step));
+    directions.push_back(direction_of({pairs.begin(), others}, std::max(same, step / 4)));
     pairs.erase(pairs.begin(), others);
   }
   return directions;
