@@ -27,25 +27,28 @@ constexpr std::size_t kNoMoreALine = kNarrowestPatch * kNeighbourhood;  // point
 // coordinate.
 constexpr double kSevenDigits = 2e-6;
 
-/// Of sorted depths the first of each run of those that are the same, if there are `fewest` of them or more.
-std::vector<double> commonest(const std::vector<double>& sorted, double same, std::size_t fewest) {
+/// How many points the steps of a cloud have.
+enum class Steps { kAll, kPart };
+
+/// Whether more depths are the same than by chance: as many as a step has in the mean, and more than as many
+/// others nearby would make. \param run of `sorted`, those that are the same.
+bool is_step(const std::vector<double>& sorted, std::size_t begin, std::size_t end, double same) {
+  const double reach = double(kNeighbourhood) / 2 * same;
+  const auto low = std::lower_bound(sorted.begin(), sorted.end(), sorted[begin] - reach),
+             high = std::upper_bound(low, sorted.end(), sorted[begin] + same + reach);
+  const double count = double(end - begin), mean = (double(high - low) - count) / double(kNeighbourhood);
+  return count >= double(kPointsOfStep) && count > mean + kNoiseReach * std::sqrt(mean);
+}
+
+/// Of sorted depths the first of each run of those that are the same; of a part, of those that are steps.
+std::vector<double> commonest(const std::vector<double>& sorted, Steps steps, double same) {
   std::vector<double> depths;
   for (std::size_t begin = 0, end = 0; begin < sorted.size(); begin = end) {
     while (end < sorted.size() && sorted[end] - sorted[begin] <= same) ++end;
-    if (end - begin >= fewest) depths.push_back(sorted[begin]);
+    if (steps == Steps::kAll || is_step(sorted, begin, end, same)) depths.push_back(sorted[begin]);
   }
   return depths;
 }
-
-/// Of sorted depths so many as are the same nowhere by chance if they are spread evenly.
-std::size_t more_than_chance(const std::vector<double>& sorted, double same) {
-  const double range = sorted.back() - sorted.front(),
-               mean = range > 0 ? double(sorted.size()) * same / range : 0;
-  return std::max(kPointsOfStep, std::size_t(mean + kNoiseReach * std::sqrt(mean)));
-}
-
-/// How many points the steps of a cloud have.
-enum class Steps { kAll, kPart };
 
 /// Fills terraces, which know along what, with the steps that all points have there, or that a part of them
 /// has. False if there are none. \param some up to kLookedAt points.
@@ -53,8 +56,7 @@ bool fill(const Positions& some, Steps steps, Terraces& terraces) {
   std::vector<double> all(some.size());
   std::transform(some.begin(), some.end(), all.begin(), [&](const auto& p) { return terraces.depth(p); });
   std::sort(all.begin(), all.end());
-  terraces.depths =
-      commonest(all, terraces.same, steps == Steps::kAll ? 1 : more_than_chance(all, terraces.same));
+  terraces.depths = commonest(all, steps, terraces.same);
   if (terraces.depths.size() < kFewestSteps || terraces.depths.size() * kPointsOfStep >= all.size())
     return false;
   std::vector<double> gaps;

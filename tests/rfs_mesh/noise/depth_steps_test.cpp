@@ -90,6 +90,34 @@ TEST(DepthSteps, AreFoundInACloudThatWasTurned) {
   EXPECT_NEAR(steps->sigma(at, kTurn.col(0)), 0, 1e-7);
 }
 
+TEST(DepthSteps, AreFoundInATurnedCloudOfFewDecimals) {
+  Positions points = turned(terraces());
+  for (Eigen::Vector3d& p : points) p = 5e-4 * (p / 5e-4).array().round().matrix();
+  const auto steps = find_terraces(points);
+  ASSERT_TRUE(steps);
+  EXPECT_NEAR(std::abs(steps->direction.dot(kTurn.col(2))), 1, 1e-8);
+  EXPECT_NEAR(steps->typical, 0.01, 5e-4);
+}
+
+// Seven digits of a wide cloud are coarse beside what is near its scanner: there many points are level by
+// chance, and most where the ground waves.
+TEST(DepthSteps, AreNoneWhereNearPointsAreLevelByChance) {
+  for (const double reach : {0.1, 0.2, 0.5})
+    for (const double sigma : {2e-4, 1e-3, 2e-3}) {
+      std::mt19937_64 engine(6);
+      std::uniform_real_distribution<double> uniform;
+      std::normal_distribution<double> normal(0, sigma);
+      Positions points;
+      for (int i = 0; i < 20000; ++i) {
+        const bool near = i % 2 == 0;
+        const double r = near ? reach * std::sqrt(uniform(engine)) : 50 * uniform(engine),
+                     turn = 2 * M_PI * uniform(engine), wave = near ? 0.01 * std::sin(40 * r) : 0;
+        points.emplace_back(r * std::cos(turn), r * std::sin(turn), wave + normal(engine));
+      }
+      EXPECT_FALSE(find_terraces(turned(points))) << reach << ' ' << sigma;
+    }
+}
+
 TEST(DepthSteps, OfTwoCamerasAreThoseOfEachWhereItLooked) {
   Positions points = terraces();
   const Positions second = turned(terraces());  // beside the first
