@@ -184,10 +184,14 @@ SharedNoise find_shared_noise(Places& places, const NoiseStart& start, const Dep
     sill = sure;
     at = i;
   };
-  bool wide = false, fast = false;
+  bool held = terraces, wide = false, fast = false;
   std::size_t slow = 0;  // growths in a row that noise may have
   for (std::size_t i = 0; i < calm.m.size(); ++i) {
-    if (!terraces && !hold_slab(calm, i)) break;
+    if (!terraces && !hold_slab(calm, i)) {
+      if (held) break;
+      continue;  // the narrowest may be inside of the slab
+    }
+    held = true;
     make_sure(i, std::min(calm.steps, calm.seen[i]));
     if (i + 1 == calm.m.size() || calm.m[i + 1] != 2 * calm.m[i] || calm.m[i] < 2 * double(start.m)) continue;
     const double growth = calm.seen[i + 1] / calm.seen[i];

@@ -22,8 +22,8 @@
 /// noise all of which neighbours share, as of cameras that match windows, and s^2 grows as fast as that of
 /// shape at first: there it must have grown slowly twice in a row. Neighbourhoods whose residuals are flatter
 /// than kFlatnessOfSheets (two_sheets.h) are of two sheets, and tell nothing. Those that do not hold a slab
-/// as thick as they scatter (kFlatSlab) are the last, too: leaves and twigs fill them. k is the number for
-/// which
+/// as thick as they scatter (kFlatSlab) tell nothing while they are narrow, and wider ones than some that do
+/// are the last, too: leaves and twigs fill them. k is the number for which
 ///
 ///     s^2(m) = sigma^2 g(k / m)
 ///

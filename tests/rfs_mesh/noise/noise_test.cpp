@@ -358,24 +358,39 @@ Positions square(const std::function<double(double, double)>& height) {
   return points;
 }
 
-TEST(Noise, ThatNeighboursShareIsSeenWholeAndCounted) {
-  constexpr int kShared = 15;
-  constexpr double kSigma = 0.003;
+/// A square with noise that is the mean of that of the `shared` nearest, as large as sigma.
+Positions square_with_shared_noise(int shared, double sigma) {
   std::mt19937_64 engine(4);
-  std::normal_distribution<double> normal(0, kSigma);
+  std::normal_distribution<double> normal(0, sigma);
   Positions points = square([](double, double) { return 0; });
   const SpatialIndex index(points, {});
   std::vector<double> own(points.size());
   for (double& z : own) z = normal(engine);
   std::vector<rfs_mesh::Neighbor> near;
   for (Eigen::Vector3d& p : points) {
-    index.nearest(Eigen::Vector3d(p.x(), p.y(), 0), kShared, near);
-    for (const rfs_mesh::Neighbor& q : near) p.z() += own[q.index] / std::sqrt(kShared);
+    index.nearest(Eigen::Vector3d(p.x(), p.y(), 0), shared, near);
+    for (const rfs_mesh::Neighbor& q : near) p.z() += own[q.index] / std::sqrt(shared);
   }
-  const NoiseField noise = measured(points);
+  return points;
+}
+
+TEST(Noise, ThatNeighboursShareIsSeenWholeAndCounted) {
+  constexpr int kShared = 15;
+  constexpr double kSigma = 0.003;
+  const NoiseField noise = measured(square_with_shared_noise(kShared, kSigma));
   EXPECT_NEAR(noise.sigma / kSigma, 1, 0.2);
   EXPECT_GT(noise.shared, kShared / 3.0);
   EXPECT_LT(noise.shared, kShared * 3.0);
+}
+
+// The narrowest neighbourhoods are inside of the slab that the points fill.
+TEST(Noise, ThatNeighboursShareIsSeenAlsoWhereItIsLargerThanTheSpacing) {
+  for (const double sigma : {0.006, 0.009, 0.012})
+    for (const int shared : {3, 6}) {
+      const NoiseField noise = measured(square_with_shared_noise(shared, sigma));
+      EXPECT_NEAR(noise.sigma / sigma, 1, 0.25) << sigma << ' ' << shared;
+      EXPECT_GT(noise.shared, 1) << sigma << ' ' << shared;
+    }
 }
 
 TEST(Noise, WithLoudPointsAmongTheOthersIsNotShared) {
