@@ -8,6 +8,7 @@
 
 #include "rfs_mesh/fit/principal_axes.h"
 #include "rfs_mesh/levels.h"
+#include "rfs_mesh/noise/noise.h"
 #include "rfs_mesh/noise/scatter_statistics.h"
 #include "rfs_mesh/noise/step_directions.h"
 #include "rfs_mesh/sample.h"
@@ -118,9 +119,10 @@ std::vector<Terraces> of_depth(std::vector<Terraces> all, const Positions& some)
   return found;
 }
 
-/// Whether they are the profiles of a line scanner: planes through the surface, which faces them nowhere,
-/// farther apart than the points of a profile.
-bool are_profiles(const Terraces& terraces, const SpatialIndex& index) {
+/// Whether they are no depths in steps: of rounding that cannot be told from detail, as each ring of a laser
+/// has it that tells millimetres; or the profiles of a line scanner, planes through the surface, which faces
+/// them nowhere, farther apart than the points of a profile.
+bool are_none(const Terraces& terraces, const SpatialIndex& index) {
   std::size_t looked_at = 0, facing = 0;
   std::vector<double> apart;
   std::vector<Neighbor> near;
@@ -132,7 +134,10 @@ bool are_profiles(const Terraces& terraces, const SpatialIndex& index) {
     facing += std::size_t(std::abs(normal.dot(terraces.direction)) > kSameSheet);
     apart.push_back(std::sqrt(near[1].squared_distance));
   }
-  return double(facing) <= kLeastPart * double(looked_at) && terraces.typical > quantile(apart, 0.5);
+  if (apart.empty()) return true;
+  const double spacing = quantile(apart, 0.5);
+  return rounding_noise(terraces.typical) < kNoNoise * spacing ||
+         (double(facing) <= kLeastPart * double(looked_at) && terraces.typical > spacing);
 }
 
 /// The farthest that a point is from `from`.
@@ -226,8 +231,8 @@ std::optional<DepthSteps> find_depth_steps(const SpatialIndex& index,
   // Neighbours differ by that; what is rounded in three coordinates lies within twice as much along any line.
   const double rounding = rounding_of(some);
   all = of_depth(terraces_along(step_directions(index, rounding), some, Steps::kPart, 2 * rounding), some);
-  const auto profiles = [&](const Terraces& terraces) { return are_profiles(terraces, index); };
-  all.erase(std::remove_if(all.begin(), all.end(), profiles), all.end());
+  const auto none = [&](const Terraces& terraces) { return are_none(terraces, index); };
+  all.erase(std::remove_if(all.begin(), all.end(), none), all.end());
   if (all.empty()) return {};
   return DepthSteps(std::move(all), index);
 }

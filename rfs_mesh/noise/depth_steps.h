@@ -7,8 +7,8 @@
 /// the largest steps: before a wall a camera knows so few depths that the columns of its image leave few
 /// values across, too, other ones at every depth. Where they are the same at every depth, the points are on a
 /// grid of their own, and depth has no steps; where no surface faces them, they are profiles of a line
-/// scanner. Between two steps every depth is as likely, so a surface of normal n has noise of at least
-/// |n . ray| gap / sqrt(12) from them.
+/// scanner. Other directions do not count whose rounding cannot be told from detail. Between two steps every
+/// depth is as likely, so a surface of normal n has noise of at least |n . ray| gap / sqrt(12) from them.
 #pragma once
 
 #include <optional>

@@ -58,12 +58,12 @@ Positions wall() {
   return points;
 }
 
-/// A wavy wall in front of a camera that knows whole centimetres: terraces of many points.
-Positions terraces() {
+/// A wavy wall in front of a camera that knows depths in such steps: terraces of many points. Spacing 0.0057.
+Positions terraces(double step = 0.01) {
   Positions points;
   for (int u = -160; u < 160; ++u)
     for (int v = -120; v < 120; ++v) {
-      const double z = 0.01 * std::round(100 * (2 + 0.0002 * u + 0.0006 * v + 0.03 * std::sin(u / 30.0)));
+      const double z = step * std::round((2 + 0.0002 * u + 0.0006 * v + 0.03 * std::sin(u / 30.0)) / step);
       points.emplace_back(u * z / 350, v * z / 350, z);
     }
   return points;
@@ -116,6 +116,12 @@ TEST(DepthSteps, AreNoneWhereNearPointsAreLevelByChance) {
       }
       EXPECT_FALSE(find_terraces(turned(points))) << reach << ' ' << sigma;
     }
+}
+
+// As each ring of a laser has that tells ranges in millimetres, another at every height.
+TEST(DepthSteps, OfATurnedCloudCountWhereTheirRoundingIsMoreThanDetail) {
+  EXPECT_TRUE(find_terraces(turned(terraces(0.002))));
+  EXPECT_FALSE(find_terraces(turned(terraces(0.0005)))) << "a tenth of the spacing";
 }
 
 TEST(DepthSteps, OfTwoCamerasAreThoseOfEachWhereItLooked) {
