@@ -4,6 +4,8 @@
 #include <set>
 #include <tuple>
 
+#include <Eigen/Geometry>
+
 #include "pipeline/io/io.h"
 #include "rfs_mesh/search/neighbors.h"
 #include "tests/bench/quality/runs.h"
@@ -71,6 +73,16 @@ Scan read_scan(const std::filesystem::path& file, std::size_t most) {
   crop(most, scan.points);
   if (scan.points.size() > 1) scan.spacing = median_spacing(scan.points);
   return scan;
+}
+
+void turn(Scan& scan) {
+  const Eigen::Matrix3d by = Eigen::AngleAxisd(1.1, Vector3d(1, 2, -1).normalized()).toRotationMatrix();
+  Vector3d farthest = Vector3d::Zero();
+  for (Vector3d& p : scan.points) {
+    p = by * p;
+    farthest = farthest.cwiseMax(p.cwiseAbs());
+  }
+  scan.origin = 3 * farthest;
 }
 
 OurResult run_ours(const Scan& scan, const Variant& variant, int threads) {

@@ -22,6 +22,10 @@ struct Scan {
 /// read.
 Scan read_scan(const std::filesystem::path& file, std::size_t most);
 
+/// Turns a scan about its origin, in double precision, and forgets where that was: as if it had been
+/// registered to others since it was taken.
+void turn(Scan& scan);
+
 /// rfsmooth, in the file's coordinates: their origin is where the scanner may have stood.
 OurResult run_ours(const Scan& scan, const Variant& variant, int threads);
 

@@ -23,6 +23,7 @@ struct Settings {
   std::vector<fs::path> inputs = {RFSMOOTH_SCANS_DIR};
   std::vector<std::string> only;
   std::size_t most = 250000;
+  bool turned = false;
   int threads = 2;
   Variant ours = {"rfsmooth", {}};
   fs::path cache = default_cache(), write;
@@ -174,6 +175,7 @@ int run(int argc, char** argv) {
   app.add_option("--only", settings.only, "scans by their names, without the ending");
   app.add_option("--points", settings.most, "of a larger cloud only these, about its middle")
       ->capture_default_str();
+  app.add_flag("--turned", settings.turned, "turned and moved, as scans are that were registered");
   app.add_option("--options", settings.ours.options, "options of denoise: flow=hc no-swap ...");
   app.add_option("--threads", settings.threads, "for every tool")->capture_default_str();
   app.add_option("--cache", settings.cache, "folder of the peers' results")->capture_default_str();
@@ -185,7 +187,8 @@ int run(int argc, char** argv) {
   print_head();
   for (const auto& file : files_of(settings)) {
     try {
-      const Scan scan = read_scan(file, settings.most);
+      Scan scan = read_scan(file, settings.most);
+      if (settings.turned) turn(scan);
       if (scan.points.size() < kLeastPoints) continue;
       scans.push_back(judge(settings, scan));
       print(scans.back());
