@@ -27,6 +27,7 @@ constexpr std::size_t kNoMoreALine = kNarrowestPatch * kNeighbourhood;  // point
 // Of the largest depth: how far two that are the same lie apart where files keep seven digits of each
 // coordinate.
 constexpr double kSevenDigits = 2e-6;
+constexpr double kSame = 1e-3;  // of a distance between neighbours, some thousand of which make up the cloud
 
 /// How many points the steps of a cloud have.
 enum class Steps { kAll, kPart };
@@ -99,33 +100,34 @@ bool is_same_at_depths(const Positions& points, const Terraces& depth, const Ter
   return drawn > 0 && 2 * double(most.size()) > values * (1 - std::exp(-drawn / values));
 }
 
-/// What of these is depth: not those of a grid, and of points that several hold, as a camera's columns do,
-/// the first.
+/// What of these is depth: nothing where two are those of a grid; of points that several hold, as a camera's
+/// columns do, the first.
 std::vector<Terraces> of_depth(std::vector<Terraces> all, const Positions& some) {
-  std::vector<bool> grid(all.size(), false);
   for (std::size_t a = 0; a < all.size(); ++a)
     for (std::size_t b = a + 1; b < all.size(); ++b)
-      if (is_same_at_depths(some, all[a], all[b])) grid[a] = grid[b] = true;
+      if (is_same_at_depths(some, all[a], all[b])) return {};
   std::vector<Terraces> found;
   Positions free = some;
-  for (std::size_t k = 0; k < all.size(); ++k) {
-    if (grid[k]) continue;
+  for (Terraces& terraces : all) {
     const auto held =
-        std::partition(free.begin(), free.end(), [&](const auto& p) { return !all[k].hold(p); });
+        std::partition(free.begin(), free.end(), [&](const auto& p) { return !terraces.hold(p); });
     if (!(double(free.end() - held) > kLeastPart * double(some.size()))) continue;
     free.erase(held, free.end());
-    found.push_back(std::move(all[k]));
+    found.push_back(std::move(terraces));
   }
   return found;
 }
 
 /// Whether they are no depths in steps: of rounding that cannot be told from detail, as each ring of a laser
-/// has it that tells millimetres; or the profiles of a line scanner, planes through the surface, which faces
-/// them nowhere, farther apart than the points of a profile.
+/// has it that tells millimetres; or the faces of an exact part, of which fewer than kFewestSteps have points
+/// beside those of another; or the profiles of a line scanner, planes through the surface, which faces them
+/// nowhere, farther apart than the points of a profile.
 bool are_none(const Terraces& terraces, const SpatialIndex& index) {
   std::size_t looked_at = 0, facing = 0;
   std::vector<double> apart;
+  std::vector<bool> beside(terraces.depths.size(), false);
   std::vector<Neighbor> near;
+  const auto depth_of = [&](const Eigen::Vector3d& p) { return terraces.nearest(terraces.depth(p)); };
   for (const Eigen::Vector3d& p : sample(index.points(), kPlacesOfCloud)) {
     if (!terraces.hold(p)) continue;
     index.nearest(p, int(std::min(kNoMoreALine, index.points().size())), near);
@@ -133,8 +135,13 @@ bool are_none(const Terraces& terraces, const SpatialIndex& index) {
     ++looked_at;
     facing += std::size_t(std::abs(normal.dot(terraces.direction)) > kSameSheet);
     apart.push_back(std::sqrt(near[1].squared_distance));
+    for (std::size_t k = 1; k < std::min(kNarrowestPatch, near.size()); ++k)
+      if (const Eigen::Vector3d& q = index.points()[near[k].index];
+          terraces.hold(q) && depth_of(q) != depth_of(p))
+        beside[depth_of(p)] = true;
   }
-  if (apart.empty()) return true;
+  if (apart.empty() || std::size_t(std::count(beside.begin(), beside.end(), true)) < kFewestSteps)
+    return true;
   const double spacing = quantile(apart, 0.5);
   return rounding_noise(terraces.typical) < kNoNoise * spacing ||
          (double(facing) <= kLeastPart * double(looked_at) && terraces.typical > spacing);
@@ -203,6 +210,10 @@ DepthSteps::DepthSteps(std::vector<Terraces> terraces, const SpatialIndex& index
   if (double(held) < (1 - kLeastPart) * double(some.size())) index_ = &index;
 }
 
+bool DepthSteps::exceed(const DepthSteps& other) const {
+  return typical_ > (1 + kSame) * other.typical_;
+}
+
 double DepthSteps::sigma(const Eigen::Vector3d& at, const Eigen::Vector3d& normal) const {
   if (on_grid()) return rounding_noise(typical_);
   if (index_ == nullptr) return terraces_.front().sigma(at, normal);
@@ -238,7 +249,6 @@ std::optional<DepthSteps> find_depth_steps(const SpatialIndex& index,
 }
 
 std::optional<DepthSteps> find_grid(std::vector<double> nearest) {
-  constexpr double kSame = 1e-3;  // files of seven digits, some thousand points across
   if (nearest.empty()) return {};
   const double most = quantile(nearest, 0.75), least = quantile(nearest, 0.25);
   if (!(most - least < kSame * least)) return {};

@@ -61,6 +61,9 @@ class DepthSteps {
   /// The gap in the middle of the points that were looked at, of the first terraces.
   double typical() const { return typical_; }
 
+  /// Whether they are larger than another's, by more than files round.
+  bool exceed(const DepthSteps& other) const;
+
   /// Standard deviation along the normal of a surface there: by the terraces of the nearest point, 0 if it is
   /// on none. O(1); O(log n) where not all points are on the same.
   double sigma(const Eigen::Vector3d& at, const Eigen::Vector3d& normal) const;
