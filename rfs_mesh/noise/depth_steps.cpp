@@ -61,12 +61,19 @@ bool fill(const Positions& some, Steps steps, Terraces& terraces) {
   terraces.depths = commonest(all, steps, terraces.same);
   if (terraces.depths.size() < kFewestSteps || terraces.depths.size() * kPointsOfStep >= all.size())
     return false;
-  std::vector<double> gaps;
-  for (const Eigen::Vector3d& p : some)
-    if (terraces.hold(p)) gaps.push_back(terraces.gap(terraces.depth(p)));
+  const std::vector<double>& depths = terraces.depths;
+  std::vector<double> gaps, narrower;  // of the gaps on both sides
+  for (const Eigen::Vector3d& p : some) {
+    if (!terraces.hold(p)) continue;
+    const std::size_t at = terraces.nearest(terraces.depth(p));
+    gaps.push_back(terraces.gap(depths[at]));
+    narrower.push_back(std::min(at > 0 ? depths[at] - depths[at - 1] : gaps.back(),
+                                at + 1 < depths.size() ? depths[at + 1] - depths[at] : gaps.back()));
+  }
   terraces.typical = quantile(gaps, 0.5);
   // Free depths that rounding runs together are hardly farther apart than that.
-  return terraces.typical > 2 * terraces.same && double(gaps.size()) > kLeastPart * double(some.size());
+  return quantile(narrower, 0.5) > 2 * terraces.same &&
+         double(gaps.size()) > kLeastPart * double(some.size());
 }
 
 /// Those along some directions that have any, the largest steps first.
@@ -77,10 +84,11 @@ std::vector<Terraces> terraces_along(const Positions& directions, const Position
     Terraces terraces;
     terraces.direction = direction;
     terraces.same = same;
-    if (fill(some, steps, terraces)) all.push_back(std::move(terraces));
+    if (!fill(some, steps, terraces)) continue;
+    const auto after = std::find_if(all.begin(), all.end(),
+                                    [&](const auto& other) { return other.typical < terraces.typical; });
+    all.insert(after, std::move(terraces));
   }
-  std::stable_sort(all.begin(), all.end(),
-                   [](const auto& a, const auto& b) { return a.typical > b.typical; });
   return all;
 }
 
