@@ -30,7 +30,7 @@ constexpr double kSevenDigits = 2e-6;
 constexpr double kSame = 1e-3;  // of a distance between neighbours, some thousand of which make up the cloud
 
 /// How many points the steps of a cloud have.
-enum class Steps { kAll, kPart };
+enum class Steps { of_all, of_part };
 
 /// Whether more depths are the same than by chance: as many as a step has in the mean, and more than as many
 /// others nearby would make. \param run of `sorted`, those that are the same.
@@ -47,7 +47,7 @@ std::vector<double> commonest(const std::vector<double>& sorted, Steps steps, do
   std::vector<double> depths;
   for (std::size_t begin = 0, end = 0; begin < sorted.size(); begin = end) {
     while (end < sorted.size() && sorted[end] - sorted[begin] <= same) ++end;
-    if (steps == Steps::kAll || is_step(sorted, begin, end, same)) depths.push_back(sorted[begin]);
+    if (steps == Steps::of_all || is_step(sorted, begin, end, same)) depths.push_back(sorted[begin]);
   }
   return depths;
 }
@@ -237,7 +237,7 @@ std::optional<DepthSteps> find_depth_steps(const SpatialIndex& index,
                                            const std::optional<Eigen::Vector3d>& scanner) {
   const Positions some = sample(index.points(), kLookedAt);
   const Positions axes = {Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ()};
-  std::vector<Terraces> all = terraces_along(axes, some, Steps::kAll, 0);
+  std::vector<Terraces> all = terraces_along(axes, some, Steps::of_all, 0);
   for (std::size_t k = 1; k < all.size(); ++k)
     if (is_same_at_depths(some, all.front(), all[k])) return {};
   if (!all.empty()) return DepthSteps({std::move(all.front())}, index);
@@ -245,11 +245,11 @@ std::optional<DepthSteps> find_depth_steps(const SpatialIndex& index,
     Terraces shells;
     shells.scanner = scanner;
     shells.same = kSevenDigits * farthest(some, *scanner);
-    if (fill(some, Steps::kAll, shells)) return DepthSteps({std::move(shells)}, index);
+    if (fill(some, Steps::of_all, shells)) return DepthSteps({std::move(shells)}, index);
   }
   // Neighbours differ by that; what is rounded in three coordinates lies within twice as much along any line.
   const double rounding = rounding_of(some);
-  all = of_depth(terraces_along(step_directions(index, rounding), some, Steps::kPart, 2 * rounding), some);
+  all = of_depth(terraces_along(step_directions(index, rounding), some, Steps::of_part, 2 * rounding), some);
   const auto none = [&](const Terraces& terraces) { return are_none(terraces, index); };
   all.erase(std::remove_if(all.begin(), all.end(), none), all.end());
   if (all.empty()) return {};
