@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -22,8 +21,9 @@ constexpr std::size_t kPointsOfStep = 10;  // in the mean: free coordinates hard
 // to 11 sqrt(n) in a cloud of n points as deep as wide. All points of the real scans tell steps of one that
 // these do not: of 1.5 where the noise is 2.4.
 constexpr std::size_t kLookedAt = 20000;
-constexpr std::size_t kFewestSteps = 4;                                 // fewer are the sides of a box
-constexpr std::size_t kNoMoreALine = kNarrowestPatch * kNeighbourhood;  // points that are no more a line
+constexpr std::size_t kFewestSteps = 4;  // fewer are the sides of a box
+// Points that cover four lines where these are twenty times farther apart than their points.
+constexpr std::size_t kNoMoreALine = kNarrowestPatch * kNeighbourhood;
 // Of the largest depth: how far two that are the same lie apart where files keep seven digits of each
 // coordinate.
 constexpr double kSevenDigits = 2e-6;
@@ -64,11 +64,11 @@ bool fill(const Positions& some, Steps steps, Terraces& terraces) {
   const std::vector<double>& depths = terraces.depths;
   std::vector<double> gaps, narrower;  // of the gaps on both sides
   for (const Eigen::Vector3d& p : some) {
-    if (!terraces.hold(p)) continue;
-    const std::size_t at = terraces.nearest(terraces.depth(p));
-    gaps.push_back(terraces.gap(depths[at]));
-    narrower.push_back(std::min(at > 0 ? depths[at] - depths[at - 1] : gaps.back(),
-                                at + 1 < depths.size() ? depths[at + 1] - depths[at] : gaps.back()));
+    const auto at = terraces.step_of(p);
+    if (!at) continue;
+    gaps.push_back(terraces.gap(depths[*at]));
+    narrower.push_back(std::min(*at > 0 ? depths[*at] - depths[*at - 1] : gaps.back(),
+                                *at + 1 < depths.size() ? depths[*at + 1] - depths[*at] : gaps.back()));
   }
   terraces.typical = quantile(gaps, 0.5);
   // Free depths that rounding runs together are hardly farther apart than that.
@@ -98,8 +98,8 @@ std::vector<Terraces> terraces_along(const Positions& directions, const Position
 bool is_same_at_depths(const Positions& points, const Terraces& depth, const Terraces& other) {
   std::vector<std::vector<std::size_t>> there(depth.depths.size());
   for (const Eigen::Vector3d& p : points)
-    if (depth.hold(p) && other.hold(p))
-      there[depth.nearest(depth.depth(p))].push_back(other.nearest(other.depth(p)));
+    if (const auto at = depth.step_of(p), of_other = other.step_of(p); at && of_other)
+      there[*at].push_back(*of_other);
   std::vector<std::size_t>& most =
       *std::max_element(there.begin(), there.end(), [](auto& a, auto& b) { return a.size() < b.size(); });
   const auto values = double(other.depths.size()), drawn = double(most.size());
@@ -118,7 +118,7 @@ std::vector<Terraces> of_depth(std::vector<Terraces> all, const Positions& some)
   Positions free = some;
   for (Terraces& terraces : all) {
     const auto held =
-        std::partition(free.begin(), free.end(), [&](const auto& p) { return !terraces.hold(p); });
+        std::partition(free.begin(), free.end(), [&](const auto& p) { return !terraces.step_of(p); });
     if (!(double(free.end() - held) > kLeastPart * double(some.size()))) continue;
     free.erase(held, free.end());
     found.push_back(std::move(terraces));
@@ -135,18 +135,17 @@ bool are_none(const Terraces& terraces, const SpatialIndex& index) {
   std::vector<double> apart;
   std::vector<bool> beside(terraces.depths.size(), false);
   std::vector<Neighbor> near;
-  const auto depth_of = [&](const Eigen::Vector3d& p) { return terraces.nearest(terraces.depth(p)); };
   for (const Eigen::Vector3d& p : sample(index.points(), kPlacesOfCloud)) {
-    if (!terraces.hold(p)) continue;
+    const auto at = terraces.step_of(p);
+    if (!at) continue;
     index.nearest(p, int(std::min(kNoMoreALine, index.points().size())), near);
     const Eigen::Vector3d normal = principal_axes(index.points(), near).axes.vectors.col(0);
     ++looked_at;
     facing += std::size_t(std::abs(normal.dot(terraces.direction)) > kSameSheet);
     apart.push_back(std::sqrt(near[1].squared_distance));
     for (std::size_t k = 1; k < std::min(kNarrowestPatch, near.size()); ++k)
-      if (const Eigen::Vector3d& q = index.points()[near[k].index];
-          terraces.hold(q) && depth_of(q) != depth_of(p))
-        beside[depth_of(p)] = true;
+      if (const auto next = terraces.step_of(index.points()[near[k].index]); next && next != at)
+        beside[*at] = true;
   }
   if (apart.empty() || std::size_t(std::count(beside.begin(), beside.end(), true)) < kFewestSteps)
     return true;
@@ -194,9 +193,11 @@ std::size_t Terraces::nearest(double depth) const {
   return above;
 }
 
-bool Terraces::hold(const Eigen::Vector3d& at) const {
+std::optional<std::size_t> Terraces::step_of(const Eigen::Vector3d& at) const {
   const double d = depth(at);
-  return std::abs(d - depths[nearest(d)]) <= same;
+  const std::size_t step = nearest(d);
+  if (!(std::abs(d - depths[step]) <= same)) return {};
+  return step;
 }
 
 double Terraces::gap(double depth) const {
@@ -213,8 +214,9 @@ double Terraces::sigma(const Eigen::Vector3d& at, const Eigen::Vector3d& normal)
 DepthSteps::DepthSteps(std::vector<Terraces> terraces, const SpatialIndex& index)
     : typical_(terraces.front().typical), terraces_(std::move(terraces)) {
   const Positions some = sample(index.points(), kLookedAt);
-  const auto held = std::count_if(some.begin(), some.end(),
-                                  [&](const Eigen::Vector3d& p) { return terraces_.front().hold(p); });
+  const auto held = std::count_if(some.begin(), some.end(), [&](const Eigen::Vector3d& p) {
+    return terraces_.front().step_of(p).has_value();
+  });
   if (double(held) < (1 - kLeastPart) * double(some.size())) index_ = &index;
 }
 
@@ -229,7 +231,7 @@ double DepthSteps::sigma(const Eigen::Vector3d& at, const Eigen::Vector3d& norma
   index_->nearest(at, 1, near);
   const Eigen::Vector3d& point = index_->points()[near.front().index];
   const auto of = std::find_if(terraces_.begin(), terraces_.end(),
-                               [&](const Terraces& terraces) { return terraces.hold(point); });
+                               [&](const Terraces& terraces) { return terraces.step_of(point).has_value(); });
   return of != terraces_.end() ? of->sigma(at, normal) : 0;
 }
 

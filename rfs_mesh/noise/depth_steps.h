@@ -35,8 +35,8 @@ struct Terraces {
   /// Which of `depths` is nearest to a depth. O(log n).
   std::size_t nearest(double depth) const;
 
-  /// Whether a point is on one of them. O(log n).
-  bool hold(const Eigen::Vector3d& at) const;
+  /// Which of them a point is on, if on any. O(log n).
+  std::optional<std::size_t> step_of(const Eigen::Vector3d& at) const;
 
   /// Mean distance of the steps on both sides of the one nearest to a depth. O(log n).
   double gap(double depth) const;

@@ -216,8 +216,8 @@ NoiseModel measure_noise(const SpatialIndex& index, const Context& context,
   if (index.points().size() <= kNeighbourhood) return noise;
   std::optional<DepthSteps> steps = find_depth_steps(index, scanner);
   const std::optional<DepthSteps> grid = find_grid(std::move(nearest));
-  // Before a wall a camera's points are on a grid, too, of its pixels; a grid has few values along
-  // some directions, too, no farther from each other.
+  // Before a wall a camera's points are on a grid, too, of its pixels; a grid has few values along some
+  // directions, too, no farther from each other.
   if (grid && !(steps && steps->exceed(*grid))) steps = grid;
   if (steps) {
     noise.step = steps->typical();

@@ -184,7 +184,7 @@ SharedNoise find_shared_noise(Places& places, const NoiseStart& start, const Dep
     sill = sure;
     at = i;
   };
-  bool held = terraces, wide = false, fast = false;
+  bool held = false, wide = false, fast = false;
   std::size_t slow = 0;  // growths in a row that noise may have
   for (std::size_t i = 0; i < calm.m.size(); ++i) {
     if (!terraces && !hold_slab(calm, i)) {

@@ -47,17 +47,6 @@ TEST(DepthSteps, AreFoundInWhicheverCoordinateHasThem) {
   }
 }
 
-/// What a camera sees of a wall that leans and is rough: whole centimetres of depth.
-Positions wall() {
-  Positions points;
-  for (int u = -160; u < 160; ++u)
-    for (int v = -120; v < 120; ++v) {
-      const double z = 2 + 0.01 * ((u * u + 3 * (v + 120)) % 7);
-      points.emplace_back(u * z / 350, v * z / 350, z);
-    }
-  return points;
-}
-
 /// A wavy wall in front of a camera that knows depths in such steps: terraces of many points. Spacing 0.0057.
 Positions terraces(double step = 0.01) {
   Positions points;
@@ -168,7 +157,13 @@ TEST(DepthSteps, AreNoneInATurnedGridAndTurnedFreePoints) {
 }
 
 TEST(DepthSteps, AreThoseOfTheDepthWhereACameraSeesAWall) {
-  const auto steps = find_terraces(wall());
+  Positions points;
+  for (int u = -160; u < 160; ++u)
+    for (int v = -120; v < 120; ++v) {
+      const double z = 2 + 0.01 * ((u * u + 3 * (v + 120)) % 7);
+      points.emplace_back(u * z / 350, v * z / 350, z);
+    }
+  const auto steps = find_terraces(points);
   ASSERT_TRUE(steps);
   EXPECT_EQ(steps->direction, Eigen::Vector3d::UnitZ());
   EXPECT_EQ(steps->depths.size(), 7);
