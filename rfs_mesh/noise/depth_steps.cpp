@@ -52,16 +52,10 @@ std::vector<double> commonest(const std::vector<double>& sorted, Steps steps, do
   return depths;
 }
 
-/// Fills terraces, which know along what, with the steps that all points have there, or that a part of them
-/// has. False if there are none. \param some up to kLookedAt points.
-bool fill(const Positions& some, Steps steps, Terraces& terraces) {
-  std::vector<double> all(some.size());
-  std::transform(some.begin(), some.end(), all.begin(), [&](const auto& p) { return terraces.depth(p); });
-  std::sort(all.begin(), all.end());
-  terraces.depths = commonest(all, steps, terraces.same);
-  if (terraces.depths.size() < kFewestSteps || terraces.depths.size() * kPointsOfStep >= all.size())
-    return false;
+/// Sets the typical gap. False if they are too few, or no steps. \param some up to kLookedAt points.
+bool measure_gaps(const Positions& some, Terraces& terraces) {
   const std::vector<double>& depths = terraces.depths;
+  if (depths.size() < kFewestSteps || depths.size() * kPointsOfStep >= some.size()) return false;
   std::vector<double> gaps, narrower;  // of the gaps on both sides
   for (const Eigen::Vector3d& p : some) {
     const auto at = terraces.step_of(p);
@@ -74,6 +68,30 @@ bool fill(const Positions& some, Steps steps, Terraces& terraces) {
   // Free depths that rounding runs together are hardly farther apart than that.
   return quantile(narrower, 0.5) > 2 * terraces.same &&
          double(gaps.size()) > kLeastPart * double(some.size());
+}
+
+/// Fills terraces, which know along what, with the steps that all points have there, or that a part of them
+/// has. False if there are none. \param some up to kLookedAt points.
+bool fill(const Positions& some, Steps steps, Terraces& terraces) {
+  std::vector<double> all(some.size());
+  std::transform(some.begin(), some.end(), all.begin(), [&](const auto& p) { return terraces.depth(p); });
+  std::sort(all.begin(), all.end());
+  terraces.depths = commonest(all, steps, terraces.same);
+  return measure_gaps(some, terraces);
+}
+
+/// The steps of all points without the depths that one has alone: a stray, which lies free. Nothing if these
+/// were all.
+std::optional<DepthSteps> without_strays(Terraces terraces, const Positions& some,
+                                         const SpatialIndex& index) {
+  std::vector<std::size_t> points(terraces.depths.size(), 0);
+  for (const Eigen::Vector3d& p : some) ++points[terraces.nearest(terraces.depth(p))];
+  std::vector<double> shared;
+  for (std::size_t k = 0; k < points.size(); ++k)
+    if (points[k] > 1) shared.push_back(terraces.depths[k]);
+  terraces.depths = std::move(shared);
+  if (!measure_gaps(some, terraces)) return {};
+  return DepthSteps({std::move(terraces)}, index);
 }
 
 /// Those along some directions that have any, the largest steps first.
@@ -141,7 +159,7 @@ bool are_none(const Terraces& terraces, const SpatialIndex& index) {
     index.nearest(p, int(std::min(kNoMoreALine, index.points().size())), near);
     const Eigen::Vector3d normal = principal_axes(index.points(), near).axes.vectors.col(0);
     ++looked_at;
-    facing += std::size_t(std::abs(normal.dot(terraces.direction)) > kSameSheet);
+    facing += std::size_t(std::abs(normal.dot(terraces.ray(p))) > kSameSheet);
     apart.push_back(std::sqrt(near[1].squared_distance));
     for (std::size_t k = 1; k < std::min(kNarrowestPatch, near.size()); ++k)
       if (const auto next = terraces.step_of(index.points()[near[k].index]); next && next != at)
@@ -151,7 +169,8 @@ bool are_none(const Terraces& terraces, const SpatialIndex& index) {
     return true;
   const double spacing = quantile(apart, 0.5);
   return rounding_noise(terraces.typical) < kNoNoise * spacing ||
-         (double(facing) <= kLeastPart * double(looked_at) && terraces.typical > spacing);
+         (!terraces.scanner && double(facing) <= kLeastPart * double(looked_at) &&
+          terraces.typical > spacing);
 }
 
 /// The farthest that a point is from `from`.
@@ -206,9 +225,12 @@ double Terraces::gap(double depth) const {
   return (depths[high] - depths[low]) / double(high - low);
 }
 
+Eigen::Vector3d Terraces::ray(const Eigen::Vector3d& at) const {
+  return scanner ? (at - *scanner).normalized() : direction;
+}
+
 double Terraces::sigma(const Eigen::Vector3d& at, const Eigen::Vector3d& normal) const {
-  const Eigen::Vector3d ray = scanner ? Eigen::Vector3d((at - *scanner).normalized()) : direction;
-  return rounding_noise(std::abs(normal.dot(ray)) * gap(depth(at)));
+  return rounding_noise(std::abs(normal.dot(ray(at))) * gap(depth(at)));
 }
 
 DepthSteps::DepthSteps(std::vector<Terraces> terraces, const SpatialIndex& index)
@@ -242,17 +264,19 @@ std::optional<DepthSteps> find_depth_steps(const SpatialIndex& index,
   std::vector<Terraces> all = terraces_along(axes, some, Steps::of_all, 0);
   for (std::size_t k = 1; k < all.size(); ++k)
     if (is_same_at_depths(some, all.front(), all[k])) return {};
-  if (!all.empty()) return DepthSteps({std::move(all.front())}, index);
+  if (!all.empty()) return without_strays(std::move(all.front()), some, index);
+  // Neighbours differ by that; what is rounded in three coordinates lies within twice as much along any line.
+  const double rounding = rounding_of(some);
+  const auto none = [&](const Terraces& terraces) { return are_none(terraces, index); };
   if (scanner) {
     Terraces shells;
     shells.scanner = scanner;
     shells.same = kSevenDigits * farthest(some, *scanner);
-    if (fill(some, Steps::of_all, shells)) return DepthSteps({std::move(shells)}, index);
+    if (fill(some, Steps::of_all, shells)) return without_strays(std::move(shells), some, index);
+    shells.same = std::max(shells.same, 2 * rounding);
+    if (fill(some, Steps::of_part, shells) && !none(shells)) return DepthSteps({std::move(shells)}, index);
   }
-  // Neighbours differ by that; what is rounded in three coordinates lies within twice as much along any line.
-  const double rounding = rounding_of(some);
   all = of_depth(terraces_along(step_directions(index, rounding), some, Steps::of_part, 2 * rounding), some);
-  const auto none = [&](const Terraces& terraces) { return are_none(terraces, index); };
   all.erase(std::remove_if(all.begin(), all.end(), none), all.end());
   if (all.empty()) return {};
   return DepthSteps(std::move(all), index);

@@ -1,9 +1,10 @@
 /// Depths in steps: a camera that measures by disparity or by time knows few depths, and its points lie on
 /// terraces; a laser scanner that tells whole centimetres puts them on shells around itself.
 ///
-/// Terraces are found where a coordinate has a tenth as many values as there are points, or else the distance
-/// from the scanner has, or else some other direction (step_directions.h); or where so many points have these
-/// values, and others, as of other cameras, lie free between them. Of several coordinates it is the one with
+/// Terraces are found where a coordinate has a tenth as many values as there are points, strays and all, or
+/// else the distance from the scanner has; or else where so many points have the same distance from the
+/// scanner, or lie level along some direction (step_directions.h), and others, as of other cameras, lie free
+/// between them. Of several coordinates it is the one with
 /// the largest steps: before a wall a camera knows so few depths that the columns of its image leave few
 /// values across, too, other ones at every depth. Where they are the same at every depth, the points are on a
 /// grid of their own, and depth has no steps; where no surface faces them, they are profiles of a line
@@ -31,6 +32,9 @@ struct Terraces {
 
   /// Of a point.
   double depth(const Eigen::Vector3d& at) const;
+
+  /// Unit: the direction along which depth grows there.
+  Eigen::Vector3d ray(const Eigen::Vector3d& at) const;
 
   /// Which of `depths` is nearest to a depth. O(log n).
   std::size_t nearest(double depth) const;

@@ -257,6 +257,18 @@ TEST(NoiseLaws, RangesInStepsAreSeenFromTheFilesOrigin) {
   EXPECT_NEAR(report.value().measured.step, 0.01, 1e-6);
   EXPECT_NEAR(report.value().noise / rms_off_walls(room), 1, 0.25);
   EXPECT_LT(rms_off_walls(smooth), 0.4 * rms_off_walls(room));
+  // Strays are on no step, and a file of tenths of a millimetre holds the steps only roughly.
+  std::mt19937_64 engine(7);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  Positions stored = room, with_strays = room;
+  for (Eigen::Vector3d& p : stored) p = 1e-4 * (1e4 * p).array().round();
+  for (std::size_t i = 0; i < room.size() / 50; ++i)
+    with_strays.emplace_back(3 * uniform(engine), 2 * uniform(engine), 1.3 * uniform(engine));
+  for (Positions cloud : {with_strays, stored}) {
+    const auto found = rfsmooth::denoise(cloud.front().data(), cloud.size(), {}, {});
+    ASSERT_TRUE(found);
+    EXPECT_NEAR(found.value().measured.step, 0.01, 2e-4);
+  }
   // Elsewhere in the file's coordinates nothing tells where the laser stood.
   for (Eigen::Vector3d& p : moved) p += Eigen::Vector3d(0.4, -0.3, 0.2);
   const auto blind = rfsmooth::denoise(moved.front().data(), moved.size(), {}, {});

@@ -241,6 +241,55 @@ TEST(DepthSteps, AreNoneFromElsewhereNorInFreeRanges) {
   EXPECT_FALSE(find_terraces(far, Eigen::Vector3d(0, 0, 0)));
 }
 
+/// The points, and a fiftieth as many anywhere in their box.
+Positions among_clutter(Positions points) {
+  std::mt19937_64 engine(5);
+  std::uniform_real_distribution<double> uniform;
+  Eigen::AlignedBox3d box;
+  for (const auto& p : points) box.extend(p);
+  for (std::size_t n = points.size() / 50; n > 0; --n) {
+    const Eigen::Array3d at(uniform(engine), uniform(engine), uniform(engine));
+    points.push_back(box.min() + (at * box.sizes().array()).matrix());
+  }
+  return points;
+}
+
+TEST(DepthSteps, AreFoundAmongPointsThatLieFree) {
+  const auto steps = find_terraces(among_clutter(stepped(0.05, {2})));
+  ASSERT_TRUE(steps);
+  EXPECT_EQ(steps->direction, Eigen::Vector3d::UnitZ());
+  EXPECT_EQ(steps->depths.size(), 21);
+  const Eigen::Vector3d scanner(-2, 7, 0.3);
+  const auto ranges = find_terraces(among_clutter(shells(0.01, scanner)), scanner);
+  ASSERT_TRUE(ranges);
+  EXPECT_NEAR(ranges->typical, 0.01, 1e-6);
+}
+
+/// A wall two units before a laser that tells ranges in multiples of `step` (0: any), in a file that rounds
+/// to such decimals.
+Positions wall_before_laser(double step, double decimals) {
+  std::mt19937_64 engine(8);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  std::normal_distribution<double> normal;
+  Positions points;
+  for (int i = 0; i < 5000; ++i) {
+    const Eigen::Vector3d at = kTurn * Eigen::Vector3d(uniform(engine), uniform(engine), 2);
+    const double range = at.norm() + 0.006 * normal(engine),
+                 told = step > 0 ? step * std::round(range / step) : range;
+    points.push_back(decimals * (told / decimals * at.normalized()).array().round());
+  }
+  return points;
+}
+
+TEST(DepthSteps, AreFoundInTheDistanceFromTheScannerWhereFilesKeepFewDecimals) {
+  const Eigen::Vector3d scanner(0, 0, 0);
+  const auto steps = find_terraces(wall_before_laser(0.01, 1e-4), scanner);
+  ASSERT_TRUE(steps);
+  EXPECT_NEAR(steps->typical, 0.01, 2e-4);
+  for (const double decimals : {1e-4, 1e-3})
+    EXPECT_FALSE(find_terraces(wall_before_laser(0, decimals), scanner)) << decimals;
+}
+
 TEST(DepthSteps, TheirNoiseIsThatOfRoundingAlongTheNormal) {
   const auto steps = find_terraces(stepped(0.05, {2}));
   ASSERT_TRUE(steps);
