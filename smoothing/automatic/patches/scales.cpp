@@ -66,34 +66,6 @@ struct Scale {
   std::vector<Index> several;  ///< places that see more than one sheet
 };
 
-/// `before` holds the risk of the scale before it.
-Scale try_scale(const HeightField& field, std::size_t members, const std::vector<Index>& seeds,
-                const rfs_mesh::NoiseField& noise, const std::vector<float>& precision,
-                std::vector<float>& before, Patches::Memory& memory, const Context& context) {
-  const std::vector<double>& sigma = noise.local;
-  const auto shared = float(noise.shared);
-  const Patches patches(field, members, seeds, sigma, memory, context);
-  Scale scale{
-      members, patches.predict(context), std::vector<float>(field.size()), {}, patches.with_several_sheets()};
-  const Prediction& prediction = scale.prediction;
-  for_each_index(context, field.size(), [&](std::size_t i) {
-    const float off = (field.local()[i].height - prediction.height[i]) / float(sigma[i]),
-                e = std::clamp(off, -kFarthest, kFarthest);
-    const float of_all = own_of_all(prediction.own[i], shared);
-    const float risk = prediction.covered[i] != 0 ? e * e + 2 * of_all - 1 : before[i];
-    scale.worse[i] = precision.empty() || precision[i] > 0 ? risk - before[i] : 0;
-    before[i] = risk;
-  });
-  if (double(members) >= double(kOwnMean) * noise.shared) {
-    scale.mean = patches.mean(patches.mean(scale.worse, context), context);
-    if (!precision.empty()) {
-      const std::vector<float> around = patches.mean(patches.mean(precision, context), context);
-      in_own_units(precision, around, scale.mean, context);
-    }
-  }
-  return scale;
-}
-
 /// Means over near neighbours for all scales, each in place of `worse`.
 void average_near(const HeightField& field, std::vector<Scale>& scales, const Context& context) {
   constexpr std::size_t kColumns = HeightField::Columns::SizeAtCompileTime;
@@ -159,9 +131,7 @@ class Ladder {
     for (std::size_t s = 0; known ? s < how.size() : m <= widest; ++s, m *= 2) {
       context_.report("smooth", 0.1 + 0.9 * double(s) / count);
       if (!known) how.push_back(scale_of(m));
-      const std::size_t members = make_way(how[s]);
-      rungs_.scales.push_back(
-          try_scale(field_, members, seeds_, noise_, rungs_.precision, risk_, memory_, context_));
+      rungs_.scales.push_back(try_scale(make_way(how[s])));
       if (!known && m >= double(field_.size()) / 2) break;
     }
     return std::move(rungs_);
@@ -177,6 +147,36 @@ class Ladder {
     for_each_index(context_, rungs_.first.size(), [&](std::size_t i) {
       if (said.covered[i] != 0) rungs_.first[i] = said.height[i];
     });
+  }
+
+  /// What patches of so many members around the seeds say. Renews the risk.
+  Scale try_scale(std::size_t members) {
+    const std::vector<double>& sigma = noise_.local;
+    const std::vector<float>& precision = rungs_.precision;
+    const auto shared = float(noise_.shared);
+    const Patches patches(field_, members, seeds_, sigma, memory_, context_);
+    Scale scale{members,
+                patches.predict(context_),
+                std::vector<float>(field_.size()),
+                {},
+                patches.with_several_sheets()};
+    const Prediction& prediction = scale.prediction;
+    for_each_index(context_, field_.size(), [&](std::size_t i) {
+      const float off = (field_.local()[i].height - prediction.height[i]) / float(sigma[i]),
+                  e = std::clamp(off, -kFarthest, kFarthest);
+      const float of_all = own_of_all(prediction.own[i], shared);
+      const float risk = prediction.covered[i] != 0 ? e * e + 2 * of_all - 1 : risk_[i];
+      scale.worse[i] = precision.empty() || precision[i] > 0 ? risk - risk_[i] : 0;
+      risk_[i] = risk;
+    });
+    if (double(members) >= double(kOwnMean) * noise_.shared) {
+      scale.mean = patches.mean(patches.mean(scale.worse, context_), context_);
+      if (!precision.empty()) {
+        const std::vector<float> around = patches.mean(patches.mean(precision, context_), context_);
+        in_own_units(precision, around, scale.mean, context_);
+      }
+    }
+    return scale;
   }
 
   /// How patches of about m points are made here: seeds thinned until at most kMostOverlap lie over a point.
