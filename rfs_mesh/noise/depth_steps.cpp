@@ -169,8 +169,7 @@ bool are_none(const Terraces& terraces, const SpatialIndex& index) {
     return true;
   const double spacing = quantile(apart, 0.5);
   return rounding_noise(terraces.typical) < kNoNoise * spacing ||
-         (!terraces.scanner && double(facing) <= kLeastPart * double(looked_at) &&
-          terraces.typical > spacing);
+         (double(facing) <= kLeastPart * double(looked_at) && terraces.typical > spacing);
 }
 
 /// The farthest that a point is from `from`.
@@ -250,11 +249,20 @@ double DepthSteps::sigma(const Eigen::Vector3d& at, const Eigen::Vector3d& norma
   if (on_grid()) return rounding_noise(typical_);
   if (index_ == nullptr) return terraces_.front().sigma(at, normal);
   std::vector<Neighbor> near;
-  index_->nearest(at, 1, near);
-  const Eigen::Vector3d& point = index_->points()[near.front().index];
-  const auto of = std::find_if(terraces_.begin(), terraces_.end(),
-                               [&](const Terraces& terraces) { return terraces.step_of(point).has_value(); });
-  return of != terraces_.end() ? of->sigma(at, normal) : 0;
+  index_->nearest(at, int(std::min(kNeighbourhood, index_->points().size())), near);
+  const auto held = [&](const Terraces& terraces) {
+    return std::count_if(near.begin(), near.end(), [&](const Neighbor& q) {
+      return terraces.step_of(index_->points()[q.index]).has_value();
+    });
+  };
+  const Terraces* of = nullptr;
+  double most = kLeastPart * double(near.size());
+  for (const Terraces& terraces : terraces_)
+    if (const auto count = double(held(terraces)); count > most) {
+      most = count;
+      of = &terraces;
+    }
+  return of != nullptr ? of->sigma(at, normal) : 0;
 }
 
 std::optional<DepthSteps> find_depth_steps(const SpatialIndex& index,
@@ -268,18 +276,18 @@ std::optional<DepthSteps> find_depth_steps(const SpatialIndex& index,
   // Neighbours differ by that; what is rounded in three coordinates lies within twice as much along any line.
   const double rounding = rounding_of(some);
   const auto none = [&](const Terraces& terraces) { return are_none(terraces, index); };
+  Terraces shells;
+  shells.scanner = scanner;
   if (scanner) {
-    Terraces shells;
-    shells.scanner = scanner;
     shells.same = kSevenDigits * farthest(some, *scanner);
     if (fill(some, Steps::of_all, shells)) return without_strays(std::move(shells), some, index);
     shells.same = std::max(shells.same, 2 * rounding);
-    if (fill(some, Steps::of_part, shells) && !none(shells)) return DepthSteps({std::move(shells)}, index);
   }
   all = of_depth(terraces_along(step_directions(index, rounding), some, Steps::of_part, 2 * rounding), some);
   all.erase(std::remove_if(all.begin(), all.end(), none), all.end());
-  if (all.empty()) return {};
-  return DepthSteps(std::move(all), index);
+  if (!all.empty()) return DepthSteps(std::move(all), index);
+  if (!scanner || !fill(some, Steps::of_part, shells) || none(shells)) return {};
+  return DepthSteps({std::move(shells)}, index);
 }
 
 std::optional<DepthSteps> find_grid(std::vector<double> nearest) {
