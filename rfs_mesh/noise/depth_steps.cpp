@@ -144,10 +144,10 @@ std::vector<Terraces> of_depth(std::vector<Terraces> all, const Positions& some)
   return found;
 }
 
-/// Whether they are no depths in steps: of rounding that cannot be told from detail, as each ring of a laser
-/// has it that tells millimetres; or the faces of an exact part, of which fewer than kFewestSteps have points
-/// beside those of another; or the profiles of a line scanner, planes through the surface, which faces them
-/// nowhere, farther apart than the points of a profile.
+/// Whether they are no depths in steps: told to fewer digits than points are apart; of rounding that cannot
+/// be told from detail, as each ring of a laser has it that tells millimetres; or the faces of an exact part,
+/// of which fewer than kFewestSteps have points beside those of another; or the profiles of a line scanner,
+/// planes through the surface, which faces them nowhere, farther apart than the points of a profile.
 bool are_none(const Terraces& terraces, const SpatialIndex& index) {
   std::size_t looked_at = 0, facing = 0;
   std::vector<double> apart;
@@ -168,7 +168,7 @@ bool are_none(const Terraces& terraces, const SpatialIndex& index) {
   if (apart.empty() || std::size_t(std::count(beside.begin(), beside.end(), true)) < kFewestSteps)
     return true;
   const double spacing = quantile(apart, 0.5);
-  return rounding_noise(terraces.typical) < kNoNoise * spacing ||
+  return terraces.same > spacing || rounding_noise(terraces.typical) < kNoNoise * spacing ||
          (double(facing) <= kLeastPart * double(looked_at) && terraces.typical > spacing);
 }
 
