@@ -249,20 +249,11 @@ double DepthSteps::sigma(const Eigen::Vector3d& at, const Eigen::Vector3d& norma
   if (on_grid()) return rounding_noise(typical_);
   if (index_ == nullptr) return terraces_.front().sigma(at, normal);
   std::vector<Neighbor> near;
-  index_->nearest(at, int(std::min(kNeighbourhood, index_->points().size())), near);
-  const auto held = [&](const Terraces& terraces) {
-    return std::count_if(near.begin(), near.end(), [&](const Neighbor& q) {
-      return terraces.step_of(index_->points()[q.index]).has_value();
-    });
-  };
-  const Terraces* of = nullptr;
-  double most = kLeastPart * double(near.size());
-  for (const Terraces& terraces : terraces_)
-    if (const auto count = double(held(terraces)); count > most) {
-      most = count;
-      of = &terraces;
-    }
-  return of != nullptr ? of->sigma(at, normal) : 0;
+  index_->nearest(at, 1, near);
+  const Eigen::Vector3d& point = index_->points()[near.front().index];
+  const auto of = std::find_if(terraces_.begin(), terraces_.end(),
+                               [&](const Terraces& terraces) { return terraces.step_of(point).has_value(); });
+  return of != terraces_.end() ? of->sigma(at, normal) : 0;
 }
 
 std::optional<DepthSteps> find_depth_steps(const SpatialIndex& index,

@@ -55,7 +55,7 @@ class DepthSteps {
   /// Those of a grid in space: points are off by as much along any normal.
   explicit DepthSteps(double grid) : typical_(grid) {}
 
-  /// \param terraces at least one. \param index keeps a reference.
+  /// \param terraces at least one; a point is of the first that hold it. \param index keeps a reference.
   DepthSteps(std::vector<Terraces> terraces, const SpatialIndex& index);
 
   bool on_grid() const { return terraces_.empty(); }
@@ -68,9 +68,8 @@ class DepthSteps {
   /// Whether they are larger than another's, by more than files round.
   bool exceed(const DepthSteps& other) const;
 
-  /// Standard deviation along the normal of a surface there: by the terraces that hold the most of the
-  /// kNeighbourhood nearest points, 0 if none holds a tenth of them. O(1); O(log n) where not all points are
-  /// on the same.
+  /// Standard deviation along the normal of a surface there: by the terraces of the nearest point, 0 if it is
+  /// on none. O(1); O(log n) where not all points are on the same.
   double sigma(const Eigen::Vector3d& at, const Eigen::Vector3d& normal) const;
 
  private:
