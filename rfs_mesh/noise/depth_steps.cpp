@@ -52,7 +52,8 @@ std::vector<double> commonest(const std::vector<double>& sorted, Steps steps, do
   return depths;
 }
 
-/// Sets the typical gap. False if they are too few, or no steps. \param some up to kLookedAt points.
+/// Sets the typical gap between depths. False if these are too few, too many, or no steps. \param some up to
+/// kLookedAt points.
 bool measure_gaps(const Positions& some, Terraces& terraces) {
   const std::vector<double>& depths = terraces.depths;
   if (depths.size() < kFewestSteps || depths.size() * kPointsOfStep >= some.size()) return false;

@@ -2,10 +2,10 @@
 /// terraces; a laser scanner that tells whole centimetres puts them on shells around itself.
 ///
 /// Terraces are found where a coordinate has a tenth as many values as there are points, strays and all, or
-/// else the distance from the scanner has; or else where so many points have the same distance from the
-/// scanner, or lie level along some direction (step_directions.h), and others, as of other cameras, lie free
-/// between them. Of several coordinates it is the one with
-/// the largest steps: before a wall a camera knows so few depths that the columns of its image leave few
+/// else the distance from the scanner has; or else where so many points lie level along some direction
+/// (step_directions.h), or are as far from the scanner, and others, as of other cameras, lie free between
+/// them. Of several coordinates it is the one with the largest steps: before a wall a camera knows so few
+/// depths that the columns of its image leave few
 /// values across, too, other ones at every depth. Where they are the same at every depth, the points are on a
 /// grid of their own, and depth has no steps; where no surface faces them, they are profiles of a line
 /// scanner. Other directions do not count whose rounding cannot be told from detail. Between two steps every
