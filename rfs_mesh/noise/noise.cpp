@@ -207,14 +207,13 @@ std::vector<double> NoiseField::reaches(double times, const Context& context) co
   return of;
 }
 
-NoiseModel measure_noise(const SpatialIndex& index, const Context& context,
-                         const std::optional<Eigen::Vector3d>& scanner) {
+NoiseModel measure_noise(const SpatialIndex& index, const Context& context) {
   NoiseModel noise;
   std::vector<double> nearest = nearest_distances(index, context);
   noise.spacing = mean_spacing(nearest, context);
   if (!nearest.empty()) noise.apart = quantile(nearest, kNearer);
   if (index.points().size() <= kNeighbourhood) return noise;
-  std::optional<DepthSteps> steps = find_depth_steps(index, scanner);
+  std::optional<DepthSteps> steps = find_depth_steps(index);
   const std::optional<DepthSteps> grid = find_grid(std::move(nearest));
   // Before a wall a camera's points are on a grid, too, of its pixels; a grid has few values along some
   // directions, too, no farther from each other.
@@ -228,10 +227,7 @@ NoiseModel measure_noise(const SpatialIndex& index, const Context& context,
 }
 
 const NoiseModel& known_noise(const SpatialIndex& index, Statistics& whole, const Context& context) {
-  if (whole.noise) return *whole.noise;
-  std::optional<Eigen::Vector3d> origin;
-  if (whole.box) origin = -(0.5 * whole.box->low + 0.5 * whole.box->high);
-  whole.noise = measure_noise(index, context, origin);
+  if (!whole.noise) whole.noise = measure_noise(index, context);
   return *whole.noise;
 }
 

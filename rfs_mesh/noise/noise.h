@@ -26,7 +26,7 @@
 #include <rfsmooth/statistics.h>
 
 #include "rfs_mesh/levels.h"
-#include "rfs_mesh/noise/depth_steps.h"
+#include "rfs_mesh/noise/steps/depth_steps.h"
 #include "rfs_mesh/search/neighbors.h"
 
 namespace rfsmooth::rfs_mesh {
@@ -67,14 +67,11 @@ struct NoiseField : NoiseModel {
   std::vector<double> reaches(double times, const Context& context) const;
 };
 
-/// O(log n) after the index. Parallel, deterministic. Zero for fewer than 25 points. \param scanner where it
-/// may have stood: ranges in steps are looked for from there.
-NoiseModel measure_noise(const SpatialIndex& index, const Context& context,
-                         const std::optional<Eigen::Vector3d>& scanner = std::nullopt);
+/// O(log n) after the index. Parallel, deterministic. Zero for fewer than 25 points.
+NoiseModel measure_noise(const SpatialIndex& index, const Context& context);
 
 /// The noise that `whole` has, or else that of these points, measured and entered: so whoever asks first has
-/// it measured, and all others hear the same. Scanners write coordinates of their own, so where `whole` knows
-/// the cloud's box, the file's origin is where one may have stood.
+/// it measured, and all others hear the same.
 const NoiseModel& known_noise(const SpatialIndex& index, Statistics& whole, const Context& context);
 
 /// The field of a noise that was measured on these points or on a cloud that they are of: at every point the

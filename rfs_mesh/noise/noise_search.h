@@ -10,8 +10,8 @@
 
 #include "rfs_mesh/fit/places.h"
 #include "rfs_mesh/levels.h"
-#include "rfs_mesh/noise/depth_steps.h"
 #include "rfs_mesh/noise/scatter_statistics.h"
+#include "rfs_mesh/noise/steps/depth_steps.h"
 
 namespace rfsmooth::rfs_mesh {
 

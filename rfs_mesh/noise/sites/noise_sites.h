@@ -31,8 +31,8 @@
 
 #include <vector>
 
-#include "rfs_mesh/noise/depth_steps.h"
 #include "rfs_mesh/noise/noise_search.h"
+#include "rfs_mesh/noise/steps/depth_steps.h"
 
 namespace rfsmooth::rfs_mesh {
 

@@ -37,8 +37,8 @@
 #include <limits>
 #include <vector>
 
-#include "rfs_mesh/noise/depth_steps.h"
 #include "rfs_mesh/noise/noise_search.h"
+#include "rfs_mesh/noise/steps/depth_steps.h"
 
 namespace rfsmooth::rfs_mesh {
 

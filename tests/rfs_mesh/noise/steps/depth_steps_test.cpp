@@ -1,4 +1,4 @@
-#include "rfs_mesh/noise/depth_steps.h"
+#include "rfs_mesh/noise/steps/depth_steps.h"
 
 #include <cmath>
 #include <random>
@@ -13,11 +13,10 @@ using rfs_mesh::Terraces;
 namespace {
 
 /// The only terraces of the points, if they have any.
-std::optional<Terraces> find_terraces(const Positions& points,
-                                      const std::optional<Eigen::Vector3d>& scanner = std::nullopt) {
+std::optional<Terraces> find_terraces(const Positions& points) {
   const Context context;
   const SpatialIndex index(points, context);
-  const auto steps = rfs_mesh::find_depth_steps(index, scanner);
+  const auto steps = rfs_mesh::find_depth_steps(index);
   if (!steps) return {};
   EXPECT_EQ(steps->terraces().size(), 1);
   EXPECT_EQ(steps->typical(), steps->terraces().front().typical);
@@ -124,7 +123,7 @@ TEST(DepthSteps, OfTwoCamerasAreThoseOfEachWhereItLooked) {
     points.emplace_back(beside + Eigen::Vector3d(uniform(engine), uniform(engine), uniform(engine)));
   const Context context;
   const SpatialIndex index(points, context);
-  const auto steps = rfs_mesh::find_depth_steps(index, {});
+  const auto steps = rfs_mesh::find_depth_steps(index);
   ASSERT_TRUE(steps);
   ASSERT_EQ(steps->terraces().size(), 2);
   EXPECT_NEAR(steps->typical(), 0.01, 1e-5);
@@ -202,43 +201,75 @@ TEST(Grid, IsNoneElsewhere) {
   EXPECT_FALSE(rfs_mesh::find_grid(nearest));
 }
 
-/// Points all around a scanner at `scanner`, at ranges of 1 to 3 in whole multiples of `step`, as a file of
-/// single precision keeps them.
-Positions shells(double step, const Eigen::Vector3d& scanner) {
-  std::mt19937_64 engine(3);
-  std::uniform_real_distribution<double> uniform(1, 3);
+/// A wall two units before a laser that tells ranges in multiples of `step` (0: any), in a file that rounds
+/// to such decimals.
+Positions wall_before_laser(double step, double decimals, const Eigen::Vector3d& scanner = {0, 0, 0}) {
+  std::mt19937_64 engine(8);
+  std::uniform_real_distribution<double> uniform(-1, 1);
   std::normal_distribution<double> normal;
   Positions points;
   for (int i = 0; i < 5000; ++i) {
-    const Eigen::Vector3d ray = Eigen::Vector3d(normal(engine), normal(engine), normal(engine)).normalized();
-    const double range = uniform(engine);
-    const Eigen::Vector3f stored = (ray * (step > 0 ? step * std::round(range / step) : range)).cast<float>();
-    points.push_back(stored.cast<double>() + scanner);
+    const Eigen::Vector3d at = kTurn * Eigen::Vector3d(uniform(engine), uniform(engine), 2);
+    const double range = at.norm() + 0.006 * normal(engine),
+                 told = step > 0 ? step * std::round(range / step) : range;
+    points.push_back(decimals * ((told * at.normalized() + scanner) / decimals).array().round());
   }
   return points;
 }
 
-TEST(DepthSteps, AreFoundInTheDistanceFromTheScanner) {
-  const Eigen::Vector3d scanner(-2, 7, 0.3);
-  const auto steps = find_terraces(shells(0.01, scanner), scanner);
+TEST(DepthSteps, AreFoundInTheDistanceFromTheScannerWhereverItStood) {
+  const Eigen::Vector3d scanner(-2, 7, 0.3), ray = kTurn.col(2);
+  const auto steps = find_terraces(wall_before_laser(0.01, 1e-7, scanner));
   ASSERT_TRUE(steps);
-  EXPECT_EQ(steps->depths.size(), 201);
+  ASSERT_TRUE(steps->scanner);
+  EXPECT_LT((*steps->scanner - scanner).norm(), 1e-5);
   EXPECT_NEAR(steps->typical, 0.01, 1e-6);
-  const Eigen::Vector3d ahead = scanner + Eigen::Vector3d(0, 2, 0);
-  EXPECT_NEAR(steps->sigma(ahead, {0, 1, 0}), 0.01 / std::sqrt(12.0), 1e-6);
-  EXPECT_NEAR(steps->sigma(ahead, Eigen::Vector3d(0, 1, 1).normalized()), 0.01 / std::sqrt(24.0), 1e-6);
-  EXPECT_NEAR(steps->sigma(ahead, {1, 0, 0}), 0, 1e-12);
+  const Eigen::Vector3d ahead = scanner + 2.2 * ray;
+  EXPECT_NEAR(steps->sigma(ahead, ray), 0.01 / std::sqrt(12.0), 1e-5);
+  EXPECT_NEAR(steps->sigma(ahead, (ray + kTurn.col(0)).normalized()), 0.01 / std::sqrt(24.0), 1e-5);
+  EXPECT_NEAR(steps->sigma(ahead, kTurn.col(0)), 0, 1e-6);
 }
 
-TEST(DepthSteps, AreNoneFromElsewhereNorInFreeRanges) {
-  const Eigen::Vector3d scanner(-2, 7, 0.3), elsewhere(-2, 7, 0.5);
-  EXPECT_FALSE(find_terraces(shells(0.01, scanner)));
-  EXPECT_FALSE(find_terraces(shells(0.01, scanner), elsewhere));
-  EXPECT_FALSE(find_terraces(shells(0, scanner), scanner));
-  EXPECT_FALSE(find_terraces(shells(1e-4, scanner), scanner));  // as many as points
-  Positions far = shells(0, scanner);  // of seven digits only those are left that all share
-  for (auto& p : far) p += Eigen::Vector3d(1e6, 1e6, 0);
-  EXPECT_FALSE(find_terraces(far, Eigen::Vector3d(0, 0, 0)));
+TEST(DepthSteps, AreFoundInTheDistanceFromTheScannerWhereFilesKeepFewDecimals) {
+  for (const Eigen::Vector3d& scanner : {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(-2, 7, 0.3)}) {
+    const auto steps = find_terraces(wall_before_laser(0.01, 1e-4, scanner));
+    ASSERT_TRUE(steps);
+    EXPECT_NEAR(steps->typical, 0.01, 2e-4);
+    for (const double decimals : {1e-4, 1e-3})
+      EXPECT_FALSE(find_terraces(wall_before_laser(0, decimals, scanner))) << decimals;
+  }
+}
+
+TEST(DepthSteps, AreNoneInFreeRanges) {
+  for (const double step : {0.0, 1e-4})  // as many as points
+    EXPECT_FALSE(find_terraces(wall_before_laser(step, 1e-7, {-2, 7, 0.3})));
+  // Of seven digits only those are left that all share.
+  EXPECT_FALSE(find_terraces(wall_before_laser(0, 0.125, {1e6, 1e6, 0})));
+}
+
+TEST(DepthSteps, OfTwoScannersAreThoseOfEachWhereItStood) {
+  const Eigen::Vector3d first(4, -2, 3), second(4, 28, 3), ray = kTurn.col(2);
+  Positions points = wall_before_laser(0.01, 1e-7, first);
+  for (const Eigen::Vector3d& p : wall_before_laser(0.01, 1e-7, second)) points.push_back(p);
+  const Context context;
+  const SpatialIndex index(points, context);
+  const auto steps = rfs_mesh::find_depth_steps(index);
+  ASSERT_TRUE(steps);
+  ASSERT_EQ(steps->terraces().size(), 2);
+  for (const Eigen::Vector3d& scanner : {first, second})
+    EXPECT_NEAR(steps->sigma(scanner + 2.1 * ray, ray), 0.01 / std::sqrt(12.0), 1e-4);
+}
+
+// Its rings are as far from the points of its axis, and, if evenly spaced, in steps along that.
+TEST(DepthSteps, AreNotTheRingsOfALathesPart) {
+  Positions vase;
+  for (int ring = 0; ring < 120; ++ring)
+    for (int k = 0; k < 100; ++k) {
+      const double z = ring / 60.0, r = 1 + 0.3 * std::sin(3 * z), turn = 2 * M_PI * k / 100;
+      vase.emplace_back(r * std::cos(turn), r * std::sin(turn), z);
+    }
+  EXPECT_FALSE(find_terraces(vase));
+  EXPECT_FALSE(find_terraces(turned(vase)));
 }
 
 /// The points, and a fiftieth as many anywhere in their box.
@@ -259,35 +290,9 @@ TEST(DepthSteps, AreFoundAmongPointsThatLieFree) {
   ASSERT_TRUE(steps);
   EXPECT_EQ(steps->direction, Eigen::Vector3d::UnitZ());
   EXPECT_EQ(steps->depths.size(), 21);
-  const Eigen::Vector3d scanner(-2, 7, 0.3);
-  const auto ranges = find_terraces(among_clutter(shells(0.01, scanner)), scanner);
+  const auto ranges = find_terraces(among_clutter(wall_before_laser(0.01, 1e-7, {-2, 7, 0.3})));
   ASSERT_TRUE(ranges);
   EXPECT_NEAR(ranges->typical, 0.01, 1e-6);
-}
-
-/// A wall two units before a laser that tells ranges in multiples of `step` (0: any), in a file that rounds
-/// to such decimals.
-Positions wall_before_laser(double step, double decimals) {
-  std::mt19937_64 engine(8);
-  std::uniform_real_distribution<double> uniform(-1, 1);
-  std::normal_distribution<double> normal;
-  Positions points;
-  for (int i = 0; i < 5000; ++i) {
-    const Eigen::Vector3d at = kTurn * Eigen::Vector3d(uniform(engine), uniform(engine), 2);
-    const double range = at.norm() + 0.006 * normal(engine),
-                 told = step > 0 ? step * std::round(range / step) : range;
-    points.push_back(decimals * (told / decimals * at.normalized()).array().round());
-  }
-  return points;
-}
-
-TEST(DepthSteps, AreFoundInTheDistanceFromTheScannerWhereFilesKeepFewDecimals) {
-  const Eigen::Vector3d scanner(0, 0, 0);
-  const auto steps = find_terraces(wall_before_laser(0.01, 1e-4), scanner);
-  ASSERT_TRUE(steps);
-  EXPECT_NEAR(steps->typical, 0.01, 2e-4);
-  for (const double decimals : {1e-4, 1e-3})
-    EXPECT_FALSE(find_terraces(wall_before_laser(0, decimals), scanner)) << decimals;
 }
 
 TEST(DepthSteps, TheirNoiseIsThatOfRoundingAlongTheNormal) {

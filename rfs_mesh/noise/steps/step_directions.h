@@ -17,4 +17,7 @@ namespace rfsmooth::rfs_mesh {
 /// Deterministic.
 Positions step_directions(const SpatialIndex& index, double same);
 
+/// Whether these are so far from parallel, 30 degrees, that rounding does not make the plane of both.
+bool make_a_plane(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
+
 }  // namespace rfsmooth::rfs_mesh

@@ -1,4 +1,4 @@
-#include "rfs_mesh/noise/step_directions.h"
+#include "rfs_mesh/noise/steps/step_directions.h"
 
 #include <algorithm>
 #include <cmath>
@@ -35,10 +35,8 @@ void enter_plane(const std::vector<Pair>& pairs, double same, Positions& planes)
   Eigen::Vector3d best = Eigen::Vector3d::Zero();
   for (std::size_t j = 0; j < pairs.size(); ++j)
     for (std::size_t k = 0; k < j; ++k) {
-      const Eigen::Vector3d &first = pairs[j].offset, &second = pairs[k].offset, across = first.cross(second);
-      const double area = across.norm();
-      if (!(2 * area > first.norm() * second.norm())) continue;  // in a line rounding makes the plane
-      const Eigen::Vector3d normal = across / area;
+      if (!make_a_plane(pairs[j].offset, pairs[k].offset)) continue;
+      const Eigen::Vector3d normal = pairs[j].offset.cross(pairs[k].offset).normalized();
       const std::size_t count = count_level(pairs, normal, same);
       if (count <= most) continue;
       most = count;
@@ -82,6 +80,10 @@ Eigen::Vector3d direction_of(const std::vector<Pair>& level, double within) {
 }
 
 }  // namespace
+
+bool make_a_plane(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return 2 * a.cross(b).norm() > a.norm() * b.norm();
+}
 
 Positions step_directions(const SpatialIndex& index, double same) {
   Positions planes;

@@ -1,15 +1,16 @@
 /// Depths in steps: a camera that measures by disparity or by time knows few depths, and its points lie on
 /// terraces; a laser scanner that tells whole centimetres puts them on shells around itself.
 ///
-/// Terraces are found where a coordinate has a tenth as many values as there are points, strays and all, or
-/// else the distance from the scanner has; or else where so many points lie level along some direction
-/// (step_directions.h), or are as far from the scanner, and others, as of other cameras, lie free between
-/// them. Of several coordinates it is the one with the largest steps: before a wall a camera knows so few
-/// depths that the columns of its image leave few
-/// values across, too, other ones at every depth. Where they are the same at every depth, the points are on a
-/// grid of their own, and depth has no steps; where no surface faces them, they are profiles of a line
-/// scanner. Other directions do not count whose rounding cannot be told from detail. Between two steps every
-/// depth is as likely, so a surface of normal n has noise of at least |n . ray| gap / sqrt(12) from them.
+/// Terraces are found where a coordinate has a tenth as many values as there are points, strays and all; or
+/// else where a tenth of the points are as far from a place at which a scanner stood (scanner_places.h), all
+/// at multiples of one distance, or lie level along some direction (step_directions.h), and others, as of
+/// other cameras, lie free between them. Of several coordinates it is the one with the largest steps: before
+/// a wall a camera knows so few depths that the columns of its image leave few values across, too, other ones
+/// at every depth. Where they are the same at every depth, the points are on a grid of their own, and depth
+/// has no steps; where those around a point that are on its step are in a line, they are rings of a lathe's
+/// part or profiles of a line scanner. Other directions do not count whose rounding cannot be told from
+/// detail. Between two steps every depth is as likely, so a surface of normal n has noise of at least
+/// |n . ray| gap / sqrt(12) from them.
 #pragma once
 
 #include <optional>
@@ -55,7 +56,7 @@ class DepthSteps {
   /// Those of a grid in space: points are off by as much along any normal.
   explicit DepthSteps(double grid) : typical_(grid) {}
 
-  /// \param terraces at least one; a point is of the first that hold it. \param index keeps a reference.
+  /// \param terraces at least one. \param index keeps a reference.
   DepthSteps(std::vector<Terraces> terraces, const SpatialIndex& index);
 
   bool on_grid() const { return terraces_.empty(); }
@@ -68,8 +69,9 @@ class DepthSteps {
   /// Whether they are larger than another's, by more than files round.
   bool exceed(const DepthSteps& other) const;
 
-  /// Standard deviation along the normal of a surface there: by the terraces of the nearest point, 0 if it is
-  /// on none. O(1); O(log n) where not all points are on the same.
+  /// Standard deviation along the normal of a surface there: by the terraces that hold the most of the
+  /// kNeighbourhood nearest points, 0 if none holds a tenth of them. O(1); O(log n) where not all points are
+  /// on the same.
   double sigma(const Eigen::Vector3d& at, const Eigen::Vector3d& normal) const;
 
  private:
@@ -78,9 +80,8 @@ class DepthSteps {
   const SpatialIndex* index_ = nullptr;  ///< null: all points are on the first
 };
 
-/// Looks at up to 20,000 points. Nothing where there are no steps. \param scanner where it may have stood.
-std::optional<DepthSteps> find_depth_steps(const SpatialIndex& index,
-                                           const std::optional<Eigen::Vector3d>& scanner);
+/// Looks at up to 20,000 points. Nothing where there are no steps.
+std::optional<DepthSteps> find_depth_steps(const SpatialIndex& index);
 
 /// The steps of a grid in space, turned any way: the quartiles of the distances to the nearest point are the
 /// same. Nothing if they are not. \param nearest these distances, of some points.

@@ -1,15 +1,16 @@
-#include "rfs_mesh/noise/depth_steps.h"
+#include "rfs_mesh/noise/steps/depth_steps.h"
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <utility>
 
-#include "rfs_mesh/fit/principal_axes.h"
 #include "rfs_mesh/levels.h"
 #include "rfs_mesh/noise/noise.h"
 #include "rfs_mesh/noise/scatter_statistics.h"
-#include "rfs_mesh/noise/step_directions.h"
+#include "rfs_mesh/noise/steps/scanner_places.h"
+#include "rfs_mesh/noise/steps/step_directions.h"
 #include "rfs_mesh/sample.h"
 
 namespace rfsmooth::rfs_mesh {
@@ -22,8 +23,6 @@ constexpr std::size_t kPointsOfStep = 10;  // in the mean: free coordinates hard
 // these do not: of 1.5 where the noise is 2.4.
 constexpr std::size_t kLookedAt = 20000;
 constexpr std::size_t kFewestSteps = 4;  // fewer are the sides of a box
-// Points that cover four lines where these are twenty times farther apart than their points.
-constexpr std::size_t kNoMoreALine = kNarrowestPatch * kNeighbourhood;
 // Of the largest depth: how far two that are the same lie apart where files keep seven digits of each
 // coordinate.
 constexpr double kSevenDigits = 2e-6;
@@ -95,20 +94,32 @@ std::optional<DepthSteps> without_strays(Terraces terraces, const Positions& som
   return DepthSteps({std::move(terraces)}, index);
 }
 
-/// Those along some directions that have any, the largest steps first.
-std::vector<Terraces> terraces_along(const Positions& directions, const Positions& some, Steps steps,
-                                     double same) {
-  std::vector<Terraces> all;
-  for (const Eigen::Vector3d& direction : directions) {
-    Terraces terraces;
-    terraces.direction = direction;
-    terraces.same = same;
+/// Terraces that know along what, and nothing else.
+Terraces along(const Eigen::Vector3d& direction, double same) {
+  Terraces terraces;
+  terraces.direction = direction;
+  terraces.same = same;
+  return terraces;
+}
+
+/// Shells that know around what, and nothing else.
+Terraces around(const Eigen::Vector3d& scanner, double same) {
+  Terraces terraces;
+  terraces.scanner = scanner;
+  terraces.same = same;
+  return terraces;
+}
+
+/// Those of these that have steps, the largest first. \param all that know along what.
+std::vector<Terraces> with_steps(const std::vector<Terraces>& all, const Positions& some, Steps steps) {
+  std::vector<Terraces> found;
+  for (Terraces terraces : all) {
     if (!fill(some, steps, terraces)) continue;
-    const auto after = std::find_if(all.begin(), all.end(),
+    const auto after = std::find_if(found.begin(), found.end(),
                                     [&](const auto& other) { return other.typical < terraces.typical; });
-    all.insert(after, std::move(terraces));
+    found.insert(after, std::move(terraces));
   }
-  return all;
+  return found;
 }
 
 /// Whether the steps along another direction are at the commonest depth, too, as those of a grid are: as many
@@ -127,12 +138,29 @@ bool is_same_at_depths(const Positions& points, const Terraces& depth, const Ter
   return drawn > 0 && 2 * double(most.size()) > values * (1 - std::exp(-drawn / values));
 }
 
-/// What of these is depth: nothing where two are those of a grid; of points that several hold, as a camera's
-/// columns do, the first.
-std::vector<Terraces> of_depth(std::vector<Terraces> all, const Positions& some) {
+/// Whether two of these are those of a grid.
+bool are_of_grid(const std::vector<Terraces>& all, const Positions& some) {
   for (std::size_t a = 0; a < all.size(); ++a)
     for (std::size_t b = a + 1; b < all.size(); ++b)
-      if (is_same_at_depths(some, all[a], all[b])) return {};
+      if (is_same_at_depths(some, all[a], all[b])) return true;
+  return false;
+}
+
+/// Whether the gaps are multiples of one, as those of ranges that a laser tells are. Points on circles about
+/// an axis are on shells around a place there, too, but at any distances.
+bool are_equal(const Terraces& shells) {
+  std::vector<double> gaps;
+  for (std::size_t k = 1; k < shells.depths.size(); ++k)
+    gaps.push_back(shells.depths[k] - shells.depths[k - 1]);
+  const double unit = quantile(gaps, 0.5);
+  const auto multiples = std::count_if(gaps.begin(), gaps.end(), [&](double gap) {
+    return std::abs(gap - unit * std::round(gap / unit)) <= 2 * shells.same;
+  });
+  return double(multiples) > (1 - kLeastPart) * double(gaps.size());
+}
+
+/// Of points that several hold, as a camera's columns do, the first.
+std::vector<Terraces> that_hold_more(std::vector<Terraces> all, const Positions& some) {
   std::vector<Terraces> found;
   Positions free = some;
   for (Terraces& terraces : all) {
@@ -145,32 +173,49 @@ std::vector<Terraces> of_depth(std::vector<Terraces> all, const Positions& some)
   return found;
 }
 
-/// Whether they are no depths in steps: told to fewer digits than points are apart; of rounding that cannot
-/// be told from detail, as each ring of a laser has it that tells millimetres; or the faces of an exact part,
-/// of which fewer than kFewestSteps have points beside those of another; or the profiles of a line scanner,
-/// planes through the surface, which faces them nowhere, farther apart than the points of a profile.
+/// Whether they are lines on the surface, as the rings of a lathe's part and the profiles of a line scanner
+/// are: points have others of those around them on their step, but hardly one has two in two directions.
+bool are_lines(const Terraces& terraces, const SpatialIndex& index) {
+  std::size_t looked_at = 0, several = 0, wide = 0;
+  std::vector<Neighbor> near;
+  Positions on;
+  for (const Eigen::Vector3d& p : sample(index.points(), kPlacesOfCloud)) {
+    const auto at = terraces.step_of(p);
+    if (!at) continue;
+    index.nearest(p, int(kRing + 1), near);
+    on.clear();
+    for (const Neighbor& q : near)
+      if (q.squared_distance > 0 && terraces.step_of(index.points()[q.index]) == at)
+        on.push_back(index.points()[q.index] - p);
+    ++looked_at;
+    several += std::size_t(on.size() > 1);
+    wide += std::size_t(std::any_of(on.begin(), on.end(), [&](const auto& a) {
+      return std::any_of(on.begin(), on.end(), [&](const auto& b) { return make_a_plane(a, b); });
+    }));
+  }
+  return double(several) > kLeastPart * double(looked_at) && double(wide) <= kLeastPart * double(several);
+}
+
+/// Whether they are no depths in steps: lines; or told to fewer digits than points are apart; or of rounding
+/// that cannot be told from detail, as each ring of a laser has it that tells millimetres; or the faces of an
+/// exact part, of which fewer than kFewestSteps have points beside those of another.
 bool are_none(const Terraces& terraces, const SpatialIndex& index) {
-  std::size_t looked_at = 0, facing = 0;
   std::vector<double> apart;
   std::vector<bool> beside(terraces.depths.size(), false);
   std::vector<Neighbor> near;
   for (const Eigen::Vector3d& p : sample(index.points(), kPlacesOfCloud)) {
     const auto at = terraces.step_of(p);
     if (!at) continue;
-    index.nearest(p, int(std::min(kNoMoreALine, index.points().size())), near);
-    const Eigen::Vector3d normal = principal_axes(index.points(), near).axes.vectors.col(0);
-    ++looked_at;
-    facing += std::size_t(std::abs(normal.dot(terraces.ray(p))) > kSameSheet);
+    index.nearest(p, int(kNarrowestPatch), near);
     apart.push_back(std::sqrt(near[1].squared_distance));
-    for (std::size_t k = 1; k < std::min(kNarrowestPatch, near.size()); ++k)
-      if (const auto next = terraces.step_of(index.points()[near[k].index]); next && next != at)
-        beside[*at] = true;
+    for (const Neighbor& q : near)
+      if (const auto next = terraces.step_of(index.points()[q.index]); next && next != at) beside[*at] = true;
   }
   if (apart.empty() || std::size_t(std::count(beside.begin(), beside.end(), true)) < kFewestSteps)
     return true;
   const double spacing = quantile(apart, 0.5);
   return terraces.same > spacing || rounding_noise(terraces.typical) < kNoNoise * spacing ||
-         (double(facing) <= kLeastPart * double(looked_at) && terraces.typical > spacing);
+         are_lines(terraces, index);
 }
 
 /// The farthest that a point is from `from`.
@@ -250,36 +295,49 @@ double DepthSteps::sigma(const Eigen::Vector3d& at, const Eigen::Vector3d& norma
   if (on_grid()) return rounding_noise(typical_);
   if (index_ == nullptr) return terraces_.front().sigma(at, normal);
   std::vector<Neighbor> near;
-  index_->nearest(at, 1, near);
-  const Eigen::Vector3d& point = index_->points()[near.front().index];
-  const auto of = std::find_if(terraces_.begin(), terraces_.end(),
-                               [&](const Terraces& terraces) { return terraces.step_of(point).has_value(); });
-  return of != terraces_.end() ? of->sigma(at, normal) : 0;
+  index_->nearest(at, int(std::min(kNeighbourhood, index_->points().size())), near);
+  const Terraces* of = nullptr;
+  double most = kLeastPart * double(near.size());
+  for (const Terraces& terraces : terraces_) {
+    const auto held = double(std::count_if(near.begin(), near.end(), [&](const Neighbor& q) {
+      return terraces.step_of(index_->points()[q.index]).has_value();
+    }));
+    if (!(held > most)) continue;
+    most = held;
+    of = &terraces;
+  }
+  return of != nullptr ? of->sigma(at, normal) : 0;
 }
 
-std::optional<DepthSteps> find_depth_steps(const SpatialIndex& index,
-                                           const std::optional<Eigen::Vector3d>& scanner) {
+std::optional<DepthSteps> find_depth_steps(const SpatialIndex& index) {
   const Positions some = sample(index.points(), kLookedAt);
   const Positions axes = {Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ()};
-  std::vector<Terraces> all = terraces_along(axes, some, Steps::of_all, 0);
-  for (std::size_t k = 1; k < all.size(); ++k)
-    if (is_same_at_depths(some, all.front(), all[k])) return {};
-  if (!all.empty()) return without_strays(std::move(all.front()), some, index);
+  std::vector<Terraces> planes, shells;
+  for (const Eigen::Vector3d& axis : axes) planes.push_back(along(axis, 0));
+  planes = with_steps(planes, some, Steps::of_all);
+  for (std::size_t k = 1; k < planes.size(); ++k)
+    if (is_same_at_depths(some, planes.front(), planes[k])) return {};
+  planes.erase(
+      std::remove_if(planes.begin(), planes.end(), [&](const auto& of) { return are_lines(of, index); }),
+      planes.end());
+  if (!planes.empty()) return without_strays(std::move(planes.front()), some, index);
   // Neighbours differ by that; what is rounded in three coordinates lies within twice as much along any line.
-  const double rounding = rounding_of(some);
-  const auto none = [&](const Terraces& terraces) { return are_none(terraces, index); };
-  Terraces shells;
-  shells.scanner = scanner;
-  if (scanner) {
-    shells.same = kSevenDigits * farthest(some, *scanner);
-    if (fill(some, Steps::of_all, shells)) return without_strays(std::move(shells), some, index);
-    shells.same = std::max(shells.same, 2 * rounding);
-  }
-  all = of_depth(terraces_along(step_directions(index, rounding), some, Steps::of_part, 2 * rounding), some);
-  all.erase(std::remove_if(all.begin(), all.end(), none), all.end());
-  if (!all.empty()) return DepthSteps(std::move(all), index);
-  if (!scanner || !fill(some, Steps::of_part, shells) || none(shells)) return {};
-  return DepthSteps({std::move(shells)}, index);
+  const double rounding = rounding_of(some), same = 2 * rounding;
+  for (const Eigen::Vector3d& scanner : scanner_places(index, same))
+    shells.push_back(around(scanner, std::max(same, kSevenDigits * farthest(some, scanner))));
+  shells = with_steps(shells, some, Steps::of_part);
+  shells.erase(std::remove_if(shells.begin(), shells.end(), [](const auto& of) { return !are_equal(of); }),
+               shells.end());
+  for (const Eigen::Vector3d& direction : step_directions(index, rounding))
+    planes.push_back(along(direction, same));
+  planes = with_steps(planes, some, Steps::of_part);
+  if (are_of_grid(planes, some)) planes.clear();
+  std::move(planes.begin(), planes.end(), std::back_inserter(shells));
+  std::vector<Terraces> all = that_hold_more(std::move(shells), some);
+  all.erase(std::remove_if(all.begin(), all.end(), [&](const auto& of) { return are_none(of, index); }),
+            all.end());
+  if (all.empty()) return {};
+  return DepthSteps(std::move(all), index);
 }
 
 std::optional<DepthSteps> find_grid(std::vector<double> nearest) {
