@@ -275,6 +275,7 @@ TEST(AnySize, TheSameShapeComesOutTheSame) {
   const Sized usual = sized_ball(1, {});
   EXPECT_GT(usual.report.moved, 6000u);
   for (const double size : {1e-99, 1e-60, 1e-45, 1e-38, 1e-20, 1e20, 1e60, 1e99}) {
+    if (test::kSanitized && size > 1e-99 && size < 1e99) continue;
     SCOPED_TRACE(size);
     const Sized other = sized_ball(size, {});
     EXPECT_NEAR(double(other.report.moved), double(usual.report.moved), 5);
@@ -298,6 +299,7 @@ TEST(AnySize, StatedNoiseStatisticsAndTraceHaveTheUnitOfTheCloud) {
   };
   const Sized usual = sized_ball(1, options_of(1));
   for (const double size : {0x1p-200, 0x1p-60, 0x1p60, 0x1p200}) {
+    if (test::kSanitized && size > 0x1p-200 && size < 0x1p200) continue;
     SCOPED_TRACE(size);
     const Sized other = sized_ball(size, options_of(size));
     EXPECT_LT(apart(usual, other), 1e-6);

@@ -138,7 +138,7 @@ TEST_F(Tiles, ACoarseScaleOfALasFileIsRefinedAsForTheWholeCloud) {
 // Each has its scale and its box from the results of its own rows; reading those of all inputs for each of
 // them took as long as there are inputs.
 TEST_F(Tiles, ManyLasFilesAreJoinedAsOneAndInTheTimeOfOne) {
-  constexpr int kFiles = kSanitized ? 8 : 100, kSide = kSanitized ? 80 : 200, kColumns = 200;
+  constexpr int kFiles = kSanitized ? 8 : 100, kSide = kSanitized ? 40 : 200, kColumns = 200;
   constexpr double kScale = 0.01;
   std::mt19937_64 engine(9);
   std::normal_distribution<double> noise(0, 0.3);

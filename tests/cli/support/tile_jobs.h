@@ -17,8 +17,8 @@
 
 namespace rfsmooth::test {
 
-constexpr int kLong = kSanitized ? 450 : 900, kWide = 24;
-constexpr const char *kTile = kSanitized ? "1500" : "3000", *kTwoTiles = kSanitized ? "3000" : "6000";
+constexpr int kLong = kSanitized ? 330 : 900, kWide = 24;
+constexpr const char *kTile = kSanitized ? "1200" : "3000", *kTwoTiles = kSanitized ? "2400" : "6000";
 
 enum class Kind { own, with_tails, shared, in_steps };
 
