@@ -22,8 +22,10 @@ constexpr std::size_t kPointsLooked = 500000;  // at each m: of wide places fewe
 constexpr double kMostGrowthOfNoise = 1.8, kLeastGrowthOfShape = 2.38;
 constexpr double kGrowthAcrossEdges = 2;  // 2^p of shape
 constexpr std::size_t kSlowInARow = 2;    // the least that is a row
-constexpr double kTogether = 1.4;         // times that of points on their own; they scatter by a fifth
-constexpr double kFollows = 3;            // patches follow noise of their own by kRing kFollows / m of it
+constexpr double kTogether = 0.4;         // above that of points on their own: two standard deviations
+// Patches of m points follow noise of their own so that m / (m + kFollows) of 1 is left of `together`: 0.43,
+// 0.58, 0.75, 0.82, 0.91 for 32, 64, ... 512 on a plane.
+constexpr double kFollows = 45;
 constexpr std::size_t kDiskPoints = 300;  // of the disk on which g is computed
 
 /// Share of the area that two disks of radius r have in common at a distance d.
@@ -156,8 +158,7 @@ bool hold_slab(const Calm& calm, std::size_t i) {
 
 /// Whether nearest points lie off patches of the i-th m the same way.
 bool err_together(const Calm& calm, std::size_t i) {
-  const double alone = 1 - kRing * kFollows / calm.m[i];
-  return alone > 0.5 && calm.together[i] > kTogether * alone;
+  return calm.together[i] > calm.m[i] / (calm.m[i] + kFollows) + kTogether;
 }
 
 /// What is left of the i-th variance without the part that grows with m as shape does.

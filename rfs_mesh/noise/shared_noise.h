@@ -13,8 +13,9 @@
 ///
 /// - the largest S with p = 1.25 is above the square of what search_noise found by more than that is unsure
 ///   of: bumps and folds of a statue grow hardly faster, and are no noise;
-/// - nearest points lie off the same way there: Scatter::together above that of points on their own, about m
-///   as about 2 m. (Loud points among calm ones make s(m) grow, too.)
+/// - nearest points lie off the same way there: Scatter::together above that of points on their own, which is
+///   what patches of m points do not follow of it, m / (m + 45), about m as about 2 m. (Loud points among
+///   calm ones make s(m) grow, too.)
 ///
 /// or if depths in steps (depth_steps.h) make sure of it. Its variance is then the largest S with p = 3, or
 /// that of the steps as far as it is seen. An m beyond which s^2 grows faster than noise does is the last; on

@@ -44,7 +44,18 @@ double plateau(double few, double many, double radius) {
 struct OpenFits {
   std::size_t points;
   std::vector<Scatter> all;
+  std::vector<double> rounding = {};  ///< what depths in steps add there, world units; empty: not in steps
 };
+
+/// By site: what depths in steps add by their rounding along the normal of its fit, world units.
+std::vector<double> rounding_at(const Places& places, const std::vector<Scatter>& all,
+                                const DepthSteps& steps, const Context& context) {
+  std::vector<double> rounding(all.size());
+  for_each_index(
+      context, all.size(), [&](std::size_t s) { rounding[s] = steps.sigma(places.at()[s], all[s].normal); },
+      64);
+  return rounding;
+}
 
 /// The fits of the sites nearest to one, and what they say together.
 struct Around {
@@ -120,7 +131,6 @@ bool are_layers(const Around& around, double apart) {
 
 /// The sites, and the depths in steps that they may have; null: they have none.
 struct Sites {
-  const Places& places;
   const SiteGroups& groups;
   const DepthSteps* steps;
   bool on_lines;
@@ -128,13 +138,11 @@ struct Sites {
 
   bool on_grid() const { return steps != nullptr && steps->on_grid(); }
 
-  /// What depths in steps add there by their rounding, world units.
-  double rounding_around(std::size_t s, const std::vector<Scatter>& all) const {
+  /// What depths in steps add around there by their rounding, world units.
+  double rounding_around(std::size_t s, const OpenFits& fits) const {
     if (steps == nullptr) return 0;
-    std::vector<double> sigma_of;
-    for (const Neighbor& q : groups[s])
-      sigma_of.push_back(steps->sigma(places.at()[q.index], all[q.index].normal));
-    return quantile(sigma_of, 0.5);
+    std::vector<double> of_sites = around(groups[s], fits.rounding);
+    return quantile(of_sites, 0.5);
   }
 
   /// Sets `sheet`, and `middle` to Scatter::middle, where two sheets are seen, farther apart than two depths
@@ -149,7 +157,7 @@ struct Sites {
     };
     const auto exceeds_rounding = [&](std::size_t k) {
       const double depths = on_grid() ? 2 : 1;  // with no empty voxel between them there is one sheet
-      const double rounding = depths * rounding_around(s, open[k].all);
+      const double rounding = depths * rounding_around(s, open[k]);
       return seen[k].variance() > kTwoDepths * rounding * rounding;
     };
     std::size_t flattest = 0;
@@ -172,13 +180,12 @@ struct Sites {
   }
 
   /// Raises `floor`, sets `told`. What two sheets scatter does not grow, either.
-  void find_floor(std::size_t s, const std::vector<Scatter>& few, const std::vector<Scatter>& many,
-                  SiteView& view) const {
+  void find_floor(std::size_t s, const OpenFits& few, const OpenFits& many, SiteView& view) const {
     std::vector<double> narrow, wide, radius;
     for (const Neighbor& q : groups[s]) {
-      radius.push_back(few[q.index].radius);
-      narrow.push_back(few[q.index].variance);
-      wide.push_back(many[q.index].variance);
+      radius.push_back(few.all[q.index].radius);
+      narrow.push_back(few.all[q.index].variance);
+      wide.push_back(many.all[q.index].variance);
     }
     const double less = std::sqrt(quantile(narrow, kTypical)), seen = std::sqrt(quantile(wide, kTypical));
     if (view.sheet == SiteView::kNone)
@@ -257,11 +264,13 @@ std::vector<SiteView> look_without_windows(Places& places, const SiteGroups& gro
   for (std::size_t points = kNeighbourhood; open.empty() || (points <= kPlateauTo && n >= 2 * points);
        points *= 2)
     open.push_back({points, places.fits(points)});
+  if (steps != nullptr)
+    for (OpenFits& fits : open) fits.rounding = rounding_at(places, fits.all, *steps, context);
   const bool deep = start.fills_nearest();
   const std::vector<Scatter>& few = open.front().all;
   const std::vector<Scatter> wide = deep ? places.fits(start.m) : std::vector<Scatter>();
   const std::vector<Said> said = what_they_say(few, kTypicalDeviate);
-  const Sites sites{places, groups, steps, start.on_lines, start.apart};
+  const Sites sites{groups, steps, start.on_lines, start.apart};
   std::vector<SiteView> views(groups.size());
   std::vector<double> middle(groups.size(), 1);
   for_each_index(
@@ -277,8 +286,8 @@ std::vector<SiteView> look_without_windows(Places& places, const SiteGroups& gro
   forget_flat_noise(middle, views);
   if (open.back().points == kPlateauTo)
     for_each_index(
-        context, groups.size(), [&](std::size_t s) { sites.find_floor(s, few, open.back().all, views[s]); },
-        64);
+        context, groups.size(),
+        [&](std::size_t s) { sites.find_floor(s, open.front(), open.back(), views[s]); }, 64);
   hold_slabs(places, groups, open, views, context);
   return views;
 }

@@ -19,16 +19,15 @@ namespace {
 
 constexpr std::size_t kPointsOfStep = 10;  // in the mean: free coordinates hardly ever meet
 // Chosen, not derived: 2,000 steps are found. Those whose rounding is kNoNoise of the spacing may be more, up
-// to 11 sqrt(n) in a cloud of n points as deep as wide. All points of the real scans tell steps of one that
-// these do not: of 1.5 where the noise is 2.4.
+// to 11 sqrt(n) in a cloud of n points as deep as wide. Looking at all points finds steps in one more of the
+// real scans (1.5 units where its noise is 2.4).
 constexpr std::size_t kLookedAt = 20000;
 constexpr std::size_t kFewestSteps = 4;  // fewer are the sides of a box
-// Of the largest depth: how far two that are the same lie apart where files keep seven digits of each
-// coordinate.
+// Of a distance: how far two that are the same differ where files keep seven digits of each coordinate.
 constexpr double kSevenDigits = 2e-6;
 constexpr double kSame = 1e-3;  // of a distance between neighbours, some thousand of which make up the cloud
 
-/// How many points the steps of a cloud have.
+/// Whether every depth is a step, or only those that more points share than would by chance.
 enum class Steps { of_all, of_part };
 
 /// Whether more depths are the same than by chance: as many as a step has in the mean, and more than as many
@@ -122,9 +121,9 @@ std::vector<Terraces> with_steps(const std::vector<Terraces>& all, const Positio
   return found;
 }
 
-/// Whether the steps along another direction are at the commonest depth, too, as those of a grid are: as many
-/// as a draw from all of them would show. A camera's columns are at other places at any other depth, so there
-/// it shows a kFewestSteps-th (4) or less of these. The limit is twice the one and half of the other.
+/// Whether the commonest depth has most of the steps along another direction: more than half of the different
+/// ones that as many random draws from all of them would show. A grid shows all, a camera's columns, which
+/// are at other places at any other depth, a quarter or less.
 bool is_same_at_depths(const Positions& points, const Terraces& depth, const Terraces& other) {
   std::vector<std::vector<std::size_t>> there(depth.depths.size());
   for (const Eigen::Vector3d& p : points)
@@ -146,20 +145,8 @@ bool are_of_grid(const std::vector<Terraces>& all, const Positions& some) {
   return false;
 }
 
-/// Whether the gaps are multiples of one, as those of ranges that a laser tells are. Points on circles about
-/// an axis are on shells around a place there, too, but at any distances.
-bool are_equal(const Terraces& shells) {
-  std::vector<double> gaps;
-  for (std::size_t k = 1; k < shells.depths.size(); ++k)
-    gaps.push_back(shells.depths[k] - shells.depths[k - 1]);
-  const double unit = quantile(gaps, 0.5);
-  const auto multiples = std::count_if(gaps.begin(), gaps.end(), [&](double gap) {
-    return std::abs(gap - unit * std::round(gap / unit)) <= 2 * shells.same;
-  });
-  return double(multiples) > (1 - kLeastPart) * double(gaps.size());
-}
-
-/// Of points that several hold, as a camera's columns do, the first.
+/// Those that hold more than a tenth of all points beyond what the ones before them hold: a camera's columns
+/// are on its depths already.
 std::vector<Terraces> that_hold_more(std::vector<Terraces> all, const Positions& some) {
   std::vector<Terraces> found;
   Positions free = some;
@@ -242,42 +229,6 @@ double rounding_of(const Positions& some) {
 
 }  // namespace
 
-double rounding_noise(double step) {
-  return step / std::sqrt(12.0);
-}
-
-double Terraces::depth(const Eigen::Vector3d& at) const {
-  return scanner ? (at - *scanner).norm() : direction.dot(at);
-}
-
-std::size_t Terraces::nearest(double depth) const {
-  const auto above = std::size_t(std::lower_bound(depths.begin(), depths.end(), depth) - depths.begin());
-  if (above == 0) return 0;
-  if (above == depths.size() || depth - depths[above - 1] < depths[above] - depth) return above - 1;
-  return above;
-}
-
-std::optional<std::size_t> Terraces::step_of(const Eigen::Vector3d& at) const {
-  const double d = depth(at);
-  const std::size_t step = nearest(d);
-  if (!(std::abs(d - depths[step]) <= same)) return {};
-  return step;
-}
-
-double Terraces::gap(double depth) const {
-  const std::size_t at = nearest(depth), low = at > 0 ? at - 1 : 0,
-                    high = std::min(depths.size() - 1, at + 1);
-  return (depths[high] - depths[low]) / double(high - low);
-}
-
-Eigen::Vector3d Terraces::ray(const Eigen::Vector3d& at) const {
-  return scanner ? (at - *scanner).normalized() : direction;
-}
-
-double Terraces::sigma(const Eigen::Vector3d& at, const Eigen::Vector3d& normal) const {
-  return rounding_noise(std::abs(normal.dot(ray(at))) * gap(depth(at)));
-}
-
 DepthSteps::DepthSteps(std::vector<Terraces> terraces, const SpatialIndex& index)
     : typical_(terraces.front().typical), terraces_(std::move(terraces)) {
   const Positions some = sample(index.points(), kLookedAt);
@@ -302,8 +253,9 @@ double DepthSteps::sigma(const Eigen::Vector3d& at, const Eigen::Vector3d& norma
     const auto held = double(std::count_if(near.begin(), near.end(), [&](const Neighbor& q) {
       return terraces.step_of(index_->points()[q.index]).has_value();
     }));
-    if (!(held > most)) continue;
-    most = held;
+    const double more = held - terraces.by_chance() * double(near.size());
+    if (!(more > most)) continue;
+    most = more;
     of = &terraces;
   }
   return of != nullptr ? of->sigma(at, normal) : 0;
@@ -321,12 +273,13 @@ std::optional<DepthSteps> find_depth_steps(const SpatialIndex& index) {
       std::remove_if(planes.begin(), planes.end(), [&](const auto& of) { return are_lines(of, index); }),
       planes.end());
   if (!planes.empty()) return without_strays(std::move(planes.front()), some, index);
-  // Neighbours differ by that; what is rounded in three coordinates lies within twice as much along any line.
+  // Rounding three coordinates moves a difference along any line by at most sqrt(3) of that. Directions are
+  // looked for with once as much: most neighbours keep to it, and fewer are level by chance.
   const double rounding = rounding_of(some), same = 2 * rounding;
   for (const Eigen::Vector3d& scanner : scanner_places(index, same))
     shells.push_back(around(scanner, std::max(same, kSevenDigits * farthest(some, scanner))));
   shells = with_steps(shells, some, Steps::of_part);
-  shells.erase(std::remove_if(shells.begin(), shells.end(), [](const auto& of) { return !are_equal(of); }),
+  shells.erase(std::remove_if(shells.begin(), shells.end(), [&](auto& of) { return !fill_in(some, of); }),
                shells.end());
   for (const Eigen::Vector3d& direction : step_directions(index, rounding))
     planes.push_back(along(direction, same));

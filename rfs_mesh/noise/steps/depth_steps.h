@@ -1,7 +1,8 @@
 /// Depths in steps: a camera that measures by disparity or by time knows few depths, and its points lie on
 /// terraces; a laser scanner that tells whole centimetres puts them on shells around itself.
 ///
-/// Terraces are found where a coordinate has a tenth as many values as there are points, strays and all; or
+/// Terraces are found where a coordinate has less than a tenth as many values as the points that are looked
+/// at, strays and all; or
 /// else where a tenth of the points are as far from a place at which a scanner stood (scanner_places.h), all
 /// at multiples of one distance, or lie level along some direction (step_directions.h), and others, as of
 /// other cameras, lie free between them. Of several coordinates it is the one with the largest steps: before
@@ -16,39 +17,10 @@
 #include <optional>
 #include <vector>
 
+#include "rfs_mesh/noise/steps/terraces.h"
 #include "rfs_mesh/search/neighbors.h"
 
 namespace rfsmooth::rfs_mesh {
-
-/// Standard deviation of what rounding to steps of one size adds.
-double rounding_noise(double step);
-
-/// The steps along one direction, or of the distance from a scanner.
-struct Terraces {
-  Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< unit; depth is along it
-  std::optional<Eigen::Vector3d> scanner;                ///< if there, depth is the distance from it
-  std::vector<double> depths;                            ///< ascending, at least two
-  double same = 0;     ///< depths that differ by no more than this are one, world units
-  double typical = 0;  ///< the gap in the middle of the points on them
-
-  /// Of a point.
-  double depth(const Eigen::Vector3d& at) const;
-
-  /// Unit: the direction along which depth grows there.
-  Eigen::Vector3d ray(const Eigen::Vector3d& at) const;
-
-  /// Which of `depths` is nearest to a depth. O(log n).
-  std::size_t nearest(double depth) const;
-
-  /// Which of them a point is on, if on any. O(log n).
-  std::optional<std::size_t> step_of(const Eigen::Vector3d& at) const;
-
-  /// Mean distance of the steps on both sides of the one nearest to a depth. O(log n).
-  double gap(double depth) const;
-
-  /// Standard deviation along the normal of a surface there.
-  double sigma(const Eigen::Vector3d& at, const Eigen::Vector3d& normal) const;
-};
 
 /// The steps of a cloud: of one camera or scanner, of several that saw parts of it, or of a grid.
 class DepthSteps {
@@ -63,24 +35,25 @@ class DepthSteps {
   bool on_shells() const { return !on_grid() && terraces_.front().scanner; }
   const std::vector<Terraces>& terraces() const { return terraces_; }  ///< none of a grid
 
-  /// The gap in the middle of the points that were looked at, of the first terraces.
+  /// Terraces::typical of the first, or the grid's.
   double typical() const { return typical_; }
 
   /// Whether they are larger than another's, by more than files round.
   bool exceed(const DepthSteps& other) const;
 
-  /// Standard deviation along the normal of a surface there: by the terraces that hold the most of the
-  /// kNeighbourhood nearest points, 0 if none holds a tenth of them. O(1); O(log n) where not all points are
-  /// on the same.
+  /// Standard deviation along the normal of a surface there: by the first terraces where nine tenths of the
+  /// cloud are on them (O(log steps)); else by those that hold the most of the kNeighbourhood nearest points,
+  /// 0 if none holds a tenth of them beyond chance (O(log n)).
   double sigma(const Eigen::Vector3d& at, const Eigen::Vector3d& normal) const;
 
  private:
   double typical_;
   std::vector<Terraces> terraces_;
-  const SpatialIndex* index_ = nullptr;  ///< null: all points are on the first
+  const SpatialIndex* index_ = nullptr;  ///< null: nine tenths of the points are on the first
 };
 
-/// Looks at up to 20,000 points. Nothing where there are no steps.
+/// O(log n): looks at up to 20,000 points, at up to 50,000 for a scanner's place. Nothing where there are no
+/// steps. \param index of at least one point.
 std::optional<DepthSteps> find_depth_steps(const SpatialIndex& index);
 
 /// The steps of a grid in space, turned any way: the quartiles of the distances to the nearest point are the

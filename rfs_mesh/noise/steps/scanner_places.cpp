@@ -29,14 +29,15 @@ struct Halfway {
   }
 };
 
-/// Of about so many points each with one of its neighbours: with the nearest, the next and so on in turn.
+/// Of about so many points each with one of its neighbours: the nearest, the next and so on in turn.
 std::vector<Halfway> halfway(const SpatialIndex& index, std::size_t count) {
   std::vector<Halfway> pairs;
   std::vector<Neighbor> near;
   std::size_t which = 0;
   for (const Eigen::Vector3d& p : sample(index.points(), count)) {
-    index.nearest(p, int(kRing), near);
-    const Eigen::Vector3d q = index.points()[near[which++ % near.size()].index];
+    index.nearest(p, int(kRing + 1), near);  // and the point itself
+    if (near.size() < 2) break;
+    const Eigen::Vector3d q = index.points()[near[1 + which++ % (near.size() - 1)].index];
     if (q != p) pairs.push_back({(p + q) / 2, q - p});
   }
   return pairs;
@@ -56,7 +57,8 @@ Eigen::Vector3d meeting(const Halfway& a, const Halfway& b, const Halfway& c) {
          Eigen::Vector3d(a.across.dot(a.middle), b.across.dot(b.middle), c.across.dot(c.middle));
 }
 
-/// Where the most planes meet that three of them may. \param fewest so many pairs must be as far.
+/// Of the places where three of the planes meet, the one that most of them pass within `same` of. \param
+/// fewest so many must.
 std::optional<Eigen::Vector3d> rough_place(const std::vector<Halfway>& pairs, double same, double fewest) {
   constexpr double kMissed = 7;  // trials for each that is expected to hit: one search in e^7 finds nothing
   std::mt19937 engine(1);
@@ -123,6 +125,7 @@ Eigen::Vector3d refined_place(const Positions& points, Eigen::Vector3d at, doubl
 /// A place that was found among few pairs, from all of them.
 Eigen::Vector3d measured_place(std::vector<Halfway> pairs, const Eigen::Vector3d& rough, double same) {
   const Eigen::Vector3d at = common_place(pairs, rough, same);
+  if (!at.allFinite()) return at;
   const auto others = part(pairs, at, same);
   Positions points;
   for (auto pair = pairs.begin(); pair != others; ++pair)
@@ -145,7 +148,7 @@ Positions scanner_places(const SpatialIndex& index, double same) {
     if (all.empty()) all = halfway(index, kSampleOfCloud);
     const Eigen::Vector3d at = measured_place(all, *rough, same);
     const auto others = part(pairs, at, same);
-    if (!(double(others - pairs.begin()) > fewest)) break;  // a line of such places
+    if (!(double(others - pairs.begin()) > fewest)) break;  // no one place: any on the axis of rings would do
     places.push_back(at);
     pairs.erase(pairs.begin(), others);
   }

@@ -12,8 +12,8 @@ namespace rfsmooth::rfs_mesh {
 
 /// Places from which a tenth of all neighbours or more are as far as each other, the one with the most first.
 /// They may mean nothing where points are on circles about one axis. \param same how far apart two ranges may
-/// be that are one, world units, > 0. O(log n): looks at a thousand places, and at fifty where it finds one.
-/// Deterministic.
+/// be that are one, world units, > 0. O(log n): looks at 1,000 points, and at up to 50,000 once it has found
+/// a place. Deterministic.
 Positions scanner_places(const SpatialIndex& index, double same);
 
 }  // namespace rfsmooth::rfs_mesh

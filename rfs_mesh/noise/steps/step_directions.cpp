@@ -100,12 +100,20 @@ Positions step_directions(const SpatialIndex& index, double same) {
   // One scan of ten, a tenth of whose neighbours are level.
   const double fewest = kLeastPart * kLeastPart * double(pairs.size());
   Positions directions;
-  while (!planes.empty()) {
-    std::vector<std::size_t> level;
-    for (const Eigen::Vector3d& plane : planes) level.push_back(count_level(pairs, plane, same));
-    const auto best = std::max_element(level.begin(), level.end());
-    if (!(double(*best) > fewest)) break;
-    const Eigen::Vector3d rough = planes[std::size_t(best - level.begin())];
+  while (true) {
+    // Pairs only become fewer: a plane that too few are level with does not come back.
+    std::size_t most = 0, kept = 0;
+    Eigen::Vector3d rough = Eigen::Vector3d::Zero();
+    for (const Eigen::Vector3d& plane : Positions(planes)) {
+      const std::size_t level = count_level(pairs, plane, same);
+      if (!(double(level) > fewest)) continue;
+      planes[kept++] = plane;
+      if (level <= most) continue;
+      most = level;
+      rough = plane;
+    }
+    planes.resize(kept);
+    if (planes.empty()) break;
     const auto others = std::partition(pairs.begin(), pairs.end(),
                                        [&](const Pair& pair) { return is_level(pair.offset, rough, same); });
     std::vector<double> apart;

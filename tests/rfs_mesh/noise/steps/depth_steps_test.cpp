@@ -240,6 +240,23 @@ TEST(DepthSteps, AreFoundInTheDistanceFromTheScannerWhereFilesKeepFewDecimals) {
   }
 }
 
+// Where it saw few points, far away, most of the ranges between are missing.
+TEST(DepthSteps, OfALaserAreAsSmallWhereItSawFewPoints) {
+  const Eigen::Vector3d scanner(-2, 7, 0.3), ray = kTurn.col(2);
+  Positions points = wall_before_laser(0.01, 1e-7, scanner);
+  std::mt19937_64 engine(4);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  for (int i = 0; i < 300; ++i) {
+    const Eigen::Vector3d at = kTurn * Eigen::Vector3d(uniform(engine), uniform(engine), 4);
+    points.push_back(scanner + 0.01 * std::round(200 * (3 + uniform(engine))) * at.normalized());
+  }
+  const auto steps = find_terraces(points);
+  ASSERT_TRUE(steps);
+  EXPECT_NEAR(steps->typical, 0.01, 1e-6);
+  for (const double range : {2.1, 5.0, 7.5})
+    EXPECT_NEAR(steps->sigma(scanner + range * ray, ray), 0.01 / std::sqrt(12.0), 1e-5) << range;
+}
+
 TEST(DepthSteps, AreNoneInFreeRanges) {
   for (const double step : {0.0, 1e-4})  // as many as points
     EXPECT_FALSE(find_terraces(wall_before_laser(step, 1e-7, {-2, 7, 0.3})));

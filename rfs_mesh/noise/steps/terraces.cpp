@@ -1,0 +1,103 @@
+#include "rfs_mesh/noise/steps/terraces.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "base/quantile.h"
+#include "rfs_mesh/levels.h"
+
+namespace rfsmooth::rfs_mesh {
+
+namespace {
+
+/// Whether depths are whole steps from one of them, of a size that is known better and better.
+class EqualSteps {
+ public:
+  EqualSteps(double first, double size, double same) : first_(first), size_(size), same_(same) {}
+
+  /// Enters one that is farther from the first than those before.
+  bool enter(double depth) {
+    const double steps = std::round((depth - first_) / size_);
+    if (steps == 0 || !(std::abs(depth - first_ - steps * size_) <= 2 * same_)) return false;
+    size_ = (depth - first_) / steps;
+    return true;
+  }
+  double size() const { return size_; }
+
+ private:
+  double first_, size_, same_;
+};
+
+}  // namespace
+
+double rounding_noise(double step) {
+  return step / std::sqrt(12.0);
+}
+
+double Terraces::depth(const Eigen::Vector3d& at) const {
+  return scanner ? (at - *scanner).norm() : direction.dot(at);
+}
+
+std::size_t Terraces::nearest(double depth) const {
+  const auto above = std::size_t(std::lower_bound(depths.begin(), depths.end(), depth) - depths.begin());
+  if (above == 0) return 0;
+  if (above == depths.size() || depth - depths[above - 1] < depths[above] - depth) return above - 1;
+  return above;
+}
+
+std::optional<std::size_t> Terraces::step_of(const Eigen::Vector3d& at) const {
+  const double d = depth(at);
+  const std::size_t step = nearest(d);
+  if (!(std::abs(d - depths[step]) <= same)) return {};
+  return step;
+}
+
+double Terraces::gap(double depth) const {
+  const std::size_t at = nearest(depth), low = at > 0 ? at - 1 : 0,
+                    high = std::min(depths.size() - 1, at + 1);
+  return (depths[high] - depths[low]) / double(high - low);
+}
+
+double Terraces::by_chance() const {
+  return 2 * same / typical;
+}
+
+Eigen::Vector3d Terraces::ray(const Eigen::Vector3d& at) const {
+  return scanner ? (at - *scanner).normalized() : direction;
+}
+
+double Terraces::sigma(const Eigen::Vector3d& at, const Eigen::Vector3d& normal) const {
+  return rounding_noise(std::abs(normal.dot(ray(at))) * gap(depth(at)));
+}
+
+bool fill_in(const Positions& some, Terraces& terraces) {
+  const std::vector<double>& told = terraces.depths;
+  std::vector<double> gaps;
+  for (std::size_t k = 1; k < told.size(); ++k) gaps.push_back(told[k] - told[k - 1]);
+  std::vector<double> sorted = gaps;
+  const double typical = quantile(sorted, 0.5);
+  if (!(typical > 8 * terraces.same)) return false;  // half of all gaps are multiples of it by chance
+  const auto single = std::min_element(gaps.begin(), gaps.end(), [&](double a, double b) {
+    return std::abs(a - typical) < std::abs(b - typical);
+  });
+  const auto from = told.begin() + (single - gaps.begin());
+  EqualSteps steps(*from, typical, terraces.same);
+  const auto enter = [&](double depth) { return steps.enter(depth); };
+  const auto equal = std::count_if(from + 1, told.end(), enter) +
+                     std::count_if(std::make_reverse_iterator(from), told.rend(), enter);
+  if (!(double(equal) > (1 - kLeastPart) * double(gaps.size()))) return false;
+  const double first = *from, size = steps.size();
+  double least = first, most = first;
+  for (const Eigen::Vector3d& p : some) {
+    least = std::min(least, terraces.depth(p));
+    most = std::max(most, terraces.depth(p));
+  }
+  terraces.depths.clear();
+  for (double step = std::ceil((least - first) / size); step <= (most - first) / size; ++step)
+    terraces.depths.push_back(first + step * size);
+  terraces.typical = size;
+  return true;
+}
+
+}  // namespace rfsmooth::rfs_mesh
