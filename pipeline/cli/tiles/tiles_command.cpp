@@ -14,6 +14,7 @@
 #include "pipeline/cli/options/json_values.h"
 #include "pipeline/cli/options/text_values.h"
 #include "pipeline/cli/own_files.h"
+#include "pipeline/io/stream/atomic_file.h"
 #include "pipeline/tiles/allowed.h"
 #include "pipeline/tiles/files/row_file.h"
 #include "pipeline/tiles/job.h"
@@ -116,13 +117,25 @@ void plan_tiles(TilesOptions& options, const std::vector<std::string>& arguments
   console.say(fmt::format("{}: {} points in {} tiles", arguments.back(), job.points, job.tiles.size()));
 }
 
+/// Where the inputs of a job go; refused, before any work, if something must not be replaced.
+std::vector<std::string> outputs_of(const std::vector<std::string>& inputs, const std::string& out,
+                                    bool force) {
+  std::vector<std::string> outputs;
+  for (const cli::Job& file : plan_jobs(inputs, out)) {
+    need_own_target(inputs, file.output);
+    pipeline::io::check_target(file.output, force);
+    outputs.push_back(file.output);
+  }
+  return outputs;
+}
+
 void join_tiles(const TilesOptions& options, const std::vector<std::string>& arguments,
                 const Context& context, Console& console) {
   if (arguments.size() != 2) fail(ErrorCode::usage, "rfsmooth tiles join takes JOB OUT");
   const Job job = pipeline::tiles::open_job(arguments[0]);
-  std::vector<std::string> inputs, outputs;
+  std::vector<std::string> inputs;
   for (const auto& input : job.inputs) inputs.push_back(input.path);
-  for (const cli::Job& file : plan_jobs(inputs, arguments[1])) outputs.push_back(file.output);
+  const std::vector<std::string> outputs = outputs_of(inputs, arguments[1], options.force);
   const auto joined = pipeline::tiles::join_job(
       job, outputs, {options.force, options.keep_scale, planned_options(job).normals.normals}, context);
   for (std::size_t i = 0; i < outputs.size(); ++i) {
