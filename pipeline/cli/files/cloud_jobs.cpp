@@ -55,6 +55,22 @@ void run_one(const Job& job, const JobOptions& options, const OnCloud& on_cloud,
   entry["seconds"] = json_of(stages);
 }
 
+/// Refuses, before any work, outputs that would take the place of each other, or of what must stay.
+void check_outputs(const std::vector<Job>& jobs, const JobOptions& options, const OnCloud& on_cloud) {
+  std::vector<FileBeside> beside;
+  if (on_cloud.files_beside) beside = on_cloud.files_beside();
+  std::vector<std::pair<std::string, std::string>> outputs;
+  for (const Job& job : jobs) outputs.emplace_back("OUT", job.output);
+  if (options.run.report) outputs.emplace_back("--report", *options.run.report);
+  for (const FileBeside& file : beside) outputs.emplace_back(file.option, file.path);
+  need_different_outputs(outputs);
+  for (const FileBeside& file : beside) {
+    if (jobs.size() > 1)
+      fail(ErrorCode::usage, "{} is for one input; run the command once for each", file.option);
+    check_no_cloud_target(file.path, options.files.force, file.what);
+  }
+}
+
 }  // namespace
 
 void tell_summary(const Job& job, const std::string& summary, bool one_of_many, Console& console) {
@@ -70,7 +86,7 @@ int run_cloud_jobs(const std::string& command, const JobOptions& options, const 
                    const OnCloud& on_cloud) {
   on_cloud.check(typed);
   const std::vector<Job> jobs = plan_cloud_jobs(typed.arguments, options.files, on_cloud.makes);
-  need_free_stdout(jobs, options.run);
+  check_outputs(jobs, options, on_cloud);
   Report report(command, options.run.report, options.files.force);
   Console console(options.talk);
   const Context context = console.context(on_cloud.stages(), options.run.threads);
