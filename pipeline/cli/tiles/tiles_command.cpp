@@ -104,6 +104,7 @@ void plan_tiles(TilesOptions& options, const std::vector<std::string>& arguments
     fail(ErrorCode::usage, "in tiles outliers are kept or smoothed: every row stays, and no field is added");
   pipeline::tiles::check_for_tiles(options.planned.denoise);
   const std::vector<std::string> inputs(arguments.begin(), arguments.end() - 1);
+  if (inputs.size() > 1) jobs_in_folder(inputs, "OUT");  // as join will write them
   NormalsFields& normals = options.planned.normals;
   check(normals);
   if (const auto how = normals_in_tiles(normals, inputs, context); how && how->viewpoint)

@@ -208,6 +208,18 @@ TEST_F(Tiles, WhatCannotBeDoneIsRefusedWithWhatToDo) {
   EXPECT_THAT(later.err, HasSubstr("tiles plan"));
 }
 
+TEST_F(Tiles, InputsThatJoinCouldNotTellApartAreRefusedByPlan) {
+  for (const char* folder : {"a", "b"}) {
+    std::filesystem::create_directory(at(folder));
+    put(std::string(folder) + "/s.ply", noisy_plane(10).bytes());
+  }
+  const Ran ran = run({"tiles", "plan", "a/s.ply", "b/s.ply", "job"});
+  EXPECT_EQ(ran.code, 2);
+  EXPECT_THAT(ran.err, HasSubstr("a/s.ply and b/s.ply would both be written to OUT/s.ply"));
+  EXPECT_FALSE(there("job"));
+  EXPECT_FALSE(there("OUT"));
+}
+
 TEST_F(Tiles, JoinReplacesNoScan) {
   std::filesystem::create_directory(at("scans"));
   const std::string a = noisy_plane(20).bytes(), b = noisy_plane(21).bytes(), other = noisy_plane(5).bytes();
