@@ -89,8 +89,8 @@ std::vector<Job> plan_jobs(const std::vector<std::string>& arguments,
     fail(ErrorCode::cannot_write, "{}: is not a folder, and there are several inputs", *output);
   // The name of a file, or a slip: whoever wants a folder called so writes the slash.
   if (*output == "-" || pipeline::io::format_of_extension(*output))
-    fail(ErrorCode::usage, "several inputs need a folder: -o {}",
-         *output == "-" ? "FOLDER" : *output + "/ if it is to be called so");
+    fail(ErrorCode::usage, "several inputs need a folder{}",
+         *output == "-" ? ", not standard output (-)" : ": " + *output + "/ if it is to be called so");
   return into_folder(arguments, *output, written);
 }
 

@@ -118,14 +118,15 @@ void plan_tiles(TilesOptions& options, const std::vector<std::string>& arguments
   console.say(fmt::format("{}: {} points in {} tiles", arguments.back(), job.points, job.tiles.size()));
 }
 
-/// Where the inputs of a job go; refused, before any work, if something must not be replaced.
+/// Where the inputs of a job go, which is refused, before any work, if something must not be replaced. Pieces
+/// are written to a name: "-" becomes that of standard output.
 std::vector<std::string> outputs_of(const std::vector<std::string>& inputs, const std::string& out,
                                     bool force) {
   std::vector<std::string> outputs;
   for (const cli::Job& file : plan_jobs(inputs, out)) {
-    need_own_target(inputs, file.output);
-    pipeline::io::check_target(file.output, force);
-    outputs.push_back(file.output);
+    outputs.push_back(file.output == "-" ? "/dev/stdout" : file.output);
+    need_own_target(inputs, outputs.back());
+    pipeline::io::check_target(outputs.back(), force);
   }
   return outputs;
 }
@@ -234,7 +235,8 @@ Command tiles_command() {
       "Smooths a cloud (binary PLY, binary PCD or LAS, one file or many that are one cloud) in tiles, in a "
       "folder JOB. plan cuts it; measure, for every tile, takes a sample; settle finds from it what the "
       "cloud "
-      "as a whole is like; run, for every tile, smooths it; join writes the files with x, y, z replaced. "
+      "as a whole is like; run, for every tile, smooths it; join writes the files with x, y, z replaced "
+      "(a single one also to standard output, -). "
       "Tiles are numbered from 0; measure and run may go on in any order, in any number of processes, and "
       "again: what is there complete is not made again. The same inputs give the same bytes. On one machine "
       "'rfsmooth denoise --memory 8G IN OUT' does all of it.";

@@ -258,6 +258,21 @@ TEST_F(Tiles, JoinReplacesWhatItWroteItself) {
   EXPECT_TRUE(take("out.ply") == once);
 }
 
+TEST_F(Tiles, JoinWritesOneFileToStandardOutput) {
+  put("a.ply", noisy_plane(20).bytes());
+  put("b.ply", noisy_plane(21).bytes());
+  const std::string expected = joined({"a.ply"}, "one", "out.ply");
+  const Ran ran = run({"tiles", "join", "one", "-"});
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  EXPECT_TRUE(ran.out == expected);
+  joined({"a.ply", "b.ply"}, "two", "out");
+  const Ran two = run({"tiles", "join", "two", "-"});
+  EXPECT_EQ(two.code, 2);
+  EXPECT_EQ(two.out, "");
+  EXPECT_THAT(two.err, HasSubstr("several inputs need a folder, not standard output (-)"));
+  EXPECT_FALSE(there("-"));
+}
+
 // Of rows before the points that the file only promises; 2^64 - 100 of them end before they begin.
 TEST_F(Tiles, RowsThatAreNotThereAreRefusedWithTheirElementAndPlace) {
   for (const std::string count : {"40000000", "3000000000", "10000000000000", "18446744073709551516"}) {
