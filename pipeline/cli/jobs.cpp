@@ -39,8 +39,18 @@ std::string name_in_folder(const std::string& input, std::optional<Format> writt
   return fmt::format("{}.{}", name.string(), pipeline::io::name_of(*written));
 }
 
+/// The jobs of a folder, which is made if need be.
 std::vector<Job> into_folder(const std::vector<std::string>& inputs, const std::string& folder,
                              std::optional<Format> written) {
+  std::vector<Job> jobs = jobs_in_folder(inputs, folder, written);
+  need_folder(folder);
+  return jobs;
+}
+
+}  // namespace
+
+std::vector<Job> jobs_in_folder(const std::vector<std::string>& inputs, const std::string& folder,
+                                std::optional<Format> written) {
   std::map<std::string, std::string> taken;
   std::vector<Job> jobs;
   for (const std::string& input : inputs) {
@@ -54,11 +64,8 @@ std::vector<Job> into_folder(const std::vector<std::string>& inputs, const std::
            joined(folder, name));
     jobs.push_back({input, joined(folder, name)});
   }
-  need_folder(folder);
   return jobs;
 }
-
-}  // namespace
 
 std::vector<Job> plan_jobs(const std::vector<std::string>& arguments,
                            const std::optional<std::string>& output, std::optional<Format> written) {
@@ -82,8 +89,8 @@ std::vector<Job> plan_jobs(const std::vector<std::string>& arguments,
     fail(ErrorCode::cannot_write, "{}: is not a folder, and there are several inputs", *output);
   // The name of a file, or a slip: whoever wants a folder called so writes the slash.
   if (*output == "-" || pipeline::io::format_of_extension(*output))
-    fail(ErrorCode::usage, "several inputs need a folder: -o {}",
-         *output == "-" ? "FOLDER" : *output + "/ if it is to be called so");
+    fail(ErrorCode::usage, "several inputs need a folder{}",
+         *output == "-" ? ", not standard output (-)" : ": " + *output + "/ if it is to be called so");
   return into_folder(arguments, *output, written);
 }
 

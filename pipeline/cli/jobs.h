@@ -18,6 +18,12 @@ struct Job {
   std::string output;  ///< a path, or "-" for standard output
 };
 
+/// A job for each input, which keeps its name in the folder, with the extension of `written` where that is
+/// another format. Makes nothing. \throw Failure (usage) for two inputs with the same output name, and for
+/// standard input.
+std::vector<Job> jobs_in_folder(const std::vector<std::string>& inputs, const std::string& folder,
+                                std::optional<Format> written = std::nullopt);
+
 /// Without `output` there must be two arguments, IN and OUT. With it every argument is an input. Then
 /// `output` is a file for one input, or a folder for any number: one that exists, or a name that ends in '/',
 /// or for several inputs any name that is not a cloud file's. The folder is made if need be. \throw Failure:

@@ -31,6 +31,11 @@ bool is_unreadable(const std::string& path) {
   return std::filesystem::is_regular_file(path, unknown) && access(path.c_str(), R_OK) != 0;
 }
 
+/// Why a file that holds a cloud is not replaced.
+const char* why_kept(const std::string& path) {
+  return is_unreadable(path) ? "cannot be read and may be a cloud" : "is a cloud that rfsmooth did not write";
+}
+
 }  // namespace
 
 void mark_as_own(const std::string& path) {
@@ -71,9 +76,19 @@ void need_own_target(const Job& job, const std::optional<std::string>& named) {
          job.input);
   fail(ErrorCode::cannot_write,
        "{1}: {2}; it stays as it is. To replace it: --force {0} -o {1}; to work on both: {0} {1} -o FOLDER",
-       job.input, job.output,
-       is_unreadable(job.output) ? "cannot be read and may be a cloud"
-                                 : "is a cloud that rfsmooth did not write");
+       job.input, job.output, why_kept(job.output));
+}
+
+void need_own_target(const std::vector<std::string>& inputs, const std::string& output) {
+  std::error_code unknown;
+  for (const std::string& input : inputs)
+    if (std::filesystem::equivalent(input, output, unknown))
+      fail(ErrorCode::cannot_write,
+           "{}: is a scan of the job; it stays as it is. Name another file or folder", output);
+  if (is_own(output) || !holds_cloud(output)) return;
+  fail(ErrorCode::cannot_write,
+       "{}: {}; it stays as it is. Name another file or folder, or remove this one first", output,
+       why_kept(output));
 }
 
 void check_no_cloud_target(const std::string& path, bool force, const char* what) {

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "pipeline/cli/jobs.h"
 
@@ -25,6 +26,10 @@ bool holds_cloud(const std::string& path);
 /// exactly as IN. In a folder named by -o only the inputs themselves are protected. \throw Failure
 /// (cannot_write).
 void need_own_target(const Job& job, const std::optional<std::string>& named);
+
+/// The same where many inputs are one job: refuses an output that is any of them, or a cloud without a valid
+/// mark. \throw Failure (cannot_write).
+void need_own_target(const std::vector<std::string>& inputs, const std::string& output);
 
 /// Refuses, before any work, what a file that is no cloud ("report", "picture") could not be written to:
 /// standard output, a file that exists, without `force`, and with it a cloud. \throw Failure (usage,

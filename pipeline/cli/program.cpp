@@ -1,5 +1,6 @@
 #include "pipeline/cli/program.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <new>
@@ -36,6 +37,15 @@ std::string help_line(int argc, const char* const* argv, const std::vector<Comma
   return fmt::format("see: rfsmooth {}--help\n", command == nullptr ? "" : command->name + ' ');
 }
 
+/// The words with `help` as `--help` and `help COMMAND` as `COMMAND --help`.
+std::vector<const char*> with_help_as_option(int argc, const char* const* argv) {
+  std::vector<const char*> words(argv, argv + argc);
+  if (argc < 2 || std::string_view(argv[1]) != "help") return words;
+  words.erase(words.begin() + 1);
+  words.insert(words.begin() + std::min(argc - 1, 2), "--help");
+  return words;
+}
+
 int print(const std::string& text) {
   std::fputs(text.c_str(), stdout);
   return 0;
@@ -62,7 +72,8 @@ Invocation with_config(const Command& command, Invocation typed) {
 }
 
 int run(int argc, const char* const* argv, const std::vector<Command>& commands) {
-  const Parsed parsed = parse(argc, argv, commands);
+  const std::vector<const char*> words = with_help_as_option(argc, argv);
+  const Parsed parsed = parse(int(words.size()), words.data(), commands);
   const Invocation& typed = parsed.invocation;
   if (parsed.command == nullptr) {
     if (typed.version) return print(std::string("rfsmooth ") + kVersion + "\n");

@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "tests/cli/support/cloud_file.h"
 #include "tests/cli/support/folder.h"
@@ -187,6 +188,23 @@ TEST_F(LasCommand, ConversionsNameWhatIsLost) {
   const Ran back = run({"denoise", "out.ply", "back.las"});
   EXPECT_EQ(back.code, 0) << back.err;
   EXPECT_EQ(read(at("back.las")).format, Format::las);
+}
+
+TEST_F(LasCommand, MeshesSayThatTheyGoWithoutTheCoordinateSystem) {
+  LasBytes las = survey(4, 7, 0.001);
+  las.undescribed = 0;
+  put("in.las", las.bytes());
+  for (const std::string command : {"mesh", "reconstruct"}) {
+    const Ran ran = run({command, "in.las", command + ".ply", "--report", command + ".json"});
+    if (ran.code == 127) continue;  // reconstruct may lack its program
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    EXPECT_THAT(ran.err, AllOf(HasSubstr(".ply: left out, as ply cannot carry them: the coordinate system"),
+                               HasSubstr("record 'copyist' 9")));
+    const auto report = nlohmann::json::parse(take(command + ".json"));
+    EXPECT_EQ(report["output"]["dropped"][0], "the coordinate system");
+  }
+  put("plain.xyz", "0 0 0\n1 0 0\n0 1 0\n");
+  EXPECT_THAT(run({"mesh", "plain.xyz", "plain.ply"}).err, Not(HasSubstr("left out")));
 }
 
 TEST_F(LasCommand, SameBytesForAnyNumberOfThreads) {

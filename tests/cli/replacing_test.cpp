@@ -111,6 +111,46 @@ TEST_F(Replacing, NeitherReportNorPictureTakesTheNameOfAScan) {
   EXPECT_THAT(names(), ElementsAre("a.ply", "b.ply"));
 }
 
+TEST_F(Replacing, TwoOutputsOfOneNameAreRefusedBeforeTheWork) {
+  struct Slip {
+    std::vector<std::string> words;
+    const char* said;
+  };
+  std::filesystem::create_directory(at("made"));
+  for (const Slip& slip :
+       {Slip{{"a.ply", "z.xyz", "--html", "z.xyz"}, "OUT and --html are the same file: z.xyz"},
+        Slip{{"a.ply", "-o", "z.xyz", "--trace", "./z.xyz"}, "OUT and --trace are the same file: ./z.xyz"},
+        Slip{{"a.ply", "z.xyz", "--report", at("z.xyz")}, "OUT and --report are the same file: "},
+        Slip{{"a.ply", "-o", "made", "--report", "made/a.ply"},
+             "OUT and --report are the same file: made/a.ply"},
+        Slip{{"a.ply", "b.ply", "-o", "made", "--report", "./made/../made/b.ply"}, "OUT and --report are"},
+        Slip{{"a.ply", "z.xyz", "--html", "z", "--report", "./z"},
+             "--report and --html are the same file: z"},
+        Slip{{"a.ply", "-", "--report", "-"}, "OUT and --report are the same file: standard output (-)"}}) {
+    std::vector<std::string> words = {"denoise", "--force"};
+    words.insert(words.end(), slip.words.begin(), slip.words.end());
+    const Ran ran = run(words);
+    EXPECT_EQ(ran.code, 2);
+    EXPECT_EQ(ran.out, "");
+    EXPECT_THAT(ran.err, HasSubstr(slip.said));
+    EXPECT_THAT(names(), ElementsAre("a.ply", "b.ply", "made"));
+    EXPECT_FALSE(there("made/a.ply"));
+  }
+  EXPECT_EQ(run({"mesh", "--force", "a.ply", "z.ply", "--report", "./z.ply"}).code, 2);
+  EXPECT_EQ(run({"denoise", "a.ply", "/dev/null", "--report", "/dev/null"}).code, 0) << "takes any number";
+}
+
+TEST_F(Replacing, AFileBesideTheCloudThatExistsIsRefusedBeforeTheWork) {
+  put("mine", "mine");
+  for (const char* option : {"--report", "--html", "--trace"}) {
+    const Ran ran = run({"denoise", "a.ply", "out.ply", option, "mine"});
+    EXPECT_EQ(ran.code, 5) << option;
+    EXPECT_THAT(ran.err, HasSubstr("mine: exists already; --force replaces it"));
+    EXPECT_EQ(take("mine"), "mine");
+    EXPECT_FALSE(there("out.ply")) << option;
+  }
+}
+
 TEST_F(Replacing, SeveralInputsMakeTheirFolder) {
   const Ran ran = run({"denoise", "--flow", "hc", "a.ply", "b.ply", "-o", "cleaned"});
   EXPECT_EQ(ran.code, 0) << ran.err;

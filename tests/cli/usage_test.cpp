@@ -23,6 +23,22 @@ TEST(Usage, NothingTypedShowsTheOverviewOnStderr) {
   EXPECT_THAT(ran.err, HasSubstr("usage: rfsmooth COMMAND"));
 }
 
+TEST(Usage, HelpIsAWordToo) {
+  const std::pair<std::vector<std::string>, std::vector<std::string>> same[] = {
+      {{"help"}, {"--help"}},
+      {{"help", "denoise"}, {"denoise", "--help"}},
+      {{"help", "tiles", "plan"}, {"tiles", "--help"}}};
+  for (const auto& [word, option] : same) {
+    const Ran ran = rfsmooth(word);
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    EXPECT_THAT(ran.out, HasSubstr("usage: rfsmooth"));
+    EXPECT_EQ(ran.out, rfsmooth(option).out);
+  }
+  const Ran unknown = rfsmooth({"help", "denose"});
+  EXPECT_EQ(unknown.code, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("unknown command 'denose'; did you mean 'denoise'?"));
+}
+
 TEST(Usage, MisspeltCommandIsCorrected) {
   const Ran ran = rfsmooth({"completoin"});
   EXPECT_EQ(ran.code, 2);

@@ -49,6 +49,13 @@ struct CloudTask {
 /// at most three short lines, the most telling ones first. \throw Failure.
 using CloudWork = std::function<std::string(pipeline::io::Cloud& cloud, const CloudTask& task)>;
 
+/// A file that stands beside the cloud: a page, a trace.
+struct FileBeside {
+  std::string option;  ///< the one that names it: "--html"
+  const char* what;    ///< in a word: "page"
+  std::string path;
+};
+
 /// A sub-command that turns one cloud into another, wherever that comes from: a file, or an array in Python.
 /// To be called once every option has its value.
 struct OnCloud {
@@ -61,6 +68,8 @@ struct OnCloud {
   std::function<void(Console&)> beside = {};
   /// The format of what `work` makes; none: that of the input.
   std::optional<Format> makes = std::nullopt;
+  /// The files that `beside` writes, as asked for; empty: none.
+  std::function<std::vector<FileBeside>()> files_beside = {};
 };
 
 struct Command {

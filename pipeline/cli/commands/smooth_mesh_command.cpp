@@ -186,7 +186,6 @@ std::string smooth_file(const SmoothMeshCommandOptions& options, std::vector<Tra
 
 void check_smooth_mesh(const SmoothMeshCommandOptions& options, const Invocation& typed) {
   options.after.check_partners(typed);
-  options.trace.check(options.job.files, typed);
   if (const auto& fields = options.constraints; fields.direction && !fields.axis && !fields.plane)
     fail(ErrorCode::usage, "--slide-direction has no effect without --axis-field or --plane-field");
 }
@@ -220,6 +219,7 @@ Command smooth_mesh_command() {
                         return smooth_file(*options, *trace, cloud, task);
                       },
                       [options, trace](Console&) { options->trace.write(*trace, options->job.files); }};
+  command.on_cloud.files_beside = [options] { return options->trace.files(); };
   command.run = [options, on_cloud = command.on_cloud](const Invocation& typed) {
     return run_cloud_jobs("smooth-mesh", options->job, typed, on_cloud);
   };

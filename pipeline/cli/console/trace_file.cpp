@@ -2,18 +2,13 @@
 
 #include <fmt/format.h>
 
-#include "base/fail.h"
-#include "pipeline/cli/files/cloud_files.h"
-#include "pipeline/cli/own_files.h"
 #include "pipeline/io/io.h"
 
 namespace rfsmooth::cli {
 
-void TraceFile::check(const FileOptions& files, const Invocation& typed) const {
-  if (!trace) return;
-  if (plan_cloud_jobs(typed.arguments, files).size() > 1)
-    fail(ErrorCode::usage, "--trace is for one input; run the command once for each");
-  check_no_cloud_target(*trace, files.force, "trace");
+std::vector<FileBeside> TraceFile::files() const {
+  if (!trace) return {};
+  return {{"--trace", "trace", *trace}};
 }
 
 void TraceFile::write(const std::vector<TraceRow>& rows, const FileOptions& files) const {

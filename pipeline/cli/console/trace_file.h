@@ -24,8 +24,8 @@ struct TraceFile {
         self.trace);
   }
 
-  /// \throw Failure for a name that cannot be written, or if there is more than one input.
-  void check(const FileOptions& files, const Invocation& typed) const;
+  /// The file, if it was asked for.
+  std::vector<FileBeside> files() const;
 
   /// The rows as CSV with a line of names; volume is empty for a mesh that is not closed. \throw Failure.
   void write(const std::vector<TraceRow>& rows, const FileOptions& files) const;

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <limits>
+#include <map>
 
 #include <fmt/format.h>
 
@@ -31,6 +32,14 @@ io::WriteOptions write_options(const FileOptions& options) {
   return out;
 }
 
+/// One spelling for all names of a file, which need not exist.
+std::string place_of(const std::string& path) {
+  if (path == "-") return path;
+  std::error_code unknown;
+  const auto place = std::filesystem::weakly_canonical(std::filesystem::absolute(path, unknown), unknown);
+  return unknown ? path : place.string();
+}
+
 ordered_json describe_las(const io::LasSummary& las) {
   auto records = ordered_json::array();
   for (const io::las::Record& r : las.records)
@@ -54,10 +63,16 @@ std::vector<Job> plan_cloud_jobs(const std::vector<std::string>& arguments, cons
   return plan_jobs(arguments, options.output, named ? named : makes);
 }
 
-void need_free_stdout(const std::vector<Job>& jobs, const RunOptions& options) {
-  std::size_t uses = options.report == "-" ? 1 : 0;
-  for (const Job& job : jobs) uses += job.output == "-";
-  if (uses > 1) fail(ErrorCode::usage, "standard output (-) can take the cloud or the report, not both");
+void need_different_outputs(const std::vector<std::pair<std::string, std::string>>& outputs) {
+  std::map<std::string, std::string> taken;
+  for (const auto& [name, path] : outputs) {
+    std::error_code unknown;
+    if (std::filesystem::is_character_file(path, unknown)) continue;
+    const auto [it, is_new] = taken.emplace(place_of(path), name);
+    if (is_new) continue;
+    fail(ErrorCode::usage, "{} and {} are the same file: {}", it->second, name,
+         path == "-" ? "standard output (-)" : path);
+  }
 }
 
 io::Cloud load_cloud(const std::string& input, const Context& context) {

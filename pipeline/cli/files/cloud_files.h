@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -22,8 +23,10 @@ void check_target(const std::string& output, const FileOptions& options);
 std::vector<Job> plan_cloud_jobs(const std::vector<std::string>& arguments, const FileOptions& options,
                                  std::optional<pipeline::io::Format> makes = std::nullopt);
 
-/// Refuses two outputs to standard output; --report - counts as one. \throw Failure (usage).
-void need_free_stdout(const std::vector<Job>& jobs, const RunOptions& options);
+/// Refuses two outputs that are the same file, however they are spelled, or both standard output. Each is
+/// what it is called ("OUT", "--report") and where it goes; devices, as /dev/null, take any number. \throw
+/// Failure (usage).
+void need_different_outputs(const std::vector<std::pair<std::string, std::string>>& outputs);
 
 /// Reads a path, or standard input for "-", as stage "read". \throw Failure, also if the file is larger than
 /// the available memory.

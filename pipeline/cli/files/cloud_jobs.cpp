@@ -9,6 +9,7 @@
 #include "pipeline/cli/exit_code.h"
 #include "pipeline/cli/options/text_values.h"
 #include "pipeline/cli/own_files.h"
+#include "pipeline/io/formats/las/las_plain.h"
 
 namespace rfsmooth::cli {
 
@@ -24,6 +25,13 @@ std::string text_of(const std::vector<StageTime>& stages) {
   return text;
 }
 
+/// What the input's file says of its cloud and what a file made anew goes without: of LAS all that no other
+/// format has a place for, as the coordinate system.
+std::vector<std::string> left_behind(const pipeline::io::Cloud& cloud, const OnCloud& on_cloud) {
+  if (!on_cloud.makes || cloud.format != pipeline::io::Format::las) return {};
+  return pipeline::io::las_losses(cloud);
+}
+
 void run_one(const Job& job, const JobOptions& options, const OnCloud& on_cloud, const Context& context,
              Console& console, ordered_json& entry, bool one_of_many) {
   need_own_target(job, options.files.output);
@@ -36,12 +44,13 @@ void run_one(const Job& job, const JobOptions& options, const OnCloud& on_cloud,
   }
   entry["input"].update(describe(cloud));
   console.set_points(cloud.size());
+  std::vector<std::string> dropped = left_behind(cloud, on_cloud);
   const std::string summary = on_cloud.work(cloud, {job, context, console, stages, entry});
   const pipeline::io::Format format = output_format(cloud, job.output, options.files);
-  std::vector<std::string> dropped;
   {
     const Stopwatch watch(stages, "write");
-    dropped = store_cloud(cloud, job.output, options.files, context);
+    const auto more = store_cloud(cloud, job.output, options.files, context);
+    dropped.insert(dropped.end(), more.begin(), more.end());
   }
   if (!dropped.empty()) {
     console.warn(fmt::format("{}: left out, as {} cannot carry them: {}", job.output,
@@ -53,6 +62,22 @@ void run_one(const Job& job, const JobOptions& options, const OnCloud& on_cloud,
   console.detail("seconds: " + text_of(stages));
   entry["threads"] = options.run.threads ? ordered_json(*options.run.threads) : ordered_json(nullptr);
   entry["seconds"] = json_of(stages);
+}
+
+/// Refuses, before any work, outputs that would take the place of each other, or of what must stay.
+void check_outputs(const std::vector<Job>& jobs, const JobOptions& options, const OnCloud& on_cloud) {
+  std::vector<FileBeside> beside;
+  if (on_cloud.files_beside) beside = on_cloud.files_beside();
+  std::vector<std::pair<std::string, std::string>> outputs;
+  for (const Job& job : jobs) outputs.emplace_back("OUT", job.output);
+  if (options.run.report) outputs.emplace_back("--report", *options.run.report);
+  for (const FileBeside& file : beside) outputs.emplace_back(file.option, file.path);
+  need_different_outputs(outputs);
+  for (const FileBeside& file : beside) {
+    if (jobs.size() > 1)
+      fail(ErrorCode::usage, "{} is for one input; run the command once for each", file.option);
+    check_no_cloud_target(file.path, options.files.force, file.what);
+  }
 }
 
 }  // namespace
@@ -70,7 +95,7 @@ int run_cloud_jobs(const std::string& command, const JobOptions& options, const 
                    const OnCloud& on_cloud) {
   on_cloud.check(typed);
   const std::vector<Job> jobs = plan_cloud_jobs(typed.arguments, options.files, on_cloud.makes);
-  need_free_stdout(jobs, options.run);
+  check_outputs(jobs, options, on_cloud);
   Report report(command, options.run.report, options.files.force);
   Console console(options.talk);
   const Context context = console.context(on_cloud.stages(), options.run.threads);

@@ -14,6 +14,7 @@
 #include "pipeline/cli/options/json_values.h"
 #include "pipeline/cli/options/text_values.h"
 #include "pipeline/cli/own_files.h"
+#include "pipeline/io/stream/atomic_file.h"
 #include "pipeline/tiles/allowed.h"
 #include "pipeline/tiles/files/row_file.h"
 #include "pipeline/tiles/job.h"
@@ -103,6 +104,7 @@ void plan_tiles(TilesOptions& options, const std::vector<std::string>& arguments
     fail(ErrorCode::usage, "in tiles outliers are kept or smoothed: every row stays, and no field is added");
   pipeline::tiles::check_for_tiles(options.planned.denoise);
   const std::vector<std::string> inputs(arguments.begin(), arguments.end() - 1);
+  if (inputs.size() > 1) jobs_in_folder(inputs, "OUT");  // as join will write them
   NormalsFields& normals = options.planned.normals;
   check(normals);
   if (const auto how = normals_in_tiles(normals, inputs, context); how && how->viewpoint)
@@ -116,13 +118,26 @@ void plan_tiles(TilesOptions& options, const std::vector<std::string>& arguments
   console.say(fmt::format("{}: {} points in {} tiles", arguments.back(), job.points, job.tiles.size()));
 }
 
+/// Where the inputs of a job go, which is refused, before any work, if something must not be replaced. Pieces
+/// are written to a name: "-" becomes that of standard output.
+std::vector<std::string> outputs_of(const std::vector<std::string>& inputs, const std::string& out,
+                                    bool force) {
+  std::vector<std::string> outputs;
+  for (const cli::Job& file : plan_jobs(inputs, out)) {
+    outputs.push_back(file.output == "-" ? "/dev/stdout" : file.output);
+    need_own_target(inputs, outputs.back());
+    pipeline::io::check_target(outputs.back(), force);
+  }
+  return outputs;
+}
+
 void join_tiles(const TilesOptions& options, const std::vector<std::string>& arguments,
                 const Context& context, Console& console) {
   if (arguments.size() != 2) fail(ErrorCode::usage, "rfsmooth tiles join takes JOB OUT");
   const Job job = pipeline::tiles::open_job(arguments[0]);
-  std::vector<std::string> inputs, outputs;
+  std::vector<std::string> inputs;
   for (const auto& input : job.inputs) inputs.push_back(input.path);
-  for (const cli::Job& file : plan_jobs(inputs, arguments[1])) outputs.push_back(file.output);
+  const std::vector<std::string> outputs = outputs_of(inputs, arguments[1], options.force);
   const auto joined = pipeline::tiles::join_job(
       job, outputs, {options.force, options.keep_scale, planned_options(job).normals.normals}, context);
   for (std::size_t i = 0; i < outputs.size(); ++i) {
@@ -220,7 +235,8 @@ Command tiles_command() {
       "Smooths a cloud (binary PLY, binary PCD or LAS, one file or many that are one cloud) in tiles, in a "
       "folder JOB. plan cuts it; measure, for every tile, takes a sample; settle finds from it what the "
       "cloud "
-      "as a whole is like; run, for every tile, smooths it; join writes the files with x, y, z replaced. "
+      "as a whole is like; run, for every tile, smooths it; join writes the files with x, y, z replaced "
+      "(a single one also to standard output, -). "
       "Tiles are numbered from 0; measure and run may go on in any order, in any number of processes, and "
       "again: what is there complete is not made again. The same inputs give the same bytes. On one machine "
       "'rfsmooth denoise --memory 8G IN OUT' does all of it.";

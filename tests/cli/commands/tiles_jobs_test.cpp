@@ -208,6 +208,71 @@ TEST_F(Tiles, WhatCannotBeDoneIsRefusedWithWhatToDo) {
   EXPECT_THAT(later.err, HasSubstr("tiles plan"));
 }
 
+TEST_F(Tiles, InputsThatJoinCouldNotTellApartAreRefusedByPlan) {
+  for (const char* folder : {"a", "b"}) {
+    std::filesystem::create_directory(at(folder));
+    put(std::string(folder) + "/s.ply", noisy_plane(10).bytes());
+  }
+  const Ran ran = run({"tiles", "plan", "a/s.ply", "b/s.ply", "job"});
+  EXPECT_EQ(ran.code, 2);
+  EXPECT_THAT(ran.err, HasSubstr("a/s.ply and b/s.ply would both be written to OUT/s.ply"));
+  EXPECT_FALSE(there("job"));
+  EXPECT_FALSE(there("OUT"));
+}
+
+TEST_F(Tiles, JoinReplacesNoScan) {
+  std::filesystem::create_directory(at("scans"));
+  const std::string a = noisy_plane(20).bytes(), b = noisy_plane(21).bytes(), other = noisy_plane(5).bytes();
+  put("scans/a.ply", a);
+  put("scans/b.ply", b);
+  put("other.ply", other);
+  std::filesystem::create_directory(at("cleaned"));
+  put("cleaned/b.ply", other);
+  joined({"scans/a.ply"}, "one", "out.ply");
+  joined({"scans/a.ply", "scans/b.ply"}, "two", "out");
+
+  const Ran itself = run({"tiles", "join", "--force", "one", "scans/a.ply"});
+  EXPECT_EQ(itself.code, 5);
+  EXPECT_THAT(itself.err, HasSubstr("scans/a.ply: is a scan of the job; it stays as it is"));
+  for (const char* folder : {"scans", "cleaned"})
+    EXPECT_EQ(run({"tiles", "join", "--force", "two", folder}).code, 5);
+  EXPECT_TRUE(take("scans/a.ply") == a);
+  EXPECT_TRUE(take("scans/b.ply") == b);
+  EXPECT_FALSE(there("cleaned/a.ply")) << "refused before any file is written";
+  EXPECT_TRUE(take("cleaned/b.ply") == other);
+
+  const Ran scan = run({"tiles", "join", "--force", "one", "other.ply"});
+  EXPECT_EQ(scan.code, 5);
+  EXPECT_THAT(
+      scan.err,
+      HasSubstr("other.ply: is a cloud that rfsmooth did not write; it stays as it is. Name another"));
+  EXPECT_TRUE(take("other.ply") == other);
+}
+
+TEST_F(Tiles, JoinReplacesWhatItWroteItself) {
+  put("in.ply", noisy_plane(20).bytes());
+  const std::string once = joined({"in.ply"}, "job", "out.ply");
+  EXPECT_EQ(run({"tiles", "join", "job", "out.ply"}).code, 5);
+  const Ran again = run({"tiles", "join", "--force", "job", "out.ply"});
+  EXPECT_EQ(again.code, 0) << again.err;
+  EXPECT_TRUE(take("out.ply") == once);
+}
+
+TEST_F(Tiles, JoinWritesOneFileToStandardOutput) {
+  put("a.ply", noisy_plane(20).bytes());
+  put("b.ply", noisy_plane(21).bytes());
+  const std::string expected = joined({"a.ply"}, "one", "out.ply");
+  const Ran ran = run({"tiles", "join", "one", "-"});
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  EXPECT_TRUE(ran.out == expected);
+  joined({"a.ply", "b.ply"}, "two", "out");
+  const Ran two = run({"tiles", "join", "two", "-"});
+  EXPECT_EQ(two.code, 2);
+  EXPECT_EQ(two.out, "");
+  EXPECT_THAT(two.err, HasSubstr("several inputs need a folder, not standard output (-)"));
+  EXPECT_FALSE(there("-"));
+}
+
 // Of rows before the points that the file only promises; 2^64 - 100 of them end before they begin.
 TEST_F(Tiles, RowsThatAreNotThereAreRefusedWithTheirElementAndPlace) {
   for (const std::string count : {"40000000", "3000000000", "10000000000000", "18446744073709551516"}) {

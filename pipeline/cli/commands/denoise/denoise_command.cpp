@@ -25,15 +25,17 @@ void write_beside(const DenoiseCommandOptions& options, const Beside& beside, Co
   console.say(fmt::format("{}: open it in a browser", *options.html));
 }
 
-void check_denoise(const DenoiseCommandOptions& options, const Invocation& typed) {
+void check_denoise(const DenoiseCommandOptions& options) {
   if (options.mark_outliers && options.denoise.outliers == Outliers::smooth)
     fail(ErrorCode::usage, "--mark-outliers has nothing to mark with --outliers smooth");
   check(options.normals);
-  options.trace.check(options.job.files, typed);
-  if (!options.html) return;
-  if (plan_cloud_jobs(typed.arguments, options.job.files).size() > 1)
-    fail(ErrorCode::usage, "--html shows one cloud; several are named");
-  check_no_cloud_target(*options.html, options.job.files.force, "page");
+}
+
+/// The page and the trace, as far as they were asked for.
+std::vector<FileBeside> files_beside(const DenoiseCommandOptions& options) {
+  std::vector<FileBeside> files = options.trace.files();
+  if (options.html) files.push_back({"--html", "page", *options.html});
+  return files;
 }
 
 /// One cloud in tiles. \return the exit code, or none if it is to be smoothed as a whole.
@@ -89,12 +91,13 @@ Command denoise_command() {
   command.everyday = {"strength", "noise",   "flow",   "outliers", "normals", "output",
                       "force",    "threads", "report", "quiet",    "verbose"};
   const auto beside = std::make_shared<Beside>();
-  command.on_cloud = {[options](const Invocation& typed) { check_denoise(*options, typed); },
+  command.on_cloud = {[options](const Invocation&) { check_denoise(*options); },
                       [options] { return denoising_stages(options->normals.normals); },
                       [options, beside](auto& cloud, const CloudTask& task) {
                         return denoise_cloud(*options, *beside, cloud, task);
                       },
                       [options, beside](Console& console) { write_beside(*options, *beside, console); }};
+  command.on_cloud.files_beside = [options] { return files_beside(*options); };
   command.run = [options, beside, on_cloud = command.on_cloud,
                  known = command.options](const Invocation& typed) {
     if (const auto tiled = denoise_in_tiles(*options, typed)) return *tiled;
