@@ -118,7 +118,7 @@ void check_finite(const Positions& points, const DenoiseOptions& options, const 
 }
 
 /// Moves each row to where its working point is now, at most as far as its reach (empty: any); the only place
-/// that writes to the caller's array, and it cannot fail or be cancelled.
+/// of run() that writes to the coordinates it was given, and it cannot fail or be cancelled.
 void commit(double* xyz, const rfs_mesh::WorkingCloud& cloud, const Positions& now,
             const std::vector<double>& reach, DenoiseReport& report) {
   double square_sum = 0;
