@@ -9,6 +9,7 @@
 
 #include <rfsmooth/denoise.h>
 
+#include "pipeline/outliers.h"
 #include "tests/support/awkward_clouds.h"
 
 namespace rfsmooth::pipeline {
@@ -342,6 +343,25 @@ TEST(Denoise, PointsOfTheTailsAreSmoothedAndStraysStay) {
   for (std::size_t i = 5000; i < 5003; ++i) {
     EXPECT_EQ(report.outlier[i], 1);
     for (std::size_t axis = 0; axis < 3; ++axis) EXPECT_EQ(after[3 * i + axis], before[3 * i + axis]);
+  }
+}
+
+// Even where it looks like an outlier and is put onto the smoothed surface.
+TEST(Denoise, RowsOfOnePointMoveByTheLeastOfTheirStrengths) {
+  constexpr double kHeight = 3;
+  Positions points = plane_with_tails(5);
+  points.emplace_back(35, 35, kHeight);
+  EXPECT_EQ(find_outliers(points, {}).back(), 1);
+  points.push_back(points.back());
+  const Flat before = flat(points);
+  for (const double least : {1.0, 0.5, 0.0}) {
+    SCOPED_TRACE(least);
+    std::vector<double> strength(points.size(), 1);
+    strength.back() = least;
+    Flat after = before;
+    EXPECT_TRUE(denoise(after.data(), points.size(), {}, {}, strength).ok());
+    EXPECT_EQ(after[after.size() - 4], after.back());
+    EXPECT_NEAR(after.back(), kHeight * (1 - least), 0.6);
   }
 }
 
