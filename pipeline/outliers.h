@@ -55,7 +55,8 @@ std::vector<char> find_outliers(const rfs_mesh::SpatialIndex& index, const rfs_m
 
 /// Moves a point onto the surface that the indexed points lie on, smooth ones: onto the plane through 16 of
 /// them around the one nearest to it. False, and the point stays, if it is farther off than `most` (world
-/// units), or if there are fewer than 16 points. O(log n).
+/// units), if on the plane it would be farther from all points than those 16 reach, as beyond a rim, or if
+/// there are fewer than 16 points. O(log n).
 bool land(const rfs_mesh::SpatialIndex& surface, double most, Eigen::Vector3d& point);
 
 }  // namespace rfsmooth::pipeline
