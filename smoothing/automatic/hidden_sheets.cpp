@@ -116,7 +116,7 @@ HiddenSheets split_hidden_sheets(const HeightField& field, const Residuals& left
                                  const std::vector<float>& own, double whole,
                                  std::optional<Statistics::Sheets>& known, const Context& context) {
   HiddenSheets found;
-  if (known) found = {*known, 0};
+  if (known) found = {*known};
   if (known && !found.there()) return found;
   const std::size_t n = field.size();
   const std::vector<float> layers = squared_of_layers(field, left, context);
@@ -139,13 +139,12 @@ HiddenSheets split_hidden_sheets(const HeightField& field, const Residuals& left
   known = found;
   if (!found.there()) return found;
   const double c = found.variance;
-  found.split = sum_over(context, n, std::size_t(0), [&](std::size_t i) {
+  for_each_index(context, n, [&](std::size_t i) {
     const double mean = double(v[i]);
     const double squared = rfs_mesh::squared_apart(mean, c);
-    if (mean < double(kLouderPlace) * c || squared < double(layers[i])) return std::size_t(0);
+    if (mean < double(kLouderPlace) * c || squared < double(layers[i])) return;
     const double d = std::sqrt(squared);
     height[i] += float(left.unit * d * rfs_mesh::sharpened_label(double(residual[i]), d, c));
-    return std::size_t(1);
   });
   return found;
 }
