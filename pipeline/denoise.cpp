@@ -118,7 +118,7 @@ void check_finite(const Positions& points, const DenoiseOptions& options, const 
 }
 
 /// Moves each row to where its working point is now, at most as far as its reach (empty: any); the only place
-/// that writes to the caller's array, and it cannot fail or be cancelled.
+/// of run() that writes to the coordinates it was given, and it cannot fail or be cancelled.
 void commit(double* xyz, const rfs_mesh::WorkingCloud& cloud, const Positions& now,
             const std::vector<double>& reach, DenoiseReport& report) {
   double square_sum = 0;
@@ -144,12 +144,22 @@ void commit(double* xyz, const rfs_mesh::WorkingCloud& cloud, const Positions& n
   if (report.finite > 0) report.rms_move = std::sqrt(square_sum / double(report.finite));
 }
 
-/// The strengths of the working points: of rows that share one, the least.
+/// The strengths of the rows: where some share a position, the least of theirs, so that they move together.
+std::vector<double> least_strengths(std::vector<double> strength, const rfs_mesh::WorkingCloud& cloud) {
+  std::vector<double> least(strength.empty() ? 0 : cloud.points.size(), 1);
+  for (std::size_t i = 0; i < strength.size(); ++i)
+    if (const Index p = cloud.of_input[i]; p != kNone) least[p] = std::min(least[p], strength[i]);
+  for (std::size_t i = 0; i < strength.size(); ++i)
+    if (const Index p = cloud.of_input[i]; p != kNone) strength[i] = least[p];
+  return strength;
+}
+
+/// The strengths of the working points. \param strength as least_strengths
 std::vector<double> working_strengths(const std::vector<double>& strength,
                                       const rfs_mesh::WorkingCloud& cloud, std::size_t points) {
   std::vector<double> working(strength.empty() ? 0 : points, 1);
   for (std::size_t i = 0; i < strength.size(); ++i)
-    if (const Index p = cloud.of_input[i]; p != kNone) working[p] = std::min(working[p], strength[i]);
+    if (const Index p = cloud.of_input[i]; p != kNone) working[p] = strength[i];
   return working;
 }
 
@@ -176,7 +186,8 @@ void set_aside(const std::vector<char>& outlier, rfs_mesh::WorkingCloud& cloud, 
 }
 
 /// Outliers that the tails of the noise explain are none: such points stood alone among calm ones, and are
-/// put onto the smoothed surface. `now`: the smoothed points; those landed are added.
+/// put onto the smoothed surface. `now`: the smoothed points; those landed are added. \param strength as
+/// least_strengths
 void land_tails(const double* xyz, const std::vector<double>& strength, const DenoiseOptions& options,
                 const Context& context, rfs_mesh::WorkingCloud& cloud, Positions& now,
                 DenoiseReport& report) {
@@ -185,17 +196,19 @@ void land_tails(const double* xyz, const std::vector<double>& strength, const De
   const rfs_mesh::SpatialIndex surface(now, context);
   const double most =
       rfs_mesh::kNoiseReach * std::max(1.0, automatic->strength) * report.tail_times * report.noise;
+  Positions added;  // only after all have landed: the surface must not change under them
   for (std::size_t i = 0; i < report.outlier.size(); ++i) {
     if (report.outlier[i] == 0) continue;
     const Eigen::Vector3d was = Eigen::Vector3d(xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]) - cloud.origin;
     Eigen::Vector3d landed = was;
     if (!land(surface, most, landed)) continue;
     if (!strength.empty()) landed = was + strength[i] * (landed - was);
-    cloud.of_input[i] = Index(now.size());
-    now.push_back(landed);
+    cloud.of_input[i] = Index(now.size() + added.size());
+    added.push_back(landed);
     report.outlier[i] = 0;
     --report.outliers;
   }
+  now.insert(now.end(), added.begin(), added.end());
   if (report.outliers == 0) report.outlier.clear();
 }
 
@@ -304,12 +317,13 @@ Mesh told_of(Connection connection, DenoiseReport& report) {
 }
 
 DenoiseReport run(double* xyz, std::size_t n, const DenoiseOptions& options, const Context& context,
-                  const std::vector<double>& strength) {
+                  const std::vector<double>& strengths) {
   DenoiseReport report;
   report.points = n;
   report.effective = options;
   if (options.statistics) report.statistics = *options.statistics;
   rfs_mesh::WorkingCloud cloud = prepare(xyz, n, options, context, report);
+  const std::vector<double> strength = least_strengths(strengths, cloud);
   refuse_noise_beyond(cloud.box, 0, options);
   Mesh mesh = told_of(connected(cloud, options, context, report), report);
   refuse_noise_beyond(cloud.box, report.spacing, options);

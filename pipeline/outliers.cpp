@@ -281,7 +281,11 @@ bool land(const rfs_mesh::SpatialIndex& surface, double most, Eigen::Vector3d& p
   const Plane plane = fit_plane(surface.points(), around);
   const double off = plane.normal.dot(point - plane.centre);
   if (!(std::abs(off) <= most)) return false;
-  point -= off * plane.normal;
+  const Eigen::Vector3d landed = point - off * plane.normal;
+  const double squared_radius = around.back().squared_distance;
+  surface.nearest(landed, 1, around);
+  if (!(around.front().squared_distance <= squared_radius)) return false;  // the plane goes on beyond a rim
+  point = landed;
   return true;
 }
 

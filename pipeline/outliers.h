@@ -11,16 +11,17 @@
 ///    off this plane by more than 5 standard deviations of the points about it, 5 sigma, and 1.2 times the
 ///    usual r. Or r_i is more than six times the usual r, wherever the plane is (beyond a rim it goes on).
 ///
-/// Where strays are many, they are neighbours of strays. So the outliers found are taken out and the points
-/// that had them as neighbours are tested again, until no more are found.
+/// Where strays are many, they are neighbours of strays. So the points that had an outlier as a neighbour get
+/// new neighbours, among points that are neither outliers nor isolated, and are tested again, until no more
+/// are found.
 ///
 /// The noise, sigma, is the one that connecting and smoothing go by, too (noise.h). Before it is known, sigma
 /// is zero in these tests: what the points about a place scatter by is all that stands for noise then. It is
 /// measured on the points that are no outliers so far, and the tests are made anew.
 ///
-/// A point is also an outlier, whatever has it as a neighbour, if it floats: r_i is more than four times both
-/// the median of the cloud and what nine of the 64 nearest have (a ring of a surface), and the 24 nearest
-/// fill space (the least variance is more than 8 % of the sum) beyond five sigma.
+/// A point that is not isolated, or that others know, is an outlier if it floats: r_i is more than four times
+/// both the median of the cloud and what nine of the 64 nearest have (a ring of a surface), and the 24
+/// nearest fill space (the least variance is more than 8 % of the sum) beyond five sigma.
 ///
 /// No single test suffices: a point in the tail of Gaussian noise is isolated but within 5 sigma, a corner is
 /// off its plane but not isolated, a sparse wall has a large r but is flat. Isolation by the neighbours'
@@ -42,7 +43,8 @@ namespace rfsmooth::pipeline {
 std::vector<char> find_outliers(const Positions& points, const Context& context);
 
 /// Enters the noise of a cloud, if `whole` does not have it: of the points that are not far off for what
-/// those about them scatter by. Enters the reach, too. `near`: rows of nearest neighbours, of any width.
+/// those about them scatter by. Where it measures on 64 points or more, it enters the reach, too, if that is
+/// not there. `near`: rows of nearest neighbours, of any width.
 void find_noise(const rfs_mesh::SpatialIndex& index, const rfs_mesh::NeighborTable& near, Statistics& whole,
                 const Context& context);
 
@@ -53,7 +55,8 @@ std::vector<char> find_outliers(const rfs_mesh::SpatialIndex& index, const rfs_m
 
 /// Moves a point onto the surface that the indexed points lie on, smooth ones: onto the plane through 16 of
 /// them around the one nearest to it. False, and the point stays, if it is farther off than `most` (world
-/// units). O(log n).
+/// units), if on the plane it would be farther from all points than those 16 reach, as beyond a rim, or if
+/// there are fewer than 16 points. O(log n).
 bool land(const rfs_mesh::SpatialIndex& surface, double most, Eigen::Vector3d& point);
 
 }  // namespace rfsmooth::pipeline

@@ -18,13 +18,14 @@
 ///   calm ones make s(m) grow, too.)
 ///
 /// or if depths in steps (depth_steps.h) make sure of it. Its variance is then the largest S with p = 3, or
-/// that of the steps as far as it is seen. An m beyond which s^2 grows faster than noise does is the last; on
-/// terraces, which it grows fast within, the first such after one from which it does not. Few points follow
-/// noise all of which neighbours share, as of cameras that match windows, and s^2 grows as fast as that of
-/// shape at first: there it must have grown slowly twice in a row. Neighbourhoods whose residuals are flatter
-/// than kFlatnessOfSheets (two_sheets.h) are of two sheets, and tell nothing. Those that do not hold a slab
-/// as thick as they scatter (kFlatSlab) tell nothing while they are narrow, and wider ones than some that do
-/// are the last, too: leaves and twigs fill them. k is the number for which
+/// that of the steps as far as it is seen. Of noise, s^2 grows at most 1.8 times from m to 2 m (2 on
+/// terraces). An m counts from the first growth as slow as that; off terraces, after a faster one, from the
+/// second in a row, since one may be the end of a bump. (Few points follow noise all of which neighbours
+/// share, as of cameras that match windows, and s^2 grows as fast as that of shape at first.) The first fast
+/// growth after an m that counted ends the search (off terraces only once some noise is sure). Neighbourhoods
+/// whose residuals are flatter than kFlatnessOfSheets (two_sheets.h) are of two sheets, and tell nothing.
+/// Those that do not hold a slab as thick as they scatter (kFlatSlab) tell nothing while they are narrow, and
+/// wider ones than some that do are the last, too: leaves and twigs fill them. k is the number for which
 ///
 ///     s^2(m) = sigma^2 g(k / m)
 ///

@@ -176,7 +176,10 @@ constexpr double kFlatnessOfSheets = 2.25;
 
 // Evidence.
 
-/// Nats by which two sheets must say more of points than one does: odds of 7 to 1.
+/// Nats by which two sheets must say more of points than one does: odds of 7 to 1. Of whole clouds
+/// (hidden_sheets.h: the development shapes at 10,000 and 50,000 points, noise of 1 to 3 %, turned in several
+/// ways) the evidence is 1.2 to 100 (rotor) and 3.2 to 7.5 (armadillo) where walls are hidden, elsewhere at
+/// most 0.9.
 constexpr double kNatsOfTwo = 2;
 
 /// The logarithms of the ratio of two likelihoods, nats:

@@ -13,25 +13,23 @@ namespace rfsmooth::smoothing {
 
 namespace {
 
-// kNatsOfTwo: on the development shapes at 10,000 and 50,000 points, noise of 1 to 3 %, turned in several
-// ways, where walls are hidden the evidence is 1.2 to 100 (rotor) and 3.2 to 7.5 (armadillo), elsewhere at
-// most 0.9.
 constexpr float kItself = 0.008F;         // a point's share in its own v: 0.0064 to 0.0088 on average
-constexpr float kLouder = 1.3F;           // v / c from which a place counts
+constexpr float kLouderPlace = 1.3F;      // v / c from which a place counts
 constexpr float kLoudest = 4;             // v: beyond, one sees two sheets
 constexpr double kMostSheetShare = 0.75;  // more is another kind of noise; rotor's walls are at most 0.62
 constexpr float kMostOwn = 0.25F;         // points that were hardly smoothed say nothing
 constexpr double kPrior = 0.15;           // standard deviation of ln c
 constexpr int kSheetRounds = 4;           // of as many local means in all 16, over some 500 points
-constexpr float kNone = 1e9F;             // in lanes without a point: its values count as too large
+constexpr float kEmptyLane = 1e9F;        // in lanes without a point: its values count as too large
 
 /// So many points are weighed side by side.
 using Lanes = Eigen::Array<float, 16, 1>;
 
 struct Sum {
   double evidence = 0;
-  std::size_t louder = 0, points = 0;  // places; of these such as are no layers
-  double area = 0;                     // of those, as `layers`
+  std::size_t louder = 0;  // points that may be of two sheets
+  std::size_t points = 0;  // those of them that are no layers
+  double area = 0;         // of these points, as `layers`
   Sum& operator+=(const Sum& other) {
     evidence += other.evidence;
     louder += other.louder;
@@ -76,13 +74,13 @@ HiddenSheets best_evidence(const Residuals& left, const std::vector<float>& own,
           for (std::size_t i = begin; i < end; i += Lanes::SizeAtCompileTime) {
             const auto there = Eigen::Index(std::min(end - i, std::size_t(Lanes::SizeAtCompileTime)));
             const auto lanes = [&](const std::vector<float>& values) {
-              Lanes all = Lanes::Constant(kNone);
+              Lanes all = Lanes::Constant(kEmptyLane);
               all.head(there) = Eigen::Map<const Eigen::ArrayXf>(values.data() + i, there);
               return all;
             };
             const Lanes mean = lanes(v), share = lanes(own), least = lanes(layers);
             const Lanes squared = rfs_mesh::squared_apart(mean, float(c));
-            const auto loud = share <= kMostOwn && mean >= kLouder * float(c) && mean <= kLoudest;
+            const auto loud = share <= kMostOwn && mean >= kLouderPlace * float(c) && mean <= kLoudest;
             part.louder += std::size_t(loud.count());
             const auto counts = loud && squared >= least;
             const auto counted = std::size_t(counts.count());
@@ -118,7 +116,7 @@ HiddenSheets split_hidden_sheets(const HeightField& field, const Residuals& left
                                  const std::vector<float>& own, double whole,
                                  std::optional<Statistics::Sheets>& known, const Context& context) {
   HiddenSheets found;
-  if (known) found = {*known, 0};
+  if (known) found = {*known};
   if (known && !found.there()) return found;
   const std::size_t n = field.size();
   const std::vector<float> layers = squared_of_layers(field, left, context);
@@ -141,13 +139,12 @@ HiddenSheets split_hidden_sheets(const HeightField& field, const Residuals& left
   known = found;
   if (!found.there()) return found;
   const double c = found.variance;
-  found.split = sum_over(context, n, std::size_t(0), [&](std::size_t i) {
+  for_each_index(context, n, [&](std::size_t i) {
     const double mean = double(v[i]);
     const double squared = rfs_mesh::squared_apart(mean, c);
-    if (mean < double(kLouder) * c || squared < double(layers[i])) return std::size_t(0);
+    if (mean < double(kLouderPlace) * c || squared < double(layers[i])) return;
     const double d = std::sqrt(squared);
     height[i] += float(left.unit * d * rfs_mesh::sharpened_label(double(residual[i]), d, c));
-    return std::size_t(1);
   });
   return found;
 }

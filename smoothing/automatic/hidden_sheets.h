@@ -51,8 +51,6 @@ constexpr double kLeastSheetShare = 0.05;
 
 /// What was found.
 struct HiddenSheets : Statistics::Sheets {
-  std::size_t split = 0;  ///< points put onto one of two sheets
-
   /// Whether the cloud has such walls. A part of it may have none of their points.
   bool there() const;
 };

@@ -74,7 +74,8 @@ class ToldByResiduals {
     return {noise.local[at], sums[2] / sums[3] / std::pow(1 - 2 / (9 * freedom), 3)};
   }
 
-  /// Half of the places are smooth enough for their patches.
+  /// Not the mean: where patches do not follow the shape, residuals tell too much; at least half of the
+  /// places are free of that.
   static double median(const std::vector<Place>& places, std::size_t begin, std::size_t end) {
     std::vector<double> told;
     for (std::size_t k = begin; k < end; ++k) told.push_back(places[k].told);

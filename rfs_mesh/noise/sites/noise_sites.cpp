@@ -146,8 +146,8 @@ class Listener {
   /// Than its window. Two sheets that scatter twice as much as one would be seen as two.
   bool is_plainly_louder(std::size_t s) const { return views[s].plain > kLouder * sigma[s]; }
 
-  /// Whether no second sheet is beyond the window, nor an edge. Where the search began with few points,
-  /// places show a little more or less by chance.
+  /// Whether no second sheet is beyond the window, nor an edge. Where the search took few points, places show
+  /// a little more or less by chance.
   bool all_seen(std::size_t s) const {
     const double held = views[s].held;
     return held > 0 && held < kGrowthOfNoise * sigma[s] &&

@@ -8,11 +8,13 @@
 /// So does one that cuts off the second sheet of a wall; but there what is left in the window scatters as
 /// little as the window was made for, while louder noise fills it evenly, at three times that variance, or
 /// leaves nothing in it at nearly all of the sites around. A window that is filled evenly gets wider, to the
-/// scatter seen in it, and that up to eight times. Where it ends at more than twice the noise it began with,
-/// or the points are denser than elsewhere, the fits take more points, as many as such noise needs. So they
-/// do where it ends above the noise it began with and no second sheet is beyond it: fits without windows, to
-/// the first of 24, 192 and 1,536 points that hold the slab of noisy points, show hardly more (and, where the
-/// search began with few points, 1.5 times the variance that it found).
+/// scatter seen in it, and that up to eight times.
+///
+/// A site's fits take more points, until their ball is as wide as its noise needs, if its window ends above
+/// twice the noise it began with; or the points are denser than elsewhere; or it ends above 1.1 times that
+/// noise and the first of 24, 192 and 1,536 points that hold the slab of noisy points show, without a window,
+/// less than 1.26 times as much: nothing lies beyond the window. Where search_noise took fewer than 24
+/// points, they must also show 1.5 times the variance it found.
 ///
 /// A part that is far louder than the start leaves so few points in a window that the quadric passes through
 /// them. Where a tenth of the places and more see plain noise (site_views.h) of more than twice the window,
