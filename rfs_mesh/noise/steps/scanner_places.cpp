@@ -124,7 +124,7 @@ Eigen::Vector3d refined_place(const Positions& points, Eigen::Vector3d at, doubl
 
 /// A place that was found among few pairs, from all of them.
 Eigen::Vector3d measured_place(std::vector<Halfway> pairs, const Eigen::Vector3d& rough, double same) {
-  const Eigen::Vector3d at = common_place(pairs, rough, same);
+  Eigen::Vector3d at = common_place(pairs, rough, same);
   if (!at.allFinite()) return at;
   const auto others = part(pairs, at, same);
   Positions points;
