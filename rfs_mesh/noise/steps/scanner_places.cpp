@@ -16,7 +16,7 @@ namespace rfsmooth::rfs_mesh {
 
 namespace {
 
-constexpr int kRefinements = 10;  // of least squares; five reach the last digit
+constexpr int kRefinements = 5;  // of least squares; ten find the same
 
 /// Two neighbours, and so the plane of the points that are as far from both.
 struct Halfway {

@@ -2,34 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 #include "base/quantile.h"
 #include "rfs_mesh/levels.h"
 
 namespace rfsmooth::rfs_mesh {
-
-namespace {
-
-/// Whether depths are whole steps from one of them, of a size that is known better and better.
-class EqualSteps {
- public:
-  EqualSteps(double first, double size, double same) : first_(first), size_(size), same_(same) {}
-
-  /// Enters one that is farther from the first than those before.
-  bool enter(double depth) {
-    const double steps = std::round((depth - first_) / size_);
-    if (steps == 0 || !(std::abs(depth - first_ - steps * size_) <= 2 * same_)) return false;
-    size_ = (depth - first_) / steps;
-    return true;
-  }
-  double size() const { return size_; }
-
- private:
-  double first_, size_, same_;
-};
-
-}  // namespace
 
 double rounding_noise(double step) {
   return step / std::sqrt(12.0);
@@ -81,13 +58,21 @@ bool fill_in(const Positions& some, Terraces& terraces) {
   const auto single = std::min_element(gaps.begin(), gaps.end(), [&](double a, double b) {
     return std::abs(a - typical) < std::abs(b - typical);
   });
-  const auto from = told.begin() + (single - gaps.begin());
-  EqualSteps steps(*from, typical, terraces.same);
-  const auto enter = [&](double depth) { return steps.enter(depth); };
-  const auto equal = std::count_if(from + 1, told.end(), enter) +
-                     std::count_if(std::make_reverse_iterator(from), told.rend(), enter);
-  if (!(double(equal) > (1 - kLeastPart) * double(gaps.size()))) return false;
-  const double first = *from, size = steps.size();
+  const auto from = std::size_t(single - gaps.begin());
+  const double first = told[from];
+  // The farthest depth tells the size to most digits.
+  double size = typical, farthest = 0, equal = 0;
+  const auto enter = [&](double depth) {
+    const double steps = std::round((depth - first) / size);
+    if (steps == 0 || !(std::abs(depth - first - steps * size) <= 2 * terraces.same)) return;
+    ++equal;
+    if (std::abs(steps) <= farthest) return;
+    farthest = std::abs(steps);
+    size = (depth - first) / steps;
+  };
+  for (std::size_t k = from + 1; k < told.size(); ++k) enter(told[k]);
+  for (std::size_t k = from; k-- > 0;) enter(told[k]);
+  if (!(equal > (1 - kLeastPart) * double(gaps.size()))) return false;
   double least = first, most = first;
   for (const Eigen::Vector3d& p : some) {
     least = std::min(least, terraces.depth(p));
