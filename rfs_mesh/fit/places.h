@@ -23,6 +23,7 @@ class Places {
   Places(const SpatialIndex& index, Positions at, std::size_t most, Context&& context) = delete;
 
   const SpatialIndex& index() const { return index_; }
+  const Context& context() const { return context_; }
   const Positions& at() const { return at_; }
   std::size_t size() const { return at_.size(); }
 

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "rfs_mesh/fit/flattest_slab.h"
 #include "rfs_mesh/levels.h"
+#include "rfs_mesh/noise/narrow_kernel.h"
 #include "rfs_mesh/sample.h"
 
 namespace rfsmooth::rfs_mesh {
@@ -186,9 +188,18 @@ NoiseStart search_noise(Places& places, const DepthSteps* steps) {
   start.sigma = std::sqrt(mean_variance(all, kCalmPlaces, kCalmDeviate));
   const double sure =
       steps == nullptr ? 0 : std::min(start.sigma, std::sqrt(variance_of_steps(*steps, places, all)));
-  // Lines are no sheets, and a window narrow enough finds some that are exact.
-  if (start.narrowest == kNarrowestPatch) start.sigma = lowest(places, start.m, start.sigma, sure);
   start.most = kSameNoise * bound(places, start.m);
+  // Lines are no sheets, and a window narrow enough finds some that are exact. Nor are steps normal noise.
+  const bool surface = start.narrowest == kNarrowestPatch;
+  const std::optional<double> read = surface && !start.on_lines && steps == nullptr
+                                         ? noise_in_kernels(places.index(), start.most, places.context())
+                                         : std::nullopt;
+  if (read) {
+    start.sigma = *read;
+    start.most = std::min(start.most, kSameNoise * *read);
+  } else if (surface) {
+    start.sigma = lowest(places, start.m, start.sigma, sure);
+  }
   Positions where_they_were = places.at();
   open_windows(places, narrow, start);
   places.move_to(std::move(where_they_were));

@@ -5,7 +5,8 @@
 /// be. Coming from below stops at the noise of one sheet; coming from above would stop at the thickness. m
 /// starts at 16, or where 16 are no piece of a surface at the least number that are, and grows until the ball
 /// holds a patch of 2 sigma in radius with all of the window above and below it. What the calmer fifth shows
-/// without any window is an upper bound.
+/// without any window is an upper bound. Noise of about a spacing and more is read in kernels first
+/// (narrow_kernel.h): then windows open from there, and the bound is little above it.
 #pragma once
 
 #include "rfs_mesh/fit/places.h"

@@ -1,0 +1,98 @@
+#include "rfs_mesh/noise/narrow_kernel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "base/linear/symmetric_eigen.h"
+#include "base/parallel.h"
+#include "rfs_mesh/levels.h"
+#include "rfs_mesh/noise/noise_search.h"
+#include "rfs_mesh/sample.h"
+
+namespace rfsmooth::rfs_mesh {
+
+namespace {
+
+/// What a kernel holds, but for the point that it stands on.
+struct Kernel {
+  Scatter across;   ///< variance of the members across the sheet
+  double lean = 0;  ///< how far their mean is from the point, world units
+};
+
+Kernel look_around(const SpatialIndex& index, const Eigen::Vector3d& at, double width,
+                   std::vector<Neighbor>& near) {
+  index.within_unsorted(at, kNoiseReach * width, near);
+  double weights = 0, squares = 0;
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (const Neighbor& q : near) {
+    if (!(q.squared_distance > 0)) continue;
+    const Eigen::Vector3d d = index.points()[q.index] - at;
+    const double w = std::exp(-q.squared_distance / (2 * width * width));
+    weights += w;
+    squares += w * w;
+    mean += w * d;
+    spread += w * d * d.transpose();
+  }
+  Kernel seen;
+  const double members = squares > 0 ? weights * weights / squares : 0;
+  constexpr double kOfPlane = 3;
+  if (!(members > kOfPlane + 1)) return seen;
+  mean /= weights;
+  spread = spread / weights - mean * mean.transpose();
+  seen.across.variance = std::max(0.0, symmetric_eigen(spread).values[0]) * members / (members - kOfPlane);
+  // Of a normal distribution that a kernel as wide cuts off, a variance scatters as that of twice as many.
+  seen.across.freedom = 2 * (members - kOfPlane);
+  seen.lean = mean.norm();
+  return seen;
+}
+
+/// The median of the variances that the outermost of the kernels show.
+double outermost_variance(std::vector<Kernel> kernels) {
+  const auto outer = kernels.end() - std::ptrdiff_t(std::ceil(kLeastPart * double(kernels.size())));
+  std::nth_element(kernels.begin(), outer, kernels.end(),
+                   [](const Kernel& a, const Kernel& b) { return a.lean < b.lean; });
+  std::vector<Scatter> all;
+  for (auto k = outer; k != kernels.end(); ++k) all.push_back(k->across);
+  constexpr double kMedianDeviate = 0;
+  std::vector<Weighed> seen = comparable(all, std::vector<double>(all.size(), 1), kMedianDeviate);
+  return quantile(seen, 0.5);
+}
+
+/// What kernels of one width around each place read, world units; infinite: more than could be told from
+/// points that fill them evenly. Nothing: they hold too few points.
+std::optional<double> read_in(const SpatialIndex& index, const Positions& at, double width,
+                              const Context& context) {
+  std::vector<Kernel> all(at.size());
+  for_blocks(context, at.size(), 8, [&](std::size_t begin, std::size_t end) {
+    std::vector<Neighbor> near;
+    for (std::size_t s = begin; s < end; ++s) all[s] = look_around(index, at[s], width, near);
+  });
+  std::vector<double> freedom;
+  for (const Kernel& k : all) freedom.push_back(k.across.freedom);
+  if (quantile(freedom, 0.5) < double(kNarrowestPatch)) return {};
+  all.erase(std::remove_if(all.begin(), all.end(), [](const Kernel& k) { return !says(k.across); }),
+            all.end());
+  const double lambda = outermost_variance(std::move(all)), square = width * width;
+  return lambda < square ? std::sqrt(lambda * square / (square - lambda))
+                         : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
+std::optional<double> noise_in_kernels(const SpatialIndex& index, double most, const Context& context) {
+  constexpr double kWider = 1.15;
+  const Positions at = sample(index.points(), kPlacesOfCloud);
+  bool narrower = false;  // whether one was narrower than what it read
+  for (double width = kNarrowestWindow * most; width < most; width *= kWider) {
+    const std::optional<double> read = read_in(index, at, width, context);
+    if (!read) continue;
+    if (*read <= width) return narrower ? read : std::nullopt;
+    narrower = true;
+  }
+  return {};
+}
+
+}  // namespace rfsmooth::rfs_mesh
