@@ -35,7 +35,9 @@ Result<Cloud> parse_cloud(std::string_view bytes, const std::string& name, const
                           const Context& context);
 
 /// Writes a temporary file beside `path` and renames it. An existing file is refused without `force`. A
-/// symbolic link is followed. After an error or a cancel nothing has changed and no file is left behind.
+/// symbolic link is followed. A .csv has commas between its cells and names in its first line, a .tsv tabs; a
+/// table that has cells already stays as it is. After an error or a cancel nothing has changed and no file is
+/// left behind.
 Result<Done> write_cloud(const Cloud& cloud, const std::filesystem::path& path, const WriteOptions& options,
                          const Context& context);
 
@@ -49,7 +51,7 @@ Result<Done> check_output(const std::filesystem::path& path, const WriteOptions&
 Result<Done> write_bytes(std::string_view bytes, const std::filesystem::path& path, bool force,
                          const Context& context);
 
-/// The format a path's extension stands for (.ply; .pcd; .xyz .txt .asc .csv .pts; .off; .las), if any.
+/// The format a path's extension stands for (.ply; .pcd; .xyz .txt .asc .csv .tsv .pts; .off; .las), if any.
 std::optional<Format> format_of_extension(const std::filesystem::path& path);
 
 /// The value of what was made of a file. \throw Failure with its error, which then begins with the file's

@@ -207,4 +207,12 @@ Cloud convert(const Cloud& cloud, Format format, const Context& context) {
   return las_of_plain(out, positions(cloud, context), context);
 }
 
+Cloud as_cells(Cloud cloud, Separators separators, const Context& context) {
+  make_cells(cloud.points(), separators, context);
+  cloud.xyz_style.names = "";
+  cloud.xyz_style.counted.reset();
+  cloud.xyz_style.separator = cell_separator(separators);
+  return cloud;
+}
+
 }  // namespace rfsmooth::pipeline::io

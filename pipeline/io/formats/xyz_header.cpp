@@ -137,14 +137,17 @@ std::string xyz_header(const Cloud& cloud) {
   if (cloud.xyz_style.names) {
     out += *cloud.xyz_style.names;
     std::vector<std::string> cells = cloud.xyz_style.cells;
+    const char separator = cloud.xyz_style.separator;
     const bool quoted = !cells.empty() && cells.front().substr(0, 1) == "\"";
     bool first = true;
     for (const Field& f : cloud.points().fields) {
-      if (!first) out += cloud.xyz_style.separator;
+      if (!first) out += separator;
       first = false;
       const auto cell = std::find_if(cells.begin(), cells.end(),
                                      [&](const std::string& c) { return name_in_cell(c) == f.name; });
-      out += cell != cells.end() ? *cell : quoted ? '"' + f.name + '"' : f.name;
+      const std::string name = cell != cells.end() ? *cell : quoted ? '"' + f.name + '"' : f.name;
+      const bool parted = separator != ' ' && name.find(separator) != std::string::npos;
+      out += parted && name.front() != '"' ? '"' + name + '"' : name;
       if (cell != cells.end()) cells.erase(cell);  // a name may be there several times
     }
     out += cloud.newline;

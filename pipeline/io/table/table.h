@@ -70,6 +70,9 @@ void append_field(Table& table, const Field& field, const double* values, const 
 /// loses its quotes, tabs and CRs within a row are blanks. Does nothing to other words and to bytes.
 void make_words(Table& table, const Context& context);
 
+/// Turns the rows into text of cells. An empty one stays empty.
+void make_cells(Table& table, Separators separators, const Context& context);
+
 /// Keeps the rows `which` in that order. O(rows and interludes).
 void select(Table& table, const std::vector<std::size_t>& which);
 
