@@ -46,24 +46,7 @@ void write_as_is(const Cloud& cloud, Encoding encoding, Sink& sink, const Contex
   }
 }
 
-/// What stands between the cells of a table that is called so.
-std::optional<Separators> cells_of_extension(const std::filesystem::path& path) {
-  const std::string e = extension_of(path);
-  if (e == ".csv") return Separators::comma;
-  if (e == ".tsv") return Separators::tab;
-  return std::nullopt;
-}
-
-/// Whether the rows have these cells, or those that are called so, too: where commas are decimal ones,
-/// programs write semicolons.
-bool has_cells(const Cloud& cloud, Separators cells) {
-  const Table& points = cloud.points();
-  return cloud.format == Format::xyz &&
-         (points.separators == cells ||
-          (cells == Separators::comma && points.separators == Separators::semicolon));
-}
-
-/// `cells`: what an XYZ file has between them; none: as it comes.
+/// `cells`: what an XYZ file gets between them; none: as it comes.
 void write(const Cloud& cloud, Format format, std::optional<Separators> cells, const WriteOptions& options,
            Sink& sink, const Context& context) {
   const Encoding encoding = target_encoding(cloud, format, options.encoding);
@@ -73,7 +56,7 @@ void write(const Cloud& cloud, Format format, std::optional<Separators> cells, c
       fail(ErrorCode::usage, "{} ({}) cannot carry {}; `drop-unsupported` leaves that out", name_of(format),
            name_of(encoding), fmt::join(losses, ", "));
   }
-  if (format == Format::xyz && cells && !has_cells(cloud, *cells)) {
+  if (format == Format::xyz && cells) {
     const Cloud table =
         as_cells(cloud.format == format ? cloud : convert(cloud, format, context), *cells, context);
     return write_as_is(table, encoding, sink, context);
@@ -111,7 +94,7 @@ Result<Done> write_cloud(const Cloud& cloud, const std::filesystem::path& path, 
   return guarded([&] {
     const Format format = target_format(cloud, path, options);
     AtomicFile file(path, options.force, context);
-    write(cloud, format, cells_of_extension(path), options, file, context);
+    write(cloud, format, new_cells(cloud, path), options, file, context);
     file.commit(options.sync);
     return Done{};
   });
@@ -152,6 +135,16 @@ std::optional<Format> format_of_extension(const std::filesystem::path& path) {
   if (e == ".xyz" || e == ".txt" || e == ".asc" || e == ".csv" || e == ".tsv" || e == ".pts")
     return Format::xyz;
   return std::nullopt;
+}
+
+std::optional<Separators> new_cells(const Cloud& cloud, const std::filesystem::path& path) {
+  const std::string e = extension_of(path);
+  if (e != ".csv" && e != ".tsv") return std::nullopt;
+  const Separators wanted = e == ".csv" ? Separators::comma : Separators::tab,
+                   own = cloud.points().separators;
+  // A .csv may have semicolons: programs write them where commas are decimal ones.
+  const bool has = own == wanted || (wanted == Separators::comma && own == Separators::semicolon);
+  return cloud.format == Format::xyz && has ? std::nullopt : std::optional(wanted);
 }
 
 std::optional<Format> format_by_name(std::string_view name) {

@@ -54,6 +54,10 @@ Result<Done> write_bytes(std::string_view bytes, const std::filesystem::path& pa
 /// The format a path's extension stands for (.ply; .pcd; .xyz .txt .asc .csv .tsv .pts; .off; .las), if any.
 std::optional<Format> format_of_extension(const std::filesystem::path& path);
 
+/// What an XYZ file of that name gets between its cells, beside a line of names: commas a .csv, tabs a .tsv.
+/// None: the rows stay as they are, since they have those already or the name does not say.
+std::optional<Separators> new_cells(const Cloud& cloud, const std::filesystem::path& path);
+
 /// The value of what was made of a file. \throw Failure with its error, which then begins with the file's
 /// name.
 template <class T>
