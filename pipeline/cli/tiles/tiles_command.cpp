@@ -67,8 +67,7 @@ struct TilesOptions {
                    "noise left",
                    ""},
         self.keep_scale);
-    visit(OptionInfo{"threads", "threads to use; auto: all cores; the result is the same", "", 1, 1024},
-          self.threads);
+    visit(threads_option(), self.threads);
     TalkOptions::describe(self.talk, visit);
     PlannedOptions::describe(self.planned, visit);
   }

@@ -220,6 +220,12 @@ TEST_F(Commands, CloudsOfOnePlaceHaveNoFiguresThatAreNoNumbers) {
   }
 }
 
+TEST_F(Commands, InfoTakesThreads) {
+  put("in.ply", noisy_plane(20).bytes());
+  EXPECT_EQ(run({"info", "--threads", "1", "in.ply"}).out, run({"info", "in.ply"}).out);
+  EXPECT_EQ(run({"info", "--threads", "0", "in.ply"}).code, 2);
+}
+
 TEST_F(Commands, CompareNeedsTwoFiles) {
   EXPECT_EQ(run({"compare", "a.ply"}).code, 2);
   EXPECT_EQ(run({"compare", "a.ply", "b.ply"}).code, 3);

@@ -43,8 +43,7 @@ struct CompareCommandOptions {
                      "units of the file", 0, 1e300},
           self.red_from);
     visit(OptionInfo{"force", "replace an existing file", ""}, self.files.force);
-    visit(OptionInfo{"threads", "threads to use; auto: all cores; the result is the same", "", 1, 1024},
-          self.threads);
+    visit(threads_option(), self.threads);
     TalkOptions::describe(self.talk, visit);
   }
 };
