@@ -66,6 +66,14 @@ T value_or_fail(Result<T> result, const std::string& file) {
   return std::move(result).value();
 }
 
+/// What `work` returns. \throw Failure with its error, which begins with the file's name unless it tells it.
+template <class Work>
+auto naming(const std::string& file, Work&& work) {
+  auto done = guarded(std::forward<Work>(work));
+  if (!done.ok() && done.error().message.find(file) != std::string::npos) throw Failure(done.error());
+  return value_or_fail(std::move(done), file);
+}
+
 /// The format of that name ("ply", "pcd", "xyz", "off", "las"), if any.
 std::optional<Format> format_by_name(std::string_view name);
 /// The encoding of that name, if any; "binary" is little-endian.

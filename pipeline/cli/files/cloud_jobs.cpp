@@ -60,11 +60,15 @@ void run_one(const Job& job, const JobOptions& options, const OnCloud& on_cloud,
   console.set_points(cloud.size());
   const std::size_t columns = cloud.points().fields.size();
   std::vector<std::string> dropped = left_behind(cloud, on_cloud);
-  const std::string summary = on_cloud.work(cloud, {job, context, console, stages, entry});
+  const std::string summary = pipeline::io::naming(job.input == "-" ? "standard input" : job.input, [&] {
+    return on_cloud.work(cloud, {job, context, console, stages, entry});
+  });
   const pipeline::io::Format format = output_format(cloud, job.output, options.files);
   {
     const Stopwatch watch(stages, "write");
-    const auto more = store_cloud(cloud, job.output, options.files, context);
+    const auto more = pipeline::io::naming(job.output == "-" ? "standard output" : job.output, [&] {
+      return store_cloud(cloud, job.output, options.files, context);
+    });
     dropped.insert(dropped.end(), more.begin(), more.end());
   }
   if (!dropped.empty()) {

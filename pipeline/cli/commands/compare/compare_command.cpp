@@ -105,9 +105,10 @@ int run_compare(const CompareCommandOptions& options, const Invocation& typed) {
                             normals = pipeline::io::normals_of(cloud, context);
   CompareOptions compare_options;
   compare_options.signed_normals = options.signed_normals;
-  const CompareReport report =
-      value_or_throw(rfsmooth::compare({xyz.data(), cloud.size(), normals.empty() ? nullptr : normals.data()},
-                                       truth.view, compare_options, context));
+  const CompareReport report = pipeline::io::value_or_fail(
+      rfsmooth::compare({xyz.data(), cloud.size(), normals.empty() ? nullptr : normals.data()}, truth.view,
+                        compare_options, context),
+      fmt::format("{} against {}", typed.arguments[0], typed.arguments[1]));
   const Deviation deviation = summed_up(report.deviation);
   ordered_json json = {{"cloud", typed.arguments[0]}, {"truth", typed.arguments[1]}};
   json.update(figures_of(report));
