@@ -146,8 +146,8 @@ std::string smooth_file(const SmoothMeshCommandOptions& options, std::vector<Tra
   FileMesh file =
       file_mesh(cloud, job.input, context, options.flow.modifiers.preserve == Preserve::height_field);
   // The last mesh of a refinement takes, for each of its vertices, what a point of a cloud takes.
-  need_memory(job.input,
-              rfsmooth::denoise_memory(smoothing::refined_vertices(file.mesh, options.after.refine.levels)));
+  if (const int levels = options.after.refine.levels; levels > 0)
+    need_memory(job.input, rfsmooth::denoise_memory(smoothing::refined_vertices(file.mesh, levels)));
   const auto constraints = value_or_fail(guarded([&] {
                                            return constraints_of(options.constraints, cloud, file.of_row,
                                                                  file.before.size(), task.context);
