@@ -100,9 +100,9 @@ class CloudFile {
   Result<Done> set_field(const std::string& name, const std::vector<double>& values,
                          const Context& context = {});
 
-  /// Keeps the points `rows`, in that order. Unless these are all in order, the cloud is no longer organised,
-  /// and elements that name points by index, such as faces, are dropped. \throw std::invalid_argument if
-  /// there is no such row.
+  /// Keeps the points `rows`, in that order. Unless these are all in order, the cloud is no longer organised.
+  /// Faces, and other elements that name points by index, stay where all of their points do, and get the new
+  /// indices. \throw std::invalid_argument if there is no such row.
   void select(const std::vector<std::size_t>& rows, const Context& context = {});
 
   /// The file's polygons, split into triangles; empty without faces. Errors: input_unreadable if one names a

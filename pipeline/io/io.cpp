@@ -46,14 +46,20 @@ void write_as_is(const Cloud& cloud, Encoding encoding, Sink& sink, const Contex
   }
 }
 
-void write(const Cloud& cloud, Format format, const WriteOptions& options, Sink& sink,
-           const Context& context) {
+/// `cells`: what an XYZ file gets between them; none: as it comes.
+void write(const Cloud& cloud, Format format, std::optional<Separators> cells, const WriteOptions& options,
+           Sink& sink, const Context& context) {
   const Encoding encoding = target_encoding(cloud, format, options.encoding);
   if (!options.drop_unsupported) {
     const std::vector<std::string> losses = what_is_lost(cloud, format, encoding, context);
     if (!losses.empty())
       fail(ErrorCode::usage, "{} ({}) cannot carry {}; `drop-unsupported` leaves that out", name_of(format),
            name_of(encoding), fmt::join(losses, ", "));
+  }
+  if (format == Format::xyz && cells) {
+    const Cloud table =
+        as_cells(cloud.format == format ? cloud : convert(cloud, format, context), *cells, context);
+    return write_as_is(table, encoding, sink, context);
   }
   if (is_writable_as_is(cloud, format)) return write_as_is(cloud, encoding, sink, context);
   write_as_is(convert(cloud, format, context), encoding, sink, context);
@@ -88,7 +94,7 @@ Result<Done> write_cloud(const Cloud& cloud, const std::filesystem::path& path, 
   return guarded([&] {
     const Format format = target_format(cloud, path, options);
     AtomicFile file(path, options.force, context);
-    write(cloud, format, options, file, context);
+    write(cloud, format, new_cells(cloud, path), options, file, context);
     file.commit(options.sync);
     return Done{};
   });
@@ -97,7 +103,7 @@ Result<Done> write_cloud(const Cloud& cloud, const std::filesystem::path& path, 
 Result<std::string> serialize_cloud(const Cloud& cloud, const WriteOptions& options, const Context& context) {
   return guarded([&] {
     BufferSink sink;
-    write(cloud, options.format.value_or(cloud.format), options, sink, context);
+    write(cloud, options.format.value_or(cloud.format), std::nullopt, options, sink, context);
     return std::move(sink.buffer);
   });
 }
@@ -126,8 +132,19 @@ std::optional<Format> format_of_extension(const std::filesystem::path& path) {
   if (e == ".pcd") return Format::pcd;
   if (e == ".off") return Format::off;
   if (e == ".las") return Format::las;
-  if (e == ".xyz" || e == ".txt" || e == ".asc" || e == ".csv" || e == ".pts") return Format::xyz;
+  if (e == ".xyz" || e == ".txt" || e == ".asc" || e == ".csv" || e == ".tsv" || e == ".pts")
+    return Format::xyz;
   return std::nullopt;
+}
+
+std::optional<Separators> new_cells(const Cloud& cloud, const std::filesystem::path& path) {
+  const std::string e = extension_of(path);
+  if (e != ".csv" && e != ".tsv") return std::nullopt;
+  const Separators wanted = e == ".csv" ? Separators::comma : Separators::tab,
+                   own = cloud.points().separators;
+  // A .csv may have semicolons: programs write them where commas are decimal ones.
+  const bool has = own == wanted || (wanted == Separators::comma && own == Separators::semicolon);
+  return cloud.format == Format::xyz && has ? std::nullopt : std::optional(wanted);
 }
 
 std::optional<Format> format_by_name(std::string_view name) {

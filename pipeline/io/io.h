@@ -35,7 +35,9 @@ Result<Cloud> parse_cloud(std::string_view bytes, const std::string& name, const
                           const Context& context);
 
 /// Writes a temporary file beside `path` and renames it. An existing file is refused without `force`. A
-/// symbolic link is followed. After an error or a cancel nothing has changed and no file is left behind.
+/// symbolic link is followed. A .csv has commas between its cells and names in its first line, a .tsv tabs; a
+/// table that has cells already stays as it is. After an error or a cancel nothing has changed and no file is
+/// left behind.
 Result<Done> write_cloud(const Cloud& cloud, const std::filesystem::path& path, const WriteOptions& options,
                          const Context& context);
 
@@ -49,8 +51,12 @@ Result<Done> check_output(const std::filesystem::path& path, const WriteOptions&
 Result<Done> write_bytes(std::string_view bytes, const std::filesystem::path& path, bool force,
                          const Context& context);
 
-/// The format a path's extension stands for (.ply; .pcd; .xyz .txt .asc .csv .pts; .off; .las), if any.
+/// The format a path's extension stands for (.ply; .pcd; .xyz .txt .asc .csv .tsv .pts; .off; .las), if any.
 std::optional<Format> format_of_extension(const std::filesystem::path& path);
+
+/// What an XYZ file of that name gets between its cells, beside a line of names: commas a .csv, tabs a .tsv.
+/// None: the rows stay as they are, since they have those already or the name does not say.
+std::optional<Separators> new_cells(const Cloud& cloud, const std::filesystem::path& path);
 
 /// The value of what was made of a file. \throw Failure with its error, which then begins with the file's
 /// name.
@@ -58,6 +64,14 @@ template <class T>
 T value_or_fail(Result<T> result, const std::string& file) {
   if (!result.ok()) fail(result.error().code, "{}: {}", file, result.error().message);
   return std::move(result).value();
+}
+
+/// What `work` returns. \throw Failure with its error, which begins with the file's name unless it tells it.
+template <class Work>
+auto naming(const std::string& file, Work&& work) {
+  auto done = guarded(std::forward<Work>(work));
+  if (!done.ok() && done.error().message.find(file) != std::string::npos) throw Failure(done.error());
+  return value_or_fail(std::move(done), file);
 }
 
 /// The format of that name ("ply", "pcd", "xyz", "off", "las"), if any.

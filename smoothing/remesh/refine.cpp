@@ -125,6 +125,17 @@ void take_off_pimples(Mesh& mesh, std::size_t given, const std::vector<Edge>& cu
 
 }  // namespace
 
+std::size_t refined_vertices(const Mesh& mesh, int levels) {
+  std::size_t vertices = mesh.positions.size(), faces = mesh.faces.size();
+  std::size_t edges = mesh.edge_count() - mesh.loose_edges.size();
+  for (int level = 0; level < levels; ++level) {
+    vertices += edges;
+    edges = 2 * edges + 3 * faces;
+    faces *= 4;
+  }
+  return vertices;
+}
+
 Mesh split(const Mesh& mesh, std::vector<Edge>& curve, const Context& context) {
   const auto n = Index(mesh.positions.size());
   const std::vector<Edge> edges = face_edges(mesh);
@@ -176,15 +187,14 @@ Result<Mesh> refine(const Mesh& mesh, const RefineOptions& options, const Contex
                     const std::vector<Edge>& sharp) {
   return guarded([&] {
     value_or_throw(validate(options));
+    if (refined_vertices(mesh, options.levels) >= kNone)
+      throw Failure({ErrorCode::usage, "the refined mesh would have too many vertices; use fewer levels"});
     Mesh fine = mesh;
     in_arena(context, [&] {
       std::vector<Edge> curve = boundary_edges(mesh);
       curve.insert(curve.end(), sharp.begin(), sharp.end());
       for (int level = 0; level < options.levels; ++level) {
         context.report("refine", double(level) / options.levels);
-        if (fine.positions.size() + fine.edge_count() >= kNone)
-          throw Failure(
-              {ErrorCode::usage, "the refined mesh would have too many vertices; use fewer levels"});
         fine = split(fine, curve, context);
         minimise(fine, mesh.positions.size(), curve, options, context);
       }

@@ -41,6 +41,9 @@ struct RefineOptions {
 Result<Mesh> refine(const Mesh& mesh, const RefineOptions& options, const Context& context,
                     const std::vector<Edge>& sharp = {});
 
+/// How many vertices the refined mesh has. O(1).
+std::size_t refined_vertices(const Mesh& mesh, int levels);
+
 /// Splits every face into four, with new vertices at the middle of the edges. `curve` edges (boundary and
 /// sharp, each {a, b}, any order) are split too.
 Mesh split(const Mesh& mesh, std::vector<Edge>& curve, const Context& context);

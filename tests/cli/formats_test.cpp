@@ -103,6 +103,39 @@ void expect_only_coordinates_differ(const std::string& before, const std::string
   EXPECT_GT(moved, kPoints);
 }
 
+/// What the name says is what other programs expect in it: cells, and names in the first line.
+TEST_F(Formats, TheNameOfATableDecidesWhatPartsItsCells) {
+  const std::string pcd =
+      "VERSION 0.7\nFIELDS x y z intensity\nSIZE 4 4 4 4\nTYPE F F F F\nWIDTH 3\nHEIGHT 1\nDATA ascii\n"
+      "1 2 3 9\n1.50 2 3 8\n1 nan 4 7\n";
+  const std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "property float a,b\nend_header\n1 2 3 9\n1.50 2 3 8\n1 nan 4 7\n";
+  const std::pair<std::string, std::string> inputs[] = {{"in.pcd", pcd},
+                                                        {"in.ply", ply},
+                                                        {"words.xyz", "1 2 3\n1.50 2 3\n1 nan 4\n"},
+                                                        {"count.pts", "3\n1 2 3\n1.50 2 3\n1 nan 4\n"},
+                                                        {"cloud.txt", "//X Y Z\n1 2 3\n1.50 2 3\n1 nan 4\n"},
+                                                        {"in.csv", "id,x,y,z\n7,1,2,3\n8,1.50,2,3\n9,1,,4\n"},
+                                                        {"semi.csv", "x;y;z\n1;2;3\n1.50;2;3\n1;;4\n"}};
+  for (const auto& [name, bytes] : inputs) put(name, bytes);
+  const auto written = [&](const std::string& in, const std::string& out) {
+    const Ran ran = run({"denoise", "--force", in, out});
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    EXPECT_EQ(run({"info", out}).code, 0) << "read again";
+    return take(out);
+  };
+  EXPECT_EQ(written("in.pcd", "out.csv"), "x,y,z,intensity\n1,2,3,9\n1.50,2,3,8\n1,nan,4,7\n");
+  EXPECT_EQ(written("in.pcd", "out.tsv"), "x\ty\tz\tintensity\n1\t2\t3\t9\n1.50\t2\t3\t8\n1\tnan\t4\t7\n");
+  EXPECT_EQ(written("in.ply", "out.csv"), "x,y,z,\"a,b\"\n1,2,3,9\n1.50,2,3,8\n1,nan,4,7\n");
+  for (const char* words : {"words.xyz", "count.pts"})
+    EXPECT_EQ(written(words, "out.csv"), "x,y,z\n1,2,3\n1.50,2,3\n1,nan,4\n") << words;
+  EXPECT_EQ(written("cloud.txt", "out.csv"), "X,Y,Z\n1,2,3\n1.50,2,3\n1,nan,4\n");
+  EXPECT_EQ(written("in.csv", "out.tsv"), "id\tx\ty\tz\n7\t1\t2\t3\n8\t1.50\t2\t3\n9\t1\t\t4\n");
+  for (const char* table : {"in.csv", "semi.csv"}) EXPECT_EQ(written(table, "out.csv"), take(table));
+  EXPECT_EQ(written("cloud.txt", "out.txt"), take("cloud.txt"));
+}
+
 TEST_F(Formats, PcdPaddingIsKept) {
   // As PCL writes a PointXYZRGBNormal cloud: padding fields called _, some of several bytes.
   const std::string header =

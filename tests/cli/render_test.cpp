@@ -82,6 +82,8 @@ TEST_F(Render, KeepsTheContractsOfTheCommand) {
   EXPECT_EQ(run({"render", "in.ply", "-o", "out.png"}).code, 5);
   EXPECT_EQ(take("out.png"), "mine");
   EXPECT_EQ(run({"render", "in.ply", "-o", "out.png", "--force"}).code, 0);
+  EXPECT_EQ(run({"render", "in.ply", "-o", "one.png", "--threads", "1"}).code, 0);
+  EXPECT_TRUE(take("one.png") == take("out.png"));
   EXPECT_EQ(run({"render", "in.ply", "-o", "new.png", "--widht", "3"}).code, 2);
   EXPECT_EQ(run({"render", "in.ply", "-o", "new.png", "--direction", "1,2"}).code, 2);
   EXPECT_EQ(run({"render", "in.ply", "-o", "new.png", "--direction", "0,0,0"}).code, 2);

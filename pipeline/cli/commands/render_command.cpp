@@ -4,7 +4,6 @@
 #include <memory>
 
 #include "base/fail.h"
-#include "pipeline/cli/files/file_options.h"
 #include "pipeline/cli/other_program.h"
 #include "pipeline/cli/own_files.h"
 

@@ -8,6 +8,7 @@
 
 #include "pipeline/cli/commands/command.h"
 #include "pipeline/cli/console/console.h"
+#include "pipeline/cli/files/file_options.h"
 
 namespace rfsmooth::cli {
 
@@ -25,6 +26,7 @@ struct RenderOptions {
   int levels = 256;
   bool without_outliers = false;
   bool force = false;
+  std::optional<int> threads;
   TalkOptions talk;
 
   template <class Self, class Visit>
@@ -58,6 +60,7 @@ struct RenderOptions {
     visit(OptionInfo{"without-outliers", "leave out points of clouds with no surface near them", ""},
           self.without_outliers);
     visit(OptionInfo{"force", "replace an existing file", ""}, self.force);
+    visit(threads_option(), self.threads);
     TalkOptions::describe(self.talk, visit);
   }
 };

@@ -38,8 +38,7 @@ struct ReportCommandOptions {
             ""},
         self.points);
     visit(OptionInfo{"force", "replace an existing file", ""}, self.force);
-    visit(OptionInfo{"threads", "threads to use; auto: all cores; the result is the same", "", 1, 1024},
-          self.threads);
+    visit(threads_option(), self.threads);
     TalkOptions::describe(self.talk, visit);
   }
 };

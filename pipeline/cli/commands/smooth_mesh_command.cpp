@@ -6,6 +6,8 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
+#include <rfsmooth/denoise.h>
+
 #include "base/fail.h"
 #include "base/stopwatch.h"
 #include "pipeline/cli/commands/command.h"
@@ -14,6 +16,7 @@
 #include "pipeline/cli/files/cloud_jobs.h"
 #include "pipeline/cli/files/constraint_fields.h"
 #include "pipeline/cli/files/file_mesh.h"
+#include "pipeline/cli/files/memory.h"
 #include "pipeline/io/point_fields.h"
 #include "rfs_mesh/edge_faces.h"
 #include "rfs_mesh/measure.h"
@@ -142,6 +145,9 @@ std::string smooth_file(const SmoothMeshCommandOptions& options, std::vector<Tra
   Stopwatch watch(stages, "connect");
   FileMesh file =
       file_mesh(cloud, job.input, context, options.flow.modifiers.preserve == Preserve::height_field);
+  // The last mesh of a refinement takes, for each of its vertices, what a point of a cloud takes.
+  if (const int levels = options.after.refine.levels; levels > 0)
+    need_memory(job.input, rfsmooth::denoise_memory(smoothing::refined_vertices(file.mesh, levels)));
   const auto constraints = value_or_fail(guarded([&] {
                                            return constraints_of(options.constraints, cloud, file.of_row,
                                                                  file.before.size(), task.context);

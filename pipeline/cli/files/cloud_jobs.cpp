@@ -32,6 +32,20 @@ std::vector<std::string> left_behind(const pipeline::io::Cloud& cloud, const OnC
   return pipeline::io::las_losses(cloud);
 }
 
+/// "column 5 is displacement, 6 nx": those from column `first` on, where the file has no names that say so.
+std::string unnamed_columns(const pipeline::io::Cloud& cloud, std::size_t first, const std::string& output,
+                            pipeline::io::Format format) {
+  using pipeline::io::Format;
+  if (cloud.format != Format::xyz || format != Format::xyz || cloud.xyz_style.names ||
+      pipeline::io::new_cells(cloud, output))
+    return "";
+  std::string said;
+  for (std::size_t f = first; f < cloud.points().fields.size(); ++f)
+    said += fmt::format(fmt::runtime(said.empty() ? "column {} is {}" : ", {} {}"), f + 1,
+                        cloud.points().fields[f].name);
+  return said;
+}
+
 void run_one(const Job& job, const JobOptions& options, const OnCloud& on_cloud, const Context& context,
              Console& console, ordered_json& entry, bool one_of_many) {
   need_own_target(job, options.files.output);
@@ -44,12 +58,17 @@ void run_one(const Job& job, const JobOptions& options, const OnCloud& on_cloud,
   }
   entry["input"].update(describe(cloud));
   console.set_points(cloud.size());
+  const std::size_t columns = cloud.points().fields.size();
   std::vector<std::string> dropped = left_behind(cloud, on_cloud);
-  const std::string summary = on_cloud.work(cloud, {job, context, console, stages, entry});
+  const std::string summary = pipeline::io::naming(job.input == "-" ? "standard input" : job.input, [&] {
+    return on_cloud.work(cloud, {job, context, console, stages, entry});
+  });
   const pipeline::io::Format format = output_format(cloud, job.output, options.files);
   {
     const Stopwatch watch(stages, "write");
-    const auto more = store_cloud(cloud, job.output, options.files, context);
+    const auto more = pipeline::io::naming(job.output == "-" ? "standard output" : job.output, [&] {
+      return store_cloud(cloud, job.output, options.files, context);
+    });
     dropped.insert(dropped.end(), more.begin(), more.end());
   }
   if (!dropped.empty()) {
@@ -58,6 +77,8 @@ void run_one(const Job& job, const JobOptions& options, const OnCloud& on_cloud,
     entry["output"]["dropped"] = dropped;
   }
   tell_summary(job, summary, one_of_many, console);
+  if (const auto added = unnamed_columns(cloud, columns, job.output, format); !added.empty())
+    console.say(fmt::format("{}: has no names: {}", job.output, added));
   if (on_cloud.beside) on_cloud.beside(console);
   console.detail("seconds: " + text_of(stages));
   entry["threads"] = options.run.threads ? ordered_json(*options.run.threads) : ordered_json(nullptr);

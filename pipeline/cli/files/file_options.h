@@ -8,6 +8,12 @@
 
 namespace rfsmooth::cli {
 
+/// Of every sub-command that works on clouds.
+inline OptionInfo threads_option() {
+  return {"threads", "threads to use, also by libraries; auto: all cores; the result is the same", "", 1,
+          1024};
+}
+
 struct FileOptions {
   std::optional<std::string> output;
   std::optional<std::string> format;
@@ -38,9 +44,7 @@ struct RunOptions {
 
   template <class Self, class Visit>
   static void describe(Self& self, Visit&& visit) {
-    visit(OptionInfo{"threads", "threads to use, also by libraries; auto: all cores; the result is the same",
-                     "", 1, 1024},
-          self.threads);
+    visit(threads_option(), self.threads);
     visit(OptionInfo{"report", "write what was done as JSON (- for standard output)", "file"}, self.report);
     visit(OptionInfo{"config",
                      "take options (and files, if none are given) from a report or a JSON object of "

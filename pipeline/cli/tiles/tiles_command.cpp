@@ -8,6 +8,7 @@
 #include "pipeline/cli/commands/command.h"
 #include "pipeline/cli/console/console.h"
 #include "pipeline/cli/console/scale_said.h"
+#include "pipeline/cli/exit_code.h"
 #include "pipeline/cli/files/cloud_normals.h"
 #include "pipeline/cli/files/file_options.h"
 #include "pipeline/cli/jobs.h"
@@ -67,8 +68,7 @@ struct TilesOptions {
                    "noise left",
                    ""},
         self.keep_scale);
-    visit(OptionInfo{"threads", "threads to use; auto: all cores; the result is the same", "", 1, 1024},
-          self.threads);
+    visit(threads_option(), self.threads);
     TalkOptions::describe(self.talk, visit);
     PlannedOptions::describe(self.planned, visit);
   }
@@ -131,15 +131,21 @@ std::vector<std::string> outputs_of(const std::vector<std::string>& inputs, cons
   return outputs;
 }
 
-void join_tiles(const TilesOptions& options, const std::vector<std::string>& arguments,
-                const Context& context, Console& console) {
+/// \return the exit code.
+int join_tiles(const TilesOptions& options, const std::vector<std::string>& arguments, const Context& context,
+               Console& console) {
   if (arguments.size() != 2) fail(ErrorCode::usage, "rfsmooth tiles join takes JOB OUT");
   const Job job = pipeline::tiles::open_job(arguments[0]);
   std::vector<std::string> inputs;
   for (const auto& input : job.inputs) inputs.push_back(input.path);
   const std::vector<std::string> outputs = outputs_of(inputs, arguments[1], options.force);
-  const auto joined = pipeline::tiles::join_job(
-      job, outputs, {options.force, options.keep_scale, planned_options(job).normals.normals}, context);
+  auto done = guarded([&] {
+    return pipeline::tiles::join_job(
+        job, outputs, {options.force, options.keep_scale, planned_options(job).normals.normals}, context);
+  });
+  const bool to_reader = arguments[1] == "-" && !done.ok() && done.error().code == ErrorCode::cannot_write;
+  if (to_reader && stdout_reader_is_gone()) return exit_code(ErrorCode::cannot_write);  // it has seen enough
+  const auto joined = value_or_throw(std::move(done));
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     tell_scale(job.inputs[i].path, joined[i].scale, joined[i].noise, joined[i].noise_left, console);
     if (joined[i].las) warn_of_index(outputs[i], console);
@@ -147,6 +153,7 @@ void join_tiles(const TilesOptions& options, const std::vector<std::string>& arg
   }
   console.say(fmt::format("{}: {} points, {} file{}", arguments[1], job.points, outputs.size(),
                           outputs.size() == 1 ? "" : "s"));
+  return 0;
 }
 
 void tell_status(const TilesOptions& options, const std::vector<std::string>& arguments,
@@ -214,7 +221,7 @@ int run_tiles(TilesOptions& options, const Invocation& typed) {
   if (step == "plan")
     plan_tiles(options, arguments, context, console);
   else if (step == "join")
-    join_tiles(options, arguments, context, console);
+    return join_tiles(options, arguments, context, console);
   else if (step == "status")
     tell_status(options, arguments, context);
   else
@@ -236,7 +243,7 @@ Command tiles_command() {
       "folder JOB. plan cuts it; measure, for every tile, takes a sample; settle finds from it what the "
       "cloud "
       "as a whole is like; run, for every tile, smooths it; join writes the files with x, y, z replaced "
-      "(a single one also to standard output, -). "
+      "(many into a folder, also OUT/; a single one also to standard output, -). "
       "Tiles are numbered from 0; measure and run may go on in any order, in any number of processes, and "
       "again: what is there complete is not made again. The same inputs give the same bytes. On one machine "
       "'rfsmooth denoise --memory 8G IN OUT' does all of it.";

@@ -132,6 +132,13 @@ void add_kept_elements(const Cloud& cloud, Format format, const Context& context
   }
 }
 
+// Only XYZ may call x, y and z otherwise.
+void name_coordinates(Table& points, const std::array<std::size_t, 3>& xyz) {
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    if (std::string& name = points.fields[xyz[axis]].name; name != std::string(1, char('X' + axis)))
+      name = char('x' + axis);
+}
+
 // The points, as far as they go along; sets the coordinates of `out`.
 void add_kept_points(const Cloud& cloud, Format format, const Context& context, Cloud& out) {
   Table points = cloud.points();
@@ -146,6 +153,7 @@ void add_kept_points(const Cloud& cloud, Format format, const Context& context, 
   for (std::size_t axis = 0; axis < 3; ++axis)
     out.xyz[axis] = std::size_t(std::find(kept.begin(), kept.end(), cloud.xyz[axis]) - kept.begin());
   for (Field& f : points.fields) f.spelling.clear();
+  name_coordinates(points, out.xyz);
   fit_types(points, format, context);
   if (format == Format::xyz && points.fields.size() > 3) out.xyz_style.names = "# ";
   out.elements.push_back(std::move(points));
@@ -205,6 +213,14 @@ Cloud convert(const Cloud& cloud, Format format, const Context& context) {
   if (format != Format::las) return out;
   make_binary(out.points(), context);  // after the comments between rows of text were taken
   return las_of_plain(out, positions(cloud, context), context);
+}
+
+Cloud as_cells(Cloud cloud, Separators separators, const Context& context) {
+  make_cells(cloud.points(), separators, context);
+  cloud.xyz_style.names = "";
+  cloud.xyz_style.counted.reset();
+  cloud.xyz_style.separator = cell_separator(separators);
+  return cloud;
 }
 
 }  // namespace rfsmooth::pipeline::io

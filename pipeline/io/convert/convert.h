@@ -22,4 +22,8 @@ std::vector<std::string> what_is_lost(const Cloud& cloud, Format format, Encodin
 /// comments. To and from LAS by way of a cloud of plain numbers (las_plain.h, las_pack.h).
 Cloud convert(const Cloud& cloud, Format format, const Context& context);
 
+/// The cloud, of format XYZ, as a table as other programs read it: a line of names, no number of points, and
+/// `separators` between cells.
+Cloud as_cells(Cloud cloud, Separators separators, const Context& context);
+
 }  // namespace rfsmooth::pipeline::io

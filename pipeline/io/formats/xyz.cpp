@@ -49,6 +49,10 @@ std::size_t count_columns(const TextCursor& cursor, Separators separators) {
   if (words.size() < 3)
     cursor.source.fail("line {}: expected at least 3 columns, found {} in {}", line, words.size(),
                        in_quotes(shown));
+  if (std::none_of(words.begin(), words.end(), [](auto word) { return word.empty() || parse_real(word); }))
+    cursor.source.fail(
+        "line {}: expected numbers, or names with x, y and z among them, found {}; call the coordinates so",
+        line, in_quotes(shown));
   if (has_decimal_commas(row))
     cursor.source.fail(
         "line {}: expected decimal points and one kind of separator, found commas between digits in {}", line,
@@ -131,7 +135,10 @@ Cloud read_xyz(const Source& source, const Context& context) {
     for (std::size_t axis = 0; axis < 3; ++axis) table.fields[k + axis].name = kPlyNormal[axis];
   cloud.tail = cursor.rest();
   cloud.elements.push_back(std::move(table));
-  find_coordinates(cloud, source, context);
+  if (const auto axes = xyz_coordinates(names))
+    cloud.xyz = *axes;
+  else
+    find_coordinates(cloud, source, context);
   cloud.width = cloud.size();
   cloud.original_canonical = xyz_header(cloud);
   return cloud;

@@ -2,8 +2,11 @@
 /// blank lines anywhere; a line of column names or a number of points (.pts) first. Columns are doubles;
 /// without names the first three are x, y, z and column k is "column_k", but three columns in a row that hold
 /// unit vectors are the normals nx, ny, nz. Between commas, semicolons or tabs a cell may be empty (NaN) or
-/// in quotes. A name may have a unit: "x [m]" is x.
+/// in quotes. A name may have a unit: "x [m]" is x. Coordinates may have the names of other programs.
 #pragma once
+
+#include <array>
+#include <optional>
 
 #include "pipeline/io/stream/sink.h"
 #include "pipeline/io/stream/source.h"
@@ -33,6 +36,9 @@ std::vector<XyzNames> read_xyz_beginning(TextCursor& cursor, Cloud& cloud);
 /// that names something else is one. \throw Failure if a line of names does not match the columns.
 std::vector<std::string> take_xyz_names(const std::vector<XyzNames>& lines, std::size_t columns,
                                         Separators separators, const Source& source, Cloud& cloud);
+
+/// Where x, y and z are among names of columns that call them otherwise: Easting, Northing and Height, say.
+std::optional<std::array<std::size_t, 3>> xyz_coordinates(const std::vector<std::string>& names);
 
 /// The name in a cell of names, without quotes and unit, a blank inside it as '_'.
 std::string name_in_cell(std::string_view cell);

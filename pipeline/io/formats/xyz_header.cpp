@@ -1,4 +1,7 @@
 #include <algorithm>
+#include <array>
+#include <cctype>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -7,6 +10,9 @@
 
 namespace rfsmooth::pipeline::io {
 namespace {
+
+using Axes = std::array<std::size_t, 3>;
+using CoordinateNames = std::array<std::string_view, 3>;
 
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
@@ -20,30 +26,60 @@ std::string_view prefix_of(std::string_view line) {
   return line.substr(0, std::min(line.find_first_not_of("#/ \t"), line.size()));
 }
 
-bool is_axis(std::string_view cell, std::size_t axis) {
-  const std::string name = name_in_cell(cell);
-  return name.size() == 1 && (name[0] == char('x' + axis) || name[0] == char('X' + axis));
-}
-
 using Cells = std::vector<std::string_view>;
 
-// Where the first cell that names the axis is; as many as there are cells if none does.
-std::size_t place_of_axis(const Cells& cells, std::size_t axis) {
-  return std::size_t(std::find_if(cells.begin(), cells.end(), [&](auto c) { return is_axis(c, axis); }) -
-                     cells.begin());
+// What x, y and z are called, in lower case: also by surveyors and by ParaView.
+constexpr CoordinateNames kNames[] = {{"x", "y", "z"},
+                                      {"easting", "northing", "height"},
+                                      {"easting", "northing", "elevation"},
+                                      {"easting", "northing", "z"},
+                                      {"e", "n", "h"},
+                                      {"e", "n", "z"},
+                                      {"x", "y", "height"},
+                                      {"x", "y", "elevation"},
+                                      {"x_coord", "y_coord", "z_coord"},
+                                      {"points:0", "points:1", "points:2"},
+                                      {"points_0", "points_1", "points_2"}};
+
+// Where the first of that name is; as many as there are if none is.
+std::size_t place_of(const std::vector<std::string>& all, std::string_view name) {
+  return std::size_t(std::find(all.begin(), all.end(), name) - all.begin());
 }
 
-bool names_coordinates(const Cells& cells) {
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    if (place_of_axis(cells, axis) == cells.size()) return false;
-  return true;
+// Where those names are, unless one is missing, or another column is called x, y or z.
+std::optional<Axes> places_of(const std::vector<std::string>& all, const CoordinateNames& names) {
+  Axes axes{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    axes[axis] = place_of(all, names[axis]);
+    const std::size_t plain = place_of(all, kNames[0][axis]);
+    if (axes[axis] == all.size() || (plain != all.size() && plain != axes[axis])) return std::nullopt;
+  }
+  return axes;
+}
+
+// Where x, y and z are, and whether they are called so.
+struct Coordinates {
+  Axes axes;
+  bool plain;
+};
+
+std::optional<Coordinates> coordinates_among(const Cells& cells) {
+  std::vector<std::string> all;
+  for (const std::string_view cell : cells) {
+    std::string& name = all.emplace_back(name_in_cell(cell));
+    std::transform(name.begin(), name.end(), name.begin(),
+                   [](unsigned char c) { return char(std::tolower(c)); });
+  }
+  for (const CoordinateNames& names : kNames)
+    if (const auto axes = places_of(all, names)) return Coordinates{*axes, &names == kNames};
+  return std::nullopt;
 }
 
 // Whether a line names x, y and z, whatever stands between its names.
 bool names_coordinates(std::string_view line) {
   for (const Separators s :
        {Separators::space_comma, Separators::comma, Separators::semicolon, Separators::tab})
-    if (names_coordinates(words_as_written(line, s))) return true;
+    if (coordinates_among(words_as_written(line, s))) return true;
   return false;
 }
 
@@ -52,9 +88,8 @@ bool names_coordinates(std::string_view line) {
 bool is_misfit(const Cells& cells, std::string_view line, std::size_t columns) {
   if (columns == 3 || cells.size() > columns + 1 || line.find_first_of(":=") != std::string_view::npos)
     return false;
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    if (place_of_axis(cells, axis) != axis) return true;
-  return false;
+  const auto found = coordinates_among(cells);
+  return !found || found->axes != Axes{0, 1, 2};
 }
 
 void need_line_feeds(const TextCursor& cursor, std::string_view content) {
@@ -77,6 +112,12 @@ std::string name_in_cell(std::string_view cell) {
   std::replace_if(
       name.begin(), name.end(), [](char c) { return c == ' ' || c == '\t'; }, '_');
   return name;
+}
+
+std::optional<Axes> xyz_coordinates(const std::vector<std::string>& names) {
+  const auto found = coordinates_among(Cells(names.begin(), names.end()));
+  if (!found || found->plain) return std::nullopt;
+  return found->axes;
 }
 
 std::vector<XyzNames> read_xyz_beginning(TextCursor& cursor, Cloud& cloud) {
@@ -112,7 +153,7 @@ std::vector<std::string> take_xyz_names(const std::vector<XyzNames>& lines, std:
   for (const XyzNames& names : lines)
     for (const Separators s : {separators, Separators::space_comma}) {
       const Cells cells = words_as_written(names.line, s);
-      if (cells.size() != columns || !names_coordinates(cells)) continue;
+      if (cells.size() != columns || !coordinates_among(cells)) continue;
       const std::size_t between = names.line.find_first_of(",;\t");
       cloud.xyz_style.names = names.prefix;
       cloud.xyz_style.separator = between == std::string::npos ? ' ' : names.line[between];
@@ -137,14 +178,17 @@ std::string xyz_header(const Cloud& cloud) {
   if (cloud.xyz_style.names) {
     out += *cloud.xyz_style.names;
     std::vector<std::string> cells = cloud.xyz_style.cells;
+    const char separator = cloud.xyz_style.separator;
     const bool quoted = !cells.empty() && cells.front().substr(0, 1) == "\"";
     bool first = true;
     for (const Field& f : cloud.points().fields) {
-      if (!first) out += cloud.xyz_style.separator;
+      if (!first) out += separator;
       first = false;
       const auto cell = std::find_if(cells.begin(), cells.end(),
                                      [&](const std::string& c) { return name_in_cell(c) == f.name; });
-      out += cell != cells.end() ? *cell : quoted ? '"' + f.name + '"' : f.name;
+      const std::string name = cell != cells.end() ? *cell : quoted ? '"' + f.name + '"' : f.name;
+      const bool parted = separator != ' ' && name.find(separator) != std::string::npos;
+      out += parted && name.front() != '"' ? '"' + name + '"' : name;
       if (cell != cells.end()) cells.erase(cell);  // a name may be there several times
     }
     out += cloud.newline;

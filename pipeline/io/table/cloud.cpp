@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <functional>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -12,22 +13,23 @@
 namespace rfsmooth::pipeline::io {
 namespace {
 
-bool names_points(const Table& table) {
-  for (const Field& f : table.fields)
-    if (f.name == "vertex_indices" || f.name == "vertex_index" || f.name == "vertex1" || f.name == "vertex2")
-      return true;
-  return false;
-}
-
-// Notes keep their place when element `gone` leaves.
-void forget_element(Cloud& cloud, std::size_t gone) {
-  cloud.elements.erase(cloud.elements.begin() + std::ptrdiff_t(gone));
-  if (cloud.vertex > gone) --cloud.vertex;
-  for (Note& note : cloud.notes) {
-    if (note.element == Note::kBeforeFormat) continue;
-    if (note.element == gone) note.field = 0;
-    if (note.element > gone) --note.element;
+// The elements that name points by index, and what becomes of them when the points `rows` stay.
+std::vector<std::pair<std::size_t, Table>> renumbered(const Cloud& cloud,
+                                                      const std::vector<std::size_t>& rows,
+                                                      const Context& context) {
+  std::vector<std::pair<std::size_t, Table>> changed;
+  std::vector<Index> number;
+  for (std::size_t e = 0; e < cloud.elements.size(); ++e) {
+    const auto which = fields_of_indices(cloud.elements[e]);
+    if (e == cloud.vertex || which.empty()) continue;
+    if (number.empty()) {
+      number.assign(cloud.size(), kNone);
+      for (std::size_t i = rows.size(); i-- > 0;) number[rows[i]] = Index(i);
+    }
+    changed.emplace_back(e, cloud.elements[e]);
+    renumber(changed.back().second, which, number, context);
   }
+  return changed;
 }
 
 // Fields that programs write in lower and upper case alike; others of another case are other fields.
@@ -161,21 +163,15 @@ void select_points(Cloud& cloud, const std::vector<std::size_t>& rows, const Con
     all = all && rows[i] == i;
   }
   if (all) return;
-  std::vector<std::string> warnings;  // made before anything changes: memory may run out
-  for (std::size_t e = 0; e < cloud.elements.size(); ++e)
-    if (e != cloud.vertex && names_points(cloud.elements[e]))
-      warnings.push_back("element '" + cloud.elements[e].name +
-                         "' names points by index and is left out with the points removed");
+  auto others = renumbered(cloud, rows, context);  // made before anything changes: memory may run out
   select(cloud.points(), rows);
+  for (auto& [e, table] : others) cloud.elements[e] = std::move(table);
   cloud.width = rows.size();
   cloud.height = 1;
   const auto says_grid = [](const Note& note) {
     return note.line.rfind("obj_info num_cols", 0) == 0 || note.line.rfind("obj_info num_rows", 0) == 0;
   };
   cloud.notes.erase(std::remove_if(cloud.notes.begin(), cloud.notes.end(), says_grid), cloud.notes.end());
-  for (std::size_t e = cloud.elements.size(); e-- > 0;)
-    if (e != cloud.vertex && names_points(cloud.elements[e])) forget_element(cloud, e);
-  for (const std::string& warning : warnings) context.warn(warning);
 }
 
 Cloud make_cloud(const double* xyz, std::size_t n, Scalar type) {

@@ -117,9 +117,10 @@ void set_field(Cloud& cloud, const std::string& name, Scalar type, const std::ve
 /// where `type` is a float. \throw Failure (usage) naming field and type.
 void check_field(const Cloud& cloud, const std::string& name, Scalar type);
 
-/// Keeps the points `rows`, in that order. Unless these are all points in order, the result is not organised,
-/// and elements that name points by index (lists called vertex_indices or vertex_index; vertex1, vertex2) are
-/// dropped with a warning. \throw std::invalid_argument if there is no such row.
+/// Keeps the points `rows`, in that order. Unless these are all points in order, the result is not organised.
+/// Rows of elements that name points by index (lists called vertex_indices or vertex_index; vertex1, vertex2)
+/// stay where all of their points do, and get the new indices. \throw std::invalid_argument if there is no
+/// such row.
 void select_points(Cloud& cloud, const std::vector<std::size_t>& rows, const Context& context = {});
 
 /// A cloud of n points with fields x, y, z of `type` and nothing else.

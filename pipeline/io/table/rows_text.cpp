@@ -12,8 +12,13 @@ namespace {
 
 constexpr std::size_t kTextRowsPerBlock = 4096;
 
-std::string not_a_value(std::string_view what, const Field& f, Scalar type, std::string_view word) {
-  return fmt::format("expected {} '{}' ({}), found {}", what, f.name, name_of(type), in_quotes(word));
+// Other texts than XYZ have no columns of words.
+std::string not_a_value(const Table& table, std::string_view what, const Field& f, Scalar type,
+                        std::string_view word) {
+  return fmt::format("expected {} '{}' ({}), found {}{}", what, f.name, name_of(type), in_quotes(word),
+                     table.separators == Separators::space
+                         ? ""
+                         : "; columns of text are not read: take them out of the file");
 }
 
 // The same as `problem`, of a row of cells.
@@ -21,7 +26,7 @@ std::string problem_of_cells(const Table& table, std::string_view row) {
   const auto cells = words_of(row, table.separators);
   for (std::size_t k = 0; k < std::min(cells.size(), table.fields.size()); ++k)
     if (const Field& f = table.fields[k]; !cells[k].empty() && !is_value(cells[k], f.type))
-      return not_a_value("a value of", f, f.type, cells[k]);
+      return not_a_value(table, "a value of", f, f.type, cells[k]);
   if (cells.size() == table.fields.size()) return {};
   return fmt::format("expected {} values, found {}", table.fields.size(), cells.size());
 }
@@ -39,7 +44,7 @@ std::string problem(const Table& table, std::string_view row) {
       return fmt::format("expected {} '{}' as value {}, found the end of the line", what, f.name, wanted);
     ++seen;
     if (is_value(word, type)) return {};
-    return not_a_value(what, f, type, word);
+    return not_a_value(table, what, f, type, word);
   };
   for (const Field& f : table.fields) {
     std::size_t n = f.count;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <rfsmooth/context.h>
+#include <rfsmooth/mesh.h>
 
 #include "pipeline/io/table/bytes.h"
 #include "pipeline/io/table/field.h"
@@ -69,8 +70,21 @@ void append_field(Table& table, const Field& field, const double* values, const 
 /// loses its quotes, tabs and CRs within a row are blanks. Does nothing to other words and to bytes.
 void make_words(Table& table, const Context& context);
 
+/// Turns the rows into text of cells. An empty one stays empty.
+void make_cells(Table& table, Separators separators, const Context& context);
+
 /// Keeps the rows `which` in that order. O(rows and interludes).
 void select(Table& table, const std::vector<std::size_t>& which);
+
+/// The fields that name points by their index: those of faces (vertex_indices, vertex_index) and of edges
+/// (vertex1, vertex2).
+std::vector<std::size_t> fields_of_indices(const Table& table);
+
+/// Keeps the rows of which every value of the fields `which`, plain or lists, has a new number, and writes
+/// that in its place; all other bytes stay. `number`: the new one of each old one; kNone: it has none, as
+/// those beyond have not.
+void renumber(Table& table, const std::vector<std::size_t>& which, const std::vector<Index>& number,
+              const Context& context);
 
 /// Keeps the fields `which`, in that order. Text rows are rewritten, values separated by a blank.
 void project(Table& table, const std::vector<std::size_t>& which, const Context& context);

@@ -34,6 +34,22 @@ bool has_other_blanks(const Bytes& text) {
   return std::adjacent_find(text.begin(), text.end(), is_other) != text.end();
 }
 
+// Writes the rows of a text anew, with words or cells.
+void separate(Table& table, Separators separators, const Context& context) {
+  const char cell = cell_separator(separators);
+  const Table& old = table;
+  rebuild(table, context, [&](std::size_t i, std::string& out) {
+    bool first = true;
+    for (const std::string_view word : words_of(old.row(i), old.separators)) {
+      if (!first) out += cell == '\0' ? ' ' : cell;
+      first = false;
+      out.append(word.empty() && cell == '\0' ? "nan" : word);
+    }
+    out += '\n';
+  });
+  table.separators = separators;
+}
+
 }  // namespace
 
 void append_field(Table& table, const Field& field, const double* values, const Context& context) {
@@ -154,17 +170,12 @@ void project(Table& table, const std::vector<std::size_t>& which, const Context&
 
 void make_words(Table& table, const Context& context) {
   if (!table.text || (table.separators == Separators::space && !has_other_blanks(table.data))) return;
-  const Table& old = table;
-  rebuild(table, context, [&](std::size_t i, std::string& out) {
-    bool first = true;
-    for (const std::string_view word : words_of(old.row(i), old.separators)) {
-      if (!first) out += ' ';
-      first = false;
-      out.append(word.empty() ? "nan" : word);
-    }
-    out += '\n';
-  });
-  table.separators = Separators::space;
+  separate(table, Separators::space, context);
+}
+
+void make_cells(Table& table, Separators separators, const Context& context) {
+  make_text(table, context);
+  separate(table, separators, context);
 }
 
 void select(Table& table, const std::vector<std::size_t>& which) {

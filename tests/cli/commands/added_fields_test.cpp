@@ -95,6 +95,29 @@ TEST_F(AddedFields, AFieldOfWholeNumbersIsNotOverwritten) {
   EXPECT_FALSE(there("out.ply"));
 }
 
+TEST_F(AddedFields, ColumnsWithoutNamesAreTold) {
+  put_cloud("in.ply", "binary");
+  ASSERT_EQ(run({"denoise", "in.ply", "named.xyz"}).code, 0);
+  std::string rows = take("named.xyz");
+  while (rows.front() == '#') rows.erase(0, rows.find('\n') + 1);
+  put("in.xyz", rows);
+  const std::vector<std::string> more = {"denoise", "--write-displacement", "--normals", "--viewpoint",
+                                         "0,0,9"};
+  const auto said = [&](const std::string& in, const std::string& out) {
+    std::vector<std::string> words = more;
+    words.insert(words.end(), {in, out});
+    const Ran ran = run(words);
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    return ran.err;
+  };
+  EXPECT_THAT(said("in.xyz", "out.xyz"),
+              HasSubstr("out.xyz: has no names: column 6 is displacement, 7 nx, 8 ny, 9 nz\n"));
+  for (const auto& [in, out] : {std::pair("named.xyz", "a.xyz"), {"in.xyz", "a.csv"}, {"in.ply", "b.xyz"}})
+    EXPECT_THAT(said(in, out), ::testing::Not(HasSubstr("column"))) << in;
+  const std::string table = take("a.csv");
+  EXPECT_EQ(table.substr(0, table.find('\n')), "x,y,z,column_4,column_5,displacement,nx,ny,nz");
+}
+
 TEST_F(AddedFields, OffHasNoPlaceForThem) {
   put("in.off", "OFF\n4 1 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2 255 0 0\n");
   const Ran refused = run({"denoise", "--write-displacement", "in.off", "out.off"});

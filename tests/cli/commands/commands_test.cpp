@@ -220,6 +220,27 @@ TEST_F(Commands, CloudsOfOnePlaceHaveNoFiguresThatAreNoNumbers) {
   }
 }
 
+TEST_F(Commands, ErrorsNameTheFile) {
+  put("in.ply", noisy_plane(20).bytes());
+  put("nan.xyz", "nan nan nan\n1 nan 2\n");
+  const std::pair<std::vector<std::string>, std::string> mistakes[] = {
+      {{"denoise", "in.ply", "out.off"}, "out.off: off (ascii) cannot carry field 'intensity'"},
+      {{"denoise", "in.ply", "out.ply", "--encoding", "binary_compressed"}, "out.ply: ply has no encoding"},
+      {{"mesh", "in.ply", "out.xyz"}, "out.xyz: xyz (ascii) cannot carry element 'face'"},
+      {{"denoise", "in.ply", "out.ply", "--strength-field", "nope"},
+       "in.ply: the points have no field 'nope'"},
+      {{"denoise", "in.ply", "out.ply", "--strength-field", "label"}, "in.ply: --strength-field label: "},
+      {{"compare", "in.ply", "nan.xyz"}, "in.ply against nan.xyz: the truth has no finite point"}};
+  for (const auto& [words, says] : mistakes)
+    EXPECT_THAT(run(words).err, ::testing::StartsWith("rfsmooth: error: " + says));
+}
+
+TEST_F(Commands, InfoTakesThreads) {
+  put("in.ply", noisy_plane(20).bytes());
+  EXPECT_EQ(run({"info", "--threads", "1", "in.ply"}).out, run({"info", "in.ply"}).out);
+  EXPECT_EQ(run({"info", "--threads", "0", "in.ply"}).code, 2);
+}
+
 TEST_F(Commands, CompareNeedsTwoFiles) {
   EXPECT_EQ(run({"compare", "a.ply"}).code, 2);
   EXPECT_EQ(run({"compare", "a.ply", "b.ply"}).code, 3);

@@ -369,5 +369,16 @@ TEST_F(DenoiseCommand, PositionalArgumentsAreCounted) {
   }
 }
 
+TEST_F(DenoiseCommand, MemoryIsSpelledAsPeopleDo) {
+  put("in.ply", noisy_plane(20).bytes());
+  for (const char* memory : {"8G", "8g", "8GB", "8gb", "500M", "500mb", "4e9"})
+    EXPECT_EQ(run({"denoise", "--force", "--memory", memory, "in.ply", "out.ply"}).code, 0) << memory;
+  for (const char* memory : {"8 apples", "GB", "8GiB", "8"}) {
+    const Ran ran = run({"denoise", "--force", "--memory", memory, "in.ply", "out.ply"});
+    EXPECT_EQ(ran.code, 2) << memory;
+    EXPECT_THAT(ran.err, ::testing::AllOf(HasSubstr("8G, 8GB or 500M"), HasSubstr(memory)));
+  }
+}
+
 }  // namespace
 }  // namespace rfsmooth::test

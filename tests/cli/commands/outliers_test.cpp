@@ -137,6 +137,77 @@ TEST_F(OutliersOption, RemoveLeavesThemOutAndKeepsTheOrder) {
   }
 }
 
+/// Triangles over the plane, each with a number of its own; edges along its first row. As text for PLY.
+std::string mesh_with_strays() {
+  const io::Cloud plane = plane_with_strays();
+  std::string faces, edges;
+  std::size_t count = 0;
+  for (int i = 0; i + 1 < kSide; ++i)
+    for (int j = 0; j + 1 < kSide; ++j, ++count) {
+      const int a = i * kSide + j;
+      faces += fmt::format("7 4  {} {} {} {} 2 0.5 {}\n", a, a + 1, a + kSide + 1, a + kSide, count);
+    }
+  for (int i = 99; i < 110; ++i) edges += fmt::format("{} {} {}\n", i, i + 1, i);
+  std::string text = value_or_throw(io::serialize_cloud(plane, {{}, io::Encoding::ascii}, {}));
+  const std::string end = "end_header\n";
+  text.replace(text.find(end), end.size(),
+               fmt::format("element face {}\nproperty uchar kind\nproperty list uchar uint vertex_indices\n"
+                           "property list uchar float texcoord\nelement edge 11\nproperty int vertex1\n"
+                           "property int vertex2\nproperty int first\n",
+                           count) +
+                   end);
+  return text + faces + edges;
+}
+
+TEST_F(OutliersOption, RemoveKeepsTheFacesAndEdgesWhosePointsStay) {
+  put("in.ply", mesh_with_strays());
+  for (const char* encoding : {"ascii", "binary", "binary_big_endian"}) {
+    // A file of the encoding, then a run that changes nothing but the outliers.
+    ASSERT_EQ(
+        run({"denoise", "--iterations", "0", "--encoding", encoding, "in.ply", "same.ply", "--force"}).code,
+        0);
+    const Ran ran = run({"denoise", "--iterations", "0", "--outliers", "remove", "same.ply", "out.ply",
+                         "--report", "report.json", "--force"});
+    ASSERT_EQ(ran.code, 0) << ran.err;
+    EXPECT_THAT(ran.err, HasSubstr("3 outliers removed, with them 10 of 841 faces, 2 of 11 edges"));
+    EXPECT_THAT(ran.err, ::testing::Not(HasSubstr("warning")));
+    EXPECT_EQ(report()["counts"]["removed_with_points"], nlohmann::json({{"face", 10}, {"edge", 2}}));
+    const io::Cloud before = read(at("in.ply")), after = read(at("out.ply"));
+    const std::vector<double> row = values_of(after, "row");
+    const io::Table &old = *before.element("face"), &face = *after.element("face");
+    ASSERT_EQ(face.count, old.count - 10);
+    const auto corners = io::gather_lists(face, 1, {}), old_corners = io::gather_lists(old, 1, {});
+    const auto texture = io::gather_lists(face, 2, {});
+    for (std::size_t f = 0; f < face.count; ++f) {
+      ASSERT_EQ(texture.start[f + 1] - texture.start[f], 2u);
+      const auto was = std::size_t(texture.values[texture.start[f] + 1]);  // the number it had
+      for (std::size_t k = 0; k < 4; ++k)
+        EXPECT_EQ(row[std::size_t(corners.values[4 * f + k])], old_corners.values[4 * was + k]);
+    }
+    const std::vector<double> edge = io::gather(*after.element("edge"), {0, 1, 2}, {});
+    ASSERT_EQ(edge.size(), 9u * 3);
+    for (std::size_t e = 0; e < edge.size(); e += 3) {
+      EXPECT_EQ(row[std::size_t(edge[e])], edge[e + 2]);
+      EXPECT_EQ(row[std::size_t(edge[e + 1])], edge[e + 2] + 1);
+    }
+  }
+}
+
+TEST_F(OutliersOption, FacesOfATextKeepTheirOtherWords) {
+  const io::Cloud plane = plane_with_strays();
+  const auto xyz = io::positions(plane);
+  std::string text = "OFF\n900 3 0\n";
+  for (std::size_t i = 0; i < plane.size(); ++i)
+    text += fmt::format("{} {} {}\n", xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]);
+  put("in.off", text + "3 00 1  2\t0.1 0.2 0.30\n3 99 100 101 1 1 1\n3  99 101 102\t.5 .50 0.500\n");
+  const Ran ran = run({"denoise", "--iterations", "0", "--outliers", "remove", "in.off", "out.off"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  EXPECT_THAT(ran.err, HasSubstr("with them 1 of 3 faces"));
+  const std::string out = take("out.off");
+  EXPECT_THAT(out, ::testing::StartsWith("OFF\n897 2 0\n"));
+  EXPECT_THAT(out, ::testing::EndsWith("\n3 00 1  2\t0.1 0.2 0.30\n3  99 100 101\t.5 .50 0.500\n"));
+}
+
 TEST_F(OutliersOption, RemoveKeepsTheGridOfAnOrganisedCloud) {
   const io::Cloud out = clean({"--outliers", "remove", "--write-displacement"}, ".pcd", true);
   EXPECT_EQ(out.width, std::size_t(kSide));

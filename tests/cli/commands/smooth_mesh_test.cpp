@@ -270,6 +270,16 @@ TEST_F(SmoothMesh, RefineQuadruplesTheFacesThroughTheGivenVertices) {
   for (std::size_t v = 0; v < before.size(); ++v) EXPECT_EQ(after[v], before[v]) << v;
 }
 
+TEST_F(SmoothMesh, RefiningBeyondTheMemoryIsRefusedBeforeAnyWork) {
+  put("in.ply", bumpy_grid(
+                    "", [](int, int) { return ""; }, 40));
+  const Ran ran = run({"smooth-mesh", "in.ply", "out.ply", "--refine", "10"});  // 1.6 billion vertices
+  EXPECT_EQ(ran.code, 6) << ran.err;
+  EXPECT_THAT(ran.err,
+              ::testing::AllOf(HasSubstr("in.ply: needs about 15"), HasSubstr("nothing was started")));
+  EXPECT_FALSE(there("out.ply"));
+}
+
 TEST_F(SmoothMesh, RidgesAreWrittenAsAField) {
   // The top of the bump is the only place where the larger curvature has a maximum both ways.
   const auto after = smoothed(bumpy_grid(""), {"--iterations", "0", "--ridges", "--ridge-curvature", "0.3"});

@@ -273,6 +273,26 @@ TEST_F(Tiles, JoinWritesOneFileToStandardOutput) {
   EXPECT_FALSE(there("-"));
 }
 
+TEST_F(Tiles, JoinSaysNothingToAReaderThatHasSeenEnough) {
+  put("a.ply", noisy_plane(80).bytes());  // more than a pipe holds
+  joined({"a.ply"}, "one", "out.ply");
+  RunSetup setup;
+  setup.folder = at("");
+  const Ran ran = run_program(
+      "bash", {"-c", "{ sleep 0.2; '" RFSMOOTH_COMMAND "' tiles join one -; } | true; exit ${PIPESTATUS[0]}"},
+      setup);
+  EXPECT_EQ(ran.err, "");
+  EXPECT_EQ(ran.code, 5);
+}
+
+TEST_F(Tiles, JoinWritesOneFileIntoAFolderToo) {
+  put("a.ply", noisy_plane(20).bytes());
+  const std::string expected = joined({"a.ply"}, "one", "out.ply");
+  const Ran ran = run({"tiles", "join", "one", "cleaned/"});
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  EXPECT_TRUE(take("cleaned/a.ply") == expected);
+}
+
 // Of rows before the points that the file only promises; 2^64 - 100 of them end before they begin.
 TEST_F(Tiles, RowsThatAreNotThereAreRefusedWithTheirElementAndPlace) {
   for (const std::string count : {"40000000", "3000000000", "10000000000000", "18446744073709551516"}) {

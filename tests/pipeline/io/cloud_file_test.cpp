@@ -49,8 +49,12 @@ TEST(CloudFile, FieldsAndFacesAreReadAndWritten) {
   EXPECT_EQ(file.set_field("label", {0.5, 0, 0, 0}).error().code, ErrorCode::usage);
   EXPECT_THROW((void)file.set_field("noise", {1}), std::invalid_argument);
   const CloudFile copy = file;
+  CloudFile turned = file;
+  turned.select({3, 2, 1, 0});
+  EXPECT_EQ(turned.faces().value(), (std::vector<Face>{{3, 2, 1}, {3, 1, 0}}));
   file.select({0, 3});
   EXPECT_EQ(file.size(), 2U);
+  EXPECT_TRUE(file.faces().value().empty());
   EXPECT_EQ(copy.size(), 4U);
   EXPECT_EQ(file.field("noise").value(), (std::vector<double>{0, 3}));
 }

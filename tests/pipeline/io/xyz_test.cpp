@@ -66,6 +66,39 @@ INSTANTIATE_TEST_SUITE_P(
         NamedColumns{"# a b x y z\n9,8,1,2,3\n9,,4,5,6\n", {"a", "b", "x", "y", "z"}},
         NamedColumns{"# the units of x y z are metres\nt x y z\n9 1 2 3\n9 4 5 6\n", {"t", "x", "y", "z"}}));
 
+// Two rows, 1 2 3 and 4 5 6, whose columns other programs call otherwise than x, y, z.
+TEST(Xyz, CoordinatesMayHaveTheNamesOfSurveyorsAndOtherPrograms) {
+  for (const std::string text :
+       {"Easting Northing Height\n1 2 3\n4 5 6\n", "id,Easting,Northing,Elevation\n7,1,2,3\n8,4,5,6\n",
+        "Height;Easting (m);Northing (m)\n3;1;2\n6;4;5\n", "EASTING\tNORTHING\tZ\n1\t2\t3\n4\t5\t6\n",
+        "E,N,Z,code\n1,2,3,9\n4,5,6,9\n", "e n h\n1 2 3\n4 5 6\n", "X Y Height\n1 2 3\n4 5 6\n",
+        "\"Intensity\",\"Points:0\",\"Points:1\",\"Points:2\"\n9,1,2,3\n9,4,5,6\n",
+        "Points_0,Points_1,Points_2\n1,2,3\n4,5,6\n", "//X;Y;Z;Scalar field\n1;2;3;9\n4;5;6;9\n",
+        "x_coord,y_coord,z_coord\n1,2,3\n4,5,6\n"}) {
+    Cloud cloud = table_of(text);
+    ASSERT_EQ(positions(cloud), (std::vector<double>{1, 2, 3, 4, 5, 6})) << text;
+    EXPECT_EQ(as(cloud, Format::xyz), text);
+    expect_that_y_comes_back(cloud, text, "5.25");
+    const Cloud ply = table_of(as(cloud, Format::ply)), pcd = table_of(as(cloud, Format::pcd));
+    EXPECT_EQ(positions(ply), (std::vector<double>{1, 2, 3, 4, 5.25, 6})) << "as PLY: " << text;
+    EXPECT_EQ(positions(pcd), positions(ply)) << "as PCD: " << text;
+  }
+  EXPECT_EQ(positions(table_of("Easting Northing Height x y z\n7 8 9 1 2 3\n")),
+            (std::vector<double>{1, 2, 3}));
+  EXPECT_THAT(refusal_of("Easting Northing Height x\n7 8 9 1\n"), HasSubstr("line 1: expected numbers"));
+}
+
+TEST(Xyz, NamesAndWordsThatAreNotReadAreRefusedWithWhatToDo) {
+  EXPECT_THAT(refusal_of("lon,lat,alt\n1,2,3\n4,5,6\n"),
+              AllOf(HasSubstr("in.csv: line 1: expected numbers, or names with x, y and z among them"),
+                    HasSubstr("found 'lon,lat,alt'; call the coordinates so")));
+  for (const std::string text : {"x,y,z,class\n1,2,3,ground\n4,5,6,tree\n",
+                                 "# scan\n1 2 3 ground\n4 5 6 tree\n", "id;x;y;z\nP1;1;2;3\nP2;4;5;6\n"})
+    EXPECT_THAT(refusal_of(text), AllOf(HasSubstr("line 2: expected a value of"),
+                                        HasSubstr("columns of text are not read: take them out of the file")))
+        << text;
+}
+
 TEST(Xyz, AnEmptyCellOfACoordinateIsAPointThatIsNotFiniteAndStays) {
   for (const std::string text :
        {"x,y,z,i\n1,2,,7\n4,5,6,8\n", "1;2;;7\n4;5;6;8\n", "1\t2\t\t7\n4\t5\t6\t8\n", "1,2,\n4,5,6"}) {

@@ -53,6 +53,23 @@ TEST(Refine, ASphereBecomesRounder) {
             0.4 * support::rms_off_unit_sphere(subdivided(coarse, 2).positions));
 }
 
+TEST(Refine, TheNumberOfVerticesIsKnownBeforehand) {
+  Mesh loose = support::grid(5, 4);
+  loose.loose_edges = {{0, 19}};
+  rebuild_adjacency(loose, {});
+  for (const Mesh& coarse : {support::icosphere(1), support::torus(10, 8, 0.4), loose})
+    for (const int levels : {0, 1, 3})
+      EXPECT_EQ(refined_vertices(coarse, levels), subdivided(coarse, levels).positions.size());
+}
+
+TEST(Refine, MoreVerticesThanThereAreNumbersForAreRefusedBeforeAnyWork) {
+  RefineOptions options;
+  options.levels = 10;
+  const auto refused = refine(support::grid(70, 70), options, {});
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().code, ErrorCode::usage);
+}
+
 TEST(Refine, APlaneStaysAPlane) {
   RefineOptions options;
   options.levels = 2;

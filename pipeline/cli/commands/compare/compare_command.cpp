@@ -43,8 +43,7 @@ struct CompareCommandOptions {
                      "units of the file", 0, 1e300},
           self.red_from);
     visit(OptionInfo{"force", "replace an existing file", ""}, self.files.force);
-    visit(OptionInfo{"threads", "threads to use; auto: all cores; the result is the same", "", 1, 1024},
-          self.threads);
+    visit(threads_option(), self.threads);
     TalkOptions::describe(self.talk, visit);
   }
 };
@@ -106,9 +105,10 @@ int run_compare(const CompareCommandOptions& options, const Invocation& typed) {
                             normals = pipeline::io::normals_of(cloud, context);
   CompareOptions compare_options;
   compare_options.signed_normals = options.signed_normals;
-  const CompareReport report =
-      value_or_throw(rfsmooth::compare({xyz.data(), cloud.size(), normals.empty() ? nullptr : normals.data()},
-                                       truth.view, compare_options, context));
+  const CompareReport report = pipeline::io::value_or_fail(
+      rfsmooth::compare({xyz.data(), cloud.size(), normals.empty() ? nullptr : normals.data()}, truth.view,
+                        compare_options, context),
+      fmt::format("{} against {}", typed.arguments[0], typed.arguments[1]));
   const Deviation deviation = summed_up(report.deviation);
   ordered_json json = {{"cloud", typed.arguments[0]}, {"truth", typed.arguments[1]}};
   json.update(figures_of(report));

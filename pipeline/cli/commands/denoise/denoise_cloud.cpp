@@ -158,11 +158,23 @@ void warn_of_grid(const Job& job, const pipeline::io::Cloud& cloud, Console& con
                     job.input, cloud.width, cloud.height));
 }
 
-void drop_outliers(pipeline::io::Cloud& cloud, const std::vector<char>& outlier, const Context& context) {
-  std::vector<std::size_t> rows;
+/// \return ", with them 5 of 12 faces": what touched them and is gone, too; or nothing.
+std::string drop_outliers(pipeline::io::Cloud& cloud, const std::vector<char>& outlier,
+                          const CloudTask& task) {
+  std::vector<std::size_t> rows, counts;
   for (std::size_t i = 0; i < outlier.size(); ++i)
     if (outlier[i] == 0) rows.push_back(i);
-  pipeline::io::select_points(cloud, rows, context);
+  for (const auto& element : cloud.elements) counts.push_back(element.count);
+  pipeline::io::select_points(cloud, rows, task.context);
+  std::string said;
+  for (std::size_t e = 0; e < counts.size(); ++e) {
+    const auto& element = cloud.elements[e];
+    if (e == cloud.vertex || element.count == counts[e]) continue;
+    const std::size_t gone = counts[e] - element.count;
+    task.entry["counts"]["removed_with_points"][element.name] = gone;
+    said += fmt::format("{} {} of {} {}s", said.empty() ? ", with them" : ",", gone, counts[e], element.name);
+  }
+  return said;
 }
 
 void enter(const DenoiseReport& done, const DenoiseCommandOptions& options, ordered_json& entry) {
@@ -249,12 +261,13 @@ std::string denoise_cloud(const DenoiseCommandOptions& options, Beside& beside, 
     page.command = beside.command;
     beside.page = pipeline::make_page(page, context);
   }
+  std::string with_outliers;
   if (smoothed.leaving == Leaving::as_rows) {
     warn_of_grid(job, cloud, console);
-    drop_outliers(cloud, done.outlier, context);
+    with_outliers = drop_outliers(cloud, done.outlier, task);
   }
   beside.trace = std::move(smoothed.report.trace);
-  return summary(done, options);
+  return summary(done, options, with_outliers);
 }
 
 }  // namespace rfsmooth::cli

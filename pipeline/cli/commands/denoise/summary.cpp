@@ -59,11 +59,12 @@ void tell_points(const DenoiseReport& done, const DenoiseCommandOptions& options
         job.input));
 }
 
-std::string summary(const DenoiseReport& done, const DenoiseCommandOptions& options) {
+std::string summary(const DenoiseReport& done, const DenoiseCommandOptions& options,
+                    const std::string& with_outliers) {
   return fmt::format(
-      "{} points, {} finite{}\nnoise {:.3g}{}; spacing {:.4g}\nlargest move {:.4g}, rms {:.4g}", done.points,
-      done.finite, said_of_outliers(done, options), done.noise, said_of_noise(done, options), done.spacing,
-      done.largest_move, done.rms_move);
+      "{} points, {} finite{}{}\nnoise {:.3g}{}; spacing {:.4g}\nlargest move {:.4g}, rms {:.4g}",
+      done.points, done.finite, said_of_outliers(done, options), with_outliers, done.noise,
+      said_of_noise(done, options), done.spacing, done.largest_move, done.rms_move);
 }
 
 }  // namespace rfsmooth::cli

@@ -16,6 +16,8 @@ void tell_points(const DenoiseReport& done, const DenoiseCommandOptions& options
                  bool as_las, const Job& job, Console& console);
 
 /// What came in, its noise, and how far it moved: a line each.
-std::string summary(const DenoiseReport& done, const DenoiseCommandOptions& options);
+/// \param with_outliers what went with the outliers, in words that follow theirs
+std::string summary(const DenoiseReport& done, const DenoiseCommandOptions& options,
+                    const std::string& with_outliers = {});
 
 }  // namespace rfsmooth::cli

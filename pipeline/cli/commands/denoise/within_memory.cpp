@@ -1,5 +1,7 @@
 #include "pipeline/cli/commands/denoise/within_memory.h"
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <utility>
@@ -16,9 +18,13 @@ namespace {
 
 /// \throw Failure (usage).
 std::uint64_t bytes_of(const std::string& text) {
-  const double bytes = read_amount(text).value_or(0);
+  std::string amount = text;
+  std::transform(amount.begin(), amount.end(), amount.begin(),
+                 [](unsigned char c) { return char(std::toupper(c)); });
+  if (!amount.empty() && amount.back() == 'B') amount.pop_back();
+  const double bytes = read_amount(amount).value_or(0);
   if (!(bytes >= 1e6) || !(bytes < 1e18))
-    fail(ErrorCode::usage, "--memory takes bytes, 8G or 500M say, not '{}'", text);
+    fail(ErrorCode::usage, "--memory takes at least a million bytes, as 8G, 8GB or 500M, not '{}'", text);
   return std::uint64_t(bytes);
 }
 
