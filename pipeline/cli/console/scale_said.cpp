@@ -17,7 +17,7 @@ std::string scale_text(const std::array<double, 3>& scale) {
 }  // namespace
 
 void tell_scale(const std::string& name, const pipeline::io::RefinedScale& scale, double noise,
-                double noise_left, Console& console) {
+                std::optional<double> noise_left, Console& console) {
   if (scale.refined())
     console.say(
         fmt::format("{}: scale {} is coarse for noise of {:.3g}: refined to {}{} (--keep-scale keeps it)",

@@ -31,10 +31,11 @@ def _denoise_las(files, options):
     options.pop("verbose", None)
     report = las.denoise_file(*files, progress=bar, **options)
     if not quiet:
-        counts = report["counts"]
+        counts, left = report["counts"], report["noise_left"]
+        about = "" if left is None else f", about {left:.3g} left"
         for line in (
             f"{files[0]} -> {files[1]}: {counts['points']} points, {counts['outliers']} outliers",
-            f"noise {report['noise']:.3g}, about {report['noise_left']:.3g} left; spacing {report['spacing']:.4g}",
+            f"noise {report['noise']:.3g}{about}; spacing {report['spacing']:.4g}",
             report["scale"],
             report["index"],
         ):

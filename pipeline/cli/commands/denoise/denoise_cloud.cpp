@@ -180,7 +180,7 @@ void enter(const DenoiseReport& done, const DenoiseCommandOptions& options, orde
   entry["spacing"] = done.spacing;
   entry["noise"] = done.noise;
   entry["noise_measured"] = pipeline::tiles::json_of(done.measured);
-  entry["noise_left"] = done.noise_left;
+  entry["noise_left"] = done.noise_left ? ordered_json(*done.noise_left) : ordered_json(nullptr);
   entry["not_smoothed"] = pipeline::tiles::json_of(done.not_smoothed);
   entry["guide_strength"] = done.guide_strength;
   entry["tail_times"] = done.tail_times;
@@ -212,8 +212,8 @@ void page_after(const DenoiseReport& done, const DenoiseCommandOptions& options,
   contents.figures = {{"outliers", std::to_string(done.outliers)},
                       {"spacing", fmt::format("{:.4g}", done.spacing)},
                       {"noise", fmt::format("{:.3g}", done.noise)}};
-  if (done.noise_left < done.noise)
-    contents.figures.emplace_back("about left of it", fmt::format("{:.3g}", done.noise_left));
+  if (done.noise_left && *done.noise_left < done.noise)
+    contents.figures.emplace_back("about left of it", fmt::format("{:.3g}", *done.noise_left));
 }
 
 }  // namespace

@@ -42,7 +42,8 @@ std::string said_of_noise(const DenoiseReport& done, const DenoiseCommandOptions
   if (const std::string why = why_not(done); !why.empty()) return words + ", " + why;
   if (!stated) words += in_words(done.measured);
   if (done.tail_times > 1) words += fmt::format(", some points {:.2g} times that", done.tail_times);
-  if (done.noise_left < done.noise) words += fmt::format(", about {:.3g} left", done.noise_left);
+  if (done.noise_left && *done.noise_left < done.noise)
+    words += fmt::format(", about {:.3g} left", *done.noise_left);
   return words;
 }
 

@@ -99,8 +99,8 @@ double decimal_scale(double extent, double steps) {
   return times_power_of_ten(1.0, power);
 }
 
-double finest_needed(double noise, double left) {
-  return (left < noise ? left : noise / 10) / 2;
+double finest_needed(double noise, std::optional<double> left) {
+  return (left && *left < noise ? *left : noise / 10) / 2;
 }
 
 ScaleChange refine_axis(Field& field, std::size_t axis, double step, double low, double high,

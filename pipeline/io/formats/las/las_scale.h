@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 
 #include "pipeline/io/table/cloud.h"
@@ -19,10 +20,10 @@ struct RefinedScale {
 };
 
 /// The coarsest step that costs one per cent at most of what smoothing reached: half of the noise that it
-/// left, as rounding to steps q adds q / sqrt(12) in every direction and sqrt(1 + 1 / 48) is 1.01. `left` as
-/// large as the noise is not known: then a tenth of the noise is taken for it, as little as smoothing leaves
-/// of white noise on smooth shapes. World units; 0 without noise.
-double finest_needed(double noise, double left);
+/// left, as rounding to steps q adds q / sqrt(12) in every direction and sqrt(1 + 1 / 48) is 1.01. No
+/// `left`, or one as large as the noise, tells nothing: then a tenth of the noise is taken for it, as little
+/// as smoothing leaves of white noise on smooth shapes. World units; 0 without noise.
+double finest_needed(double noise, std::optional<double> left);
 
 /// A change of an axis: integers become (old - shift) * 10^power.
 struct ScaleChange {
