@@ -28,14 +28,11 @@ using namespace pipeline;
 namespace {
 
 /// Takes over what the automatic smoother measured of the cloud and did in its first step: later ones hear
-/// only what that left, and of it too little, for neighbours share it. Of several steps each measures for
-/// itself: then the noise stays as open as it was.
+/// only what that left, and of it too little, for neighbours share it.
 void enter(const AutomaticReport& first, DenoiseReport& report) {
   report.noise = first.noise;
   report.measured = first.measured;
   report.not_smoothed = first.not_smoothed;
-  auto& effective = std::get<AutomaticOptions>(report.effective.flow.flow);
-  if (effective.iterations == 1) effective.noise = Length{first.noise, false};
   report.stranded = first.stranded;
   report.guide_strength = first.guide_strength;
   report.tail_times = first.tail_times;

@@ -58,8 +58,8 @@ struct DenoiseOptions {
 
 /// What was measured and done.
 struct DenoiseReport {
-  DenoiseOptions effective;   ///< the options with every automatically chosen value filled in; gives the same
-                              ///< bytes when used again
+  DenoiseOptions effective;  ///< the options that it ran with, which give the same bytes when used again;
+                             ///< what was measured stays open in them, and is another cloud's own there
   std::size_t points = 0;     ///< rows given
   std::size_t finite = 0;     ///< rows worked on
   std::size_t distinct = 0;   ///< distinct positions among them

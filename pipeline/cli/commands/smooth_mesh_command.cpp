@@ -169,7 +169,9 @@ std::string smooth_file(const SmoothMeshCommandOptions& options, std::vector<Tra
     mark_ridges(options.after, cloud, file, job, context);
   }
 
-  entry["options"] = effective_options(options, options.job.files);
+  SmoothMeshCommandOptions used = options;
+  used.trace.trace.reset();  // what is written beside the mesh is not how it was made
+  entry["options"] = effective_options(used, options.job.files);
   entry["counts"] = {{"points", points},
                      {"finite", file.before.size()},
                      {"faces", faces},

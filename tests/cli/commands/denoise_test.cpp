@@ -213,11 +213,11 @@ TEST_F(DenoiseCommand, ReportOfTheAutomaticFlowSaysEverythingItChose) {
   EXPECT_EQ(report["output"]["path"], "one.ply");
   EXPECT_EQ(report["threads"], 2);
   EXPECT_EQ(report["options"]["flow"], "auto");
-  // Chosen, not asked for: iterations, strength, the measured noise, evening out.
+  // The flow's own, not asked for: iterations, strength, evening out.
   EXPECT_EQ(report["options"]["iterations"], 1);
   EXPECT_EQ(report["options"]["strength"], 1);
   EXPECT_EQ(report["options"]["equalize"], true);
-  EXPECT_EQ(report["options"]["noise"], report["noise"]);
+  EXPECT_TRUE(report["options"]["noise"].is_null()) << "measured, so another cloud has its own";
   EXPECT_GT(report["noise"], 0);
   EXPECT_LT(report["noise_left"], report["noise"]);
   const auto measured = nlohmann::json::parse(run({"info", "--json", "in.ply"}).out)["noise_measured"];
@@ -235,6 +235,30 @@ TEST_F(DenoiseCommand, ReportOfTheAutomaticFlowSaysEverythingItChose) {
   const Ran again = run({"denoise", "--config", "report.json", "in.ply", "two.ply", "--threads", "1"});
   ASSERT_EQ(again.code, 0) << again.err;
   EXPECT_TRUE(take("one.ply") == take("two.ply"));
+}
+
+TEST_F(DenoiseCommand, ConfigOfOneCloudIsMeasuredAnewOnAnother) {
+  BinaryPly cloud = noisy_plane(20);
+  put("metres.ply", cloud.bytes());
+  for (float& x : cloud.xyz) x *= 1000;
+  put("millimetres.ply", cloud.bytes());
+  ASSERT_EQ(run({"denoise", "metres.ply", "out.ply", "--report", "r.json"}).code, 0);
+  ASSERT_EQ(run({"denoise", "millimetres.ply", "expected.ply"}).code, 0);
+  const Ran ran = run({"denoise", "--config", "r.json", "millimetres.ply", "by_config.ply"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  EXPECT_THAT(ran.err, Not(HasSubstr("as stated")));
+  EXPECT_TRUE(take("by_config.ply") == take("expected.ply"));
+}
+
+TEST_F(DenoiseCommand, ConfigWritesNothingBesideTheCloud) {
+  put("in.ply", noisy_plane(10).bytes());
+  ASSERT_EQ(
+      run({"denoise", "in.ply", "one.ply", "--report", "r.json", "--html", "p.html", "--trace", "t.csv"})
+          .code,
+      0);
+  const Ran ran = run({"denoise", "--config", "r.json", "in.ply", "two.ply"});
+  EXPECT_EQ(ran.code, 0) << "neither page nor trace is in its way: " << ran.err;
+  EXPECT_THAT(names(), ElementsAre("in.ply", "one.ply", "p.html", "r.json", "t.csv", "two.ply"));
 }
 
 TEST_F(DenoiseCommand, ThreadsBindsEveryThreadOfTheProgram) {

@@ -168,7 +168,8 @@ void drop_outliers(pipeline::io::Cloud& cloud, const std::vector<char>& outlier,
 void enter(const DenoiseReport& done, const DenoiseCommandOptions& options, ordered_json& entry) {
   DenoiseCommandOptions used = options;
   used.denoise = done.effective;
-  used.html.reset();    // what is written beside the cloud is not how it was made
+  used.html.reset();  // what is written beside the cloud is not how it was made
+  used.trace.trace.reset();
   used.memory.reset();  // nor is the memory it was made in
   entry["options"] = effective_options(used, options.job.files);
   entry["counts"] = {{"points", done.points},       {"finite", done.finite},    {"distinct", done.distinct},
