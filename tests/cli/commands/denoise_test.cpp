@@ -316,6 +316,27 @@ TEST_F(DenoiseCommand, ManyFilesGoOnAfterAnError) {
   EXPECT_TRUE(take("out/a.ply") == take("single.ply"));
 }
 
+TEST_F(DenoiseCommand, ConfigOfSeveralFilesDoesThemAgain) {
+  put("broken.ply", "not a cloud");
+  put("a.ply", noisy_plane(10).bytes());
+  put("b.ply", noisy_plane(12).bytes());
+  EXPECT_EQ(run({"denoise", "--flow", "hc", "--beta", "0.7", "broken.ply", "a.ply", "b.ply", "-o", "out/",
+                 "--report", "r.json"})
+                .code,
+            3);
+  const std::string a = take("out/a.ply"), b = take("out/b.ply");
+  std::filesystem::remove_all(at("out"));
+  EXPECT_EQ(run({"denoise", "--config", "r.json"}).code, 3) << "the broken one again";
+  EXPECT_TRUE(take("out/a.ply") == a);
+  EXPECT_TRUE(take("out/b.ply") == b);
+  ASSERT_EQ(run({"denoise", "--config", "r.json", "a.ply", "alone.ply"}).code, 0);
+  EXPECT_TRUE(take("alone.ply") == a) << "its options, on another file";
+  put("none.json", R"({"command": "denoise", "files": [{"input": {"path": "a.ply"}}]})");
+  const Ran none = run({"denoise", "--config", "none.json"});
+  EXPECT_EQ(none.code, 2);
+  EXPECT_THAT(none.err, HasSubstr("none.json: a report of several files, none of which was done"));
+}
+
 TEST_F(DenoiseCommand, WithoutACloudNothingStandsBesideIt) {
   put("broken.ply", "not a cloud");
   // A list is what XYZ cannot hold, which is found when all the work is done.
