@@ -141,7 +141,8 @@ void join_tiles(const TilesOptions& options, const std::vector<std::string>& arg
   const auto joined = pipeline::tiles::join_job(
       job, outputs, {options.force, options.keep_scale, planned_options(job).normals.normals}, context);
   for (std::size_t i = 0; i < outputs.size(); ++i) {
-    tell_scale(job.inputs[i].path, joined[i].scale, joined[i].noise, joined[i].noise_left, console);
+    tell_scale(job.inputs[i].path, joined[i].scale, options.keep_scale, joined[i].noise, joined[i].noise_left,
+               console);
     if (joined[i].las) warn_of_index(outputs[i], console);
     mark_as_own(outputs[i]);
   }

@@ -101,8 +101,8 @@ bool is_written_as_las(const DenoiseCommandOptions& options, const pipeline::io:
   return output_format(cloud, job.output, options.job.files) == pipeline::io::Format::las;
 }
 
-/// Refines the scale of a LAS cloud. For LAS to be written as far as it is coarse for what is left of the
-/// noise. For other formats, which have no steps, as far as 32 bits go.
+/// Refines the scale of a LAS cloud, and says so. For LAS to be written as far as it is coarse for what is
+/// left of the noise. For other formats, which have no steps, as far as 32 bits go.
 void refine_scale(const DenoiseCommandOptions& options, const DenoiseReport& done, pipeline::io::Cloud& cloud,
                   const std::vector<double>& xyz, const CloudTask& task) {
   using pipeline::io::Format;
@@ -112,11 +112,20 @@ void refine_scale(const DenoiseCommandOptions& options, const DenoiseReport& don
     pipeline::io::refine_scale(cloud, std::numeric_limits<double>::min(), xyz.data(), context);
     return;
   }
-  if (options.keep_scale || done.noise <= 0) return;
-  const double step = pipeline::io::finest_needed(done.noise, done.noise_left);
+  if (done.noise <= 0) return;
+  const double step = options.keep_scale ? std::numeric_limits<double>::infinity()
+                                         : pipeline::io::finest_needed(done.noise, done.noise_left);
   const pipeline::io::RefinedScale scale = pipeline::io::refine_scale(cloud, step, xyz.data(), context);
   entry["scale"] = {{"before", scale.before}, {"after", scale.after}};
-  tell_scale(job.input, scale, done.noise, done.noise_left, console);
+  tell_scale(job.input, scale, options.keep_scale, done.noise, done.noise_left, console);
+}
+
+/// What is left of the noise, with that of rounding coordinates to their steps.
+void add_rounding(const pipeline::io::Cloud& cloud, DenoiseReport& done) {
+  if (done.moved == 0 || !done.noise_left) return;
+  double step = 0;
+  for (const std::size_t f : cloud.xyz) step = std::max(step, cloud.points().fields[f].step());
+  done.noise_left = pipeline::io::with_rounding(*done.noise_left, step);
 }
 
 /// Adds how far each point is from `before`, as the file now has it: rounded to the coordinates' own type. 0
@@ -227,7 +236,7 @@ std::string denoise_cloud(const DenoiseCommandOptions& options, Beside& beside, 
   std::vector<double> xyz = pipeline::io::positions(cloud, context);
   check_memory(options, job, xyz, context);
   Smoothed smoothed = smooth(options, cloud, std::move(xyz), task);
-  const DenoiseReport& done = smoothed.report;
+  DenoiseReport& done = smoothed.report;
 
   // The cloud has its old positions here, which the page shows on one side.
   pipeline::PageContents page;
@@ -236,6 +245,7 @@ std::string denoise_cloud(const DenoiseCommandOptions& options, Beside& beside, 
 
   // The scale comes first: positions are rounded to its steps.
   refine_scale(options, done, cloud, smoothed.xyz, task);
+  add_rounding(cloud, done);
   if (is_written_as_las(options, cloud, job)) warn_of_index(job.output, console);
   move_points(options, cloud, smoothed.for_cloud(), context);
   if (options.marks()) mark_outliers(cloud, done.outlier, context);
