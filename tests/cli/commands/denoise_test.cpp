@@ -96,6 +96,21 @@ TEST_F(DenoiseCommand, SaysOfNoiseWhatBelongsTogether) {
               HasSubstr("noise 0, too few points to smooth;"));
 }
 
+TEST_F(DenoiseCommand, MoreStrengthIsAdvisedForLittleNoiseAndNotForNone) {
+  for (const double sigma : {0.0, 0.02}) {
+    std::mt19937_64 engine(9);
+    std::normal_distribution<double> noise(0, 1);
+    BinaryPly cloud;
+    for (int i = 0; i < 30; ++i)
+      for (int j = 0; j < 30; ++j)
+        for (const double c : {double(i), double(j), sigma * noise(engine)}) cloud.xyz.push_back(float(c));
+    put("in.ply", cloud.bytes());
+    const std::string err = run({"denoise", "in.ply", "out.ply", "--force"}).err;
+    EXPECT_THAT(err, HasSubstr("too little to smooth"));
+    EXPECT_EQ(err.find("--strength 2") != std::string::npos, sigma > 0) << err;
+  }
+}
+
 TEST_F(DenoiseCommand, QuietSaysNothing) {
   put("in.ply", noisy_plane(10).bytes());
   const Ran ran = run({"denoise", "--flow", "hc", "-q", "in.ply", "out.ply"});

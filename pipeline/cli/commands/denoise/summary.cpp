@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "pipeline/cli/console/report.h"
+#include "rfs_mesh/noise/noise.h"
 
 namespace rfsmooth::cli {
 
@@ -29,6 +30,7 @@ std::string why_not(const DenoiseReport& done) {
     case NotSmoothed::too_few_points:
       return "too few points to smooth";
     case NotSmoothed::too_little_noise:
+      if (rfs_mesh::stays(done.noise, done.spacing)) return "too little to smooth";  // exact, or nearly
       return "too little to smooth (--strength 2 does it all the same)";
   }
   throw std::invalid_argument("why_not: not a NotSmoothed");
