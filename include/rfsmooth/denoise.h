@@ -58,8 +58,9 @@ struct DenoiseOptions {
 
 /// What was measured and done.
 struct DenoiseReport {
-  DenoiseOptions effective;  ///< the options that it ran with, which give the same bytes when used again;
-                             ///< what was measured stays open in them, and is another cloud's own there
+  /// The options that it ran with, which give the same bytes when used again. What was measured stays open in
+  /// them: it is another cloud's own there.
+  DenoiseOptions effective;
   std::size_t points = 0;     ///< rows given
   std::size_t finite = 0;     ///< rows worked on
   std::size_t distinct = 0;   ///< distinct positions among them

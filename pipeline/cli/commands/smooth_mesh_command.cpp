@@ -182,8 +182,8 @@ std::string smooth_file(const SmoothMeshCommandOptions& options, std::vector<Tra
                      {"solver_iterations", done.solver.iterations}};
   entry["solver"] = json_of(done.solver);
   entry["largest_move"] = done.largest_move;
-  return fmt::format("{} vertices, {} faces; {} steps; largest move {:.4g}", points, faces, done.steps,
-                     done.largest_move);
+  return fmt::format("{}, {}; {}; largest move {:.4g}", counted(points, "vertex", "vertices"),
+                     counted(faces, "face"), counted(std::uint64_t(done.steps), "step"), done.largest_move);
 }
 
 void check_smooth_mesh(const SmoothMeshCommandOptions& options, const Invocation& typed) {

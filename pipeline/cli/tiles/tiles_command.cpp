@@ -115,7 +115,8 @@ void plan_tiles(TilesOptions& options, const std::vector<std::string>& arguments
   const Job job = pipeline::tiles::plan_job(
       inputs, arguments.back(), {std::uint64_t(options.tile_points), std::uint64_t(options.sample_points)},
       json_object(bound), context);
-  console.say(fmt::format("{}: {} points in {} tiles", arguments.back(), job.points, job.tiles.size()));
+  console.say(fmt::format("{}: {} in {}", arguments.back(), counted(job.points, "point"),
+                          counted(job.tiles.size(), "tile")));
 }
 
 /// Where the inputs of a job go, which is refused, before any work, if something must not be replaced. Pieces
@@ -146,8 +147,8 @@ void join_tiles(const TilesOptions& options, const std::vector<std::string>& arg
     if (joined[i].las) warn_of_index(outputs[i], console);
     mark_as_own(outputs[i]);
   }
-  console.say(fmt::format("{}: {} points, {} file{}", arguments[1], job.points, outputs.size(),
-                          outputs.size() == 1 ? "" : "s"));
+  console.say(
+      fmt::format("{}: {}, {}", arguments[1], counted(job.points, "point"), counted(outputs.size(), "file")));
 }
 
 void tell_status(const TilesOptions& options, const std::vector<std::string>& arguments,
@@ -166,8 +167,8 @@ void tell_status(const TilesOptions& options, const std::vector<std::string>& ar
                                      {"missing", s.missing}})
                            .dump(2));
   else
-    fmt::print("{} points in {} tiles: {} measured, {}settled, {} run{}\n", s.points, s.tiles, s.measured,
-               s.settled ? "" : "not ", s.run,
+    fmt::print("{} in {}: {} measured, {}settled, {} run{}\n", counted(s.points, "point"),
+               counted(s.tiles, "tile"), s.measured, s.settled ? "" : "not ", s.run,
                s.run == 0
                    ? ""
                    : fmt::format(" in {:.3g} s of processor time, with {:.0f} % more points around them",

@@ -111,6 +111,15 @@ TEST_F(DenoiseCommand, MoreStrengthIsAdvisedForLittleNoiseAndNotForNone) {
   }
 }
 
+TEST_F(DenoiseCommand, OneIsCountedAsOne) {
+  put("one.xyz", "1 2 3\n");
+  EXPECT_THAT(run({"denoise", "-v", "one.xyz", "out.xyz"}).err,
+              ::testing::AllOf(HasSubstr(": 1 point, 1 finite"), HasSubstr(", 1 point without a face,")));
+  EXPECT_THAT(run({"mesh", "one.xyz", "mesh.ply"}).err, HasSubstr("1 vertex, 0 edges, 0 faces"));
+  EXPECT_THAT(run({"compare", "one.xyz", "one.xyz"}).out,
+              HasSubstr("1 point (1 finite) against 1 clean point\n"));
+}
+
 TEST_F(DenoiseCommand, QuietSaysNothing) {
   put("in.ply", noisy_plane(10).bytes());
   const Ran ran = run({"denoise", "--flow", "hc", "-q", "in.ply", "out.ply"});

@@ -285,7 +285,7 @@ TEST_F(Tiles, RowsThatAreNotThereAreRefusedWithTheirElementAndPlace) {
     for (const Ran& ran :
          {run({"tiles", "plan", "in.ply", "job"}), run({"tiles", "plan", "/dev/stdin", "job"}, piped)}) {
       EXPECT_EQ(ran.code, 3) << ran.err;
-      EXPECT_THAT(ran.err, HasSubstr("expected " + count + " rows of element 'pad', 1 bytes each, found 50"));
+      EXPECT_THAT(ran.err, HasSubstr("expected " + count + " rows of element 'pad', 1 byte each, found 50"));
     }
     EXPECT_FALSE(there("job"));
   }

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "base/fail.h"
 #include "pipeline/cli/commands/denoise/summary.h"
 #include "pipeline/cli/commands/denoise/within_memory.h"
 #include "pipeline/cli/console/report.h"
@@ -205,8 +206,9 @@ void tell(const DenoiseReport& done, const DenoiseCommandOptions& options, const
   tell_points(done, options, pipeline::io::has_normals(cloud), is_written_as_las(options, cloud, task.job),
               task.job, task.console);
   tell_solver(task.job.input, done.solver, task.console);
-  task.console.detail(fmt::format("{} faces, {} edges, {} bridges, {} points without a face, {} swaps",
-                                  done.faces, done.edges, done.bridges, done.faceless, done.swaps));
+  task.console.detail(fmt::format("{}, {}, {}, {} without a face, {}", counted(done.faces, "face"),
+                                  counted(done.edges, "edge"), counted(done.bridges, "bridge"),
+                                  counted(done.faceless, "point"), counted(done.swaps, "swap")));
 }
 
 /// Adds to the page what became of the cloud; its normals only if they are of the new surface. Outliers that

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "base/fail.h"
 #include "pipeline/cli/console/report.h"
 #include "rfs_mesh/noise/noise.h"
 
@@ -16,7 +17,7 @@ namespace {
 std::string said_of_outliers(const DenoiseReport& done, const DenoiseCommandOptions& options) {
   if (done.outliers == 0) return "";
   const char* what = options.removes() ? "removed" : options.marks() ? "marked" : "left in place";
-  return fmt::format("; {} outlier{} {}", done.outliers, done.outliers == 1 ? "" : "s", what);
+  return fmt::format("; {} {}", counted(done.outliers, "outlier"), what);
 }
 
 /// Why nothing was smoothed, or nothing.
@@ -54,8 +55,9 @@ std::string said_of_noise(const DenoiseReport& done, const DenoiseCommandOptions
 void tell_points(const DenoiseReport& done, const DenoiseCommandOptions& options, bool had_normals,
                  bool as_las, const Job& job, Console& console) {
   if (done.finite < done.points)
-    console.detail(fmt::format("{}: {} points are not finite; {}", job.input, done.points - done.finite,
-                               as_las ? "LAS cannot hold them" : "they stay as they are"));
+    console.detail(fmt::format("{}: not finite: {}, {}", job.input,
+                               counted(done.points - done.finite, "point"),
+                               as_las ? "which LAS cannot hold" : "kept unchanged"));
   if (done.moved > 0 && had_normals && !options.normals.normals)
     console.warn(fmt::format(
         "{}: the normals are kept and stale: they describe the old positions (--normals makes new ones)",
@@ -63,10 +65,9 @@ void tell_points(const DenoiseReport& done, const DenoiseCommandOptions& options
 }
 
 std::string summary(const DenoiseReport& done, const DenoiseCommandOptions& options) {
-  return fmt::format(
-      "{} points, {} finite{}\nnoise {:.3g}{}; spacing {:.4g}\nlargest move {:.4g}, rms {:.4g}", done.points,
-      done.finite, said_of_outliers(done, options), done.noise, said_of_noise(done, options), done.spacing,
-      done.largest_move, done.rms_move);
+  return fmt::format("{}, {} finite{}\nnoise {:.3g}{}; spacing {:.4g}\nlargest move {:.4g}, rms {:.4g}",
+                     counted(done.points, "point"), done.finite, said_of_outliers(done, options), done.noise,
+                     said_of_noise(done, options), done.spacing, done.largest_move, done.rms_move);
 }
 
 }  // namespace rfsmooth::cli

@@ -37,8 +37,8 @@ void print_las(const ordered_json& las) {
   fmt::print("  LAS       {}, point format {}, scale {}, offset {}\n", las["version"].get<std::string>(),
              las["point_format"].get<int>(), vector_text(las["scale"], 17), vector_text(las["offset"], 17));
   for (const auto& record : las["records"])
-    fmt::print("  record    {} {}: {} bytes{}\n", record["user"].get<std::string>(), record["id"].get<int>(),
-               record["bytes"].get<std::size_t>(),
+    fmt::print("  record    {} {}: {}{}\n", record["user"].get<std::string>(), record["id"].get<int>(),
+               counted(record["bytes"].get<std::size_t>(), "byte"),
                record["extended"].get<bool>() ? ", behind the points" : "");
 }
 
