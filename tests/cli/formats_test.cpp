@@ -103,6 +103,20 @@ void expect_only_coordinates_differ(const std::string& before, const std::string
   EXPECT_GT(moved, kPoints);
 }
 
+TEST_F(Formats, WhatAConversionLeavesOutIsNotSaidToBeKept) {
+  std::string text = "ply\nformat ascii 1.0\nelement vertex 100\n";
+  for (const char* name : {"x", "y", "z", "nx", "ny"}) text += std::string("property double ") + name + "\n";
+  text += "end_header\n";
+  for (int i = 0; i < 100; ++i)
+    text +=
+        std::to_string(i % 10) + " " + std::to_string(i / 10) + " 0." + std::to_string(i * i % 7) + " 0 1\n";
+  put("in.ply", text + "tail\n");
+  const Ran ran = run({"denoise", "--drop-unsupported", "in.ply", "out.off"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  EXPECT_THAT(ran.err, AllOf(HasSubstr("field 'nx'"), HasSubstr("5 bytes behind the last row"),
+                             HasSubstr("normals are stale"), ::testing::Not(HasSubstr("kept"))));
+}
+
 TEST_F(Formats, PcdPaddingIsKept) {
   // As PCL writes a PointXYZRGBNormal cloud: padding fields called _, some of several bytes.
   const std::string header =

@@ -162,7 +162,7 @@ std::string smooth_file(const SmoothMeshCommandOptions& options, std::vector<Tra
   } else {
     pipeline::io::set_positions(cloud, rows.data(), context);
     if (moved && pipeline::io::has_normals(cloud))
-      console.warn(fmt::format("{}: the normals are kept; they now describe the old positions", job.input));
+      console.warn(fmt::format("{}: the normals are stale: they describe the old positions", job.input));
   }
   if (options.after.ridges) {
     watch.next("ridges");

@@ -60,8 +60,7 @@ void tell_points(const DenoiseReport& done, const DenoiseCommandOptions& options
                                as_las ? "which LAS cannot hold" : "kept unchanged"));
   if (done.moved > 0 && had_normals && !options.normals.normals)
     console.warn(fmt::format(
-        "{}: the normals are kept and stale: they describe the old positions (--normals makes new ones)",
-        job.input));
+        "{}: the normals are stale: they describe the old positions (--normals makes new ones)", job.input));
 }
 
 std::string summary(const DenoiseReport& done, const DenoiseCommandOptions& options) {
