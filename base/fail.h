@@ -1,7 +1,10 @@
-/// Gives up what is being done, with a message.
+/// Messages: giving up with one, and numbers in them.
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -14,6 +17,12 @@ namespace rfsmooth {
 template <std::size_t kSize, class... Arguments>
 [[noreturn]] void fail(ErrorCode code, const char (&message)[kSize], const Arguments&... arguments) {
   throw Failure({code, fmt::format(fmt::runtime(message), arguments...)});
+}
+
+/// "1 point", "2 points": a number of what it counts. \param many of words whose plural is not with an s
+inline std::string counted(std::uint64_t n, std::string_view one, std::string_view many = {}) {
+  if (n == 1) return fmt::format("1 {}", one);
+  return many.empty() ? fmt::format("{} {}s", n, one) : fmt::format("{} {}", n, many);
 }
 
 }  // namespace rfsmooth

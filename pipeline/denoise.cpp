@@ -27,20 +27,17 @@ using namespace pipeline;
 
 namespace {
 
-/// Takes over what the automatic smoother measured of the cloud in its first step, and what its last one
-/// left. Of several steps each measures for itself: then the noise stays as open as it was.
-void enter(const AutomaticReport& first, const AutomaticReport& last, DenoiseReport& report) {
+/// Takes over what the automatic smoother measured of the cloud and did in its first step: later ones hear
+/// only what that left, and of it too little, for neighbours share it.
+void enter(const AutomaticReport& first, DenoiseReport& report) {
   report.noise = first.noise;
   report.measured = first.measured;
   report.not_smoothed = first.not_smoothed;
-  report.noise_left = last.not_smoothed ? last.noise : last.left;
-  auto& effective = std::get<AutomaticOptions>(report.effective.flow.flow);
-  if (effective.iterations == 1) effective.noise = Length{first.noise, false};
-  report.stranded = last.stranded;
+  report.stranded = first.stranded;
   report.guide_strength = first.guide_strength;
   report.tail_times = first.tail_times;
-  report.equalized_rms = last.equalized;
-  report.equalized_largest = last.equalized_most;
+  report.equalized_rms = first.equalized;
+  report.equalized_largest = first.equalized_most;
 }
 
 /// Smooths the mesh, alternating steps and swaps. What is left of it are its positions.
@@ -83,11 +80,15 @@ void alternate(Mesh& mesh, const Constraints& constraints, const DenoiseOptions&
   context.report("smooth", 1);
   if (flow) report.solver = flow->solver();
   if (first)
-    enter(*first, *found, report);
+    enter(*first, report);
   else if (steps == 0)
     report.not_smoothed = NotSmoothed::no_iterations;
   else if (automatic != nullptr)
     report.not_smoothed = NotSmoothed::too_few_points;
+  if (report.not_smoothed)
+    report.noise_left = report.noise;
+  else if (first && !flow)
+    report.noise_left = first->left;
 }
 
 /// The median edge length around each vertex: as far as a flow may move it. A noisy point is at least as far
@@ -307,7 +308,7 @@ Mesh told_of(Connection connection, DenoiseReport& report) {
       same->seconds += stage.seconds;
   }
   report.spacing = connection.noise.spacing;
-  report.noise = report.noise_left = connection.noise.sigma;
+  report.noise = connection.noise.sigma;
   report.sdg_edges = connection.sdg.size();
   report.bridges = connection.bridges.size();
   report.faceless = connection.faceless;

@@ -71,8 +71,10 @@ WorkingCloud make(const Input& input, const Statistics::Box* box, const Context&
     throw Failure({ErrorCode::usage, fmt::format("{} points; at most {} are supported", n, kNone - 1)});
   Extent extent = extent_of(input, context);
   if (extent.finite == 0)
-    throw Failure({ErrorCode::no_usable_points,
-                   n == 0 ? "the cloud has no points" : fmt::format("none of the {} points is finite", n)});
+    throw Failure({ErrorCode::no_usable_points, n == 0 ? "the cloud has no points"
+                                                : n == 1
+                                                    ? "the only point is not finite"
+                                                    : fmt::format("none of the {} points is finite", n)});
   if (box != nullptr) {
     const Eigen::AlignedBox3d whole(box->low, box->high);
     if (!whole.contains(extent.box))

@@ -58,8 +58,9 @@ struct DenoiseOptions {
 
 /// What was measured and done.
 struct DenoiseReport {
-  DenoiseOptions effective;   ///< the options with every automatically chosen value filled in; gives the same
-                              ///< bytes when used again
+  /// The options that it ran with, which give the same bytes when used again. What was measured stays open in
+  /// them: it is another cloud's own there.
+  DenoiseOptions effective;
   std::size_t points = 0;     ///< rows given
   std::size_t finite = 0;     ///< rows worked on
   std::size_t distinct = 0;   ///< distinct positions among them
@@ -70,16 +71,18 @@ struct DenoiseReport {
   double noise = 0;    ///< standard deviation along the normal, as stated or measured before; world units
   /// What the cloud shows of its noise, as the automatic smoother measures it, whatever noise is stated.
   NoiseSummary measured;
-  double noise_left = 0;  ///< estimate of what is left of it; as before where nothing was smoothed, and under
-                          ///< flows, which cannot tell
+  /// Estimate of what is left of it, of several steps by the first; as before where nothing was smoothed.
+  /// None where nobody can tell: under other flows than the automatic one, modifiers and strengths of the
+  /// rows.
+  std::optional<double> noise_left;
   std::optional<NotSmoothed> not_smoothed;  ///< why nothing was; none: there was something to smooth
-  double equalized_rms = 0;  ///< how far points went along the surface to lie evenly, root mean square, world
-                             ///< units; 0 for flows that do not even them out
+  double equalized_rms = 0;  ///< how far points went along the surface to lie evenly in the first step, root
+                             ///< mean square, world units; 0 for flows that do not even them out
   double equalized_largest = 0;  ///< the farthest
   double guide_strength = 0;     ///< of the automatic smoother's guide, dimensionless; 0 for flows
   double tail_times = 1;  ///< noise of the noisiest points (heavy tails) over that of the others; 1: no tails
   SolverSummary solver;   ///< of implicit flows
-  std::size_t stranded = 0;          ///< points that the guide's fairing had left beside the surface
+  std::size_t stranded = 0;          ///< points that the guide's first fairing left beside the surface
   double largest_move = 0;           ///< world units
   double rms_move = 0;               ///< over the finite rows, world units
   Statistics statistics;             ///< measured, or taken from the options

@@ -63,7 +63,9 @@ Invocation with_config(const Command& command, Invocation typed) {
     if (name != "config") continue;
     Config config = read_config(text, command);
     assign_all(config.options);
-    if (typed.arguments.empty() && !output_typed) typed.arguments = std::move(config.arguments);
+    if (!typed.arguments.empty() || output_typed) continue;
+    typed.arguments = std::move(config.arguments);
+    if (config.folder) assign_all(std::vector{std::pair("output", *config.folder)});
   }
   assign_all(typed.options);
   for (const CommandOption& option : command.options)

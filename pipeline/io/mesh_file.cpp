@@ -62,7 +62,7 @@ std::vector<Face> faces_of(const Cloud& cloud, const Context& context) {
     }
   }
   if (left_out > 0)
-    context.warn(fmt::format("{} degenerate faces are left out of the work; the file keeps them", left_out));
+    context.warn(fmt::format("left out of the work: {}", counted(left_out, "degenerate face")));
   return faces;
 }
 

@@ -160,8 +160,8 @@ PageContents page_before(const std::filesystem::path& path, const io::Cloud& clo
 void need_same_size(const std::string& before_name, std::size_t before, const std::string& after_name,
                     std::size_t after) {
   if (before != after)
-    fail(ErrorCode::usage, "{} has {} points and {} has {}: a page needs the same points in the same order",
-         before_name, before, after_name, after);
+    fail(ErrorCode::usage, "{} has {} and {} has {}: a page needs the same points in the same order",
+         before_name, counted(before, "point"), after_name, after);
 }
 
 std::string make_page(const PageContents& contents, const Context& context) {

@@ -92,9 +92,10 @@ void change_units(DenoiseOptions& options, double unit) {
 
 void change_units(DenoiseReport& report, double unit) {
   for (double* length : {&report.spacing, &report.noise, &report.measured.typical, &report.measured.loudest,
-                         &report.measured.step, &report.noise_left, &report.equalized_rms,
-                         &report.equalized_largest, &report.largest_move, &report.rms_move})
+                         &report.measured.step, &report.equalized_rms, &report.equalized_largest,
+                         &report.largest_move, &report.rms_move})
     *length *= unit;
+  if (report.noise_left) *report.noise_left *= unit;
   change_units(report.effective, unit);
   change_units(report.statistics, unit);
   scale(unit, report.trace);

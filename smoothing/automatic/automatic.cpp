@@ -170,6 +170,9 @@ AutomaticResult automatic_smoothing(AutomaticTask task, AutomaticReport& report,
     else
       report.learned = take_learned_step(field, mixed.data, smoothed, noise, may_go, smooth, context);
   }
+  // What is left is left of the cloud's own noise, whatever it was smoothed as.
+  task.noise.sigma /= task.strength;
+  for (double& sigma : task.noise.local) sigma /= task.strength;
   report.left = noise_left(field, heights.height, heights.own, noise, context);
   return {std::move(smooth), field.release_neighbors()};
 }

@@ -66,6 +66,7 @@ struct AutomaticTask {
   bool learned = true;            ///< whether the learned step is taken
   bool keep_rings = true;         ///< false: the mesh is left without its one-rings, as soon as they are read
   LearnedSites* sites = nullptr;  ///< out, with `learned`: what the step would be given; it is not taken
+  double strength = 1;            ///< how many times that of the cloud `noise` is; positive
 };
 
 /// What has become of it.

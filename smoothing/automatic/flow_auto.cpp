@@ -113,11 +113,12 @@ std::optional<AutomaticReport> smooth_automatically(Mesh& mesh, const AutomaticO
   AutomaticReport report;
   report.noise = sigma;
   report.measured = summary;
-  report.left = noise.sigma;
+  report.left = sigma;
   report.not_smoothed = why_not(mesh.positions.size(), options.strength, noise.sigma);
   if (report.not_smoothed) return report;
   AutomaticResult smooth = automatic_smoothing(
-      {mesh, noise, options.learned, connectivity == Connectivity::kept, sites}, report, whole, context);
+      {mesh, noise, options.learned, connectivity == Connectivity::kept, sites, options.strength}, report,
+      whole, context);
   mesh.positions.swap(smooth.points);
   const Positions before = std::move(smooth.points);
   if (!noise.across) {  // along lines only the normals are known

@@ -31,6 +31,7 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
+#include "base/fail.h"
 #include "base/parallel.h"
 #include "rfs_mesh/corners.h"
 #include "smoothing/integrators/explicit.h"
@@ -188,9 +189,9 @@ class DirectionalSpeed : public Speed {
           "where its faces cannot agree");
     if (unclosed_.rim + unclosed_.crowded > 0)
       context.warn(
-          fmt::format("directional: the mesh is not closed ({} edges with one face, {} with more than "
+          fmt::format("directional: the mesh is not closed ({} with one face, {} with more than "
                       "two); their vertices stay and the volume is not kept",
-                      unclosed_.rim, unclosed_.crowded));
+                      counted(unclosed_.rim, "edge"), unclosed_.crowded));
   }
 
   int power_;

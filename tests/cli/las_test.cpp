@@ -79,17 +79,26 @@ TEST_F(LasCommand, RoundingToACoarseScaleCostsMoreThanRefiningIt) {
     put("in.las", survey(2, 1, scale).bytes());
     ASSERT_EQ(run({"denoise", "--force", "--drop-unsupported", "in.las", "unrounded.ply"}).code, 0);
     const Ran refined = run({"denoise", "--force", "in.las", "refined.las"}),
-              kept = run({"denoise", "--force", "--keep-scale", "in.las", "kept.las"});
+              kept =
+                  run({"denoise", "--force", "--keep-scale", "in.las", "kept.las", "--report", "kept.json"});
     ASSERT_EQ(refined.code + kept.code, 0) << refined.err << kept.err;
     EXPECT_THAT(refined.err,
                 AllOf(HasSubstr(" is coarse"), HasSubstr("refined to "), HasSubstr("--keep-scale")));
-    EXPECT_THAT(kept.err, Not(HasSubstr("refined")));
+    EXPECT_THAT(kept.err, AllOf(Not(HasSubstr("refined to")), HasSubstr(" is coarse"),
+                                HasSubstr("rounding to it takes back some of the smoothing")));
     const double best = rms("unrounded.ply"), steps = scale / LasBytes::get<double>(take("refined.las"), 131);
     EXPECT_LT(rms("refined.las"), 1.02 * best) << scale;
     EXPECT_GT(rms("kept.las"), std::hypot(best, 0.9 * scale / std::sqrt(12))) << scale;
     EXPECT_NEAR(std::log10(steps), std::round(std::log10(steps)), 1e-12);
     EXPECT_EQ(LasBytes::get<double>(take("kept.las"), 131), scale);
+    const double left = nlohmann::json::parse(take("kept.json"))["noise_left"];
+    EXPECT_NEAR(left, rms("kept.las"), 0.25 * left) << "rounding is noise, too";
   }
+}
+
+TEST_F(LasCommand, AFineScaleThatIsKeptIsNotWarnedOf) {
+  put("in.las", survey(2, 1, 0.001).bytes());
+  EXPECT_THAT(run({"denoise", "--keep-scale", "in.las", "out.las"}).err, Not(HasSubstr("coarse")));
 }
 
 TEST_F(LasCommand, AnIndexBesideTheOutputIsSaidToBeStale) {

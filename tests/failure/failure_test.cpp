@@ -32,12 +32,12 @@
 namespace {
 
 std::atomic<long> countdown{-1};  // -1: not armed; counts allocations down to 0
-std::atomic<long> counted{0};
+std::atomic<long> asked_for{0};
 std::atomic<bool> stop_instead{false};
 std::atomic<bool> stop{false};
 
 void* allocate(std::size_t size, std::size_t alignment) {
-  counted.fetch_add(1, std::memory_order_relaxed);
+  asked_for.fetch_add(1, std::memory_order_relaxed);
   if (countdown.load(std::memory_order_relaxed) >= 0 &&
       countdown.fetch_sub(1, std::memory_order_relaxed) == 0) {
     if (!stop_instead) throw std::bad_alloc();
@@ -115,9 +115,9 @@ void expect_all_or_nothing(const Call& call, const std::function<void()>& restor
   context.stop = &stop;
   stop = false;
   restore();
-  counted = 0;
+  asked_for = 0;
   ASSERT_FALSE(call(context)) << "the call itself must succeed";
-  const long all = counted;
+  const long all = asked_for;
   ASSERT_GT(all, 0);
   const long every = std::max(1L, all / kTries);
   for (const bool cancel : {false, true}) {

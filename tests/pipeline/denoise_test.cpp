@@ -216,7 +216,7 @@ TEST(Denoise, EffectiveOptionsGiveTheSameBytesAgain) {
   DenoiseOptions automatic;
   automatic.flow.modifiers.push_back = true;
   const DenoiseReport report = run(first, automatic);
-  EXPECT_TRUE(std::get<AutomaticOptions>(report.effective.flow.flow).noise.has_value());
+  EXPECT_FALSE(std::get<AutomaticOptions>(report.effective.flow.flow).noise) << "measured, not asked for";
   run(second, report.effective);
   EXPECT_TRUE(same_bits(first, second));
 }
@@ -261,6 +261,38 @@ TEST(Denoise, SaysWhyNothingWasSmoothed) {
   EXPECT_EQ(why_not({1, 2, 3}, automatic(1, 1)), NotSmoothed::too_few_points);
   EXPECT_EQ(why_not(sphere(), hc(1).flow.flow), std::nullopt);
   EXPECT_EQ(why_not(sphere(), hc(0).flow.flow), NotSmoothed::no_iterations);
+}
+
+TEST(Denoise, KnowsWhatIsLeftOfTheNoise) {
+  for (const double strength : {0.5, 1.0, 2.0})
+    for (const int steps : {1, 3}) {
+      Flat xyz = sphere();
+      AutomaticOptions automatic;
+      automatic.strength = strength;
+      automatic.iterations = steps;
+      DenoiseOptions options;
+      options.flow.flow = automatic;
+      const double left = run(xyz, options).noise_left.value();
+      EXPECT_NEAR(left, std::sqrt(mean_square_off_sphere(xyz)), 0.5 * left) << strength << ' ' << steps;
+    }
+}
+
+TEST(Denoise, SaysNothingOfWhatIsLeftWhereItCannotTell) {
+  std::vector<Modifiers> all(3);
+  all[0].push_back = true;
+  all[1].threshold = ThresholdKind::one_ring;
+  all[2].preserve = Preserve::height_field;
+  std::vector<DenoiseOptions> several(all.size(), DenoiseOptions());
+  for (std::size_t i = 0; i < all.size(); ++i) several[i].flow.modifiers = all[i];
+  several.push_back(hc());
+  const Flat original = sphere();
+  for (const DenoiseOptions& options : several) {
+    Flat xyz = original;
+    EXPECT_FALSE(run(xyz, options).noise_left);
+  }
+  Flat xyz = original;
+  const auto half = denoise(xyz.data(), xyz.size() / 3, {}, {}, Flat(xyz.size() / 3, 0.5));
+  EXPECT_FALSE(half.value().noise_left);
 }
 
 TEST(Denoise, NeverThrowsAPointFar) {

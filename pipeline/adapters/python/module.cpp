@@ -158,7 +158,7 @@ NB_MODULE(_rfsmooth, module) {
   module.attr("exit_codes") = exit_codes();
   module.attr("reads_las") = rfsmooth::pipeline::io::format_by_name("las").has_value();
   bind_cloud(module);
-  module.def("finest_needed", &rfsmooth::pipeline::io::finest_needed);
+  module.def("finest_needed", &rfsmooth::pipeline::io::finest_needed, nb::arg(), nb::arg().none());
   module.def("option_table", &option_table);
   module.def("run_on_cloud", &run_on_cloud, nb::arg(), nb::arg(), nb::arg(), nb::arg(), nb::arg(),
              nb::arg("progress").none());

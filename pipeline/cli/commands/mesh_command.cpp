@@ -7,6 +7,7 @@
 
 #include <rfsmooth/connect.h>
 
+#include "base/fail.h"
 #include "base/parallel.h"
 #include "pipeline/cli/commands/command.h"
 #include "pipeline/cli/files/cloud_jobs.h"
@@ -127,7 +128,8 @@ std::string connect_cloud(const MeshCommandOptions& options, pipeline::io::Cloud
   entry["counts"].update(counts_of(connection, stage));
   entry["spacing"] = connection.noise.spacing;
   if (stage != "emst-points") entry["noise"] = connection.noise.sigma;
-  return fmt::format("{}: {} vertices, {} edges, {} faces", stage, points.size(), edges.size(), faces.size());
+  return fmt::format("{}: {}, {}, {}", stage, counted(points.size(), "vertex", "vertices"),
+                     counted(edges.size(), "edge"), counted(faces.size(), "face"));
 }
 
 /// What is reported until the stage that was asked for is made.

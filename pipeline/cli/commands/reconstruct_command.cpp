@@ -36,8 +36,8 @@ void check_format(const Job& job, const FileOptions& options) {
 }
 
 std::string text_of(const Topology& found) {
-  std::string text = fmt::format("{} vertices, {} faces, {} {}", found.vertices, found.faces,
-                                 found.components, found.components == 1 ? "piece" : "pieces");
+  std::string text = fmt::format("{}, {}, {}", counted(found.vertices, "vertex", "vertices"),
+                                 counted(found.faces, "face"), counted(found.components, "piece"));
   if (found.closed_manifold()) return fmt::format("{}; closed, genus {}", text, found.genus);
   if (found.boundary_loops > 0)
     text +=

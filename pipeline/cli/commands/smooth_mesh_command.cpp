@@ -168,14 +168,16 @@ std::string smooth_file(const SmoothMeshCommandOptions& options, std::vector<Tra
   } else {
     pipeline::io::set_positions(cloud, rows.data(), context);
     if (moved && pipeline::io::has_normals(cloud))
-      console.warn(fmt::format("{}: the normals are kept; they now describe the old positions", job.input));
+      console.warn(fmt::format("{}: the normals are stale: they describe the old positions", job.input));
   }
   if (options.after.ridges) {
     watch.next("ridges");
     mark_ridges(options.after, cloud, file, job, context);
   }
 
-  entry["options"] = effective_options(options, options.job.files);
+  SmoothMeshCommandOptions used = options;
+  used.trace.trace.reset();  // what is written beside the mesh is not how it was made
+  entry["options"] = effective_options(used, options.job.files);
   entry["counts"] = {{"points", points},
                      {"finite", file.before.size()},
                      {"faces", faces},
@@ -186,8 +188,8 @@ std::string smooth_file(const SmoothMeshCommandOptions& options, std::vector<Tra
                      {"solver_iterations", done.solver.iterations}};
   entry["solver"] = json_of(done.solver);
   entry["largest_move"] = done.largest_move;
-  return fmt::format("{} vertices, {} faces; {} steps; largest move {:.4g}", points, faces, done.steps,
-                     done.largest_move);
+  return fmt::format("{}, {}; {}; largest move {:.4g}", counted(points, "vertex", "vertices"),
+                     counted(faces, "face"), counted(std::uint64_t(done.steps), "step"), done.largest_move);
 }
 
 void check_smooth_mesh(const SmoothMeshCommandOptions& options, const Invocation& typed) {

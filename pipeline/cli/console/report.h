@@ -1,4 +1,4 @@
-/// --report: what was done, as JSON. --config reads the report of a single file and does the same again.
+/// --report: what was done, as JSON. --config reads it and does the same again.
 #pragma once
 
 #include <string>

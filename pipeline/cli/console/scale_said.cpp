@@ -16,18 +16,18 @@ std::string scale_text(const std::array<double, 3>& scale) {
 
 }  // namespace
 
-void tell_scale(const std::string& name, const pipeline::io::RefinedScale& scale, double noise,
-                double noise_left, Console& console) {
+void tell_scale(const std::string& name, const pipeline::io::RefinedScale& scale, bool kept, double noise,
+                std::optional<double> noise_left, Console& console) {
   if (scale.refined())
     console.say(
         fmt::format("{}: scale {} is coarse for noise of {:.3g}: refined to {}{} (--keep-scale keeps it)",
                     name, scale_text(scale.before), noise, scale_text(scale.after),
                     scale.moved_offset() ? ", offset moved" : ""));
-  if (scale.coarse(pipeline::io::finest_needed(noise, noise_left)))
-    console.warn(
-        fmt::format("{}: scale {} is coarse for noise of {:.3g}, but 32 bits hold no finer one of so large a "
-                    "cloud",
-                    name, scale_text(scale.after), noise));
+  if (scale.coarsest() > pipeline::io::finest_needed(noise, noise_left))
+    console.warn(fmt::format(
+        "{}: scale {} is coarse for noise of {:.3g}{}", name, scale_text(scale.after), noise,
+        kept ? ": rounding to it takes back some of the smoothing (without --keep-scale it would be refined)"
+             : ", but 32 bits hold no finer one of so large a cloud"));
 }
 
 void warn_of_index(const std::string& output, Console& console) {

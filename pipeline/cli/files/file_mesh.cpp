@@ -40,8 +40,8 @@ FileMesh file_mesh(const io::Cloud& cloud, const std::string& name, const Contex
     if (whole && f[0] != f[1] && f[1] != f[2] && f[2] != f[0]) out.mesh.faces.push_back(f);
   }
   if (left_out > 0)
-    context.warn(fmt::format("{}: {} faces with a corner that is not finite are left out of the work", name,
-                             left_out));
+    context.warn(fmt::format("{}: left out of the work: {} with a corner that is not finite", name,
+                             counted(left_out, "face")));
   out.before = points;
   rfsmooth::rebuild_adjacency(out.mesh, context);
   return out;

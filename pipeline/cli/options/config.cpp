@@ -2,6 +2,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 
@@ -43,19 +44,47 @@ std::vector<std::string> names_of(const Command& command) {
   return names;
 }
 
+/// The part of a report that has options: that of a file that was done. No report: the object itself.
+const json& part_with_options(const std::string& path, const json& root) {
+  if (!root.contains("files")) return root;
+  for (const json& file : root["files"])
+    if (file.is_object() && file.contains("options")) return file;
+  fail(ErrorCode::usage, "{}: a report of several files, none of which was done", path);
+}
+
+std::optional<std::string> path_of(const json& part, const char* key) {
+  const auto it = part.find(key);
+  if (it == part.end() || !it->is_object() || !it->contains("path") || !(*it)["path"].is_string())
+    return std::nullopt;
+  return (*it)["path"].get<std::string>();
+}
+
+/// Enters the files of a report.
+void enter_files(const json& root, Config& config) {
+  if (!root.contains("files")) {
+    for (const char* key : {"input", "output"})
+      if (const auto file = path_of(root, key)) config.arguments.push_back(*file);
+    return;
+  }
+  for (const json& part : root["files"]) {
+    if (const auto input = path_of(part, "input")) config.arguments.push_back(*input);
+    if (const auto output = path_of(part, "output"))
+      config.folder = (std::filesystem::path(*output).parent_path() / "").string();
+  }
+  if (config.folder == "") config.folder = "./";
+}
+
 }  // namespace
 
 Config read_config(const std::string& path, const Command& command) {
   const json root = parse_file(path);
   if (!root.is_object()) fail(ErrorCode::usage, "{}: a JSON object is needed", path);
-  if (root.contains("files"))
-    fail(ErrorCode::usage,
-         "{}: a report of several files; run one of them again by giving the object of its options", path);
-  const bool report = root.contains("options");
+  const json& part = part_with_options(path, root);
+  const bool report = part.contains("options");
   if (report && root.contains("command") && root["command"] != command.name)
     fail(ErrorCode::usage, "{}: is a report of 'rfsmooth {}'", path,
          root["command"].is_string() ? root["command"].get<std::string>() : "?");
-  const json& options = report ? root["options"] : root;
+  const json& options = report ? part["options"] : root;
   if (!options.is_object()) fail(ErrorCode::usage, "{}: 'options' must be an object", path);
 
   Config config;
@@ -66,11 +95,7 @@ Config read_config(const std::string& path, const Command& command) {
     if (value.is_null() && option->kind == ValueKind::file) continue;  // left out
     config.options.emplace_back(name, as_typed(path, name, value));
   }
-  if (report)
-    for (const char* key : {"input", "output"})
-      if (const auto it = root.find(key);
-          it != root.end() && it->is_object() && it->contains("path") && (*it)["path"].is_string())
-        config.arguments.push_back((*it)["path"].get<std::string>());
+  if (report) enter_files(root, config);
   return config;
 }
 

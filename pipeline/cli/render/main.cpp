@@ -1,6 +1,7 @@
 /// rfsmooth-render: what `rfsmooth render` becomes.
 #include <fmt/format.h>
 
+#include "base/fail.h"
 #include "clouds/render/picture.h"
 #include "pipeline/cli/commands/render_command.h"
 #include "pipeline/cli/options/text_values.h"
@@ -38,8 +39,10 @@ rfsmooth::render::PictureOptions picture_options(const RenderOptions& options,
   out.inputs = inputs;
   if (options.labels) out.labels = parts(*options.labels);
   if (out.labels.size() > inputs.size())
-    throw rfsmooth::Failure({rfsmooth::ErrorCode::usage, fmt::format("--labels has {} texts for {} inputs",
-                                                                     out.labels.size(), inputs.size())});
+    throw rfsmooth::Failure(
+        {rfsmooth::ErrorCode::usage,
+         fmt::format("--labels has {} for {}", rfsmooth::counted(out.labels.size(), "text"),
+                     rfsmooth::counted(inputs.size(), "input"))});
   out.title = options.title.value_or("");
   out.direction = three("direction", options.direction);
   out.up = three("up", options.up);

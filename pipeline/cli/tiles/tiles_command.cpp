@@ -115,7 +115,8 @@ void plan_tiles(TilesOptions& options, const std::vector<std::string>& arguments
   const Job job = pipeline::tiles::plan_job(
       inputs, arguments.back(), {std::uint64_t(options.tile_points), std::uint64_t(options.sample_points)},
       json_object(bound), context);
-  console.say(fmt::format("{}: {} points in {} tiles", arguments.back(), job.points, job.tiles.size()));
+  console.say(fmt::format("{}: {} in {}", arguments.back(), counted(job.points, "point"),
+                          counted(job.tiles.size(), "tile")));
 }
 
 /// Where the inputs of a job go, which is refused, before any work, if something must not be replaced. Pieces
@@ -147,12 +148,13 @@ int join_tiles(const TilesOptions& options, const std::vector<std::string>& argu
   if (to_reader && stdout_reader_is_gone()) return exit_code(ErrorCode::cannot_write);  // it has seen enough
   const auto joined = value_or_throw(std::move(done));
   for (std::size_t i = 0; i < outputs.size(); ++i) {
-    tell_scale(job.inputs[i].path, joined[i].scale, joined[i].noise, joined[i].noise_left, console);
+    tell_scale(job.inputs[i].path, joined[i].scale, options.keep_scale, joined[i].noise, joined[i].noise_left,
+               console);
     if (joined[i].las) warn_of_index(outputs[i], console);
     mark_as_own(outputs[i]);
   }
-  console.say(fmt::format("{}: {} points, {} file{}", arguments[1], job.points, outputs.size(),
-                          outputs.size() == 1 ? "" : "s"));
+  console.say(
+      fmt::format("{}: {}, {}", arguments[1], counted(job.points, "point"), counted(outputs.size(), "file")));
   return 0;
 }
 
@@ -172,8 +174,8 @@ void tell_status(const TilesOptions& options, const std::vector<std::string>& ar
                                      {"missing", s.missing}})
                            .dump(2));
   else
-    fmt::print("{} points in {} tiles: {} measured, {}settled, {} run{}\n", s.points, s.tiles, s.measured,
-               s.settled ? "" : "not ", s.run,
+    fmt::print("{} in {}: {} measured, {}settled, {} run{}\n", counted(s.points, "point"),
+               counted(s.tiles, "tile"), s.measured, s.settled ? "" : "not ", s.run,
                s.run == 0
                    ? ""
                    : fmt::format(" in {:.3g} s of processor time, with {:.0f} % more points around them",

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "base/fail.h"
 #include "pipeline/io/convert/capacity.h"
 #include "pipeline/io/convert/notes.h"
 #include "pipeline/io/formats/las/las_pack.h"
@@ -189,7 +190,7 @@ std::vector<std::string> what_is_lost(const Cloud& cloud, Format format, Encodin
   const Capacity& capacity = capacity_of(format);
   if (!capacity.not_finite)
     if (const std::size_t n = cloud.size() - finite_rows(positions(cloud, context), context); n > 0)
-      lost.push_back(fmt::format("{} points that are not finite", n));
+      lost.push_back(fmt::format("{} not finite", counted(n, "point")));
   if (capacity.grid == Capacity::Grid::none) {
     if (cloud.organised()) lost.push_back(fmt::format("the grid of {} x {}", cloud.width, cloud.height));
     if (cloud.viewpoint != kNoViewpoint) lost.push_back("the viewpoint");

@@ -71,18 +71,20 @@ void read_compressed(Table& table, BinaryCursor& cursor, const Context& context)
     return;
   }
   if (left < 8)
-    source.fail("byte {}: expected the sizes of the compressed data (8 bytes), found {} bytes", at, left);
+    source.fail("byte {}: expected the sizes of the compressed data (8 bytes), found {}", at,
+                counted(left, "byte"));
   const Bytes sizes = source.read(at, 8, context);
   const std::uint64_t packed = read_uint32(sizes.data()), unpacked = read_uint32(sizes.data() + 4);
   if (packed > left - 8)
-    source.fail("byte {}: expected {} bytes of compressed data, found {}", at + 8, packed, left - 8);
+    source.fail("byte {}: expected {} of compressed data, found {}", at + 8, counted(packed, "byte"),
+                left - 8);
   const std::size_t row = table.row_size();
   if (table.count > std::numeric_limits<std::uint32_t>::max() / row || table.count * row != unpacked)
-    source.fail("byte {}: expected {} points of {} bytes each when unpacked, found {} bytes", at + 4,
-                table.count, row, unpacked);
+    source.fail("byte {}: expected {} of {} each when unpacked, found {}", at + 4,
+                counted(table.count, "point"), counted(row, "byte"), counted(unpacked, "byte"));
   if (unpacked > packed * kLzfMostGain)
-    source.fail("byte {}: expected compressed data for {} bytes, found {} bytes, which cannot hold as much",
-                at, unpacked, packed);
+    source.fail("byte {}: expected compressed data for {}, found {}, which cannot hold as much", at,
+                counted(unpacked, "byte"), counted(packed, "byte"));
   const Bytes stream = source.read(at + 8, std::size_t(packed), context);
   Bytes columns(static_cast<std::size_t>(unpacked));
   const LzfOutcome outcome = lzf_decompress({stream.data(), stream.size()}, columns.data(), columns.size());

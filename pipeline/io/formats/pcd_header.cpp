@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "base/fail.h"
 #include "pipeline/io/formats/pcd.h"
 
 namespace rfsmooth::pipeline::io {
@@ -89,7 +90,7 @@ Table points_of(const Entries& e, const HeaderLines& lines) {
   if (n == 0) lines.fail("expected a FIELDS line with names before DATA, found none");
   const auto need = [&](std::string_view key, const std::vector<std::string>& words) {
     if (words.size() != n)
-      lines.fail("expected {} words after {}, one per field, found {}", n, key, words.size());
+      lines.fail("expected {} after {}, one per field, found {}", counted(n, "word"), key, words.size());
   };
   need("SIZE", e.size);
   need("TYPE", e.type);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "base/fail.h"
 #include "pipeline/io/table/rows.h"
 
 namespace rfsmooth::pipeline::io {
@@ -36,8 +37,8 @@ void find_coordinates(Cloud& cloud, const Source& source, const Context& context
                   there.empty() ? "none" : there);
     }
     if (same > 1)
-      context.warn(fmt::format("{}: {} fields are called '{}'; the first is the coordinate, all are kept",
-                               source.name(), same, fields[best].name));
+      context.warn(fmt::format("{}: {} fields are called '{}'; the first is the coordinate", source.name(),
+                               same, fields[best].name));
     cloud.xyz[axis] = best;
   }
 }
@@ -59,8 +60,8 @@ Cloud read_ply(const Source& source, const Context& context) {
     cloud.tail.assign(rest.data(), rest.size());
   }
   if (cloud.tail.find_first_not_of(" \t\r\n") != std::string::npos)
-    context.warn(fmt::format("{}: {} bytes behind the last row are kept as they are", source.name(),
-                             cloud.tail.size()));
+    context.warn(fmt::format("{}: {} behind the last row, of no element", source.name(),
+                             counted(cloud.tail.size(), "byte")));
   cloud.width = cloud.size();
   return cloud;
 }

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <fmt/format.h>
 
+#include "base/fail.h"
 #include "pipeline/io/formats/header_lines.h"
 #include "pipeline/io/formats/ply.h"
 #include "pipeline/io/point_fields.h"
@@ -128,8 +129,8 @@ Cloud read_xyz(const Source& source, const Context& context) {
   count_text_rows(table, cursor);
   read_text_rows(table, cursor, context);
   if (const auto promised = cloud.xyz_style.counted; promised && *promised != table.count)
-    source.fail("line {}: expected {} points in all, as a line before the first one says, found {}; {}",
-                cursor.lines, *promised, table.count,
+    source.fail("line {}: expected {} in all, as a line before the first one says, found {}; {}",
+                cursor.lines, counted(*promised, "point"), table.count,
                 table.count < *promised ? "the file is cut off, or mend that number" : "mend that number");
   if (const std::size_t k = names.empty() ? unit_columns(table) : 0; k > 0)
     for (std::size_t axis = 0; axis < 3; ++axis) table.fields[k + axis].name = kPlyNormal[axis];

@@ -69,7 +69,7 @@ Source::~Source() {
 
 void Source::check_range(std::uint64_t offset, std::size_t n) const {
   const std::uint64_t left = size_ - std::min(size_, offset);
-  if (n > left) fail("byte {}: expected {} bytes, found {}", offset, n, left);
+  if (n > left) fail("byte {}: expected {}, found {}", offset, counted(n, "byte"), left);
 }
 
 void Source::read(std::uint64_t offset, char* out, std::size_t n, const Context& context) const {

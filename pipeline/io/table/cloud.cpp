@@ -69,10 +69,10 @@ void warn_of_range(const Cloud& cloud, const double* xyz, const Context& context
     return std::size_t{0};
   });
   if (beyond > 0)
-    context.warn(
-        fmt::format("{} points are beyond what the file's scale and offset can say: they are put at "
-                    "the end of the range, or stay where a coordinate is not finite",
-                    beyond));
+    context.warn(fmt::format(
+        "beyond what the file's scale and offset can say: {}, put at the end of the range, or kept "
+        "where a coordinate is not finite",
+        counted(beyond, "point")));
 }
 
 }  // namespace

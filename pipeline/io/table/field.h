@@ -68,6 +68,9 @@ struct Field {
   bool is_plain() const { return !is_list() && count == 1; }  ///< one value per row
   bool is_scaled() const { return scale != 1 || offset != 0; }
   bool is_whole() const { return !is_float(type) && !is_scaled(); }  ///< its values are whole numbers
+  double step() const {
+    return is_float(type) ? 0 : scale < 0 ? -scale : scale;
+  }  ///< to the next value, or 0
 };
 
 /// Reads the `type` at `p` (unaligned, little-endian) as a double (64-bit integers are rounded to nearest).

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "base/fail.h"
 #include "base/parallel.h"
 #include "pipeline/io/table/rows.h"
 
@@ -53,13 +54,14 @@ void read_lists(Table& table, BinaryCursor& cursor, const Context& context) {
   std::size_t least = 0;
   for (const Field& f : table.fields) least += f.is_list() ? size_of(*f.list_count) : f.bytes();
   if (least > 0 && table.count > std::size_t(end - p) / least)
-    cursor.source.fail("byte {}: expected {} rows of element '{}', at least {} bytes each, found {} bytes",
-                       cursor.offset, table.count, table.name, least, end - p);
+    cursor.source.fail("byte {}: expected {} of element '{}', at least {} each, found {}", cursor.offset,
+                       counted(table.count, "row"), table.name, counted(least, "byte"),
+                       counted(std::uint64_t(end - p), "byte"));
 
   const auto short_of = [&](std::size_t row, const Field& f, std::size_t need) {
-    cursor.source.fail("byte {}: expected {} bytes of '{}' in row {} of element '{}', found {}",
-                       cursor.held_from + std::uint64_t(p - cursor.held.data()), need, f.name, row,
-                       table.name, end - p);
+    cursor.source.fail("byte {}: expected {} of '{}' in row {} of element '{}', found {}",
+                       cursor.held_from + std::uint64_t(p - cursor.held.data()), counted(need, "byte"),
+                       f.name, row, table.name, end - p);
   };
   table.start.resize(table.count + 1);
   table.start[0] = 0;
@@ -112,8 +114,8 @@ std::uint64_t end_of_rows(const Table& table, std::uint64_t offset, const Source
   const std::size_t size = table.row_size();
   const std::uint64_t left = source.size() - std::min(source.size(), offset);
   if (size == 0 || table.count > left / size)
-    source.fail("byte {}: expected {} rows of element '{}', {} bytes each, found {} bytes", offset,
-                table.count, table.name, size, left);
+    source.fail("byte {}: expected {} of element '{}', {} each, found {}", offset,
+                counted(table.count, "row"), table.name, counted(size, "byte"), counted(left, "byte"));
   return offset + table.count * size;
 }
 

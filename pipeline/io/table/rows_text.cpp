@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "base/fail.h"
 #include "base/parallel.h"
 #include "pipeline/io/formats/header_lines.h"
 #include "pipeline/io/table/rows.h"
@@ -28,7 +29,7 @@ std::string problem_of_cells(const Table& table, std::string_view row) {
     if (const Field& f = table.fields[k]; !cells[k].empty() && !is_value(cells[k], f.type))
       return not_a_value(table, "a value of", f, f.type, cells[k]);
   if (cells.size() == table.fields.size()) return {};
-  return fmt::format("expected {} values, found {}", table.fields.size(), cells.size());
+  return fmt::format("expected {}, found {}", counted(table.fields.size(), "value"), cells.size());
 }
 
 // Empty if the row is what its fields ask for; else what was expected and found.
@@ -62,7 +63,7 @@ std::string problem(const Table& table, std::string_view row) {
   if (table.ragged) return {};
   const std::string_view word = next_word(p, end, table.separators);
   if (word.empty()) return {};
-  return fmt::format("expected {} values, found more: {}", seen, in_quotes(word));
+  return fmt::format("expected {}, found more: {}", counted(seen, "value"), in_quotes(word));
 }
 
 std::size_t count_lines(const Bytes& all, std::size_t to) {
@@ -132,8 +133,8 @@ void read_text_rows(Table& table, TextCursor& cursor, const Context& context) {
   // The shortest line holds one character per value, what parts them, and a line end.
   const std::size_t left = cursor.all.size() - cursor.at;
   if (table.count > (left + 1) / 2)
-    cursor.source.fail("line {}: expected {} lines of element '{}', found {} bytes", cursor.lines + 1,
-                       table.count, table.name, left);
+    cursor.source.fail("line {}: expected {} of element '{}', found {}", cursor.lines + 1,
+                       counted(table.count, "line"), table.name, counted(left, "byte"));
 
   const char* const base = cursor.all.data();
   const char* const end = base + cursor.all.size();

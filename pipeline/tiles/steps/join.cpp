@@ -141,7 +141,7 @@ struct OpenInput {
   std::uint64_t before = 0;
 };
 
-/// Refines the scale of a LAS file to `step`, unless nothing of it moved.
+/// Refines the scale of a LAS file to `step`, unless nothing of it moved: then all of it is zeros.
 io::RefinedScale refine_moved(const Job& job, OpenInput& input, double step, const Context& context) {
   OfAllTiles<Record> places(job, &Job::done, input.before, context);
   Ends ends;
@@ -175,8 +175,11 @@ void find_box(const Job& job, OpenInput& input, const Context& context) {
 io::RefinedScale prepare_las(const Job& job, OpenInput& input, bool keep_scale, const DenoiseReport& settled,
                              const Context& context) {
   io::RefinedScale scale;
-  if (!keep_scale && settled.noise > 0)
-    scale = refine_moved(job, input, io::finest_needed(settled.noise, settled.noise_left), context);
+  if (settled.noise > 0)
+    scale = refine_moved(job, input,
+                         keep_scale ? std::numeric_limits<double>::infinity()
+                                    : io::finest_needed(settled.noise, settled.noise_left),
+                         context);
   find_box(job, input, context);
   return scale;
 }

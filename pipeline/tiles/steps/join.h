@@ -1,6 +1,7 @@
 /// The last step: copies the inputs with the new coordinates in them.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,8 @@ namespace rfsmooth::pipeline::tiles {
 struct Joined {
   bool las = false;
   io::RefinedScale scale;            ///< of LAS; all zeros where it was not looked at
-  double noise = 0, noise_left = 0;  ///< for which it was
+  double noise = 0;                  ///< for which it was
+  std::optional<double> noise_left;  ///< as DenoiseReport's
 };
 
 /// How to join.

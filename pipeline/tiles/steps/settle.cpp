@@ -95,7 +95,7 @@ ordered_json json_of_settled(const Settled& settled) {
           {"halo_radii", settled.radii},
           {"widest", settled.widest},
           {"noise", report.noise},
-          {"noise_left", report.noise_left},
+          {"noise_left", report.noise_left ? ordered_json(*report.noise_left) : ordered_json(nullptr)},
           {"noise_measured", json_of(report.measured)},
           {"not_smoothed", json_of(report.not_smoothed)},
           {"guide_strength", report.guide_strength},
@@ -109,7 +109,7 @@ Settled settled_of_json(const ordered_json& json) {
   DenoiseReport& report = settled.report;
   report.statistics = statistics_of(json.at("statistics"));
   report.noise = json.at("noise");
-  report.noise_left = json.at("noise_left");
+  if (const auto& left = json.at("noise_left"); !left.is_null()) report.noise_left = left.get<double>();
   report.measured = summary_of(json.at("noise_measured"));
   report.not_smoothed = not_smoothed_of(json.at("not_smoothed"));
   report.guide_strength = json.at("guide_strength");

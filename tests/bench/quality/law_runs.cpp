@@ -111,7 +111,7 @@ LawRow measure_law_case(const LawPlan& plan, const LawCase& one) {
   row.raw = unit * mean_squared(truth.surface(), one.cloud.measured, plan.threads);
   row.ours = unit * mean_squared(truth.surface(), first.points, plan.threads);
   row.noise = first.report.noise / spacing;
-  row.left = first.report.noise_left / spacing;
+  row.left = first.report.noise_left.value_or(first.report.noise) / spacing;
   measure_exact(one, first.points, row);
   if (plan.again) {
     const auto second = run_ours(first.points, plan.ours, plan.threads);

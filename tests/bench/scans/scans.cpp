@@ -81,7 +81,7 @@ Judged judge(const Settings& settings, const Scan& scan) {
   judged.creases = flats.creases.size();
   const auto ours = run_ours(scan, settings.ours, settings.threads);
   judged.noise = ours.report.noise / scan.spacing;
-  judged.left = ours.report.noise_left / scan.spacing;
+  judged.left = ours.report.noise_left.value_or(ours.report.noise) / scan.spacing;
   judged.moved = moves(scan.points, ours.points).rms / scan.spacing;
   const std::array<Cleaned, 4> tools = {Cleaned{scan.points, {}}, Cleaned{ours.points, {}},
                                         run_peer(scan, kFixedMls, settings.cache, settings.threads),

@@ -48,7 +48,7 @@ SensorRow measure_sensor(const SensorPlan& plan, const clouds::Sensor& sensor) {
       double(std::count_if(sight.truth.begin(), sight.truth.end(), is_near)) / double(measured.size());
   row.seconds = first.seconds;
   row.noise = first.report.noise;
-  row.left = first.report.noise_left;
+  row.left = first.report.noise_left.value_or(first.report.noise);
   row.raw = distances(sensor, sight.truth, {measured, {}});
   row.ours = distances(sensor, sight.truth, {first.points, {}});
   for (const char* const setting : {kFixedMls, kFixedJet}) {

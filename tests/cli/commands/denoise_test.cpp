@@ -65,8 +65,8 @@ TEST_F(DenoiseCommand, SaysOfNoiseWhatBelongsTogether) {
     return ran.err;
   };
   const auto report = [&] { return nlohmann::json::parse(take("r.json")); };
-  said({});
-  const double noise = report()["noise"];
+  EXPECT_THAT(said({}), HasSubstr(" left"));
+  const double noise = report()["noise"], left = report()["noise_left"];
   EXPECT_TRUE(report().at("not_smoothed").is_null());
   for (const char* option : {"--strength", "--iterations"}) {
     const std::string err = said({option, "0"});
@@ -78,12 +78,14 @@ TEST_F(DenoiseCommand, SaysOfNoiseWhatBelongsTogether) {
   }
   said({"--iterations", "3"});
   EXPECT_EQ(report()["noise"], noise) << "the scan's, not what the third step found";
-  EXPECT_LT(report()["noise_left"], noise);
+  EXPECT_EQ(report()["noise_left"], left) << "not what a later step hears of it";
   EXPECT_TRUE(report()["options"]["noise"].is_null()) << "each step measures its own";
   const std::string once = take("out.ply");
   put("again.json", take("r.json"));
   said({"--config", "again.json"});
   EXPECT_TRUE(take("out.ply") == once);
+  EXPECT_THAT(said({"--push-back"}), Not(HasSubstr(" left"))) << "nobody knows";
+  EXPECT_TRUE(report()["noise_left"].is_null());
   for (const char* stated : {"0.01", "5"}) {
     const std::string err = said({"--noise", stated});
     EXPECT_THAT(err, HasSubstr(std::string("noise ") + stated + ", as stated"));
@@ -92,6 +94,30 @@ TEST_F(DenoiseCommand, SaysOfNoiseWhatBelongsTogether) {
   put("few.xyz", "5 6 7\n5 6 8\n5 7 7\n");
   EXPECT_THAT(run({"denoise", "few.xyz", "few_out.xyz"}).err,
               HasSubstr("noise 0, too few points to smooth;"));
+}
+
+TEST_F(DenoiseCommand, MoreStrengthIsAdvisedForLittleNoiseAndNotForNone) {
+  for (const double sigma : {0.0, 0.02}) {
+    std::mt19937_64 engine(9);
+    std::normal_distribution<double> noise(0, 1);
+    BinaryPly cloud;
+    for (int i = 0; i < 30; ++i)
+      for (int j = 0; j < 30; ++j)
+        for (const double c : {double(i), double(j), sigma * noise(engine)}) cloud.xyz.push_back(float(c));
+    put("in.ply", cloud.bytes());
+    const std::string err = run({"denoise", "in.ply", "out.ply", "--force"}).err;
+    EXPECT_THAT(err, HasSubstr("too little to smooth"));
+    EXPECT_EQ(err.find("--strength 2") != std::string::npos, sigma > 0) << err;
+  }
+}
+
+TEST_F(DenoiseCommand, OneIsCountedAsOne) {
+  put("one.xyz", "1 2 3\n");
+  EXPECT_THAT(run({"denoise", "-v", "one.xyz", "out.xyz"}).err,
+              ::testing::AllOf(HasSubstr(": 1 point, 1 finite"), HasSubstr(", 1 point without a face,")));
+  EXPECT_THAT(run({"mesh", "one.xyz", "mesh.ply"}).err, HasSubstr("1 vertex, 0 edges, 0 faces"));
+  EXPECT_THAT(run({"compare", "one.xyz", "one.xyz"}).out,
+              HasSubstr("1 point (1 finite) against 1 clean point\n"));
 }
 
 TEST_F(DenoiseCommand, QuietSaysNothing) {
@@ -211,11 +237,11 @@ TEST_F(DenoiseCommand, ReportOfTheAutomaticFlowSaysEverythingItChose) {
   EXPECT_EQ(report["output"]["path"], "one.ply");
   EXPECT_EQ(report["threads"], 2);
   EXPECT_EQ(report["options"]["flow"], "auto");
-  // Chosen, not asked for: iterations, strength, the measured noise, evening out.
+  // The flow's own, not asked for: iterations, strength, evening out.
   EXPECT_EQ(report["options"]["iterations"], 1);
   EXPECT_EQ(report["options"]["strength"], 1);
   EXPECT_EQ(report["options"]["equalize"], true);
-  EXPECT_EQ(report["options"]["noise"], report["noise"]);
+  EXPECT_TRUE(report["options"]["noise"].is_null()) << "measured, so another cloud has its own";
   EXPECT_GT(report["noise"], 0);
   EXPECT_LT(report["noise_left"], report["noise"]);
   const auto measured = nlohmann::json::parse(run({"info", "--json", "in.ply"}).out)["noise_measured"];
@@ -233,6 +259,30 @@ TEST_F(DenoiseCommand, ReportOfTheAutomaticFlowSaysEverythingItChose) {
   const Ran again = run({"denoise", "--config", "report.json", "in.ply", "two.ply", "--threads", "1"});
   ASSERT_EQ(again.code, 0) << again.err;
   EXPECT_TRUE(take("one.ply") == take("two.ply"));
+}
+
+TEST_F(DenoiseCommand, ConfigOfOneCloudIsMeasuredAnewOnAnother) {
+  BinaryPly cloud = noisy_plane(20);
+  put("metres.ply", cloud.bytes());
+  for (float& x : cloud.xyz) x *= 1000;
+  put("millimetres.ply", cloud.bytes());
+  ASSERT_EQ(run({"denoise", "metres.ply", "out.ply", "--report", "r.json"}).code, 0);
+  ASSERT_EQ(run({"denoise", "millimetres.ply", "expected.ply"}).code, 0);
+  const Ran ran = run({"denoise", "--config", "r.json", "millimetres.ply", "by_config.ply"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  EXPECT_THAT(ran.err, Not(HasSubstr("as stated")));
+  EXPECT_TRUE(take("by_config.ply") == take("expected.ply"));
+}
+
+TEST_F(DenoiseCommand, ConfigWritesNothingBesideTheCloud) {
+  put("in.ply", noisy_plane(10).bytes());
+  ASSERT_EQ(
+      run({"denoise", "in.ply", "one.ply", "--report", "r.json", "--html", "p.html", "--trace", "t.csv"})
+          .code,
+      0);
+  const Ran ran = run({"denoise", "--config", "r.json", "in.ply", "two.ply"});
+  EXPECT_EQ(ran.code, 0) << "neither page nor trace is in its way: " << ran.err;
+  EXPECT_THAT(names(), ElementsAre("in.ply", "one.ply", "p.html", "r.json", "t.csv", "two.ply"));
 }
 
 TEST_F(DenoiseCommand, ThreadsBindsEveryThreadOfTheProgram) {
@@ -288,6 +338,27 @@ TEST_F(DenoiseCommand, ManyFilesGoOnAfterAnError) {
   EXPECT_THAT(ran.err, HasSubstr("FAILED"));
   ASSERT_EQ(run({"denoise", "--flow", "hc", "a.ply", "single.ply"}).code, 0);
   EXPECT_TRUE(take("out/a.ply") == take("single.ply"));
+}
+
+TEST_F(DenoiseCommand, ConfigOfSeveralFilesDoesThemAgain) {
+  put("broken.ply", "not a cloud");
+  put("a.ply", noisy_plane(10).bytes());
+  put("b.ply", noisy_plane(12).bytes());
+  EXPECT_EQ(run({"denoise", "--flow", "hc", "--beta", "0.7", "broken.ply", "a.ply", "b.ply", "-o", "out/",
+                 "--report", "r.json"})
+                .code,
+            3);
+  const std::string a = take("out/a.ply"), b = take("out/b.ply");
+  std::filesystem::remove_all(at("out"));
+  EXPECT_EQ(run({"denoise", "--config", "r.json"}).code, 3) << "the broken one again";
+  EXPECT_TRUE(take("out/a.ply") == a);
+  EXPECT_TRUE(take("out/b.ply") == b);
+  ASSERT_EQ(run({"denoise", "--config", "r.json", "a.ply", "alone.ply"}).code, 0);
+  EXPECT_TRUE(take("alone.ply") == a) << "its options, on another file";
+  put("none.json", R"({"command": "denoise", "files": [{"input": {"path": "a.ply"}}]})");
+  const Ran none = run({"denoise", "--config", "none.json"});
+  EXPECT_EQ(none.code, 2);
+  EXPECT_THAT(none.err, HasSubstr("none.json: a report of several files, none of which was done"));
 }
 
 TEST_F(DenoiseCommand, WithoutACloudNothingStandsBesideIt) {

@@ -155,7 +155,7 @@ TEST(Xyz, ANumberOfPointsThatIsNotTheRowsIsRefused) {
   EXPECT_THAT(refusal_of("3\n1 2 3\n4 5 6\n"),
               AllOf(HasSubstr("line 3: expected 3 points"), HasSubstr("found 2"), HasSubstr("cut off")));
   EXPECT_THAT(refusal_of("# scan\n1\n1,2,3\n4,5,6\n"),
-              AllOf(HasSubstr("line 4: expected 1 points"), HasSubstr("found 2")));
+              AllOf(HasSubstr("line 4: expected 1 point "), HasSubstr("found 2")));
 }
 
 TEST(Xyz, LinesThatEndInCarriageReturnsAloneAreRefused) {

@@ -14,6 +14,10 @@ def _is_laspys(path):
     return path.lower().endswith(_OF_LASPY)
 
 
+def _counted(n, what):
+    return f"{n} {what}" if n == 1 else f"{n} {what}s"
+
+
 def _denoise_las(files, options):
     """One LAS or LAZ file by laspy; says what the command would say."""
     from . import las
@@ -31,10 +35,11 @@ def _denoise_las(files, options):
     options.pop("verbose", None)
     report = las.denoise_file(*files, progress=bar, **options)
     if not quiet:
-        counts = report["counts"]
+        counts, left = report["counts"], report["noise_left"]
+        about = "" if left is None else f", about {left:.3g} left"
         for line in (
-            f"{files[0]} -> {files[1]}: {counts['points']} points, {counts['outliers']} outliers",
-            f"noise {report['noise']:.3g}, about {report['noise_left']:.3g} left; spacing {report['spacing']:.4g}",
+            f"{files[0]} -> {files[1]}: {_counted(counts['points'], 'point')}, {_counted(counts['outliers'], 'outlier')}",
+            f"noise {report['noise']:.3g}{about}; spacing {report['spacing']:.4g}",
             report["scale"],
             report["index"],
         ):

@@ -65,7 +65,8 @@ class Table:
 
     def from_config(self, config):
         """The options in a report, or in an object of options, with their names here."""
-        options = config.get("options", config)
+        of_file = next((file for file in config.get("files", ()) if "options" in file), config)
+        options = of_file.get("options", config)
         return {
             python_name(name): value
             for name, value in options.items()

@@ -2,6 +2,7 @@
 come along.
 """
 
+import math
 import os
 
 import numpy as np
@@ -34,11 +35,15 @@ def _finer(scales, step):
     return fine, powers
 
 
-def _rescale(las, step):
-    """Refines the scale of coordinates: old whole numbers times a power of ten, so that what does not move stays exact.
+def _rescale(las, step, keep):
+    """Refines the scale of coordinates, unless it is to be kept: old whole numbers times a power of ten, so that what does not move stays exact.
     Returns what is to be said of it, or None. The finest that the range of whole numbers allows is taken.
     """
     header = las.header
+    if keep:
+        coarse = np.any(np.abs(header.scales) > step)
+        old = header.scales.tolist()
+        return f"scale {old} is coarser than half of the noise left: rounding takes back some of the smoothing" if coarse else None
     fine, powers = _finer(header.scales, step)
     for axis, name in enumerate("XYZ"):
         values = np.asarray(las.points.array[name], np.int64)
@@ -99,8 +104,10 @@ def denoise_file(source, target, *, keep_scale=False, force=False, threads=0, pr
         asked = {**asked, "strength_field": np.asarray(las[strength], float)}
     clean, report = _functions.denoise(xyz, threads=threads, progress=progress, **asked)
     step = _rfsmooth.finest_needed(report["noise"], report["noise_left"])
-    refine = step > 0 and report["counts"]["moved"] > 0 and not keep_scale
-    report["scale"] = _rescale(las, step) if refine else None
+    rounded = step > 0 and report["counts"]["moved"] > 0
+    report["scale"] = _rescale(las, step, keep_scale) if rounded else None
+    if rounded and report["noise_left"] is not None:
+        report["noise_left"] = math.hypot(report["noise_left"], np.abs(las.header.scales).max() / math.sqrt(12))
     _store(las, clean, np.any(clean != xyz, axis=1))
     if remove:
         las.points = las.points[~report["fields"]["outlier"]]

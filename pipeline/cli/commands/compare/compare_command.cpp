@@ -78,8 +78,8 @@ struct TruthFile {
 
 void print_text(const CompareReport& report, const Deviation& deviation, const ordered_json& json) {
   const bool mesh = report.truth_faces > 0;
-  fmt::print("{} points ({} finite) against {} {}\n", report.points, report.finite,
-             mesh ? report.truth_faces : report.truth_points, mesh ? "true faces" : "clean points");
+  fmt::print("{} ({} finite) against {}\n", counted(report.points, "point"), report.finite,
+             mesh ? counted(report.truth_faces, "true face") : counted(report.truth_points, "clean point"));
   fmt::print("distance of a point to {}, in the units of the file:\n",
              mesh ? "the surface" : "the nearest clean point");
   for (const auto& [name, value] : {std::pair("rms", deviation.rms),

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "base/fail.h"
 #include "pipeline/cli/commands/denoise/summary.h"
 #include "pipeline/cli/commands/denoise/within_memory.h"
 #include "pipeline/cli/console/report.h"
@@ -101,8 +102,8 @@ bool is_written_as_las(const DenoiseCommandOptions& options, const pipeline::io:
   return output_format(cloud, job.output, options.job.files) == pipeline::io::Format::las;
 }
 
-/// Refines the scale of a LAS cloud. For LAS to be written as far as it is coarse for what is left of the
-/// noise. For other formats, which have no steps, as far as 32 bits go.
+/// Refines the scale of a LAS cloud, and says so. For LAS to be written as far as it is coarse for what is
+/// left of the noise. For other formats, which have no steps, as far as 32 bits go.
 void refine_scale(const DenoiseCommandOptions& options, const DenoiseReport& done, pipeline::io::Cloud& cloud,
                   const std::vector<double>& xyz, const CloudTask& task) {
   using pipeline::io::Format;
@@ -112,11 +113,20 @@ void refine_scale(const DenoiseCommandOptions& options, const DenoiseReport& don
     pipeline::io::refine_scale(cloud, std::numeric_limits<double>::min(), xyz.data(), context);
     return;
   }
-  if (options.keep_scale || done.noise <= 0) return;
-  const double step = pipeline::io::finest_needed(done.noise, done.noise_left);
+  if (done.noise <= 0) return;
+  const double step = options.keep_scale ? std::numeric_limits<double>::infinity()
+                                         : pipeline::io::finest_needed(done.noise, done.noise_left);
   const pipeline::io::RefinedScale scale = pipeline::io::refine_scale(cloud, step, xyz.data(), context);
   entry["scale"] = {{"before", scale.before}, {"after", scale.after}};
-  tell_scale(job.input, scale, done.noise, done.noise_left, console);
+  tell_scale(job.input, scale, options.keep_scale, done.noise, done.noise_left, console);
+}
+
+/// What is left of the noise, with that of rounding coordinates to their steps.
+void add_rounding(const pipeline::io::Cloud& cloud, DenoiseReport& done) {
+  if (done.moved == 0 || !done.noise_left) return;
+  double step = 0;
+  for (const std::size_t f : cloud.xyz) step = std::max(step, cloud.points().fields[f].step());
+  done.noise_left = pipeline::io::with_rounding(*done.noise_left, step);
 }
 
 /// Adds how far each point is from `before`, as the file now has it: rounded to the coordinates' own type. 0
@@ -180,7 +190,8 @@ std::string drop_outliers(pipeline::io::Cloud& cloud, const std::vector<char>& o
 void enter(const DenoiseReport& done, const DenoiseCommandOptions& options, ordered_json& entry) {
   DenoiseCommandOptions used = options;
   used.denoise = done.effective;
-  used.html.reset();    // what is written beside the cloud is not how it was made
+  used.html.reset();  // what is written beside the cloud is not how it was made
+  used.trace.trace.reset();
   used.memory.reset();  // nor is the memory it was made in
   entry["options"] = effective_options(used, options.job.files);
   entry["counts"] = {{"points", done.points},       {"finite", done.finite},    {"distinct", done.distinct},
@@ -192,7 +203,7 @@ void enter(const DenoiseReport& done, const DenoiseCommandOptions& options, orde
   entry["spacing"] = done.spacing;
   entry["noise"] = done.noise;
   entry["noise_measured"] = pipeline::tiles::json_of(done.measured);
-  entry["noise_left"] = done.noise_left;
+  entry["noise_left"] = done.noise_left ? ordered_json(*done.noise_left) : ordered_json(nullptr);
   entry["not_smoothed"] = pipeline::tiles::json_of(done.not_smoothed);
   entry["guide_strength"] = done.guide_strength;
   entry["tail_times"] = done.tail_times;
@@ -207,8 +218,9 @@ void tell(const DenoiseReport& done, const DenoiseCommandOptions& options, const
   tell_points(done, options, pipeline::io::has_normals(cloud), is_written_as_las(options, cloud, task.job),
               task.job, task.console);
   tell_solver(task.job.input, done.solver, task.console);
-  task.console.detail(fmt::format("{} faces, {} edges, {} bridges, {} points without a face, {} swaps",
-                                  done.faces, done.edges, done.bridges, done.faceless, done.swaps));
+  task.console.detail(fmt::format("{}, {}, {}, {} without a face, {}", counted(done.faces, "face"),
+                                  counted(done.edges, "edge"), counted(done.bridges, "bridge"),
+                                  counted(done.faceless, "point"), counted(done.swaps, "swap")));
 }
 
 /// Adds to the page what became of the cloud; its normals only if they are of the new surface. Outliers that
@@ -224,8 +236,8 @@ void page_after(const DenoiseReport& done, const DenoiseCommandOptions& options,
   contents.figures = {{"outliers", std::to_string(done.outliers)},
                       {"spacing", fmt::format("{:.4g}", done.spacing)},
                       {"noise", fmt::format("{:.3g}", done.noise)}};
-  if (done.noise_left < done.noise)
-    contents.figures.emplace_back("about left of it", fmt::format("{:.3g}", done.noise_left));
+  if (done.noise_left && *done.noise_left < done.noise)
+    contents.figures.emplace_back("about left of it", fmt::format("{:.3g}", *done.noise_left));
 }
 
 }  // namespace
@@ -238,7 +250,7 @@ std::string denoise_cloud(const DenoiseCommandOptions& options, Beside& beside, 
   std::vector<double> xyz = pipeline::io::positions(cloud, context);
   check_memory(options, job, xyz, context);
   Smoothed smoothed = smooth(options, cloud, std::move(xyz), task);
-  const DenoiseReport& done = smoothed.report;
+  DenoiseReport& done = smoothed.report;
 
   // The cloud has its old positions here, which the page shows on one side.
   pipeline::PageContents page;
@@ -247,6 +259,7 @@ std::string denoise_cloud(const DenoiseCommandOptions& options, Beside& beside, 
 
   // The scale comes first: positions are rounded to its steps.
   refine_scale(options, done, cloud, smoothed.xyz, task);
+  add_rounding(cloud, done);
   if (is_written_as_las(options, cloud, job)) warn_of_index(job.output, console);
   move_points(options, cloud, smoothed.for_cloud(), context);
   if (options.marks()) mark_outliers(cloud, done.outlier, context);

@@ -51,10 +51,12 @@ std::optional<int> denoise_in_tiles(const DenoiseCommandOptions& options, const 
   const pipeline::tiles::Within how = pipeline::tiles::plan_within(*memory, options.normals.normals);
   console.say(fmt::format("{}: too large for {:.3g} GB: smoothed in tiles of {} points", job.input,
                           double(*memory) / 1e9, how.plan.tile_points));
-  const pipeline::tiles::SmoothedInTiles done = pipeline::tiles::smooth_in_tiles(
+  pipeline::tiles::SmoothedInTiles done = pipeline::tiles::smooth_in_tiles(
       {job.input, job.output, options.job.files.force, options.keep_scale}, how, options.denoise,
       normals_in_tiles(options.normals, {job.input}, context), context);
-  tell_scale(job.input, done.joined.scale, done.report.noise, done.report.noise_left, console);
+  const pipeline::io::RefinedScale& scale = done.joined.scale;
+  tell_scale(job.input, scale, options.keep_scale, done.report.noise, done.report.noise_left, console);
+  if (auto& left = done.report.noise_left) left = pipeline::io::with_rounding(*left, scale.coarsest());
   if (done.joined.las) warn_of_index(job.output, console);
   mark_as_own(job.output);
   tell_points(done.report, options, done.had_normals, done.joined.las, job, console);

@@ -5,7 +5,9 @@
 
 #include <fmt/format.h>
 
+#include "base/fail.h"
 #include "pipeline/cli/console/report.h"
+#include "rfs_mesh/noise/noise.h"
 
 namespace rfsmooth::cli {
 
@@ -15,7 +17,7 @@ namespace {
 std::string said_of_outliers(const DenoiseReport& done, const DenoiseCommandOptions& options) {
   if (done.outliers == 0) return "";
   const char* what = options.removes() ? "removed" : options.marks() ? "marked" : "left in place";
-  return fmt::format("; {} outlier{} {}", done.outliers, done.outliers == 1 ? "" : "s", what);
+  return fmt::format("; {} {}", counted(done.outliers, "outlier"), what);
 }
 
 /// Why nothing was smoothed, or nothing.
@@ -29,6 +31,7 @@ std::string why_not(const DenoiseReport& done) {
     case NotSmoothed::too_few_points:
       return "too few points to smooth";
     case NotSmoothed::too_little_noise:
+      if (rfs_mesh::stays(done.noise, done.spacing)) return "too little to smooth";  // exact, or nearly
       return "too little to smooth (--strength 2 does it all the same)";
   }
   throw std::invalid_argument("why_not: not a NotSmoothed");
@@ -42,7 +45,8 @@ std::string said_of_noise(const DenoiseReport& done, const DenoiseCommandOptions
   if (const std::string why = why_not(done); !why.empty()) return words + ", " + why;
   if (!stated) words += in_words(done.measured);
   if (done.tail_times > 1) words += fmt::format(", some points {:.2g} times that", done.tail_times);
-  if (done.noise_left < done.noise) words += fmt::format(", about {:.3g} left", done.noise_left);
+  if (done.noise_left && *done.noise_left < done.noise)
+    words += fmt::format(", about {:.3g} left", *done.noise_left);
   return words;
 }
 
@@ -51,20 +55,20 @@ std::string said_of_noise(const DenoiseReport& done, const DenoiseCommandOptions
 void tell_points(const DenoiseReport& done, const DenoiseCommandOptions& options, bool had_normals,
                  bool as_las, const Job& job, Console& console) {
   if (done.finite < done.points)
-    console.detail(fmt::format("{}: {} points are not finite; {}", job.input, done.points - done.finite,
-                               as_las ? "LAS cannot hold them" : "they stay as they are"));
+    console.detail(fmt::format("{}: not finite: {}, {}", job.input,
+                               counted(done.points - done.finite, "point"),
+                               as_las ? "which LAS cannot hold" : "kept unchanged"));
   if (done.moved > 0 && had_normals && !options.normals.normals)
     console.warn(fmt::format(
-        "{}: the normals are kept and stale: they describe the old positions (--normals makes new ones)",
-        job.input));
+        "{}: the normals are stale: they describe the old positions (--normals makes new ones)", job.input));
 }
 
 std::string summary(const DenoiseReport& done, const DenoiseCommandOptions& options,
                     const std::string& with_outliers) {
-  return fmt::format(
-      "{} points, {} finite{}{}\nnoise {:.3g}{}; spacing {:.4g}\nlargest move {:.4g}, rms {:.4g}",
-      done.points, done.finite, said_of_outliers(done, options), with_outliers, done.noise,
-      said_of_noise(done, options), done.spacing, done.largest_move, done.rms_move);
+  return fmt::format("{}, {} finite{}{}\nnoise {:.3g}{}; spacing {:.4g}\nlargest move {:.4g}, rms {:.4g}",
+                     counted(done.points, "point"), done.finite, said_of_outliers(done, options),
+                     with_outliers, done.noise, said_of_noise(done, options), done.spacing, done.largest_move,
+                     done.rms_move);
 }
 
 }  // namespace rfsmooth::cli

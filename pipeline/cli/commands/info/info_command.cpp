@@ -39,8 +39,8 @@ void print_las(const ordered_json& las) {
   fmt::print("  LAS       {}, point format {}, scale {}, offset {}\n", las["version"].get<std::string>(),
              las["point_format"].get<int>(), vector_text(las["scale"], 17), vector_text(las["offset"], 17));
   for (const auto& record : las["records"])
-    fmt::print("  record    {} {}: {} bytes{}\n", record["user"].get<std::string>(), record["id"].get<int>(),
-               record["bytes"].get<std::size_t>(),
+    fmt::print("  record    {} {}: {}{}\n", record["user"].get<std::string>(), record["id"].get<int>(),
+               counted(record["bytes"].get<std::size_t>(), "byte"),
                record["extended"].get<bool>() ? ", behind the points" : "");
 }
 
@@ -127,7 +127,8 @@ Command info_command() {
       "so many points more together. 'points along lines': the nearest of a point are on one line, as on "
       "the rings of a spinning laser; smoothing follows the lines. 'depth in steps of S': depths are "
       "rounded, and S is the typical distance from one to the next. 'points on a grid of S': most are S "
-      "from their nearest, as the centres of voxels are.";
+      "from their nearest, as the centres of voxels are. Of what smoothing left next to nothing is heard: "
+      "there neighbours are off by the same, as if it were shape; denoise says how much that is.";
   collect(*options, command.options);
   command.run = [options](const Invocation& typed) { return run_info(*options, typed); };
   return command;

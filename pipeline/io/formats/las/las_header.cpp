@@ -61,8 +61,8 @@ void check_numbers(const Source& source, const Header& h) {
   }
   const std::uint64_t left = source.size() - std::min(source.size(), h.points);
   if (h.points > source.size() || h.count > left / h.row_size)
-    refuse(source, h.points, kCut, "expected {} points of {} bytes each, found {} bytes", h.count, h.row_size,
-           left);
+    refuse(source, h.points, kCut, "expected {} of {} bytes each, found {}", counted(h.count, "point"),
+           h.row_size, counted(left, "byte"));
 }
 
 // LAS 1.3 has the waveforms in an extended record that its header gives the place of; 1.4 counts it with the
@@ -131,8 +131,8 @@ Header read_header(const Source& source, const Context& context) {
   check_kind(source, h, bytes);
   check_numbers(source, h);
   if (h.minor == kNewest && h.legacy_count != 0 && h.legacy_count != h.count)
-    context.warn(fmt::format("{}: the header says {} points and, for old readers, {}; the first is taken",
-                             source.name(), h.count, h.legacy_count));
+    context.warn(fmt::format("{}: the header says {} and, for old readers, {}; the first is taken",
+                             source.name(), counted(h.count, "point"), h.legacy_count));
   return h;
 }
 

@@ -74,8 +74,8 @@ void change_integers(Table& points, std::size_t axis, const ScaleChange& change,
 }  // namespace
 }  // namespace las
 
-bool RefinedScale::coarse(double step) const {
-  return std::any_of(after.begin(), after.end(), [&](double scale) { return std::abs(scale) > step; });
+double RefinedScale::coarsest() const {
+  return std::max({std::abs(after[0]), std::abs(after[1]), std::abs(after[2])});
 }
 
 double times_power_of_ten(double value, int power) {
@@ -99,8 +99,12 @@ double decimal_scale(double extent, double steps) {
   return times_power_of_ten(1.0, power);
 }
 
-double finest_needed(double noise, double left) {
-  return (left < noise ? left : noise / 10) / 2;
+double with_rounding(double left, double step) {
+  return std::hypot(left, step / std::sqrt(12.0));
+}
+
+double finest_needed(double noise, std::optional<double> left) {
+  return (left && *left < noise ? *left : noise / 10) / 2;
 }
 
 ScaleChange refine_axis(Field& field, std::size_t axis, double step, double low, double high,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 
 #include "pipeline/io/table/cloud.h"
@@ -14,15 +15,17 @@ struct RefinedScale {
   std::array<double, 3> shift{};  ///< of the offset, in old steps: the old one left no room in 32 bits
   bool refined() const { return before != after; }
   bool moved_offset() const { return shift != std::array<double, 3>{}; }
-  /// Whether an axis still is coarser than `step`: the cloud is too large for 32 bits.
-  bool coarse(double step) const;
+  double coarsest() const;  ///< of the axes, after; positive
 };
 
 /// The coarsest step that costs one per cent at most of what smoothing reached: half of the noise that it
-/// left, as rounding to steps q adds q / sqrt(12) in every direction and sqrt(1 + 1 / 48) is 1.01. `left` as
-/// large as the noise is not known: then a tenth of the noise is taken for it, as little as smoothing leaves
-/// of white noise on smooth shapes. World units; 0 without noise.
-double finest_needed(double noise, double left);
+/// left, as rounding to steps q adds q / sqrt(12) in every direction and sqrt(1 + 1 / 48) is 1.01. No
+/// `left`, or one as large as the noise, tells nothing: then a tenth of the noise is taken for it, as little
+/// as smoothing leaves of white noise on smooth shapes. World units; 0 without noise.
+double finest_needed(double noise, std::optional<double> left);
+
+/// What is left of the noise once coordinates are rounded to steps of `step`.
+double with_rounding(double left, double step);
 
 /// A change of an axis: integers become (old - shift) * 10^power.
 struct ScaleChange {
