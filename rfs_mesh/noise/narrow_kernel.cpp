@@ -83,10 +83,9 @@ std::optional<double> read_in(const SpatialIndex& index, const Positions& at, do
 }  // namespace
 
 std::optional<double> noise_in_kernels(const SpatialIndex& index, double most, const Context& context) {
-  constexpr double kWider = 1.15;
   const Positions at = sample(index.points(), kPlacesOfCloud);
   bool narrower = false;  // whether one was narrower than what it read
-  for (double width = kNarrowestWindow * most; width < most; width *= kWider) {
+  for (double width = kNarrowestWindow * most; width < most; width *= kSameNoise) {
     const std::optional<double> read = read_in(index, at, width, context);
     if (!read) continue;
     if (*read <= width) return narrower ? read : std::nullopt;
