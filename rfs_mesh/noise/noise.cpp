@@ -92,15 +92,18 @@ std::vector<double> blend(const SpatialIndex& sites, const std::vector<double>& 
   return local;
 }
 
-/// The windows let a second sheet in nearly everywhere: then the calmer fifth, too, hears more than it shows
-/// without, and all hear so much less, but no less than they make sure of.
-void bound_sites(double most, NoiseSites& sites) {
+/// All hear less by as much as `heard` is above `most`, but no less than they make sure of.
+void bound_sites(double heard, double most, NoiseSites& sites) {
+  if (!(heard > most)) return;
+  for (std::size_t s = 0; s < sites.at.size(); ++s)
+    sites.sigma[s] = std::max(sites.floor[s], most / heard * sites.sigma[s]);
+}
+
+/// What the calmer fifth hears.
+double calm_fifth(const NoiseSites& sites) {
   std::vector<Weighed> all;
   for (std::size_t s = 0; s < sites.at.size(); ++s) all.push_back({sites.sigma[s], sites.area[s]});
-  const double calm = quantile(all, kCalmFifth);
-  if (!(calm > most)) return;
-  for (std::size_t s = 0; s < sites.at.size(); ++s)
-    sites.sigma[s] = std::max(sites.floor[s], most / calm * sites.sigma[s]);
+  return quantile(all, kCalmFifth);
 }
 
 /// NoiseModel::spacing_at_sites, also where all are `spacing`.
@@ -178,9 +181,15 @@ void measure(const SpatialIndex& index, const DepthSteps* steps, NoiseModel& noi
   if (!(start.least > 0)) return;
   noise.neighbours = start.m;
   NoiseSites sites = listen(index, listening_places(index.points(), start.m), start, steps, context);
-  bound_sites(std::max(start.most, kNoNoise * noise.spacing), sites);
+  // Where windows let a second sheet in nearly everywhere, the calmer fifth, too, hears more than it shows
+  // without one or than kernels read; where they do at most places, the figure is more than kernels read.
+  bound_sites(calm_fifth(sites), std::max(start.most, kNoNoise * noise.spacing), sites);
   std::vector<double> spacing = spacing_around(sites, noise.spacing);
   sum_up(sites, spacing, start, noise);
+  if (const double most = kSameNoise * start.most; start.in_kernels && noise.sigma > most) {
+    bound_sites(noise.sigma, most, sites);
+    noise.sigma = most;
+  }
   if (!(noise.sigma > 0)) return;
   noise.at_sites = relative_noise(sites, noise.sigma, context);
   for (double& v : noise.at_sites) v = noise.sigma * std::max(v, kStays);

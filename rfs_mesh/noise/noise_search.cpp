@@ -194,6 +194,7 @@ NoiseStart search_noise(Places& places, const DepthSteps* steps) {
   const std::optional<double> read = surface && !start.on_lines && steps == nullptr
                                          ? noise_in_kernels(places.index(), start.most, places.context())
                                          : std::nullopt;
+  start.in_kernels = read.has_value();
   if (read) {
     start.sigma = *read;
     start.most = std::min(start.most, kSameNoise * *read);
