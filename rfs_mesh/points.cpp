@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
+#include "base/fail.h"
 #include "base/morton.h"
 #include "base/parallel.h"
 
@@ -70,11 +71,11 @@ WorkingCloud make(const Input& input, const Statistics::Box* box, const Context&
   if (n >= kNone)
     throw Failure({ErrorCode::usage, fmt::format("{} points; at most {} are supported", n, kNone - 1)});
   Extent extent = extent_of(input, context);
-  if (extent.finite == 0)
-    throw Failure({ErrorCode::no_usable_points, n == 0 ? "the cloud has no points"
-                                                : n == 1
-                                                    ? "the only point is not finite"
-                                                    : fmt::format("none of the {} points is finite", n)});
+  if (extent.finite == 0) {
+    if (n == 0) fail(ErrorCode::no_usable_points, "the cloud has no points");
+    if (n == 1) fail(ErrorCode::no_usable_points, "the only point is not finite");
+    fail(ErrorCode::no_usable_points, "none of the {} points is finite", n);
+  }
   if (box != nullptr) {
     const Eigen::AlignedBox3d whole(box->low, box->high);
     if (!whole.contains(extent.box))

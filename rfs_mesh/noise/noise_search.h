@@ -39,7 +39,7 @@ struct NoiseStart {
   std::size_t narrowest = kNarrowestPatch;  ///< least m that is a piece of surface and not of a line
   /// Whether noise of about a spacing or more fills the nearest neighbours: its slab is wider than they are.
   bool fills_nearest() const { return m >= kNeighbourhood; }
-  bool in_kernels = false;  ///< whether sigma was read in kernels: all of the cloud has it
+  bool in_kernels = false;  ///< whether sigma was read in kernels (narrow_kernel.h)
   bool on_lines = false;    ///< whether twice kNarrowestPatch points lie along a line, and `narrowest` do not
 };
 

@@ -173,7 +173,7 @@ AutomaticResult automatic_smoothing(AutomaticTask task, AutomaticReport& report,
   // What is left is left of the cloud's own noise, whatever it was smoothed as.
   task.noise.sigma /= task.strength;
   for (double& sigma : task.noise.local) sigma /= task.strength;
-  report.left = noise_left(field, heights.height, heights.own, noise, context);
+  report.left = noise_left(field, heights.height, heights.own, task.noise, context);
   return {std::move(smooth), field.release_neighbors()};
 }
 

@@ -39,10 +39,8 @@ rfsmooth::render::PictureOptions picture_options(const RenderOptions& options,
   out.inputs = inputs;
   if (options.labels) out.labels = parts(*options.labels);
   if (out.labels.size() > inputs.size())
-    throw rfsmooth::Failure(
-        {rfsmooth::ErrorCode::usage,
-         fmt::format("--labels has {} for {}", rfsmooth::counted(out.labels.size(), "text"),
-                     rfsmooth::counted(inputs.size(), "input"))});
+    rfsmooth::fail(rfsmooth::ErrorCode::usage, "--labels has {} for {}",
+                   rfsmooth::counted(out.labels.size(), "text"), rfsmooth::counted(inputs.size(), "input"));
   out.title = options.title.value_or("");
   out.direction = three("direction", options.direction);
   out.up = three("up", options.up);

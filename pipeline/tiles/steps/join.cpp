@@ -176,10 +176,8 @@ io::RefinedScale prepare_las(const Job& job, OpenInput& input, bool keep_scale, 
                              const Context& context) {
   io::RefinedScale scale;
   if (settled.noise > 0)
-    scale = refine_moved(job, input,
-                         keep_scale ? std::numeric_limits<double>::infinity()
-                                    : io::finest_needed(settled.noise, settled.noise_left),
-                         context);
+    scale =
+        refine_moved(job, input, io::finest_asked(keep_scale, settled.noise, settled.noise_left), context);
   find_box(job, input, context);
   return scale;
 }

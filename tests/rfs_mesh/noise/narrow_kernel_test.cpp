@@ -69,7 +69,6 @@ TEST(NarrowKernel, ReadsTheNoiseOfAPlaneAndOfASphere) {
   EXPECT_NEAR(share_read(noisy(10000, sphere)), 1, 0.1);
 }
 
-// Windows read up to 1.7 times as much on these.
 TEST(NarrowKernel, ReadsTheNoiseOfRodsAndStacksAFewSigmaThick) {
   for (const double sigmas : {2.0, 3.0, 5.0})
     EXPECT_NEAR(share_read(noisy(10000, [&](double u, double v) { return rod(sigmas * kSigma, u, v); })), 1,

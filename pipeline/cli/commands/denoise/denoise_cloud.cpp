@@ -114,8 +114,7 @@ void refine_scale(const DenoiseCommandOptions& options, const DenoiseReport& don
     return;
   }
   if (done.noise <= 0) return;
-  const double step = options.keep_scale ? std::numeric_limits<double>::infinity()
-                                         : pipeline::io::finest_needed(done.noise, done.noise_left);
+  const double step = pipeline::io::finest_asked(options.keep_scale, done.noise, done.noise_left);
   const pipeline::io::RefinedScale scale = pipeline::io::refine_scale(cloud, step, xyz.data(), context);
   entry["scale"] = {{"before", scale.before}, {"after", scale.after}};
   tell_scale(job.input, scale, options.keep_scale, done.noise, done.noise_left, console);

@@ -107,6 +107,10 @@ double finest_needed(double noise, std::optional<double> left) {
   return (left && *left < noise ? *left : noise / 10) / 2;
 }
 
+double finest_asked(bool kept, double noise, std::optional<double> left) {
+  return kept ? std::numeric_limits<double>::infinity() : finest_needed(noise, left);
+}
+
 ScaleChange refine_axis(Field& field, std::size_t axis, double step, double low, double high,
                         RefinedScale& done) {
   const ScaleChange change = las::finer_scale(field, step, {low, high});

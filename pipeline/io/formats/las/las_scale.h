@@ -24,6 +24,9 @@ struct RefinedScale {
 /// as smoothing leaves of white noise on smooth shapes. World units; 0 without noise.
 double finest_needed(double noise, std::optional<double> left);
 
+/// The same where the scale may be refined; where it is `kept`, any step is fine enough.
+double finest_asked(bool kept, double noise, std::optional<double> left);
+
 /// What is left of the noise once coordinates are rounded to steps of `step`.
 double with_rounding(double left, double step);
 
