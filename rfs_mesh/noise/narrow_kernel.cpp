@@ -18,7 +18,7 @@ namespace {
 /// What a kernel holds, but for the point that it stands on.
 struct Kernel {
   Scatter across;   ///< variance of the members across the sheet
-  double lean = 0;  ///< how far their mean is from the point, world units
+  double lean = 0;  ///< how far their mean is from the point across the sheet, world units
 };
 
 Kernel look_around(const SpatialIndex& index, const Eigen::Vector3d& at, double width,
@@ -42,7 +42,8 @@ Kernel look_around(const SpatialIndex& index, const Eigen::Vector3d& at, double 
   if (!(members > kOfPlane + 1)) return seen;
   mean /= weights;
   spread = spread / weights - mean * mean.transpose();
-  seen.across.variance = std::max(0.0, symmetric_eigen(spread).values[0]) * members / (members - kOfPlane);
+  const SymmetricEigen<3> axes = symmetric_eigen(spread);
+  seen.across.variance = std::max(0.0, axes.values[0]) * members / (members - kOfPlane);
   // Of a normal distribution that a kernel as wide cuts off, a variance scatters as that of twice as many.
   seen.across.freedom = 2 * (members - kOfPlane);
   seen.lean = mean.norm();
@@ -61,10 +62,15 @@ double outermost_variance(std::vector<Kernel> kernels) {
   return quantile(seen, 0.5);
 }
 
-/// What kernels of one width around each place read, world units; infinite: more than could be told from
-/// points that fill them evenly. Nothing: they hold too few points.
-std::optional<double> read_in(const SpatialIndex& index, const Positions& at, double width,
-                              const Context& context) {
+/// What kernels of one width read.
+struct Reading {
+  double freedom = 0;  ///< of the typical kernel
+  double sigma = 0;    ///< world units; infinite: more than could be told from points that fill them evenly
+};
+
+/// At each place; nothing where they hold too few points.
+std::optional<Reading> read_in(const SpatialIndex& index, const Positions& at, double width,
+                               const Context& context) {
   std::vector<Kernel> all(at.size());
   for_blocks(context, at.size(), 8, [&](std::size_t begin, std::size_t end) {
     std::vector<Neighbor> near;
@@ -72,26 +78,33 @@ std::optional<double> read_in(const SpatialIndex& index, const Positions& at, do
   });
   std::vector<double> freedom;
   for (const Kernel& k : all) freedom.push_back(k.across.freedom);
-  if (quantile(freedom, 0.5) < double(kNarrowestPatch)) return {};
+  const double typical = quantile(freedom, 0.5);
+  if (typical < double(kRing)) return {};
   all.erase(std::remove_if(all.begin(), all.end(), [](const Kernel& k) { return !says(k.across); }),
             all.end());
   const double lambda = outermost_variance(std::move(all)), square = width * width;
-  return lambda < square ? std::sqrt(lambda * square / (square - lambda))
-                         : std::numeric_limits<double>::infinity();
+  return Reading{typical, lambda < square ? std::sqrt(lambda * square / (square - lambda))
+                                          : std::numeric_limits<double>::infinity()};
 }
 
 }  // namespace
 
-std::optional<double> noise_in_kernels(const SpatialIndex& index, double most, const Context& context) {
+std::optional<NoiseInKernels> noise_in_kernels(const SpatialIndex& index, double most,
+                                               const Context& context) {
   const Positions at = sample(index.points(), kPlacesOfCloud);
+  std::optional<NoiseInKernels> all;
   bool narrower = false;  // whether one was narrower than what it read
   for (double width = kNarrowestWindow * most; width < most; width *= kSameNoise) {
-    const std::optional<double> read = read_in(index, at, width, context);
+    const std::optional<Reading> read = read_in(index, at, width, context);
     if (!read) continue;
-    if (*read <= width) return narrower ? read : std::nullopt;
+    const bool wide = read->sigma <= width;
+    if (wide && !all) all = {read->sigma, {}};
+    if (read->freedom < double(kNarrowestPatch)) continue;
+    if (wide && narrower) all->sigma = read->sigma;
+    if (wide) break;
     narrower = true;
   }
-  return {};
+  return all;
 }
 
 }  // namespace rfsmooth::rfs_mesh

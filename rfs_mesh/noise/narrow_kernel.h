@@ -25,10 +25,18 @@
 
 namespace rfsmooth::rfs_mesh {
 
-/// The median of what is read at the outermost tenth of the points, world units. Nothing where the noise is
-/// too little beside the spacing for kernels of its width to hold enough points (about one spacing), or more
-/// than `most`. On flat and round shapes it reads up to 8 % too little, on walls and rods of one to four
-/// sigma up to 20 % and on stacks of sheets up to 30 % too much. O(log n), parallel, deterministic.
-std::optional<double> noise_in_kernels(const SpatialIndex& index, double most, const Context& context);
+/// What kernels read, world units.
+struct NoiseInKernels {
+  double bound;  ///< by the narrowest that hold a ring of points
+  /// By those that hold many, if some of these are narrower than the noise, which is then about a spacing or
+  /// more. Others are wider than need be, and may hold several sheets.
+  std::optional<double> sigma;
+};
+
+/// The medians of what is read at the outermost tenth of the points. Nothing where that is more than `most`.
+/// On flat and round shapes sigma is read up to 8 % too little, on walls and rods of one to four sigma up to
+/// 20 % and on stacks of sheets up to 30 % too much. O(log n), parallel, deterministic.
+std::optional<NoiseInKernels> noise_in_kernels(const SpatialIndex& index, double most,
+                                               const Context& context);
 
 }  // namespace rfsmooth::rfs_mesh

@@ -191,13 +191,14 @@ NoiseStart search_noise(Places& places, const DepthSteps* steps) {
   start.most = kSameNoise * bound(places, start.m);
   // Lines are no sheets, and a window narrow enough finds some that are exact. Nor are steps normal noise.
   const bool surface = start.narrowest == kNarrowestPatch;
-  const std::optional<double> read = surface && !start.on_lines && steps == nullptr
-                                         ? noise_in_kernels(places.index(), start.most, places.context())
-                                         : std::nullopt;
+  const std::optional<NoiseInKernels> read =
+      surface && !start.on_lines && steps == nullptr
+          ? noise_in_kernels(places.index(), start.most, places.context())
+          : std::nullopt;
   start.in_kernels = read.has_value();
-  if (read) {
-    start.sigma = *read;
-    start.most = std::min(start.most, kSameNoise * *read);
+  if (read) start.most = std::min(start.most, kSameNoise * read->bound);
+  if (read && read->sigma) {
+    start.sigma = std::min(*read->sigma, start.most);
   } else if (surface) {
     start.sigma = lowest(places, start.m, start.sigma, sure);
   }

@@ -5,8 +5,8 @@
 /// be. Coming from below stops at the noise of one sheet; coming from above would stop at the thickness. m
 /// starts at 16, or where 16 are no piece of a surface at the least number that are, and grows until the ball
 /// holds a patch of 2 sigma in radius with all of the window above and below it. What the calmer fifth shows
-/// without any window is an upper bound. Noise of about a spacing and more is read in kernels first
-/// (narrow_kernel.h): then windows open from there, and the bound is little above it.
+/// without any window is an upper bound, and so is what kernels read (narrow_kernel.h). Noise of about a
+/// spacing and more they tell: then windows open from there.
 #pragma once
 
 #include "rfs_mesh/fit/places.h"
@@ -39,7 +39,7 @@ struct NoiseStart {
   std::size_t narrowest = kNarrowestPatch;  ///< least m that is a piece of surface and not of a line
   /// Whether noise of about a spacing or more fills the nearest neighbours: its slab is wider than they are.
   bool fills_nearest() const { return m >= kNeighbourhood; }
-  bool in_kernels = false;  ///< whether sigma was read in kernels (narrow_kernel.h)
+  bool in_kernels = false;  ///< whether the bound was read in kernels (narrow_kernel.h)
   bool on_lines = false;    ///< whether twice kNarrowestPatch points lie along a line, and `narrowest` do not
 };
 

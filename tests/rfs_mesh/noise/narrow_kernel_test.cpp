@@ -34,14 +34,15 @@ Positions noisy(std::size_t n, const std::function<Eigen::Vector3d(double, doubl
   return points;
 }
 
-std::optional<double> read_from(const Positions& points, double most = kMost) {
+std::optional<rfs_mesh::NoiseInKernels> read_from(const Positions& points, double most = kMost) {
   const Context context;
   return noise_in_kernels(SpatialIndex(points, context), most, context);
 }
 
 /// Of the true noise.
 double share_read(const Positions& points) {
-  return read_from(points).value_or(0) / kSigma;
+  const auto read = read_from(points);
+  return read ? read->sigma.value_or(0) / kSigma : 0;
 }
 
 Eigen::Vector3d plane(double u, double v) {
@@ -84,16 +85,30 @@ TEST(NarrowKernel, ReadsTheNoiseOfRodsAndStacksAFewSigmaThick) {
 
 TEST(NarrowKernel, FollowsTurnsAndScales) {
   Positions points = noisy(8000, plane);
-  const double read = *read_from(points);
+  const auto read = read_from(points);
+  ASSERT_TRUE(read && read->sigma);
   const Eigen::Matrix3d turn =
       Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
   for (Eigen::Vector3d& p : points) p = 40 * (turn * p) + Eigen::Vector3d(5, -3, 8);
-  EXPECT_NEAR(*read_from(points, 40 * kMost) / read, 40, 1e-6);
+  const auto again = read_from(points, 40 * kMost);
+  ASSERT_TRUE(again && again->sigma);
+  EXPECT_NEAR(*again->sigma / *read->sigma, 40, 1e-6);
+  EXPECT_NEAR(again->bound / read->bound, 40, 1e-6);
 }
 
-TEST(NarrowKernel, ReadsNothingFromLittleNoiseAndFromExactPoints) {
-  EXPECT_FALSE(read_from(noisy(400, plane)));
-  EXPECT_FALSE(read_from(test::random_points(test::cube(), 5000, 1)));
+TEST(NarrowKernel, BoundsNoiseOfLessThanASpacingAndDoesNotTellIt) {
+  for (const std::size_t points : {150, 250, 400}) {
+    const auto read = read_from(noisy(points, plane));
+    ASSERT_TRUE(read) << points;
+    EXPECT_FALSE(read->sigma) << points;
+    EXPECT_GT(read->bound, 0.9 * kSigma) << points;
+    EXPECT_LT(read->bound, 1.6 * kSigma) << points;
+  }
+}
+
+TEST(NarrowKernel, TellsNothingOfExactPoints) {
+  const auto read = read_from(test::random_points(test::cube(), 5000, 1));
+  EXPECT_FALSE(read && read->sigma);
 }
 
 // Windows alone took it for 2.9 and 1.5 times as much, and smoothed stacks to less than they were.
@@ -105,6 +120,9 @@ TEST(NarrowKernel, BoundsTheWholeMeasureOnStacksAndRods) {
   EXPECT_NEAR(measured(noisy(24000, [](double u, double v) { return stack(5, 3 * kSigma, u, v); })), 1.3,
               0.3);
   EXPECT_NEAR(measured(noisy(10000, [](double u, double v) { return rod(1.5 * kSigma, u, v); })), 1.2, 0.2);
+  // Noise of 0.8 spacings, which windows alone took for 2.8 times as much.
+  EXPECT_NEAR(measured(noisy(1972, [](double u, double v) { return stack(3, 3.5 * kSigma, u, v); })), 1.3,
+              0.3);
 }
 
 }  // namespace
