@@ -18,7 +18,7 @@ namespace rfsmooth::test {
 
 // A strip is four tiles, each of which reaches 71 spacings into the others.
 constexpr int kLong = 160, kWide = 24;
-constexpr const char *kTile = "1000", *kTwoTiles = "2000";
+constexpr const char* kTile = "1000";
 
 enum class Kind { own, with_tails, shared, in_steps };
 
