@@ -62,8 +62,8 @@ std::vector<int> percents(const std::string& text) {
 }
 
 TEST_F(Terminal, TheBarGoesOnceFromNothingToAHundred) {
-  put("a.ply", noisy_plane(60).bytes());
-  put("b.ply", noisy_plane(50).bytes());
+  put("a.ply", noisy_plane(24).bytes());
+  put("b.ply", noisy_plane(20).bytes());
   RunSetup setup;
   setup.terminal = true;
   setup.environment = {"TERM=xterm"};

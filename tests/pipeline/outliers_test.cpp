@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <utility>
+#include <vector>
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
@@ -55,13 +57,13 @@ Positions random_plane(std::size_t n, double power) {
 }
 
 TEST(Outliers, CleanCloudsHaveNone) {
-  EXPECT_EQ(count(find(grid(60, 60, 1))), 0u) << "an open regular grid, rims and corners";
-  EXPECT_EQ(count(find(grid(60, 60, 5))), 0u) << "rows farther apart than their points";
-  EXPECT_EQ(count(find(grid(60, 60, 20))), 0u) << "scan lines";
-  EXPECT_EQ(count(find(random_plane(5000, 1))), 0u);
-  EXPECT_EQ(count(find(random_plane(5000, 3))), 0u) << "a density gradient";
+  EXPECT_EQ(count(find(grid(30, 30, 1))), 0u) << "an open regular grid, rims and corners";
+  EXPECT_EQ(count(find(grid(30, 30, 5))), 0u) << "rows farther apart than their points";
+  EXPECT_EQ(count(find(grid(30, 30, 20))), 0u) << "scan lines";
+  EXPECT_EQ(count(find(random_plane(1200, 1))), 0u);
+  EXPECT_EQ(count(find(random_plane(1200, 3))), 0u) << "a density gradient";
   for (const char* shape : {"sphere", "cube", "l_part", "plate", "wavy_sheet", "two_density_sphere"})
-    EXPECT_EQ(count(find(clouds::sample(*clouds::make_shape(shape), 4000, 1))), 0u) << shape;
+    EXPECT_EQ(count(find(clouds::sample(*clouds::make_shape(shape), 1200, 1))), 0u) << shape;
 }
 
 TEST(Outliers, SparsePartsAndThinPartsAreNoOutliers) {
@@ -84,10 +86,12 @@ TEST(Outliers, SparsePartsAndThinPartsAreNoOutliers) {
 }
 
 TEST(Outliers, GaussianNoiseHasNearlyNone) {
-  for (const char* shape : {"sphere", "l_part", "plate", "wavy_sheet"}) {
+  // Every shape and every noise, and the two shapes that have the most in them under two noises.
+  const std::pair<const char*, double> clouds[] = {{"sphere", 1.0}, {"l_part", 0.3}, {"l_part", 3.0},
+                                                   {"plate", 0.3},  {"plate", 1.0},  {"wavy_sheet", 3.0}};
+  for (const auto& [shape, spacings] : clouds) {
     const Positions clean = clouds::sample(*clouds::make_shape(shape), 4000, 1);
-    for (const double spacings : {0.3, 1.0, 3.0})
-      EXPECT_LE(count(find(noisy(clean, spacings))), 1u) << shape << " at " << spacings;
+    EXPECT_LE(count(find(noisy(clean, spacings))), 1u) << shape << " at " << spacings;
   }
 }
 
@@ -96,9 +100,11 @@ TEST(Outliers, StraysAreFound) {
   constexpr std::size_t kPoints = 5000;
   std::mt19937_64 engine(11);
   std::uniform_real_distribution<double> uniform(-1.2, 1.2);
-  for (const char* name : {"sphere", "torus", "l_part"}) {
+  const std::pair<const char*, std::vector<double>> noises[] = {
+      {"sphere", {0.0, 1.0}}, {"torus", {0.5}}, {"l_part", {0.0, 1.0}}};
+  for (const auto& [name, of_shape] : noises) {
     const auto shape = clouds::make_shape(name);
-    for (const double spacings : {0.0, 0.5, 1.0}) {
+    for (const double spacings : of_shape) {
       Positions points = clouds::sample(*shape, kPoints, 1);
       const double spacing = clouds::mean_spacing(points);
       points = noisy(points, spacings);

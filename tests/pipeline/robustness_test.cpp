@@ -25,7 +25,7 @@ namespace {
 using Eigen::Vector3d;
 using Distance = std::function<double(const Vector3d&)>;
 
-constexpr std::size_t kMany = test::kSanitized ? 4000 : 50000;
+constexpr std::size_t kMany = test::kSanitized ? 2000 : 50000;
 
 /// A cloud and what must come out of it.
 struct Hard {
@@ -254,9 +254,11 @@ struct Sized {
   DenoiseReport report;
 };
 
+constexpr std::size_t kOfBall = 1500;
+
 Sized sized_ball(double size, const DenoiseOptions& options) {
   Sized sized;
-  for (const Vector3d& p : ball(7000, size).rows) sized.xyz.insert(sized.xyz.end(), p.begin(), p.end());
+  for (const Vector3d& p : ball(kOfBall, size).rows) sized.xyz.insert(sized.xyz.end(), p.begin(), p.end());
   auto result = denoise(sized.xyz.data(), sized.xyz.size() / 3, options, {});
   EXPECT_TRUE(result.ok()) << result.error().message;
   sized.report = std::move(result).value();
@@ -273,7 +275,7 @@ double apart(const Sized& one, const Sized& other) {
 
 TEST(AnySize, TheSameShapeComesOutTheSame) {
   const Sized usual = sized_ball(1, {});
-  EXPECT_GT(usual.report.moved, 6000u);
+  EXPECT_GT(double(usual.report.moved), 0.85 * kOfBall);
   for (const double size : {1e-99, 1e-60, 1e-45, 1e-38, 1e-20, 1e20, 1e60, 1e99}) {
     if (test::kSanitized && size > 1e-99 && size < 1e99) continue;
     SCOPED_TRACE(size);
@@ -317,13 +319,13 @@ TEST(AnySize, FlowsAndFarStraysToo) {
   DenoiseOptions options;
   options.flow.flow = HcOptions();
   EXPECT_EQ(sized_ball(0x1p150, options).xyz, sized_ball(1, options).xyz);
-  Hard cloud = ball(7000);
+  Hard cloud = ball(kOfBall);
   cloud.rows.emplace_back(1e30, 0, 0);
   std::vector<double> xyz;
   for (const Vector3d& p : cloud.rows) xyz.insert(xyz.end(), p.begin(), p.end());
   const auto result = denoise(xyz.data(), xyz.size() / 3, {}, {});
   ASSERT_TRUE(result.ok()) << result.error().message;
-  EXPECT_EQ(xyz[3 * 7000], 1e30);
+  EXPECT_EQ(xyz[3 * kOfBall], 1e30);
 }
 
 // Coordinates of any order of magnitude side by side: patches of one place, and others that no number of
@@ -334,7 +336,7 @@ TEST(EveryOrderOfMagnitude, GivesFinitePoints) {
       SCOPED_TRACE(testing::Message() << "up to 2^" << most << ", seed " << seed);
       std::mt19937_64 engine(seed);
       std::uniform_int_distribution<int> power(-most, most);
-      std::vector<double> xyz(3 * 1000);
+      std::vector<double> xyz(3 * 400);
       for (double& x : xyz) x = std::ldexp(1, power(engine));
       AutomaticOptions automatic;
       automatic.noise = Length{0.1, false};

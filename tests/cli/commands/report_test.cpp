@@ -62,25 +62,25 @@ TEST_F(ReportPage, IsNotForStandardOutput) {
 }
 
 TEST_F(ReportPage, TheCountsOfItsHistogramSumToTheFinitePoints) {
-  BinaryPly before = noisy_plane(50);
+  BinaryPly before = noisy_plane(20);
   const BinaryPly clean = flattened(before);
-  EXPECT_EQ(counted(page(before, clean)), 2500u);
-  EXPECT_EQ(counted(page(before, before)), 2500u) << "no difference";
-  EXPECT_EQ(counted(page(before, clean, {"--points", "100"})), 2500u) << "of all, not of those shown";
+  EXPECT_EQ(counted(page(before, clean)), 400u);
+  EXPECT_EQ(counted(page(before, before)), 400u) << "no difference";
+  EXPECT_EQ(counted(page(before, clean, {"--points", "100"})), 400u) << "of all, not of those shown";
   BinaryPly after = clean;
   before.xyz[0] = after.xyz[0] = kNan;
   after.xyz[3] = kNan;
   const std::string holes = page(before, after);
-  EXPECT_EQ(counted(holes), 2498u);
-  EXPECT_EQ(figure(holes, "points"), "2500");
+  EXPECT_EQ(counted(holes), 398u);
+  EXPECT_EQ(figure(holes, "points"), "400");
   EXPECT_EQ(figure(holes, "not finite"), "1");
   EXPECT_EQ(figure(holes, "removed"), "1");
 }
 
 TEST_F(ReportPage, ShowsAsManyPointsAsAreAskedFor) {
-  const BinaryPly before = noisy_plane(60), after = flattened(before);
-  EXPECT_EQ(figure(page(before, after), "points in this page"), "3600");
-  EXPECT_EQ(figure(page(before, after, {"--points", "all"}), "points in this page"), "3600");
+  const BinaryPly before = noisy_plane(32), after = flattened(before);
+  EXPECT_EQ(figure(page(before, after), "points in this page"), "1024");
+  EXPECT_EQ(figure(page(before, after, {"--points", "all"}), "points in this page"), "1024");
   EXPECT_EQ(figure(page(before, after, {"--points", "1000"}), "points in this page"), "1000");
   EXPECT_EQ(figure(page(before, after, {"--points", "1"}), "points in this page"), "1");
   for (const char* wrong : {"0", "-3", "many", "1.5", ""})

@@ -125,7 +125,7 @@ TEST_F(SmoothMesh, ASolveThatDoesNotGetThereIsToldAndReported) {
     return solver;
   };
   put("in.ply", bumpy_grid(
-                    "", [](int, int) { return ""; }, 40));
+                    "", [](int, int) { return ""; }, 24));
   for (const char* command : {"smooth-mesh", "denoise"}) {
     SCOPED_TRACE(command);
     const auto far = report_of(command, {"--order", "4", "--dt", "1e9", "--tolerance", "1e-6"});

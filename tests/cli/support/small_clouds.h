@@ -34,16 +34,20 @@ struct BinaryPly {
   }
 };
 
-/// side x side points of a unit-spaced grid in the plane z = 0, moved by Gaussian noise of 0.2.
-inline BinaryPly noisy_plane(int side, const std::string& extra = "intensity") {
+/// rows x columns points of a unit-spaced grid in the plane z = 0, moved by Gaussian noise of 0.2.
+inline BinaryPly noisy_sheet(int rows, int columns, const std::string& extra = "intensity") {
   std::mt19937_64 engine(9);
   std::normal_distribution<double> noise(0, 0.2);
   BinaryPly cloud;
   cloud.extra = extra;
-  for (int i = 0; i < side; ++i)
-    for (int j = 0; j < side; ++j)
+  for (int i = 0; i < rows; ++i)
+    for (int j = 0; j < columns; ++j)
       for (const int c : {i, j, 0}) cloud.xyz.push_back(float(c + noise(engine)));
   return cloud;
+}
+
+inline BinaryPly noisy_plane(int side, const std::string& extra = "intensity") {
+  return noisy_sheet(side, side, extra);
 }
 
 }  // namespace rfsmooth::test

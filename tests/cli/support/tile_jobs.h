@@ -13,12 +13,12 @@
 
 #include "tests/cli/support/folder.h"
 #include "tests/cli/support/rich_cloud.h"
-#include "tests/support/sanitized.h"
 
 namespace rfsmooth::test {
 
-constexpr int kLong = kSanitized ? 330 : 900, kWide = 24;
-constexpr const char *kTile = kSanitized ? "1200" : "3000", *kTwoTiles = kSanitized ? "2400" : "6000";
+// A strip is four tiles, each of which reaches 71 spacings into the others.
+constexpr int kLong = 160, kWide = 24;
+constexpr const char* kTile = "1000";
 
 enum class Kind { own, with_tails, shared, in_steps };
 
@@ -26,10 +26,11 @@ inline double bent(double x) {
   return 6 * std::sin(x / 40);
 }
 
-/// A long strip of a gently bent surface, points `noise` spacings off it; every thousandth is NaN. Noise is
-/// of each point, of each with a tenth six times as loud, of each square of four by four, or rounding
-/// besides.
-inline RichCloud strip(double noise, bool pcd = false, Kind kind = Kind::own, unsigned seed = 5) {
+/// A strip of a gently bent surface, `rows` long, points `noise` spacings off it; every thousandth is NaN.
+/// Noise is of each point, of each with a tenth six times as loud, of each square of four by four, or
+/// rounding besides.
+inline RichCloud strip(double noise, bool pcd = false, Kind kind = Kind::own, unsigned seed = 5,
+                       int rows = kLong) {
   constexpr int kTogether = 4;
   std::mt19937_64 engine(seed);
   std::normal_distribution<double> normal(0, 1);
@@ -37,7 +38,7 @@ inline RichCloud strip(double noise, bool pcd = false, Kind kind = Kind::own, un
   RichCloud cloud;
   cloud.pcd = pcd;
   cloud.doubles = true;
-  for (int i = 0; i < kLong; ++i)
+  for (int i = 0; i < rows; ++i)
     for (int j = 0; j < kWide; ++j) {
       const double x = i + 0.2 * normal(engine), y = j + 0.2 * normal(engine);
       double off = normal(engine);

@@ -52,14 +52,13 @@ TEST(NoiseLaws, TheCalmHalfStaysAndTheLoudHalfIsSmoothed) {
 TEST(NoiseLaws, ALoudHalfIsSmoothedBesideACalmOneThatIsNoisyToo) {
   const auto loud = [](std::size_t i) { return sphere()[i].x() > 0; };
   const auto calm = [](std::size_t i) { return sphere()[i].x() < -0.2; };
-  for (const double times : {3.0, 5.0}) {
-    std::mt19937_64 engine(8);
-    std::normal_distribution<double> normal(0, 0.1 * spacing());
-    const Positions noisy = off_sphere([&](std::size_t i) { return (loud(i) ? times : 1) * normal(engine); });
-    const Positions smooth = denoised(noisy);
-    EXPECT_LT(rms_off(smooth, loud), 0.12 * rms_off(noisy, loud)) << times;
-    EXPECT_LT(rms_off(smooth, calm), 0.25 * rms_off(noisy, calm)) << times;
-  }
+  constexpr double kTimes = 5;
+  std::mt19937_64 engine(8);
+  std::normal_distribution<double> normal(0, 0.1 * spacing());
+  const Positions noisy = off_sphere([&](std::size_t i) { return (loud(i) ? kTimes : 1) * normal(engine); });
+  const Positions smooth = denoised(noisy);
+  EXPECT_LT(rms_off(smooth, loud), 0.12 * rms_off(noisy, loud));
+  EXPECT_LT(rms_off(smooth, calm), 0.25 * rms_off(noisy, calm));
 }
 
 // A twentieth of a spacing may be detail, but not on a sheet that scatters by no more where more of it is
@@ -83,15 +82,14 @@ TEST(NoiseLaws, ACalmPlaneIsFlattenedBesideALoudOne) {
   EXPECT_LT(calm(smooth), 0.3 * calm(noisy));
 }
 
-// Two scans that meet but for a tenth of a spacing: no wall is so thin.
 // Three walls of a corner, of dark and of bright paint: none may hide what another one has.
 TEST(NoiseLaws, WallsOfACornerAreSmoothedWhateverTheNoiseOfTheOthers) {
-  constexpr std::size_t kPerWall = 8000;
+  constexpr std::size_t kPerWall = 6000;
   const double spacing = std::sqrt(1.0 / kPerWall);  // side of the square that has one point
   struct Noises {
     std::array<double, 3> of;  // of each wall, spacings
   };
-  for (const Noises& noises : {Noises{{0.1, 0.5, 1}}, Noises{{0.3, 0.5, 1}}, Noises{{0.1, 0.25, 1.5}}}) {
+  for (const Noises& noises : {Noises{{0.3, 0.5, 1}}, Noises{{0.1, 0.25, 1.5}}}) {
     std::mt19937_64 engine(4);
     std::uniform_real_distribution<double> uniform(0, 1);
     std::normal_distribution<double> normal(0, spacing);
@@ -159,11 +157,15 @@ TEST(NoiseLaws, LeavesAreNoNoiseThatNeighboursShare) {
 // As hand-held scanners leave it: the neighbourhoods that tell what is a surface must be as wide as the
 // noise.
 TEST(NoiseLaws, NoiseOfSixSpacingsIsSmoothedToATwelfth) {
-  Positions points = support::icosphere(6).positions;
+  constexpr double kRim = 0.2;
+  Positions points;  // a cap: it is its middle that is looked at
+  for (const Eigen::Vector3d& p : support::icosphere(6).positions)
+    if (p.x() > kRim) points.push_back(p);
   std::mt19937_64 engine(3);
   std::normal_distribution<double> normal(0, 3 * spacing());  // half as far apart as those of sphere()
   for (Eigen::Vector3d& p : points) p *= 1 + normal(engine);
-  EXPECT_LT(rms_off(denoised(points), everywhere), rms_off(points, everywhere) / 12);
+  const auto inner = [&](std::size_t i) { return points[i].normalized().x() > kRim + 0.5; };
+  EXPECT_LT(rms_off(denoised(points), inner), rms_off(points, inner) / 12);
 }
 
 /// What a laser in the origin sees of the surface that meets `ray` at a distance: rays `step` degrees apart
@@ -195,9 +197,9 @@ TEST(NoiseLaws, AWallSeenAtASlantComesOutFlatAtBothEnds) {
       return there > 0 && there < 9 ? there : INFINITY;
     };
     const auto off = [&](const Eigen::Vector3d& p) { return p.dot(normal) - away; };
-    for (const double noise : {0.01, 0.02, 0.03}) {
-      if (test::kSanitized && noise != 0.02) continue;
-      const Positions noisy = seen_by_laser(meet, 22.5, 0.3, noise);
+    for (const double noise : {0.015, 0.03, 0.045}) {
+      if (test::kSanitized && noise != 0.03) continue;
+      const Positions noisy = seen_by_laser(meet, 22.5, 0.45, noise);
       EXPECT_LT(rms(denoised(noisy), off), 0.25 * rms(noisy, off)) << slant << ' ' << noise;
     }
   }
@@ -237,7 +239,7 @@ Positions laser_room() {
   std::mt19937_64 engine(6);
   std::normal_distribution<double> normal;
   Positions points;
-  for (int i = 0; i < 20000; ++i) {
+  for (int i = 0; i < 15000; ++i) {
     const Eigen::Vector3d ray = Eigen::Vector3d(normal(engine), normal(engine), normal(engine)).normalized();
     const double range = Eigen::Array3d(3, 2, 1.3).cwiseQuotient(ray.array().abs()).minCoeff();
     points.push_back(0.01 * std::round(100 * (range + 0.006 * normal(engine))) * ray);
@@ -254,6 +256,10 @@ double rms_off_walls(const Positions& points) {
 
 TEST(NoiseLaws, RangesInStepsAreSeenWhereverTheLaserStood) {
   const Positions room = laser_room();
+  DenoiseOptions only_measured;
+  AutomaticOptions none;
+  none.strength = 0;
+  only_measured.flow.flow = none;
   Positions smooth = room, moved = room;
   const auto report = rfsmooth::denoise(smooth.front().data(), smooth.size(), {}, {});
   ASSERT_TRUE(report);
@@ -268,7 +274,7 @@ TEST(NoiseLaws, RangesInStepsAreSeenWhereverTheLaserStood) {
   for (std::size_t i = 0; i < room.size() / 50; ++i)
     with_strays.emplace_back(3 * uniform(engine), 2 * uniform(engine), 1.3 * uniform(engine));
   for (Positions cloud : {with_strays, stored}) {
-    const auto found = rfsmooth::denoise(cloud.front().data(), cloud.size(), {}, {});
+    const auto found = rfsmooth::denoise(cloud.front().data(), cloud.size(), only_measured, {});
     ASSERT_TRUE(found);
     EXPECT_NEAR(found.value().measured.step, 0.01, 2e-4);
   }
@@ -283,13 +289,14 @@ TEST(NoiseLaws, RangesInStepsAreSeenWhereverTheLaserStood) {
 }
 
 TEST(NoiseLaws, ASlopeInDepthsOfStepsIsSmoothedBesideAnExactFloor) {
+  const double spacing = std::sqrt(2.0 / 10000), step = 4 * spacing;
   for (const double slope : {0.5, 1.0}) {
     std::mt19937_64 engine(9);
     std::uniform_real_distribution<double> uniform(0, 1);
     Positions stepped;
-    for (int i = 0; i < 20000; ++i) {
+    for (int i = 0; i < 10000; ++i) {
       const double x = 2 * uniform(engine) - 1;
-      stepped.emplace_back(x, uniform(engine), 0.04 * std::round(std::max(0.0, slope * x) / 0.04));
+      stepped.emplace_back(x, uniform(engine), step * std::round(std::max(0.0, slope * x) / step));
     }
     const Positions smooth = denoised(stepped);
     double before = 0, after = 0, floor = 0;
@@ -301,7 +308,7 @@ TEST(NoiseLaws, ASlopeInDepthsOfStepsIsSmoothedBesideAnExactFloor) {
       after += std::pow(smooth[i].z() - slope * smooth[i].x(), 2);
     }
     EXPECT_LT(after, 0.6 * before) << slope;
-    EXPECT_LT(floor, 0.002) << slope;  // a fifth of a spacing
+    EXPECT_LT(floor, 0.2 * spacing) << slope;
   }
 }
 
@@ -333,7 +340,7 @@ struct Plate {
 };
 
 TEST(NoiseLaws, OfAThinPlateIsThatOfItsSheetsNotTheirDistance) {
-  constexpr std::size_t kPoints = 10000;
+  constexpr std::size_t kPoints = 4000;
   const double spacing = 0.5 * std::sqrt(2.0 / double(kPoints));  // of random points on two unit squares
   for (const Plate& plate :
        {Plate{1.5, 0.02}, Plate{1.5, 0.2}, Plate{2, 0.35}, Plate{3, 0.2}, Plate{3, 0.35}}) {
@@ -350,18 +357,20 @@ TEST(NoiseLaws, OfAThinPlateIsThatOfItsSheetsNotTheirDistance) {
       for (std::size_t i = 0; i < kPoints; ++i) sum += std::pow(of[i].z() - side(i), 2);
       return std::sqrt(sum / double(kPoints)) / spacing;
     };
+    Positions smooth = points;
+    const auto report = rfsmooth::denoise(smooth.front().data(), smooth.size(), {}, {});
+    ASSERT_TRUE(report);
     if (plate.sigma >= 0.2) {
-      const double read =
-          rfs_mesh::measure_noise(rfs_mesh::SpatialIndex(points, {}), {}).sigma / (plate.sigma * spacing);
+      const double read = report.value().noise / (plate.sigma * spacing);
       EXPECT_GT(read, 1 / 1.3);
       EXPECT_LT(read, 1.3);
     }
-    EXPECT_LE(off_its_side(denoised(points)), off_its_side(points) + 0.01);
+    EXPECT_LE(off_its_side(smooth), off_its_side(points) + 0.01);
   }
 }
 
 TEST(NoiseLaws, ATorusInDepthsOfStepsIsNotTornIntoSheets) {
-  for (const unsigned seed : {1U, 2U, 3U}) {
+  for (const unsigned seed : {1U, 2U}) {
     Positions stepped = test::random_points(test::torus(), 10000, seed);
     const rfs_mesh::SpatialIndex index(stepped, {});
     const double step = rfs_mesh::mean_spacing(rfs_mesh::nearest_distances(index, {}), {});
@@ -393,16 +402,17 @@ TEST(NoiseLaws, NoiseThatNeighboursShareIsSmoothedOverMoreOfThem) {
   EXPECT_LT(rms_off(denoised(noisy), everywhere), 0.7 * rms_off(noisy, everywhere));
 }
 
+constexpr double kRing = M_PI / 36, kAlongRing = kRing / 20;  // angles between rings, and between points
+
 /// Rings on the unit sphere, 20 times farther apart than their points, seen from outside: `noise` along the
 /// ray.
 Positions rings_on_sphere(double noise, unsigned seed) {
-  constexpr double kRing = M_PI / 60;
   const Eigen::Vector3d scanner(2.5, 0.4, 0.8);
   std::mt19937_64 engine(seed);
   std::normal_distribution<double> normal(0, noise);
   Positions points;
   for (double polar = kRing / 2; polar < M_PI; polar += kRing) {
-    const auto count = int(2 * M_PI * std::sin(polar) / (kRing / 20));
+    const auto count = int(2 * M_PI * std::sin(polar) / kAlongRing);
     for (int i = 0; i < count; ++i) {
       const double turn = 2 * M_PI * i / count;
       const Eigen::Vector3d p(std::sin(polar) * std::cos(turn), std::sin(polar) * std::sin(turn),
@@ -413,31 +423,26 @@ Positions rings_on_sphere(double noise, unsigned seed) {
   return points;
 }
 
-/// Whether the points of a cloud are seen to lie along lines.
-bool on_lines(Positions points) {
-  const auto report = rfsmooth::denoise(points.front().data(), points.size(), {}, {});
-  return report && report.value().measured.on_lines;
-}
-
 TEST(NoiseLaws, RingsOfALaserAreSmoothedAlongThemAndAcross) {
-  constexpr double kStep = M_PI / 60 / 20;
   for (const unsigned seed : {1U, 2U}) {
     if (test::kSanitized && seed != 1) continue;
-    const Positions scan = rings_on_sphere(0.4 * kStep, seed);
-    EXPECT_TRUE(on_lines(scan)) << seed;
-    EXPECT_LT(rms_off(denoised(scan), everywhere), 0.35 * rms_off(scan, everywhere)) << seed;
+    const Positions scan = rings_on_sphere(0.4 * kAlongRing, seed);
+    Positions smooth = scan;
+    const auto report = rfsmooth::denoise(smooth.front().data(), smooth.size(), {}, {});
+    ASSERT_TRUE(report);
+    EXPECT_TRUE(report.value().measured.on_lines) << seed;
+    EXPECT_LT(rms_off(smooth, everywhere), 0.35 * rms_off(scan, everywhere)) << seed;
   }
 }
 
 TEST(NoiseLaws, RingsWithNoiseOfSeveralStepsAreSmoothed) {
-  constexpr double kStep = M_PI / 60 / 20;
-  const Positions scan = rings_on_sphere(3 * kStep, 1);
+  const Positions scan = rings_on_sphere(3 * kAlongRing, 1);
   EXPECT_LT(rms_off(denoised(scan), everywhere), 0.5 * rms_off(scan, everywhere));
 }
 
 TEST(NoiseLaws, RingsWithoutNoiseStay) {
   const Positions scan = rings_on_sphere(0, 1);
-  EXPECT_LT(rms_move(scan, denoised(scan)), 0.02 * M_PI / 60 / 20);
+  EXPECT_LT(rms_move(scan, denoised(scan)), 0.02 * kAlongRing);
 }
 
 // As of cameras that match windows: no point has noise of its own, and few points follow what they share.
@@ -467,8 +472,8 @@ TEST(NoiseLaws, AWallBeforeADepthCameraIsCleaned) {
   std::mt19937_64 engine(9);
   std::normal_distribution<double> normal(0, 0.004);
   Positions points;
-  for (int u = -160; u < 160; ++u)
-    for (int v = -120; v < 120; ++v) {
+  for (int u = -80; u < 80; ++u)
+    for (int v = -60; v < 60; ++v) {
       const double z = 0.01 * std::round((2 + normal(engine)) / 0.01);
       points.emplace_back(u * z / 350, v * z / 350, z);
     }
