@@ -38,6 +38,8 @@ Kernel look_around(const SpatialIndex& index, const Eigen::Vector3d& at, double 
   }
   Kernel seen;
   const double members = squares > 0 ? weights * weights / squares : 0;
+  // A plane has three coefficients. Of members whose weights fall off like these it takes two (simulated, 6
+  // members and more); the third makes up for the choice of kernels by their lean, which favours calm ones.
   constexpr double kOfPlane = 3;
   if (!(members > kOfPlane + 1)) return seen;
   mean /= weights;
