@@ -18,7 +18,7 @@ namespace {
 /// What a kernel holds, but for the point that it stands on.
 struct Kernel {
   Scatter across;   ///< variance of the members across the sheet
-  double lean = 0;  ///< how far their mean is from the point across the sheet, world units
+  double lean = 0;  ///< how far their mean is from the point, world units
 };
 
 Kernel look_around(const SpatialIndex& index, const Eigen::Vector3d& at, double width,
@@ -44,8 +44,7 @@ Kernel look_around(const SpatialIndex& index, const Eigen::Vector3d& at, double 
   if (!(members > kOfPlane + 1)) return seen;
   mean /= weights;
   spread = spread / weights - mean * mean.transpose();
-  const SymmetricEigen<3> axes = symmetric_eigen(spread);
-  seen.across.variance = std::max(0.0, axes.values[0]) * members / (members - kOfPlane);
+  seen.across.variance = std::max(0.0, symmetric_eigen(spread).values[0]) * members / (members - kOfPlane);
   // Of a normal distribution that a kernel as wide cuts off, a variance scatters as that of twice as many.
   seen.across.freedom = 2 * (members - kOfPlane);
   seen.lean = mean.norm();
@@ -64,13 +63,13 @@ double outermost_variance(std::vector<Kernel> kernels) {
   return quantile(seen, 0.5);
 }
 
-/// What kernels of one width read.
+/// What is read in kernels of one width.
 struct Reading {
   double freedom = 0;  ///< of the typical kernel
   double sigma = 0;    ///< world units; infinite: more than could be told from points that fill them evenly
 };
 
-/// At each place; nothing where they hold too few points.
+/// What kernels of one width around all places read. Nothing: they hold too few points.
 std::optional<Reading> read_in(const SpatialIndex& index, const Positions& at, double width,
                                const Context& context) {
   std::vector<Kernel> all(at.size());
