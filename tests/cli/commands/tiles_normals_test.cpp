@@ -72,9 +72,8 @@ TEST_F(Tiles, NormalsAreOutwardAcrossTilesAndOneTileHasThoseOfTheWholeCloud) {
 
 // The same job but for the rows that repeat one place on the surface; the last of two files has more of them.
 TEST_F(Tiles, RowsAtOnePlaceBecomeWhatTheFirstOfThemDoes) {
-  constexpr unsigned kSeed = 5;
   constexpr int kRows = 80;
-  RichCloud once = strip(0.4, false, Kind::own, kSeed, kRows);
+  RichCloud once = strip(0.4, kRows);
   const std::array<double, 3> shared = {11, 12, 1.5};
   once.xyz.insert(once.xyz.begin(), shared.begin(), shared.end());
   RichCloud often = once;
@@ -123,8 +122,7 @@ TEST_F(Tiles, NormalsFaceTheViewpointAndElseTheSameSideInAllTiles) {
   std::size_t number = 0;
   for (const auto& [viewpoint, rows, tile_points] :
        {Asked{"40,12,-3000", 80, "1000"}, Asked{"auto", 250, "3000"}}) {
-    constexpr unsigned kSeed = 5;
-    const RichCloud cloud = strip(0.3, false, Kind::own, kSeed, rows);
+    const RichCloud cloud = strip(0.3, rows);
     put("in.ply", cloud.bytes());
     const std::string job = "job" + std::to_string(++number), out = job + ".ply";
     step({"plan", "--normals", "--viewpoint", viewpoint, "--tile-points", tile_points, "in.ply", job});

@@ -29,14 +29,12 @@ inline double bent(double x) {
 /// A strip of a gently bent surface, `rows` long, points `noise` spacings off it; every thousandth is NaN.
 /// Noise is of each point, of each with a tenth six times as loud, of each square of four by four, or
 /// rounding besides.
-inline RichCloud strip(double noise, bool pcd = false, Kind kind = Kind::own, unsigned seed = 5,
-                       int rows = kLong) {
+inline RichCloud strip(double noise, int rows = kLong, Kind kind = Kind::own, unsigned seed = 5) {
   constexpr int kTogether = 4;
   std::mt19937_64 engine(seed);
   std::normal_distribution<double> normal(0, 1);
   std::array<double, kWide / kTogether> of_square{};
   RichCloud cloud;
-  cloud.pcd = pcd;
   cloud.doubles = true;
   for (int i = 0; i < rows; ++i)
     for (int j = 0; j < kWide; ++j) {

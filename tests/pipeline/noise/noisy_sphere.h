@@ -32,13 +32,19 @@ inline Positions off_sphere(const std::function<double(std::size_t)>& height) {
   return points;
 }
 
-inline Positions denoised(Positions points, double strength = 1) {
+/// By the automatic flow, in place.
+inline DenoiseReport denoise(Positions& points, double strength = 1) {
   DenoiseOptions options;
   AutomaticOptions automatic;
   automatic.strength = strength;
   options.flow.flow = automatic;
   const auto report = rfsmooth::denoise(points.front().data(), points.size(), options, {});
   EXPECT_TRUE(report);
+  return report ? report.value() : DenoiseReport();
+}
+
+inline Positions denoised(Positions points, double strength = 1) {
+  denoise(points, strength);
   return points;
 }
 

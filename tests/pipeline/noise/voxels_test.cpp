@@ -8,11 +8,13 @@
 
 #include <rfsmooth/denoise.h>
 
+#include "tests/pipeline/noise/noisy_sphere.h"
 #include "tests/support/meshes.h"
 
 namespace rfsmooth {
 namespace {
 
+using noisy::denoise;
 using Voxels = std::set<std::array<int, 3>>;
 
 constexpr double kVoxel = 0.06;
@@ -37,12 +39,6 @@ Voxels of_sphere(double noise) {
     voxels.insert({int(at.x()), int(at.y()), int(at.z())});
   }
   return voxels;
-}
-
-DenoiseReport denoise(Positions& points) {
-  const auto report = rfsmooth::denoise(points.front().data(), points.size(), {}, {});
-  EXPECT_TRUE(report);
-  return report ? report.value() : DenoiseReport();
 }
 
 class NoisyVoxels : public ::testing::TestWithParam<double> {};
