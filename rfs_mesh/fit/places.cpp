@@ -19,11 +19,17 @@ std::vector<Scatter> Places::fits(const std::vector<std::size_t>& m, double sigm
 
 std::vector<Scatter> Places::fits(const std::vector<std::size_t>& m, const std::vector<double>& sigma) {
   std::vector<Scatter> all(size());
+  renew(all, std::vector<char>(size(), 1), m, sigma);
+  return all;
+}
+
+void Places::renew(std::vector<Scatter>& all, const std::vector<char>& wanted,
+                   const std::vector<std::size_t>& m, const std::vector<double>& sigma) {
   for_blocks(context_, size(), 16, [&](std::size_t begin, std::size_t end) {
     ScatterFit fit;
-    for (std::size_t s = begin; s < end; ++s) all[s] = fit(index_, at_[s], m[s], sigma[s], kept_[s]);
+    for (std::size_t s = begin; s < end; ++s)
+      if (wanted[s] != 0) all[s] = fit(index_, at_[s], m[s], sigma[s], kept_[s]);
   });
-  return all;
 }
 
 void Places::move_to_feet(const std::vector<Scatter>& fits) {

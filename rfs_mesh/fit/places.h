@@ -34,6 +34,10 @@ class Places {
   /// With m and sigma of each.
   std::vector<Scatter> fits(const std::vector<std::size_t>& m, const std::vector<double>& sigma);
 
+  /// Fits again where `wanted` is not 0. \param all a fit of each place
+  void renew(std::vector<Scatter>& all, const std::vector<char>& wanted, const std::vector<std::size_t>& m,
+             const std::vector<double>& sigma);
+
   /// Each place goes to where its fit has the surface.
   void move_to_feet(const std::vector<Scatter>& fits);
   /// As many as there are.

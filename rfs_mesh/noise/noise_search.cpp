@@ -19,6 +19,8 @@ namespace {
 constexpr std::size_t kSearchSites = 500;
 constexpr std::size_t kShareOfCloud = 12;  // m: at most n / 12
 constexpr double kFlat = 2;                // sigma: the least radius of a patch
+constexpr std::size_t kSites = 2000, kFewestSites = 250;
+constexpr std::size_t kWork = 100000;  // sites x m
 
 double median_radius(const Places& places, std::size_t m) {
   std::vector<Neighbor> near;
@@ -120,7 +122,6 @@ void find_surface(Places& places, std::vector<Scatter> all, bool terraces, Noise
 /// least m.
 void open_windows(Places& places, double narrow, NoiseStart& start) {
   constexpr double kTooNarrow = 1.35;  // a window this much smaller than what it shows shows too little
-  constexpr double kSettled = 1.03;
   const std::size_t widest = widest_scatter(places.index());
   double said = 0;
   while (start.sigma > start.least) {
@@ -167,6 +168,10 @@ double scatter_reach(double sigma, double narrow) {
 
 Places search_places(const SpatialIndex& index, const Context& context) {
   return {index, sample(index.points(), kSearchSites), 2 * kNarrowestPatch, context};
+}
+
+Positions listening_places(const Positions& places, std::size_t m) {
+  return sample(places, std::clamp(kWork / m, kFewestSites, kSites));
 }
 
 std::vector<std::size_t> points_to_fit(Places& places, const NoiseStart& start) {

@@ -19,6 +19,9 @@ namespace rfsmooth::rfs_mesh {
 /// Times: by so much one noise differs from itself, told by other places or by more neighbours.
 constexpr double kSameNoise = 1.1;
 
+/// Times: a window that is so near to what it shows is as wide as that.
+constexpr double kSettled = 1.03;
+
 /// The quantile of places that are believed to show noise and no shape, and of a normal variable.
 constexpr double kCalmPlaces = 0.25, kCalmDeviate = -0.674;
 
@@ -57,6 +60,10 @@ double scatter_reach(double sigma, double narrow);
 Places search_places(const SpatialIndex& index, const Context& context);
 /// It would keep a reference to a context that is gone.
 Places search_places(const SpatialIndex& index, Context&& context) = delete;
+
+/// Where to look at each place by itself: up to 2,000 of the places, evenly over their order; fewer, but 250,
+/// where fits take so many points m that they overlap and say little by themselves.
+Positions listening_places(const Positions& places, std::size_t m);
 
 /// By place: start.m; along lines twice kNarrowestPatch where kNarrowestPatch are not on one, since noise
 /// makes a strip of it: twice as many on a line are a quarter as broad.

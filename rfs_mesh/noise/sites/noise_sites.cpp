@@ -7,7 +7,6 @@
 #include "base/parallel.h"
 #include "rfs_mesh/levels.h"
 #include "rfs_mesh/noise/sites/site_views.h"
-#include "rfs_mesh/sample.h"
 
 namespace rfsmooth::rfs_mesh {
 
@@ -15,8 +14,6 @@ namespace {
 
 // Chosen on the development shapes with noise of 0.1 to 4 spacings, Gaussian and along the ray
 // (tests/bench/noise).
-constexpr std::size_t kSites = 2000, kFewestSites = 250;
-constexpr std::size_t kWork = 100000;  // sites x m
 // Sites of a group x m: where fits to many points say much each, fewer are needed.
 constexpr std::size_t kGroupWork = 800;
 constexpr double kDiffers = 1.5;        // of variances of a dozen fits: two standard errors and more
@@ -47,7 +44,11 @@ class Listener {
         m(points_to_fit(places_, start)),
         sigma(at.size(), std::max(start.sigma, start.least)),
         floor(at.size(), 0),
-        speaks(at.size(), 0) {
+        speaks(at.size(), 0),
+        fits_(at.size()),
+        points_(at.size(), 0),
+        window_(at.size(), 0),
+        from_(at.size()) {
     const SpatialIndex index(at, context);
     const int group = int(std::clamp(kGroupWork / start.m, kSmallestGroup, 2 * kNeighbourhood));
     for_each_index(
@@ -67,26 +68,26 @@ class Listener {
   /// far louder than the start fills its window evenly, and keeps so little of the weight that no fit says
   /// anything. Nor does one where the second sheet of a wall is cut off; but there the window is not full.
   bool open_windows() {
-    const std::vector<Scatter> all = places_.fits(m, sigma);
-    const std::vector<Said> said = what_they_say(all, kTypicalDeviate);
-    const std::vector<double> before = sigma;
-    const double typical_reach = size_where_sparse(reaches(all));
+    const std::vector<char> renewed = renew_fits(1);
     std::vector<char> opened(group_.size(), 0);
+    const std::vector<Said> said = what_they_say(fits_, kTypicalDeviate);
+    const double typical_reach = size_where_sparse(reaches(fits_));
     for_each_index(
         context_, group_.size(),
         [&](std::size_t s) {
+          if (!any_of_group(s, renewed)) return;
           std::vector<double> full, radius;
           for (const Neighbor& q : group_[s]) {
-            const double window = before[q.index];
-            radius.push_back(all[q.index].radius);
-            if (all[q.index].within > 0) full.push_back(all[q.index].within / (window * window));
+            const Scatter& fit = fits_[q.index];
+            const double window = window_[q.index];
+            radius.push_back(fit.radius);
+            if (fit.within > 0) full.push_back(fit.within / (window * window));
           }
           if (!hear_at(s, said, 1)) {
             // Nearly nothing around is left within windows made for far calmer places.
             const bool empty = double(full.size()) < (1 - kLeastSpeaking) * double(group_[s].size());
-            if (views[s].sheet == SiteView::kNone)
-              open_window(s, before, empty ? kEven : quantile(full, 0.5));
-            opened[s] = char(sigma[s] > before[s]);
+            if (views[s].sheet == SiteView::kNone) open_window(s, empty ? kEven : quantile(full, 0.5));
+            opened[s] = char(sigma[s] > window_[s]);
           }
           const double reach = quantile(radius, 0.5);
           if (sigma[s] > (all_seen(s) ? kSameNoise : kLouder) * start_ ||
@@ -94,21 +95,23 @@ class Listener {
             opened[s] = char(widen(s, reach) || opened[s] != 0);
         },
         64);
-    places_.move_to_feet(all);
+    places_.move_to_feet(fits_);
     return std::find(opened.begin(), opened.end(), 1) != opened.end();
   }
 
   /// Fits `times` m points with each site's own window and renews `sigma`; `move`: the places go to the
   /// surface. Returns the fits.
-  std::vector<Scatter> hear(std::size_t times, bool move) {
-    std::vector<std::size_t> points = m;
-    for (std::size_t& count : points) count = std::min(times * count, n_);
-    std::vector<Scatter> all = places_.fits(points, sigma);
-    const std::vector<Said> said = what_they_say(all, kTypicalDeviate);
+  const std::vector<Scatter>& hear(std::size_t times, bool move) {
+    const std::vector<char> renewed = renew_fits(times);
+    const std::vector<Said> said = what_they_say(fits_, kTypicalDeviate);
     for_each_index(
-        context_, group_.size(), [&](std::size_t s) { hear_at(s, said, times); }, 64);
-    if (move) places_.move_to_feet(all);
-    return all;
+        context_, group_.size(),
+        [&](std::size_t s) {
+          if (any_of_group(s, renewed)) hear_at(s, said, times);
+        },
+        64);
+    if (move) places_.move_to_feet(fits_);
+    return fits_;
   }
 
   /// By site: the radius of its ball over the root of m, so that balls of more points do not count as more
@@ -130,16 +133,46 @@ class Listener {
   }
 
  private:
-  /// Widens the window of a place that no fit speaks for and that sees one sheet. \param before all windows.
-  /// \param full of those around, as kFilled
-  void open_window(std::size_t s, const std::vector<double>& before, double full) {
+  /// Fits `times` m points where these, the window or the place are others than before. Returns where.
+  std::vector<char> renew_fits(std::size_t times) {
+    std::vector<char> wanted(group_.size());
+    for (std::size_t s = 0; s < wanted.size(); ++s) {
+      const std::size_t points = std::min(times * m[s], n_);
+      wanted[s] = char(points != points_[s] || !is_settled(s));
+      if (wanted[s] == 0) continue;
+      points_[s] = points;
+      window_[s] = sigma[s];
+      from_[s] = places_.at()[s];
+    }
+    places_.renew(fits_, wanted, points_, window_);
+    return wanted;
+  }
+
+  /// Whether a site hears anything that is new.
+  bool any_of_group(std::size_t s, const std::vector<char>& flags) const {
+    return std::any_of(group_[s].begin(), group_[s].end(),
+                       [&](const Neighbor& q) { return flags[q.index] != 0; });
+  }
+
+  /// Whether the window and the place are about as they were at the last fit. A place that went across the
+  /// surface has another radius of its patch, whose square, at least that of sigma, differs by that of the
+  /// way.
+  bool is_settled(std::size_t s) const {
+    const double window = window_[s];
+    return sigma[s] <= kSettled * window && window <= kSettled * sigma[s] &&
+           (places_.at()[s] - from_[s]).squaredNorm() <= (kSettled - 1) * window * window;
+  }
+
+  /// Widens the window of a place that no fit speaks for and that sees one sheet. \param full of those
+  /// around, as kFilled
+  void open_window(std::size_t s, double full) {
     if (full > kFilled)
       sigma[s] =
-          std::min(at_most(s, 1), std::max(kNarrowestWindow * views[s].open, std::sqrt(full) * before[s]));
+          std::min(at_most(s, 1), std::max(kNarrowestWindow * views[s].open, std::sqrt(full) * window_[s]));
     if (!loud_part_) return;
     if (is_plainly_louder(s)) sigma[s] = views[s].plain;
     // Where most of the places around have opened theirs, these are not full any more, and this one is late.
-    std::vector<double> windows = around(group_[s], before, kSmallestGroup);
+    std::vector<double> windows = around(group_[s], window_, kSmallestGroup);
     sigma[s] = std::max(sigma[s], std::min(at_most(s, 1), quantile(windows, 0.5)));
   }
 
@@ -211,13 +244,16 @@ class Listener {
   std::vector<double> floor;
   std::vector<char> speaks;
   std::vector<SiteView> views;  ///< without windows
+
+ private:
+  std::vector<Scatter> fits_;
+  // What each was made with.
+  std::vector<std::size_t> points_;
+  std::vector<double> window_;
+  Positions from_;
 };
 
 }  // namespace
-
-Positions listening_places(const Positions& places, std::size_t m) {
-  return sample(places, std::clamp(kWork / m, kFewestSites, kSites));
-}
 
 NoiseSites listen(const SpatialIndex& index, Positions at, const NoiseStart& start, const DepthSteps* steps,
                   const Context& context) {

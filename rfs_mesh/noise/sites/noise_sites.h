@@ -8,7 +8,8 @@
 /// So does one that cuts off the second sheet of a wall; but there what is left in the window scatters as
 /// little as the window was made for, while louder noise fills it evenly, at three times that variance, or
 /// leaves nothing in it at nearly all of the sites around. A window that is filled evenly gets wider, to the
-/// scatter seen in it, and that up to eight times.
+/// scatter seen in it, and that up to eight times. A site is fitted again while its window or its place
+/// changes.
 ///
 /// A site's fits take more points, until their ball is as wide as its noise needs, if its window ends above
 /// twice the noise it began with; or the points are denser than elsewhere; or it ends above 1.1 times that
@@ -60,9 +61,6 @@ struct NoiseSites {
 inline bool denser(double reach, double typical) {
   return 2 * reach * reach < typical * typical;
 }
-
-/// Where to listen: up to 2,000 of the given places, evenly over their order, fewer the larger m is.
-Positions listening_places(const Positions& places, std::size_t m);
 
 /// \param at the sites. \param start sigma and m to start from, `least` > 0. O(log n). Parallel,
 /// deterministic. \param steps null: depths are not in steps.

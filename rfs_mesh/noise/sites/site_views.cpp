@@ -42,9 +42,13 @@ double plateau(double few, double many, double radius) {
 
 /// Fits at all sites to so many points.
 struct OpenFits {
+  OpenFits(std::size_t count, std::vector<Scatter> fits)
+      : points(count), all(std::move(fits)), said(what_they_say(all, kTypicalDeviate)) {}
+
   std::size_t points;
   std::vector<Scatter> all;
-  std::vector<double> rounding = {};  ///< what depths in steps add there, world units; empty: not in steps
+  std::vector<Said> said;
+  std::vector<double> rounding;  ///< what depths in steps add there, world units; empty: not in steps
 };
 
 /// By site: what depths in steps add by their rounding along the normal of its fit, world units.
@@ -60,12 +64,13 @@ std::vector<double> rounding_at(const Places& places, const std::vector<Scatter>
 /// The fits of the sites nearest to one, and what they say together.
 struct Around {
   Around(const std::vector<Neighbor>& group, const OpenFits& open)
-      : fits(around(group, open.all, kNeighbourhood)), points(open.points) {
+      : said(around(group, open.said, kNeighbourhood)), points(open.points) {
     // Of two dozen normal values, unweighted. Wide fits lean less by chance, but so they do by sheets that
     // the quadric has bent to: with 6 / points there, too, plates would be taken for layers.
     constexpr double kLeanByChance = 6 / double(kNeighbourhood);
     double saying = 0;
-    for (const Scatter& fit : fits) {
+    for (std::size_t k = 0; k < said.size(); ++k) {
+      const Scatter& fit = open.all[group[k].index];
       if (!says(fit)) continue;
       freedom += fit.freedom;
       flatness += fit.flatness;
@@ -76,7 +81,7 @@ struct Around {
     for (double* const sum : {&freedom, &flatness, &lean, &middle}) *sum /= saying;
   }
 
-  double variance() const { return mean_variance(fits, kTypical, kTypicalDeviate); }
+  double variance() const { return mean_variance(said, kTypical); }
   /// Whether the residuals are distributed as normal noise is: those of an edge have more in their middle and
   /// far out, those of two sheets less.
   bool normal() const {
@@ -85,12 +90,12 @@ struct Around {
   }
   /// The median of their balls', world units.
   double radius() const {
-    std::vector<double> radii;
-    for (const Scatter& fit : fits) radii.push_back(fit.radius);
-    return quantile(radii, 0.5);
+    std::vector<double> squares;
+    for (const Said& fit : said) squares.push_back(fit.square);
+    return std::sqrt(quantile(squares, 0.5));
   }
 
-  std::vector<Scatter> fits;
+  std::vector<Said> said;
   std::size_t points;
   double freedom = 0, flatness = 0, lean = 0,
          middle = 0;  ///< means; lean: beyond chance; nan: no fit says a thing
@@ -229,18 +234,33 @@ std::vector<Shown> shown_around(const SiteGroups& groups, const OpenFits& open, 
   return shown;
 }
 
+/// Fits to so many points that balls overlap: at some places, and each site takes that of the nearest.
+OpenFits fit_wide(const Places& places, std::size_t points, const Context& context) {
+  const Positions some = listening_places(places.at(), points);
+  const std::vector<Scatter> fits = Places(places.index(), some, points, context).fits(points);
+  const SpatialIndex fitted(some, context);
+  std::vector<Scatter> all(places.size());
+  for_blocks(context, places.size(), 64, [&](std::size_t begin, std::size_t end) {
+    std::vector<Neighbor> nearest;
+    for (std::size_t s = begin; s < end; ++s) {
+      fitted.nearest(places.at()[s], 1, nearest);
+      all[s] = fits[nearest.front().index];
+    }
+  });
+  return {points, std::move(all)};
+}
+
 /// Sets `held` and `plain`. \param open from kNeighbourhood points on, each of twice as many
 void hold_slabs(const Places& places, const SiteGroups& groups, const std::vector<OpenFits>& open,
                 std::vector<SiteView>& views, const Context& context) {
   constexpr std::size_t kFarther = kPlateauTo / kNeighbourhood;
   const std::size_t widest = std::min(kFarther * kPlateauTo, widest_scatter(places.index()));
-  Places far(places.index(), places.at(), widest, context);
   std::vector<Shown> before;
   std::size_t holding = kNeighbourhood, scale = 0;
   for (std::size_t points = kNeighbourhood; points <= widest; points *= 2, ++scale) {
-    const bool known = scale < open.size();
-    const OpenFits wider = known ? OpenFits() : OpenFits{points, far.fits(points)};
-    std::vector<Shown> now = shown_around(groups, known ? open[scale] : wider, context);
+    std::vector<Shown> now = scale < open.size()
+                                 ? shown_around(groups, open[scale], context)
+                                 : shown_around(groups, fit_wide(places, points, context), context);
     for (std::size_t s = 0; s < views.size(); ++s) {
       SiteView& view = views[s];
       if (points == holding && !(view.held > 0) && now[s].held) view.held = now[s].scatter;
@@ -263,13 +283,12 @@ std::vector<SiteView> look_without_windows(Places& places, const SiteGroups& gro
   std::vector<OpenFits> open;
   for (std::size_t points = kNeighbourhood; open.empty() || (points <= kPlateauTo && n >= 2 * points);
        points *= 2)
-    open.push_back({points, places.fits(points)});
+    open.emplace_back(points, places.fits(points));
   if (steps != nullptr)
     for (OpenFits& fits : open) fits.rounding = rounding_at(places, fits.all, *steps, context);
   const bool deep = start.fills_nearest();
   const std::vector<Scatter>& few = open.front().all;
   const std::vector<Scatter> wide = deep ? places.fits(start.m) : std::vector<Scatter>();
-  const std::vector<Said> said = what_they_say(few, kTypicalDeviate);
   const Sites sites{groups, steps, start.on_lines, start.apart};
   std::vector<SiteView> views(groups.size());
   std::vector<double> middle(groups.size(), 1);
@@ -277,7 +296,7 @@ std::vector<SiteView> look_without_windows(Places& places, const SiteGroups& gro
       context, groups.size(),
       [&](std::size_t s) {
         SiteView& view = views[s];
-        view.open = std::sqrt(mean_variance(around(groups[s], said), kTypical));
+        view.open = std::sqrt(mean_variance(around(groups[s], open.front().said), kTypical));
         if (!deep) view.slab = view.open;
         view.most = bound(groups[s], deep ? wide : few);
         sites.look_for_sheets(s, open, view, middle[s]);
