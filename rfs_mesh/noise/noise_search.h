@@ -61,8 +61,8 @@ Places search_places(const SpatialIndex& index, const Context& context);
 /// It would keep a reference to a context that is gone.
 Places search_places(const SpatialIndex& index, Context&& context) = delete;
 
-/// Where to look at each place by itself: up to 2,000 of the places, evenly over their order; fewer, but 250,
-/// where fits take so many points m that they overlap and say little by themselves.
+/// Where fits to m points are made: at up to 2,000 of the places, evenly over their order; fewer where m is
+/// large and the fits overlap, but at 250.
 Positions listening_places(const Positions& places, std::size_t m);
 
 /// By place: start.m; along lines twice kNarrowestPatch where kNarrowestPatch are not on one, since noise

@@ -43,11 +43,11 @@ class Listener {
         deep_(start.fills_nearest()),
         m(points_to_fit(places_, start)),
         sigma(at.size(), std::max(start.sigma, start.least)),
+        window(at.size(), 0),
         floor(at.size(), 0),
         speaks(at.size(), 0),
         fits_(at.size()),
         points_(at.size(), 0),
-        window_(at.size(), 0),
         from_(at.size()) {
     const SpatialIndex index(at, context);
     const int group = int(std::clamp(kGroupWork / start.m, kSmallestGroup, 2 * kNeighbourhood));
@@ -79,15 +79,14 @@ class Listener {
           std::vector<double> full, radius;
           for (const Neighbor& q : group_[s]) {
             const Scatter& fit = fits_[q.index];
-            const double window = window_[q.index];
             radius.push_back(fit.radius);
-            if (fit.within > 0) full.push_back(fit.within / (window * window));
+            if (fit.within > 0) full.push_back(fit.within / (window[q.index] * window[q.index]));
           }
           if (!hear_at(s, said, 1)) {
             // Nearly nothing around is left within windows made for far calmer places.
             const bool empty = double(full.size()) < (1 - kLeastSpeaking) * double(group_[s].size());
             if (views[s].sheet == SiteView::kNone) open_window(s, empty ? kEven : quantile(full, 0.5));
-            opened[s] = char(sigma[s] > window_[s]);
+            opened[s] = char(sigma[s] > window[s]);
           }
           const double reach = quantile(radius, 0.5);
           if (sigma[s] > (all_seen(s) ? kSameNoise : kLouder) * start_ ||
@@ -141,10 +140,10 @@ class Listener {
       wanted[s] = char(points != points_[s] || !is_settled(s));
       if (wanted[s] == 0) continue;
       points_[s] = points;
-      window_[s] = sigma[s];
+      window[s] = sigma[s];
       from_[s] = places_.at()[s];
     }
-    places_.renew(fits_, wanted, points_, window_);
+    places_.renew(fits_, wanted, points_, window);
     return wanted;
   }
 
@@ -154,13 +153,12 @@ class Listener {
                        [&](const Neighbor& q) { return flags[q.index] != 0; });
   }
 
-  /// Whether the window and the place are about as they were at the last fit. A place that went across the
-  /// surface has another radius of its patch, whose square, at least that of sigma, differs by that of the
-  /// way.
+  /// Whether the window and the place are about as they were at the last fit. A place that moves across the
+  /// surface changes the square of its patch's radius, which is sigma^2 and more, by that of the move.
   bool is_settled(std::size_t s) const {
-    const double window = window_[s];
-    return sigma[s] <= kSettled * window && window <= kSettled * sigma[s] &&
-           (places_.at()[s] - from_[s]).squaredNorm() <= (kSettled - 1) * window * window;
+    const double last = window[s];
+    return sigma[s] <= kSettled * last && last <= kSettled * sigma[s] &&
+           (places_.at()[s] - from_[s]).squaredNorm() <= (kSettled - 1) * last * last;
   }
 
   /// Widens the window of a place that no fit speaks for and that sees one sheet. \param full of those
@@ -168,11 +166,11 @@ class Listener {
   void open_window(std::size_t s, double full) {
     if (full > kFilled)
       sigma[s] =
-          std::min(at_most(s, 1), std::max(kNarrowestWindow * views[s].open, std::sqrt(full) * window_[s]));
+          std::min(at_most(s, 1), std::max(kNarrowestWindow * views[s].open, std::sqrt(full) * window[s]));
     if (!loud_part_) return;
     if (is_plainly_louder(s)) sigma[s] = views[s].plain;
     // Where most of the places around have opened theirs, these are not full any more, and this one is late.
-    std::vector<double> windows = around(group_[s], window_, kSmallestGroup);
+    std::vector<double> windows = around(group_[s], window, kSmallestGroup);
     sigma[s] = std::max(sigma[s], std::min(at_most(s, 1), quantile(windows, 0.5)));
   }
 
@@ -240,17 +238,16 @@ class Listener {
 
  public:
   std::vector<std::size_t> m;
-  std::vector<double> sigma;  ///< around each site; where it does not speak and sees no sheet, as before
+  std::vector<double> sigma;   ///< around each site; where it does not speak and sees no sheet, as before
+  std::vector<double> window;  ///< of each site's last fit
   std::vector<double> floor;
   std::vector<char> speaks;
   std::vector<SiteView> views;  ///< without windows
 
  private:
   std::vector<Scatter> fits_;
-  // What each was made with.
-  std::vector<std::size_t> points_;
-  std::vector<double> window_;
-  Positions from_;
+  std::vector<std::size_t> points_;  ///< of each fit
+  Positions from_;                   ///< the place of each fit
 };
 
 }  // namespace
@@ -264,10 +261,9 @@ NoiseSites listen(const SpatialIndex& index, Positions at, const NoiseStart& sta
   for (int round = 0; round < kOpeningRounds && listener.open_windows(); ++round)
     ;
   for (int round = 0; round < 3; ++round) listener.hear(1, true);
-  const std::vector<double> windows = listener.sigma;
   sites.fits = listener.hear(1, false);
-  for (std::size_t s = 0; s < windows.size(); ++s)
-    sites.full.push_back(char(sites.fits[s].within > kFilled * windows[s] * windows[s]));
+  for (std::size_t s = 0; s < sites.fits.size(); ++s)
+    sites.full.push_back(char(sites.fits[s].within > kFilled * listener.window[s] * listener.window[s]));
   const std::vector<double> reaches = listener.reaches(sites.fits);
   sites.area = areas(reaches);
   sites.reach = listener.medians_around(reaches);

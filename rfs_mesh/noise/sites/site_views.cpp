@@ -234,7 +234,8 @@ std::vector<Shown> shown_around(const SiteGroups& groups, const OpenFits& open, 
   return shown;
 }
 
-/// Fits to so many points that balls overlap: at some places, and each site takes that of the nearest.
+/// Fits to so many points that their balls overlap: some sites are fitted, and each takes the fit of the
+/// nearest of these.
 OpenFits fit_wide(const Places& places, std::size_t points, const Context& context) {
   const Positions some = listening_places(places.at(), points);
   const std::vector<Scatter> fits = Places(places.index(), some, points, context).fits(points);
