@@ -3,7 +3,6 @@
 #include <rfsmooth/mesh.h>
 
 using namespace rfsmooth;
-using namespace rfsmooth::rfs_mesh;
 
 namespace {
 
