@@ -38,17 +38,17 @@ class Listener {
         places_(cloud, at, std::min(n_, 2 * start.m), context),
         group_(at.size()),
         narrow_(at.size(), 0),
+        fits_(at.size()),
+        points_(at.size(), 0),
+        window_(at.size(), 0),
+        from_(at.size()),
         widest_(widest_scatter(cloud)),
         start_(start.sigma),
         deep_(start.fills_nearest()),
         m(points_to_fit(places_, start)),
         sigma(at.size(), std::max(start.sigma, start.least)),
-        window(at.size(), 0),
         floor(at.size(), 0),
-        speaks(at.size(), 0),
-        fits_(at.size()),
-        points_(at.size(), 0),
-        from_(at.size()) {
+        speaks(at.size(), 0) {
     const SpatialIndex index(at, context);
     const int group = int(std::clamp(kGroupWork / start.m, kSmallestGroup, 2 * kNeighbourhood));
     for_each_index(
@@ -80,13 +80,13 @@ class Listener {
           for (const Neighbor& q : group_[s]) {
             const Scatter& fit = fits_[q.index];
             radius.push_back(fit.radius);
-            if (fit.within > 0) full.push_back(fit.within / (window[q.index] * window[q.index]));
+            if (fit.within > 0) full.push_back(fit.within / (window_[q.index] * window_[q.index]));
           }
           if (!hear_at(s, said, 1)) {
             // Nearly nothing around is left within windows made for far calmer places.
             const bool empty = double(full.size()) < (1 - kLeastSpeaking) * double(group_[s].size());
             if (views[s].sheet == SiteView::kNone) open_window(s, empty ? kEven : quantile(full, 0.5));
-            opened[s] = char(sigma[s] > window[s]);
+            opened[s] = char(sigma[s] > window_[s]);
           }
           const double reach = quantile(radius, 0.5);
           if (sigma[s] > (all_seen(s) ? kSameNoise : kLouder) * start_ ||
@@ -140,10 +140,10 @@ class Listener {
       wanted[s] = char(points != points_[s] || !is_settled(s));
       if (wanted[s] == 0) continue;
       points_[s] = points;
-      window[s] = sigma[s];
+      window_[s] = sigma[s];
       from_[s] = places_.at()[s];
     }
-    places_.renew(fits_, wanted, points_, window);
+    places_.renew(fits_, wanted, points_, window_);
     return wanted;
   }
 
@@ -156,7 +156,7 @@ class Listener {
   /// Whether the window and the place are about as they were at the last fit. A place that moves across the
   /// surface changes the square of its patch's radius, which is sigma^2 and more, by that of the move.
   bool is_settled(std::size_t s) const {
-    const double last = window[s];
+    const double last = window_[s];
     return sigma[s] <= kSettled * last && last <= kSettled * sigma[s] &&
            (places_.at()[s] - from_[s]).squaredNorm() <= (kSettled - 1) * last * last;
   }
@@ -166,11 +166,11 @@ class Listener {
   void open_window(std::size_t s, double full) {
     if (full > kFilled)
       sigma[s] =
-          std::min(at_most(s, 1), std::max(kNarrowestWindow * views[s].open, std::sqrt(full) * window[s]));
+          std::min(at_most(s, 1), std::max(kNarrowestWindow * views[s].open, std::sqrt(full) * window_[s]));
     if (!loud_part_) return;
     if (is_plainly_louder(s)) sigma[s] = views[s].plain;
     // Where most of the places around have opened theirs, these are not full any more, and this one is late.
-    std::vector<double> windows = around(group_[s], window, kSmallestGroup);
+    std::vector<double> windows = around(group_[s], window_, kSmallestGroup);
     sigma[s] = std::max(sigma[s], std::min(at_most(s, 1), quantile(windows, 0.5)));
   }
 
@@ -230,7 +230,11 @@ class Listener {
   const Context& context_;
   Places places_;  ///< the sites, which move to the surface
   SiteGroups group_;
-  std::vector<double> narrow_;  ///< radius of the ball of the fewest neighbours; 0: not asked for yet
+  std::vector<double> narrow_;       ///< radius of the ball of the fewest neighbours; 0: not asked for yet
+  std::vector<Scatter> fits_;        ///< the last of each site, with ...
+  std::vector<std::size_t> points_;  ///< ... so many points, ...
+  std::vector<double> window_;       ///< ... this window ...
+  Positions from_;                   ///< ... around this place
   std::size_t widest_;
   double start_;            ///< world units
   bool loud_part_ = false;  ///< whether a part of the cloud is plainly louder than the start
@@ -238,16 +242,10 @@ class Listener {
 
  public:
   std::vector<std::size_t> m;
-  std::vector<double> sigma;   ///< around each site; where it does not speak and sees no sheet, as before
-  std::vector<double> window;  ///< of each site's last fit
+  std::vector<double> sigma;  ///< around each site; where it does not speak and sees no sheet, as before
   std::vector<double> floor;
   std::vector<char> speaks;
   std::vector<SiteView> views;  ///< without windows
-
- private:
-  std::vector<Scatter> fits_;
-  std::vector<std::size_t> points_;  ///< of each fit
-  Positions from_;                   ///< the place of each fit
 };
 
 }  // namespace
@@ -261,9 +259,10 @@ NoiseSites listen(const SpatialIndex& index, Positions at, const NoiseStart& sta
   for (int round = 0; round < kOpeningRounds && listener.open_windows(); ++round)
     ;
   for (int round = 0; round < 3; ++round) listener.hear(1, true);
+  const std::vector<double> windows = listener.sigma;
   sites.fits = listener.hear(1, false);
-  for (std::size_t s = 0; s < sites.fits.size(); ++s)
-    sites.full.push_back(char(sites.fits[s].within > kFilled * listener.window[s] * listener.window[s]));
+  for (std::size_t s = 0; s < windows.size(); ++s)
+    sites.full.push_back(char(sites.fits[s].within > kFilled * windows[s] * windows[s]));
   const std::vector<double> reaches = listener.reaches(sites.fits);
   sites.area = areas(reaches);
   sites.reach = listener.medians_around(reaches);

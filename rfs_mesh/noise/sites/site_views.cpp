@@ -239,15 +239,9 @@ std::vector<Shown> shown_around(const SiteGroups& groups, const OpenFits& open, 
 OpenFits fit_wide(const Places& places, std::size_t points, const Context& context) {
   const Positions some = listening_places(places.at(), points);
   const std::vector<Scatter> fits = Places(places.index(), some, points, context).fits(points);
-  const SpatialIndex fitted(some, context);
-  std::vector<Scatter> all(places.size());
-  for_blocks(context, places.size(), 64, [&](std::size_t begin, std::size_t end) {
-    std::vector<Neighbor> nearest;
-    for (std::size_t s = begin; s < end; ++s) {
-      fitted.nearest(places.at()[s], 1, nearest);
-      all[s] = fits[nearest.front().index];
-    }
-  });
+  std::vector<Scatter> all;
+  for (const Index nearest : nearest_points(SpatialIndex(some, context), places.at(), context))
+    all.push_back(fits[nearest]);
   return {points, std::move(all)};
 }
 
