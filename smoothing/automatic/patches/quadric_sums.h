@@ -1,4 +1,4 @@
-/// The sums of a weighted quadric fit over many points, several points an instruction.
+/// The sums of a weighted quadric fit over many points, and its values there, several points an instruction.
 ///
 ///     a = sum w f f^T,   b = sum w^2 f f^T,   right = sum w y f,   f = (1, u, v, u^2, u v, v^2)
 ///
@@ -34,8 +34,15 @@ void sum_quadric(std::size_t size, const float* u, const float* v, const float* 
 void sum_squared_weights(std::size_t size, const float* u, const float* v, const float* w,
                          Eigen::Matrix<double, 6, 6>& sums);
 
-/// The sum of w ((y - q.f) c)^2.
-double sum_residuals(std::size_t size, const float* u, const float* v, const float* y, const float* w,
-                     const float* c, const Eigen::Matrix<double, 6, 1>& q);
+/// What a fit says of its points.
+struct QuadricSays {
+  float* height;     ///< (q.f - g) c, the quadric over g along a point's own direction
+  float* influence;  ///< f^T inverse f
+};
+
+/// Enters that of every point; returns the sum of w ((y - q.f) c)^2.
+double evaluate_quadric(std::size_t size, const float* u, const float* v, const float* y, const float* w,
+                        const float* g, const float* c, const Eigen::Matrix<double, 6, 1>& q,
+                        const Eigen::Matrix<double, 6, 6>& inverse, const QuadricSays& says);
 
 }  // namespace rfsmooth::smoothing

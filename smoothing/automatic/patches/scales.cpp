@@ -143,7 +143,7 @@ class Ladder {
     if (!whole_.narrow) whole_.narrow = scale_of(double(kNarrowestPatch));
     const std::size_t members = make_way(*whole_.narrow);
     const Prediction said =
-        Patches(field_, members, seeds_, noise_.local, memory_, context_).predict(context_);
+        Patches(field_, members, seeds_, noise_.local, memory_, context_).take_prediction();
     for_each_index(context_, rungs_.first.size(), [&](std::size_t i) {
       if (said.covered[i] != 0) rungs_.first[i] = said.height[i];
     });
@@ -154,9 +154,9 @@ class Ladder {
     const std::vector<double>& sigma = noise_.local;
     const std::vector<float>& precision = rungs_.precision;
     const auto shared = float(noise_.shared);
-    const Patches patches(field_, members, seeds_, sigma, memory_, context_);
+    Patches patches(field_, members, seeds_, sigma, memory_, context_);
     Scale scale{members,
-                patches.predict(context_),
+                patches.take_prediction(),
                 std::vector<float>(field_.size()),
                 {},
                 patches.with_several_sheets()};
@@ -210,7 +210,7 @@ class Ladder {
   const Context& context_;
   Rungs rungs_;
   std::vector<float> risk_;  ///< n: of the last scale
-  Patches::Memory memory_;
+  PatchMembers memory_;
   std::vector<Index> seeds_;
   std::size_t thinnings_ = 0;  ///< 0: the seeds are all points
 };

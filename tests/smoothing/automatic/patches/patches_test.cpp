@@ -34,9 +34,9 @@ TEST(Patches, PredictAQuadricExactlyWhateverTheSharesOfThePointsAre) {
   const HeightField field(guide, rfs_mesh::KdTree(guide, {}), support::near_on(guide), data, {}, {});
   for (const std::size_t m : {16, 100}) {
     std::vector<Index> seeds = seeds_of(guide);
-    Patches::Memory memory;
-    const Patches patches(field, m, seeds, std::vector<double>(guide.size(), 1), memory, {});
-    const Prediction p = patches.predict({});
+    PatchMembers memory;
+    Patches patches(field, m, seeds, std::vector<double>(guide.size(), 1), memory, {});
+    const Prediction p = patches.take_prediction();
     for (std::size_t i = 0; i < guide.size(); ++i) {
       ASSERT_TRUE(p.covered[i]);
       EXPECT_NEAR(double(p.height[i]), field.height(i), 1e-4) << m;
@@ -59,11 +59,11 @@ TEST(Patches, OwnIsTheDerivativeOfAPredictionByThePointsHeight) {
   const double step = 0.5;
   const std::vector<double> sigma(guide.size(), 10);
   const HeightField field(guide, rfs_mesh::KdTree(guide, {}), support::near_on(guide), data, {}, {});
-  Patches::Memory memory;
-  const Prediction before = Patches(field, 24, seeds, sigma, memory, {}).predict({});
+  PatchMembers memory;
+  const Prediction before = Patches(field, 24, seeds, sigma, memory, {}).take_prediction();
   data[i].z() += step;
   const HeightField lifted(guide, rfs_mesh::KdTree(guide, {}), support::near_on(guide), data, {}, {});
-  const Prediction after = Patches(lifted, 24, seeds, sigma, memory, {}).predict({});
+  const Prediction after = Patches(lifted, 24, seeds, sigma, memory, {}).take_prediction();
   const double side = field.normal(i).z();
   EXPECT_NEAR(double(after.height[i] - before.height[i]) / (side * step), double(before.own[i]), 1e-4);
 }
@@ -73,7 +73,7 @@ TEST(Patches, MeanOfAConstantIsTheConstant) {
   const HeightField field(mesh.positions, rfs_mesh::KdTree(mesh.positions, {}),
                           support::near_on(mesh.positions), mesh.positions, {}, {});
   const std::vector<float> seven(field.size(), 7);
-  Patches::Memory memory;
+  PatchMembers memory;
   const Patches patches(field, 40, seeds_of(mesh.positions), std::vector<double>(field.size(), 1), memory,
                         {});
   for (const std::vector<float>& means : {patches.mean(seven, {}), field.local_mean(seven, {})}) {
@@ -102,8 +102,8 @@ TEST(Patches, WiderOnesTakeMoreOfWhiteNoiseAwayAndSayHowMuch) {
   const std::vector<double> sigma(field.size(), 1);
   double before = 1;
   for (const std::size_t m : {12, 24, 48, 96, 192}) {
-    Patches::Memory memory;
-    const Prediction p = Patches(field, m, seeds_of(field.guide()), sigma, memory, {}).predict({});
+    PatchMembers memory;
+    const Prediction p = Patches(field, m, seeds_of(field.guide()), sigma, memory, {}).take_prediction();
     double square = 0, own = 0;
     for (std::size_t i = 0; i < field.size(); ++i) {
       square += double(p.height[i]) * double(p.height[i]) / double(field.size());
@@ -132,8 +132,8 @@ TEST(Patches, OnLinesDoNotFollowNoiseThatMovesPointsAcrossThem) {
   const std::vector<double> sigma(guide.size(), 1);
   const auto left = [&](std::optional<std::size_t> across) {
     const HeightField field(guide, rfs_mesh::KdTree(guide, {}), support::near_on(guide), data, across, {});
-    Patches::Memory memory;
-    const Prediction p = Patches(field, 24, seeds_of(guide), sigma, memory, {}).predict({});
+    PatchMembers memory;
+    const Prediction p = Patches(field, 24, seeds_of(guide), sigma, memory, {}).take_prediction();
     double square = 0;
     for (std::size_t i = 0; i < field.size(); ++i) {
       const double off = (data[i] - guide[i]).dot(field.normal(i)) - field.height(i) + double(p.height[i]);
@@ -165,9 +165,9 @@ TEST(Patches, OwnIsInTheMeanTheDerivativeAlsoOfTheWeights) {
   for (const double stated : {1.0, 0.83})
     for (const std::size_t m : {24, 96}) {
       const auto predict = [&](const HeightField& field) {
-        Patches::Memory memory;
+        PatchMembers memory;
         return Patches(field, m, seeds_of(field.guide()), std::vector<double>(kPoints, stated), memory, {})
-            .predict({});
+            .take_prediction();
       };
       const Prediction before = predict(still), after = predict(moved);
       double derivative = 0, own = 0;
@@ -182,10 +182,10 @@ TEST(Patches, OwnIsInTheMeanTheDerivativeAlsoOfTheWeights) {
 
 TEST(Patches, DoNotBridgeAStepFarAboveTheNoise) {
   const HeightField field = flat_field(40, [](double x, double) { return x < 20 ? 0.0 : 50.0; });
-  Patches::Memory memory;
+  PatchMembers memory;
   const Prediction p =
       Patches(field, 24, seeds_of(field.guide()), std::vector<double>(field.size(), 0.1), memory, {})
-          .predict({});
+          .take_prediction();
   const double side = field.normal(0).z();
   std::size_t far = 0;
   for (std::size_t i = 0; i < field.size(); ++i) {
@@ -199,9 +199,9 @@ TEST(Patches, DoNotBridgeAStepFarAboveTheNoise) {
 
 TEST(Patches, PlacesWithoutASeedGetOneOfTheirOwn) {
   const HeightField field = flat_field(30, [](double x, double y) { return 0.1 * x - 0.2 * y; });
-  Patches::Memory memory;
+  PatchMembers memory;
   const Prediction p =
-      Patches(field, 16, {Index{0}}, std::vector<double>(field.size(), 1), memory, {}).predict({});
+      Patches(field, 16, {Index{0}}, std::vector<double>(field.size(), 1), memory, {}).take_prediction();
   for (std::size_t i = 0; i < field.size(); ++i) {
     ASSERT_TRUE(p.covered[i]);
     EXPECT_NEAR(double(p.height[i]), field.height(i), 1e-4);
@@ -217,8 +217,8 @@ TEST(Patches, SameForAnyNumberOfThreads) {
     context.threads = threads;
     Prediction p;
     in_arena(context, [&] {
-      Patches::Memory memory;
-      p = Patches(field, 48, seeds_of(field.guide()), sigma, memory, context).predict(context);
+      PatchMembers memory;
+      p = Patches(field, 48, seeds_of(field.guide()), sigma, memory, context).take_prediction();
     });
     return p;
   };

@@ -1,0 +1,60 @@
+#include "smoothing/automatic/patches/patch_members.h"
+
+#include <stdexcept>
+
+namespace rfsmooth::smoothing {
+
+void PatchMembers::clear(std::size_t points) {
+  start_.assign(1, 0);
+  point_.clear();
+  weight_.clear();
+  groups_.assign((points + kRange - 1) / kRange, {});
+}
+
+void PatchMembers::reserve(std::size_t more) {
+  const std::size_t size = start_.back();
+  if (size + more > kNone) throw std::length_error("PatchMembers: too many members");
+  for (const std::size_t room : {size, size + more}) {  // the first: room that is unused is not moved
+    point_.resize(room);
+    weight_.resize(room);
+  }
+}
+
+void PatchMembers::append(const std::vector<std::size_t>& kept, std::size_t stride, const Index* point,
+                          const MemberWeight* weight, const Context& context) {
+  const std::size_t first = patches();
+  for (std::size_t p = 0; p < kept.size(); ++p) {
+    std::copy_n(point + p * stride, kept[p], point_.data() + start_.back());
+    std::copy_n(weight + p * stride, kept[p], weight_.data() + start_.back());
+    start_.push_back(Index(start_.back() + kept[p]));
+  }
+  group(first, context);
+}
+
+/// Enters the patches from `first` on with the ranges that they have members in.
+void PatchMembers::group(std::size_t first, const Context& context) {
+  std::vector<Group> groups;
+  for (std::size_t p = first; p < patches(); ++p)
+    if (groups.empty() || start_[p + 1] - start_[groups.back().begin] > kGroup)
+      groups.push_back({Index(p), Index(p + 1)});
+    else
+      groups.back().end = Index(p + 1);
+  std::vector<std::vector<Index>> ranges(groups.size());  // that a group touches
+  for_each_index(
+      context, groups.size(),
+      [&](std::size_t g) {
+        Index before = kNone;
+        for (std::size_t k = start_[groups[g].begin]; k < start_[groups[g].end]; ++k) {
+          const auto range = Index(point_[k] / kRange);
+          if (range == before) continue;
+          before = range;
+          if (std::find(ranges[g].begin(), ranges[g].end(), range) == ranges[g].end())
+            ranges[g].push_back(range);
+        }
+      },
+      16);
+  for (std::size_t g = 0; g < groups.size(); ++g)
+    for (const Index range : ranges[g]) groups_[range].push_back(groups[g]);
+}
+
+}  // namespace rfsmooth::smoothing
