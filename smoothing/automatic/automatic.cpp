@@ -70,7 +70,7 @@ double strength_of_guide(const rfs_mesh::NoiseField& noise) {
 struct Mixed {
   std::unique_ptr<HeightField> field;
   MixedScales heights;
-  Positions data;            ///< the points, tamed where there are tails
+  Positions tamed;           ///< the points, if there are tails; else none
   std::vector<double> most;  ///< how far each may move, world units
   Tails tails;
 };
@@ -92,13 +92,12 @@ Mixed mix_scales(AutomaticTask& task, AutomaticReport& report, Statistics& whole
     mixed.heights = smooth_heights(*mixed.field, noise, task.learned, whole.passes[pass], context);
   };
   smooth(mesh.positions, 0);
-  mixed.data = mesh.positions;
   mixed.most = noise.reaches(1, context);
-  mixed.tails = tame(*mixed.field, mixed.heights, mesh, mixed.data, noise, whole.tails, context);
+  mixed.tails = tame(*mixed.field, mixed.heights, mesh, noise, whole.tails, mixed.tamed, context);
   if (mixed.tails.share > 0) {
     report.tail_times = mixed.tails.times;
     for (double& limit : mixed.most) limit *= mixed.tails.times;
-    smooth(mixed.data, 1);
+    smooth(mixed.tamed, 1);
   }
   return mixed;
 }
@@ -135,6 +134,7 @@ AutomaticResult automatic_smoothing(AutomaticTask task, AutomaticReport& report,
   const rfs_mesh::NoiseField& noise = task.noise;
   HeightField& field = *mixed.field;
   MixedScales& heights = mixed.heights;
+  const Positions& data = mixed.tails.share > 0 ? mixed.tamed : mesh.positions;
   if (!task.keep_rings) mesh.one_ring = {};
   const double of_whole = whole.points ? double(*whole.points) / double(n) : 1;
   const std::vector<float> one_sheet = task.learned ? heights.height : std::vector<float>();
@@ -156,8 +156,8 @@ AutomaticResult automatic_smoothing(AutomaticTask task, AutomaticReport& report,
     smooth[i] = allowed(i, move) ? from + move : from;
   });
   if (own_noise)
-    part_thin_walls(field, mixed.data, heights.several, heights.members_seeing, noise, smooth,
-                    whole.thin_walls, context);
+    part_thin_walls(field, data, heights.several, heights.members_seeing, noise, smooth, whole.thin_walls,
+                    context);
   if (task.learned) {
     const Smoothed smoothed{heights.told, heights.own, one_sheet, smooth,
                             hidden.there() ? hidden.variance : 1};
@@ -166,9 +166,9 @@ AutomaticResult automatic_smoothing(AutomaticTask task, AutomaticReport& report,
       return smooth[i] != from && allowed(i, there - from);  // strays stay
     };
     if (task.sites != nullptr)
-      *task.sites = learned_sites(field, mixed.data, smoothed, noise, context);
+      *task.sites = learned_sites(field, data, smoothed, noise, context);
     else
-      report.learned = take_learned_step(field, mixed.data, smoothed, noise, may_go, smooth, context);
+      report.learned = take_learned_step(field, data, smoothed, noise, may_go, smooth, context);
   }
   // What is left is left of the cloud's own noise, whatever it was smoothed as.
   task.noise.sigma /= task.strength;

@@ -23,6 +23,7 @@
 /// sheets (hidden_sheets.h), over that measured.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -33,9 +34,15 @@
 
 namespace rfsmooth::smoothing {
 
-/// What the scales said of one point.
+/// s, world units.
+inline float learned_scale(const rfs_mesh::NoiseField& noise, std::size_t i) {
+  return float(std::min(noise.local[i], noise.sigma));
+}
+
+/// What a scale said of one point. In half precision: three digits are enough for features, and all scales of
+/// all points are kept.
 struct ScaleSays {
-  float height, own, near, wide;  ///< height: world units, NaN where the scale had nothing to say
+  Eigen::half height, own, near, wide;  ///< height: in s, NaN where the scale had nothing to say
 };
 constexpr std::size_t kTold = 5;  ///< scales that features are made of
 /// What those scales say of a point.
@@ -71,7 +78,7 @@ class Features {
            const rfs_mesh::NoiseField& noise, const Context& context);
 
   /// s, world units.
-  float scale(std::size_t i) const { return float(std::min(noise_.local[i], noise_.sigma)); }
+  float scale(std::size_t i) const { return learned_scale(noise_, i); }
 
   /// For a thread that goes from point to point.
   Surroundings start() const { return {field_, packed_}; }
@@ -81,7 +88,7 @@ class Features {
   void fill(std::size_t i, Row& row, Surroundings& near) const;
 
  private:
-  float candidate(std::size_t i, float that) const;  ///< f - h, clipped; 0 for NaN
+  float candidate(std::size_t i, float that) const;  ///< f - h, clipped; f in s; 0 for NaN
   float height(std::size_t i) const {                ///< h, world units
     return float((smoothed_.place[i] - field_.guide()[i]).dot(field_.normal(i)));
   }

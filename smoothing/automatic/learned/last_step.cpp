@@ -17,7 +17,7 @@ constexpr std::size_t kBlockOfSites = 256;
 /// the mean, over its own width, than the one of half as many points, in sigma^2. Where none is, nothing is
 /// there that a quadric does not follow, and the mixture has averaged over hundreds of points.
 float contradiction(const ScalesSay& says) {
-  return std::max({says[1].wide, says[2].wide, says[3].wide, 0.0F});
+  return std::max({float(says[1].wide), float(says[2].wide), float(says[3].wide), 0.0F});
 }
 
 /// The part of a step that is taken: all of it where patches contradict each other by more than chance does,

@@ -84,15 +84,18 @@ void average_near(const HeightField& field, std::vector<Scale>& scales, const Co
 }
 
 /// What the learned step is told of the scales.
-std::vector<ScalesSay> tell(const std::vector<Scale>& scales, std::size_t n, const Context& context) {
+std::vector<ScalesSay> tell(const std::vector<Scale>& scales, const rfs_mesh::NoiseField& noise,
+                            std::size_t n, const Context& context) {
   std::vector<ScalesSay> told(n);
   for (std::size_t t = 0; t < kTold; ++t) {
     const Scale& scale = scales[told_scale(t, scales.size())];
     for_each_index(context, n, [&](std::size_t i) {
       const bool covered = scale.prediction.covered[i] != 0;
-      const float near = scale.worse[i];
-      told[i][t] = {covered ? scale.prediction.height[i] : std::numeric_limits<float>::quiet_NaN(),
-                    covered ? scale.prediction.own[i] : 1, near, scale.mean.empty() ? near : scale.mean[i]};
+      const float near = scale.worse[i], height = covered
+                                                      ? scale.prediction.height[i] / learned_scale(noise, i)
+                                                      : std::numeric_limits<float>::quiet_NaN();
+      told[i][t] = {Eigen::half(height), Eigen::half(covered ? scale.prediction.own[i] : 1.0F),
+                    Eigen::half(near), Eigen::half(scale.mean.empty() ? near : scale.mean[i])};
     });
   }
   return told;
@@ -215,11 +218,11 @@ class Ladder {
   std::size_t thinnings_ = 0;  ///< 0: the seeds are all points
 };
 
-/// Enters the mixture of all scales by their evidence, and of the data or what stands for them. \param shared
-/// of the noise. \param learned whether the learned step will be told. \param shares of Statistics::Pass.
-void mix(const HeightField& field, Rungs rungs, double shared, bool learned, std::vector<double>& shares,
-         MixedScales& mixed, const Context& context) {
-  const auto alone = float(1 / shared);
+/// Enters the mixture of all scales by their evidence, and of the data or what stands for them. \param
+/// learned whether the learned step will be told. \param shares of Statistics::Pass.
+void mix(const HeightField& field, Rungs rungs, const rfs_mesh::NoiseField& noise, bool learned,
+         std::vector<double>& shares, MixedScales& mixed, const Context& context) {
+  const auto alone = float(1 / noise.shared);
   const std::vector<float>& precision = rungs.precision;
   Mixture mixture(std::move(rungs.first));
   average_near(field, rungs.scales, context);
@@ -227,7 +230,7 @@ void mix(const HeightField& field, Rungs rungs, double shared, bool learned, std
     const std::vector<float> around = field.local_mean(field.local_mean(precision, context), context);
     for (Scale& scale : rungs.scales) in_own_units(precision, around, scale.worse, context);
   }
-  if (learned) mixed.told = tell(rungs.scales, field.size(), context);
+  if (learned) mixed.told = tell(rungs.scales, noise, field.size(), context);
   for (Scale& scale : rungs.scales) {
     // A wide patch is judged over its own width, but must not be far off anywhere near the point either:
     // the few points that it misses by sigmas would be outvoted.
@@ -264,7 +267,7 @@ MixedScales smooth_heights(const HeightField& field, const rfs_mesh::NoiseField&
   const auto of_many = [](const Scale& scale) { return scale.members >= kOwnMean; };
   const auto wide = std::find_if(std::next(scales.begin()), scales.end(), of_many);
   mixed.wide = (wide != scales.end() ? *wide : scales.back()).prediction.height;
-  mix(field, std::move(rungs), noise.shared, learned, whole.shares, mixed, context);
+  mix(field, std::move(rungs), noise, learned, whole.shares, mixed, context);
   return mixed;
 }
 

@@ -90,8 +90,8 @@ void land_hovering(const HeightField& field, const MixedScales& pass, const Mesh
 
 }  // namespace
 
-Tails tame(const HeightField& field, const MixedScales& pass, const Mesh& mesh, Positions& data,
-           rfs_mesh::NoiseField& noise, std::optional<Statistics::Tails>& whole, const Context& context) {
+Tails tame(const HeightField& field, const MixedScales& pass, const Mesh& mesh, rfs_mesh::NoiseField& noise,
+           std::optional<Statistics::Tails>& whole, Positions& data, const Context& context) {
   // Terraces stand out as tails do, and so does what lines of points pass over.
   if (is_of_steps(noise) || noise.across) return {};
   constexpr float kMostItsOwn = 0.8F;
@@ -123,6 +123,7 @@ Tails tame(const HeightField& field, const MixedScales& pass, const Mesh& mesh, 
   }
   const Tails tails(*whole);
   if (!(tails.share > 0)) return tails;
+  data = mesh.positions;
   for_each_index(context, off.size(), [&](std::size_t i) {
     if (!std::isnan(relative[i]))
       data[i] -= (1 - tails.weight(double(relative[i]))) * double(off[i]) * field.normal(i);

@@ -15,11 +15,11 @@
 
 namespace rfsmooth::smoothing {
 
-/// Makes pseudo-observations of `data` (n x 3), and of `noise` what they have. Returns the tails; where there
-/// are none, nothing is changed. \param pass of the first smoothing. \param mesh as connected, with the
-/// positions as they came. \param whole taken if it is there, else entered. O(n), parallel, the same bits for
-/// any number of threads.
-Tails tame(const HeightField& field, const MixedScales& pass, const Mesh& mesh, Positions& data,
-           rfs_mesh::NoiseField& noise, std::optional<Statistics::Tails>& whole, const Context& context);
+/// Makes pseudo-observations `data` (n x 3) of the points, and of `noise` what they have. Returns the tails;
+/// where there are none, nothing is changed. \param pass of the first smoothing. \param mesh as connected,
+/// with the positions as they came. \param whole taken if it is there, else entered. O(n), parallel, the same
+/// bits for any number of threads.
+Tails tame(const HeightField& field, const MixedScales& pass, const Mesh& mesh, rfs_mesh::NoiseField& noise,
+           std::optional<Statistics::Tails>& whole, Positions& data, const Context& context);
 
 }  // namespace rfsmooth::smoothing
