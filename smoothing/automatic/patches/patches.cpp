@@ -84,7 +84,8 @@ void Patches::cover_missing(const std::vector<double>& sigma, Sums& sums, const 
 void Patches::fit(std::size_t first, const std::vector<double>& sigma, Sums& sums, const Context& context) {
   const std::size_t last = seeds_.size(),
                     most = std::max(kWave / members_ / kTogether * kTogether, kLeastWave);
-  memory_.reserve((last - first) * members_);
+  // At first as much again for those that will be missing: to move all members needs twice their memory.
+  memory_.reserve((first == 0 ? 2 : 1) * (last - first) * members_);
   Wave wave(std::min(most, last - first), members_);
   for (wave.first = first; wave.first < last; wave.first += most) {
     const std::size_t count = std::min(most, last - wave.first);
