@@ -281,6 +281,13 @@ Searched search(rfs_mesh::WorkingCloud& cloud, int neighbours, const DenoiseOpti
   return found;
 }
 
+/// Whether the mesh's faces are read while it is smoothed: the automatic smoother asks for neighbours only.
+bool reads_faces(const DenoiseOptions& options) {
+  const FlowOptions& flow = options.flow;
+  return !std::holds_alternative<AutomaticOptions>(flow.flow) || iterations(flow.flow) > 1 || flow.trace ||
+         flow.modifiers.any();
+}
+
 /// The rough mesh of the points, less those that are outliers and set aside.
 Connection connected(rfs_mesh::WorkingCloud& cloud, const DenoiseOptions& options, const Context& context,
                      DenoiseReport& report) {
@@ -291,6 +298,7 @@ Connection connected(rfs_mesh::WorkingCloud& cloud, const DenoiseOptions& option
   // without neighbours they stay. Kept, such an edge would carry a stray over its whole length, and HC's
   // push-back would throw its neighbour after it.
   connect.loose_edges = false;
+  connect.fill_holes = reads_faces(options);
   Searched found = search(cloud, connect.neighbours, options, context, report);
   if (!whole.points) whole.points = found.index->points().size();
   return value_or_throw(

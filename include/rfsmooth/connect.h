@@ -175,6 +175,8 @@ struct ConnectOptions {
   /// Whether vertices that no face reaches keep their SDG edges (Mesh::loose_edges) and are neighbours by
   /// them.
   bool loose_edges = true;
+  /// Whether small holes are filled: it adds faces, and no edge or neighbour.
+  bool fill_holes = true;
   /// The last stage that is wanted; what only later ones make stays empty. Its tree is made even where
   /// `tree_of_points` is false.
   ConnectUpTo up_to = ConnectUpTo::mesh;

@@ -263,7 +263,7 @@ Connection connect_all(const Positions& points, std::optional<Cloud> known, cons
     FlattestPairs kept = keep_flattest_pairs(ground.at, proposed, options.umbrella.same_fold, context);
     c.mesh.faces = std::move(kept.faces);
     c.mesh.one_ring = std::move(kept.one_ring);  // filling holes adds no edge
-    fill_small_holes(ground.at, options.umbrella.quality, c.mesh.faces, context);
+    if (options.fill_holes) fill_small_holes(ground.at, options.umbrella.quality, c.mesh.faces, context);
     Positions().swap(ground.at);
     c.mesh.positions = points;
     for (std::size_t i = 0; i < n; ++i) c.faceless += std::size_t(c.mesh.one_ring.degree(i) == 0);
