@@ -45,22 +45,28 @@ class SmallCholesky {
     return x;
   }
 
-  /// a^-1 = L^-T L^-1
-  Matrix inverse() const {
-    double m[N][N];  // L^-1, lower
+  /// L^-1, lower: |L^-1 f|^2 = f^T a^-1 f, without loss of digits where a is nearly singular
+  Matrix inverse_factor() const {
+    Matrix m = Matrix::Zero();
     for (int j = 0; j < N; ++j) {
-      m[j][j] = per_[j];
+      m(j, j) = per_[j];
       for (int i = j + 1; i < N; ++i) {
         double sum = 0;
-        for (int k = j; k < i; ++k) sum -= l_[i][k] * m[k][j];
-        m[i][j] = sum * per_[i];
+        for (int k = j; k < i; ++k) sum -= l_[i][k] * m(k, j);
+        m(i, j) = sum * per_[i];
       }
     }
+    return m;
+  }
+
+  /// a^-1 = L^-T L^-1
+  Matrix inverse() const {
+    const Matrix m = inverse_factor();
     Matrix inverse;
     for (int i = 0; i < N; ++i)
       for (int j = 0; j <= i; ++j) {
         double sum = 0;
-        for (int k = i; k < N; ++k) sum += m[k][i] * m[k][j];
+        for (int k = i; k < N; ++k) sum += m(k, i) * m(k, j);
         inverse(i, j) = inverse(j, i) = sum;
       }
     return inverse;

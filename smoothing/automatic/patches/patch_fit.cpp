@@ -121,19 +121,15 @@ void PatchFit::fit(Index seed, double sigma) {
   // Few points, or points in a line, leave the quadric undetermined: the ridge makes it flat there.
   Matrix6 system = sums.a;
   system.diagonal().array() += 1e-9 * system(0, 0) + 1e-12;
-  const Matrix6 inverse = SmallCholesky<6>(system).inverse();
-  const Vector6 quadric = inverse * sums.right;
-  const double in_sigma = radius_ / sigma;
-  const double residuals =
-      in_sigma * in_sigma *
+  const Matrix6 half = SmallCholesky<6>(system).inverse_factor();
+  const Vector6 quadric = half.transpose() * (half * sums.right);
+  const QuadricErrors errors =
       evaluate_quadric(size, u_.data(), v_.data(), data_.data(), exact_weight_.data(), guide_.data(),
-                       cosine_.data(), quadric, inverse, {said_.data(), own_.data()});
+                       cosine_.data(), quadric, half, {said_.data(), own_.data()});
   for (std::size_t k = 0; k < size_; ++k) said_[k] *= float(radius_);
-  Matrix6 squared;
-  sum_squared_weights(size, u_.data(), v_.data(), exact_weight_.data(), squared);
-  const double leverage = inverse.cwiseProduct(squared).sum();
+  const double in_sigma = radius_ / sigma, residuals = in_sigma * in_sigma * errors.residuals;
   const double points = sum_ * sum_ / squares_, variance = 6 / points;
-  const double excess = (residuals - (sum_ - leverage)) / sum_ - std::sqrt(2 / points);
+  const double excess = (residuals - (sum_ - errors.leverage)) / sum_ - std::sqrt(2 / points);
   several_ = excess > kRough;
   say_ = float(variance / (variance + std::max(0.0, excess)));
 }

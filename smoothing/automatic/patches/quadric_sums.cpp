@@ -28,8 +28,6 @@ inline void store(const SumFloats& from, float* at) {
   std::memcpy(at, &from, sizeof from);
 }
 
-constexpr std::size_t kPowers[6][2] = {{0, 0}, {1, 0}, {0, 1}, {2, 0}, {1, 1}, {0, 2}};  // of u and v
-
 const auto kTotal = [](const auto& lanes) {
   double sum = 0;
   for (std::size_t k = 0; k < sizeof lanes / sizeof lanes[0]; ++k) sum += double(lanes[k]);
@@ -63,47 +61,39 @@ void sum_quadric(std::size_t size, const float* u, const float* v, const float* 
 }
 
 RFSMOOTH_AVX2
-void sum_squared_weights(std::size_t size, const float* u, const float* v, const float* w,
-                         Eigen::Matrix<double, 6, 6>& sums) {
-  rfs_mesh::QuadricMoments<SumFloats> moments;
-  SumFloats a, b, c;
+QuadricErrors evaluate_quadric(std::size_t size, const float* u, const float* v, const float* y,
+                               const float* w, const float* g, const float* c,
+                               const Eigen::Matrix<double, 6, 1>& q, const Eigen::Matrix<double, 6, 6>& half,
+                               const QuadricSays& says) {
+  float l[6][6], coefficient[6];
+  for (int s = 0; s < 6; ++s) {
+    coefficient[s] = float(q[s]);
+    for (int t = 0; t < 6; ++t) l[s][t] = float(half(s, t));
+  }
+  const SumFloats one = SumFloats{} + 1.0F;
+  SumFloats residuals = {}, leverage = {}, a, b, at, weight, cosine;
   for (std::size_t k = 0; k < size; k += kLanes) {
     load(u + k, a);
     load(v + k, b);
-    load(w + k, c);
-    c *= c;
-    moments.add(a, b, c);
+    load(w + k, weight);
+    load(c + k, cosine);
+    const SumFloats f[6] = {one, a, b, a * a, a * b, b * b};
+    SumFloats height = {}, influence = {};
+    for (int s = 0; s < 6; ++s) {
+      height += coefficient[s] * f[s];
+      SumFloats part = l[s][0] * f[0];
+      for (int t = 1; t <= s; ++t) part += l[s][t] * f[t];
+      influence += part * part;
+    }
+    store(influence, says.influence + k);
+    leverage += weight * weight * influence;
+    load(g + k, at);
+    store((height - at) * cosine, says.height + k);
+    load(y + k, at);
+    at = (at - height) * cosine;
+    residuals += weight * at * at;
   }
-  sums = moments.matrix(kTotal);
-}
-
-RFSMOOTH_AVX2
-double evaluate_quadric(std::size_t size, const float* u, const float* v, const float* y, const float* w,
-                        const float* g, const float* c, const Eigen::Matrix<double, 6, 1>& q,
-                        const Eigen::Matrix<double, 6, 6>& inverse, const QuadricSays& says) {
-  SumFloats f[6], of[5][5] = {}, sum = {}, a, b, e, factor;
-  for (int t = 0; t < 6; ++t) f[t] = SumFloats{} + float(q[t]);
-  // The coefficient of u^p v^q of f^T inverse f is of[q][p].
-  for (int s = 0; s < 6; ++s)
-    for (int t = 0; t < 6; ++t)
-      of[kPowers[s][1] + kPowers[t][1]][kPowers[s][0] + kPowers[t][0]] += float(inverse(s, t));
-  for (std::size_t k = 0; k < size; k += kLanes) {
-    load(u + k, a);
-    load(v + k, b);
-    const SumFloats height = f[0] + a * (f[1] + a * f[3] + b * f[4]) + b * (f[2] + b * f[5]);
-    load(c + k, factor);
-    load(g + k, e);
-    store((height - e) * factor, says.height + k);
-    load(y + k, e);
-    e = (e - height) * factor;
-    load(w + k, factor);
-    sum += factor * e * e;
-    const SumFloats r0 = of[0][0] + a * (of[0][1] + a * (of[0][2] + a * (of[0][3] + a * of[0][4]))),
-                    r1 = of[1][0] + a * (of[1][1] + a * (of[1][2] + a * of[1][3])),
-                    r2 = of[2][0] + a * (of[2][1] + a * of[2][2]), r3 = of[3][0] + a * of[3][1];
-    store(r0 + b * (r1 + b * (r2 + b * (r3 + b * of[4][0]))), says.influence + k);
-  }
-  return kTotal(sum);
+  return {kTotal(residuals), kTotal(leverage)};
 }
 
 }  // namespace rfsmooth::smoothing

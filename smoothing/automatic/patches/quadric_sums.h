@@ -1,6 +1,6 @@
 /// The sums of a weighted quadric fit over many points, and its values there, several points an instruction.
 ///
-///     a = sum w f f^T,   b = sum w^2 f f^T,   right = sum w y f,   f = (1, u, v, u^2, u v, v^2)
+///     a = sum w f f^T,   right = sum w y f,   f = (1, u, v, u^2, u v, v^2)
 ///
 /// Thread safe.
 #pragma once
@@ -30,19 +30,23 @@ struct QuadricSums {
 void sum_quadric(std::size_t size, const float* u, const float* v, const float* y, const float* w,
                  QuadricSums& sums);
 
-/// b, summed in single precision.
-void sum_squared_weights(std::size_t size, const float* u, const float* v, const float* w,
-                         Eigen::Matrix<double, 6, 6>& sums);
-
-/// What a fit says of its points.
+/// What a fit says of its points, each an array.
 struct QuadricSays {
   float* height;     ///< (q.f - g) c, the quadric over g along a point's own direction
-  float* influence;  ///< f^T inverse f
+  float* influence;  ///< f^T a^-1 f
 };
 
-/// Enters that of every point; returns the sum of w ((y - q.f) c)^2.
-double evaluate_quadric(std::size_t size, const float* u, const float* v, const float* y, const float* w,
-                        const float* g, const float* c, const Eigen::Matrix<double, 6, 1>& q,
-                        const Eigen::Matrix<double, 6, 6>& inverse, const QuadricSays& says);
+/// How a fit and its points agree.
+struct QuadricErrors {
+  double residuals;  ///< sum of w ((y - q.f) c)^2
+  double leverage;   ///< sum of w^2 f^T a^-1 f
+};
+
+/// Enters what the fit says of every point. \param half L^-1 of L L^T = a: with a^-1 itself, influences would
+/// lose their digits where points lie in a line. O(size), the same bits every time.
+QuadricErrors evaluate_quadric(std::size_t size, const float* u, const float* v, const float* y,
+                               const float* w, const float* g, const float* c,
+                               const Eigen::Matrix<double, 6, 1>& q, const Eigen::Matrix<double, 6, 6>& half,
+                               const QuadricSays& says);
 
 }  // namespace rfsmooth::smoothing
