@@ -22,7 +22,10 @@ class RawArray {
   void resize(std::size_t size) {
     if (size > capacity_) {
       const std::size_t room = size + size / 32;  // slightly larger sizes often follow
-      if (size_ == 0) items_.reset();             // never the memory of both
+      if (size_ == 0) {                           // never the memory of both
+        items_.reset();
+        capacity_ = 0;
+      }
       std::unique_ptr<T[]> larger(new T[room]);
       std::copy(items_.get(), items_.get() + size_, larger.get());
       items_ = std::move(larger);

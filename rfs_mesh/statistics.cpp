@@ -131,7 +131,8 @@ std::vector<std::string> check(const Statistics& statistics) {
   Wrong wrong;
   if (statistics.box)
     wrong.expect(is_box(*statistics.box), "box: its corners are not the lowest and the highest");
-  wrong.expect(statistics.points.value_or(1) >= 1, "points: there are none");
+  const std::uint64_t points = statistics.points.value_or(1);
+  wrong.expect(points >= 1 && points < std::uint64_t{1} << 53, "points: is no number of points");
   wrong.expect(is_length(statistics.reach.value_or(0)), "reach: is no length");
   wrong.expect(is_length(statistics.spacing.value_or(0)), "spacing: is no length");
   if (const auto& scale = statistics.scale) {

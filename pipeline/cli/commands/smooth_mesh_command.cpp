@@ -8,11 +8,13 @@
 
 #include <rfsmooth/denoise.h>
 
+#include "base/disjoint_sets.h"
 #include "base/fail.h"
 #include "base/stopwatch.h"
 #include "pipeline/cli/commands/command.h"
 #include "pipeline/cli/console/solver_said.h"
 #include "pipeline/cli/console/trace_file.h"
+#include "pipeline/cli/files/cloud_files.h"
 #include "pipeline/cli/files/cloud_jobs.h"
 #include "pipeline/cli/files/constraint_fields.h"
 #include "pipeline/cli/files/file_mesh.h"
@@ -93,20 +95,31 @@ std::vector<Edge> sharp_edges(const Mesh& mesh, double degrees) {
   std::vector<Edge> sharp;
   rfs_mesh::for_each_edge(rfs_mesh::edge_faces(mesh.faces), [&](const EdgeFace* first, const EdgeFace* last) {
     if (last - first != 2) return;
-    const double cosine = normal(first[0]).dot(normal(first[1]));  // faces that run the same way disagree
+    const Eigen::Vector3d one = normal(first[0]), two = normal(first[1]);
+    if (one.isZero(0) || two.isZero(0)) return;  // a face without area has no normal
+    const double cosine = one.dot(two);          // faces that run the same way disagree
     if ((first[0].forward == first[1].forward ? -cosine : cosine) < least)
       sharp.push_back({first->a, first->b});
   });
   return sharp;
 }
 
-/// Turns faces that do not agree with their neighbours, so that ridges and ravines are told apart. Where all
-/// agree, the side that the file chose stays.
+/// Turns faces that do not agree with their neighbours, so that ridges and ravines are told apart. A part
+/// whose faces agree keeps the side that the file chose: a cavity is inside out on purpose.
 void make_agree(Mesh& mesh) {
-  std::vector<Face> turned = smoothing::oriented_as_far_as_possible(mesh);
-  std::size_t others = 0;
-  for (std::size_t f = 0; f < turned.size(); ++f) others += turned[f] != mesh.faces[f];
-  if (others > 0 && others < turned.size()) mesh.faces = std::move(turned);
+  using rfs_mesh::EdgeFace;
+  DisjointSets<Index> parts(mesh.faces.size());
+  std::vector<Index> at_odds;
+  rfs_mesh::for_each_edge(rfs_mesh::edge_faces(mesh.faces), [&](const EdgeFace* first, const EdgeFace* last) {
+    if (last - first != 2) return;
+    parts.join(first[0].face, first[1].face);
+    if (first[0].forward == first[1].forward) at_odds.push_back(first->face);
+  });
+  std::vector<char> turns(mesh.faces.size(), 0);
+  for (const Index face : at_odds) turns[parts.of(face)] = 1;
+  const std::vector<Face> agreeing = smoothing::oriented_as_far_as_possible(mesh);
+  for (std::size_t f = 0; f < agreeing.size(); ++f)
+    if (turns[parts.of(Index(f))] != 0) mesh.faces[f] = agreeing[f];
 }
 
 /// Writes the refined mesh into the cloud.
@@ -122,11 +135,8 @@ void refine_file(const After& after, pipeline::io::Cloud& cloud, FileMesh& file,
                       ": a refined mesh has new points; only x, y, z and triangles are written");
 }
 
-/// Adds the field of ridges and ravines. \throw Failure for OFF, which cannot hold it.
-void mark_ridges(const After& after, pipeline::io::Cloud& cloud, FileMesh& file, const Job& job,
-                 const Context& context) {
-  if (cloud.format == pipeline::io::Format::off)
-    fail(ErrorCode::usage, "{}: OFF cannot hold the field of --ridges; use PLY", job.input);
+/// Adds the field of ridges and ravines.
+void mark_ridges(const After& after, pipeline::io::Cloud& cloud, FileMesh& file, const Context& context) {
   make_agree(file.mesh);
   const std::vector<int> kind = smoothing::ridges_and_ravines(file.mesh, after.ridge_curvature, context);
   std::vector<double> field(cloud.size(), 0);
@@ -142,6 +152,9 @@ void mark_ridges(const After& after, pipeline::io::Cloud& cloud, FileMesh& file,
 std::string smooth_file(const SmoothMeshCommandOptions& options, std::vector<TraceRow>& trace,
                         pipeline::io::Cloud& cloud, const CloudTask& task) {
   const auto& [job, context, console, stages, entry] = task;
+  if (options.after.ridges && !options.job.files.drop_unsupported &&
+      output_format(cloud, job.output, options.job.files) == pipeline::io::Format::off)
+    fail(ErrorCode::usage, "{}: OFF cannot hold the field of --ridges; use PLY", job.output);
   Stopwatch watch(stages, "connect");
   FileMesh file =
       file_mesh(cloud, job.input, context, options.flow.modifiers.preserve == Preserve::height_field);
@@ -172,7 +185,7 @@ std::string smooth_file(const SmoothMeshCommandOptions& options, std::vector<Tra
   }
   if (options.after.ridges) {
     watch.next("ridges");
-    mark_ridges(options.after, cloud, file, job, context);
+    mark_ridges(options.after, cloud, file, context);
   }
 
   SmoothMeshCommandOptions used = options;

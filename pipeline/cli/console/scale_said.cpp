@@ -2,6 +2,7 @@
 
 #include <array>
 #include <filesystem>
+#include <system_error>
 
 #include <fmt/format.h>
 
@@ -32,7 +33,8 @@ void tell_scale(const std::string& name, const pipeline::io::RefinedScale& scale
 
 void warn_of_index(const std::string& output, Console& console) {
   const std::filesystem::path index = std::filesystem::path(output).replace_extension(".lax");
-  if (std::filesystem::exists(index))
+  std::error_code unknown;
+  if (std::filesystem::exists(index, unknown))
     console.warn(fmt::format("{}: an index of other points: make it anew", index.string()));
 }
 

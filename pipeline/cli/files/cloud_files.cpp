@@ -80,7 +80,8 @@ io::Cloud load_cloud(const std::string& input, const Context& context) {
   const std::string standard_input = "/dev/stdin", path = input == "-" ? standard_input : input;
   std::error_code unknown;
   // The file's own size is the least that reading it takes.
-  if (const auto bytes = std::filesystem::file_size(path, unknown); !unknown) need_memory(input, bytes);
+  if (const auto bytes = std::filesystem::file_size(path, unknown); !unknown)
+    need_memory(input == "-" ? "standard input" : input, bytes);
   auto cloud = io::read_cloud(path, {}, context);
   if (input != "-" || cloud.ok()) return value_or_throw(std::move(cloud));
   Error error = cloud.error();

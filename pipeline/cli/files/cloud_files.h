@@ -38,8 +38,8 @@ std::vector<std::string> store_cloud(const pipeline::io::Cloud& cloud, const std
                                      const FileOptions& options, const Context& context);
 
 /// Warns if rounding the coordinates to float32 has moved them by more than a twentieth of the spacing, noise
-/// that denoise leaves alone. `xyz`: the file's coordinates. `spacing`: 0 if no two points differ, and then
-/// there is nothing to say. O(n).
+/// that denoise leaves alone. `xyz`: n x 3, the file's coordinates; ones with more digits than float32 are
+/// not rounded. `spacing`: 0 if no two points differ, and then there is nothing to say. O(n).
 void warn_if_coarse(const pipeline::io::Cloud& cloud, const std::vector<double>& xyz, double spacing,
                     const std::string& name, Console& console);
 
@@ -47,7 +47,8 @@ void warn_if_coarse(const pipeline::io::Cloud& cloud, const std::vector<double>&
 pipeline::io::Format output_format(const pipeline::io::Cloud& cloud, const std::string& output,
                                    const FileOptions& options);
 
-/// Format, encoding, points, organised size and fields, for reports and `info`.
+/// Format, encoding, points, organised size, fields, other elements and, of LAS, version, scale and records:
+/// for reports and `info`.
 nlohmann::ordered_json describe(const pipeline::io::Cloud& cloud);
 
 /// The file options that change the output's bytes, for reports.

@@ -150,6 +150,8 @@ ordered_json json_of(const std::optional<NotSmoothed>& why) {
   return why ? ordered_json(kNotSmoothed[std::size_t(*why)]) : ordered_json();
 }
 
+static_assert(std::size_t(NotSmoothed::too_little_noise) + 1 == kNotSmoothed.size());
+
 std::optional<NotSmoothed> not_smoothed_of(const ordered_json& json) {
   for (std::size_t i = 0; i < kNotSmoothed.size(); ++i)
     if (json == kNotSmoothed[i]) return NotSmoothed(i);

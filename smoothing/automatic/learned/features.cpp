@@ -88,30 +88,30 @@ Features::Features(const HeightField& field, const Positions& data, const Smooth
     const float r = std::clamp((field.local()[i].height - height(i)) / scale(i), -kFarResidual, kFarResidual);
     packed_[i] = {(data[i] - guide).cast<float>(), (smoothed.place[i] - guide).cast<float>(),
                   field.local()[i].normal, r};
-    const float narrow = candidate(i, float(smoothed.scales[i][0].height)),
-                third = candidate(i, float(smoothed.scales[i][2].height));
+    const float narrow = candidate(i, float(smoothed.scales[i][0].off)),
+                third = candidate(i, float(smoothed.scales[i][2].off));
     pooled_[i] << r, r * r, r * r * r / 6, r * r * r * r / 6, smoothed.own[i], narrow * narrow, third * third,
         0;
   });
   for (int t = 0; t < kTimes; ++t) pooled_ = field.local_mean(pooled_, context);
 }
 
-float Features::candidate(std::size_t i, float that) const {
-  if (std::isnan(that)) return 0;
-  return std::clamp(that - height(i) / scale(i), -kFarCandidate, kFarCandidate);
+float Features::candidate(std::size_t i, float off) const {
+  if (std::isnan(off)) return 0;
+  return std::clamp((field_.local()[i].height - height(i)) / scale(i) + off, -kFarCandidate, kFarCandidate);
 }
 
 void Features::fill(std::size_t i, Row& row, Surroundings& near) const {
   Writer to(row);
   const float s = scale(i);
   for (const ScaleSays& says : smoothed_.scales[i]) {
-    to.odd(candidate(i, float(says.height)));
+    to.odd(candidate(i, float(says.off)));
     to.even(float(says.own));
     to.even(std::clamp(float(says.near), -kFarEvidence, kFarEvidence));
     to.even(std::clamp(float(says.wide), -kFarEvidence, kFarEvidence));
   }
   to.odd(packed_[i].residual);
-  to.odd(candidate(i, smoothed_.mixed[i] / scale(i)));
+  to.odd(candidate(i, (smoothed_.mixed[i] - field_.local()[i].height) / scale(i)));
   to.even(smoothed_.own[i]);
   to.odd(pooled_[i][0]);
   to.odd(pooled_[i][2]);

@@ -15,9 +15,9 @@ namespace rfsmooth::smoothing {
 namespace {
 
 constexpr std::size_t kAxis = 12;   // nearest points whose normals make the patch's axis
-constexpr float kRounded = 0.5F;    // of the weights kept
+constexpr float kRounded = 0.5F;    // added before a weight is cut to a whole number
 constexpr double kOnePlace = 1e-6;  // sigma: members of so small a patch are one place; it is flat
-constexpr double kRough = 0.1;      // variance beyond the noise's, sigma^2: there is more than one sheet
+constexpr double kRough = 0.1;      // excess, sigma^2, above which there is more than one sheet
 
 /// The directions of a patch's u and v, unit; v zero where only u is fitted over.
 struct PatchAxes {

@@ -3,8 +3,12 @@
 /// normals. Points on the two sides of an edge take part in different patches; a patch that bridges one has
 /// residuals above the noise and says less wherever another covers the point:
 ///
-///     say = v / (v + max(0, excess)),  excess = RSS / sigma^2 - degrees of freedom per unit of weight,
-///                                       v = 6 / (effective number of points)
+///     say = v / (v + max(0, excess)),  v = 6 / N,  N = (sum w)^2 / sum w^2, the effective number of points,
+///     excess = (RSS / sigma^2 - (sum w - tr(A^-1 B))) / sum w - sqrt(2 / N),
+///     A = sum w f f^T,  B = sum w^2 f f^T,  f = (1, u, v, u^2, u v, v^2)
+///
+/// The excess is by how much the residuals' variance is above that of the noise, in sigma^2, beyond one
+/// standard deviation of chance.
 ///
 /// Members along a line, as on a laser's ring, get the parabola over u alone; it says as much as a quadric
 /// does.
@@ -25,7 +29,7 @@ namespace rfsmooth::smoothing {
 /// in the same order give the same bits.
 class PatchFit {
  public:
-  /// \param members at most the number of points. Keeps a reference to `field`.
+  /// \param members 1 to the number of points. Keeps a reference to `field`.
   PatchFit(const HeightField& field, std::size_t members);
 
   /// \param sigma of the noise, world units, > 0. O(log n + members).
@@ -34,13 +38,13 @@ class PatchFit {
   std::size_t size() const { return size_; }  ///< members whose weight is not 0
   const Index* point() const { return point_.data(); }
   const MemberWeight* weight() const { return weight_.data(); }  ///< (1 - d^2/r^2)^2 cos^2 of each
-  /// What it says of their heights, each along the point's own normal over the guide.
+  /// What it says of their heights, world units, each along the point's own normal over the guide.
   const float* height() const { return said_.data(); }
-  /// f^T A^-1 f of each, A the normal equations: with the point's weight its own share in that.
+  /// f^T A^-1 f of each: times weight / kMemberUnit the share of the point's own height in that.
   const float* own() const { return own_.data(); }
 
-  float say() const { return say_; }         ///< how much that counts beside what other patches say
-  bool several() const { return several_; }  ///< whether its points seem to lie on several sheets
+  float say() const { return say_; }         ///< 0 to 1; 0 if size() is 0
+  bool several() const { return several_; }  ///< whether the excess shows more than one sheet
 
  private:
   Eigen::Vector3d axis_at(Index seed) const;

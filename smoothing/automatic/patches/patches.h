@@ -19,7 +19,8 @@ namespace rfsmooth::smoothing {
 struct Prediction {
   std::vector<float> height;  ///< n, along the point's own normal over the guide
   std::vector<float> own;     ///< n: d height_i / d z_i, the share of the point's own height
-  std::vector<char> covered;  ///< n: whether any patch reaches the point
+  std::vector<char>
+      covered;  ///< n: whether any patch reaches the point; height and own are 0 where none does
 };
 
 /// The share of a point's noise that stays in a prediction which has the share `own` of its height: that of
@@ -33,21 +34,23 @@ class Patches {
  public:
   /// Patches of `members` points each (at most the number of points) around the points `seeds`, evenly
   /// spread; eight patches over a point are good (16 gain 2 % of the error at twice the time). Places that
-  /// they leave uncovered get seeds of their own. \param sigma n: the noise, world units, > 0. It only
-  /// weighs patches against each other. `memory` is for their members, outlives them and belongs to one
-  /// Patches at a time. O(n log n); memory about 6 bytes a point and patch over it. \throw std::length_error
-  /// for 2^32 members in all.
+  /// they leave uncovered get seeds of their own. \param sigma n: the noise, world units, > 0: how much a
+  /// patch counts, and whether it sees several sheets. `memory` is for their members, outlives them and
+  /// belongs to one Patches at a time. O(n log n); memory 6 bytes a point and patch over it, beside 14 bytes
+  /// of each of the 1,048,576 members, or of the 512 patches if these are more, that are fitted side by side.
+  /// \throw std::invalid_argument without seeds or members, Failure for 2^32 members in all.
   Patches(const HeightField& field, std::size_t members, std::vector<Index> seeds,
           const std::vector<double>& sigma, PatchMembers& memory, const Context& context);
 
   /// What they say; to be taken once.
   Prediction take_prediction() { return std::move(prediction_); }
 
-  /// Seeds, ascending, of the patches that see more than one sheet: residuals that vary by more than the
-  /// noise.
+  /// Seeds, ascending (one may come twice), of the patches that see more than one sheet: residuals that vary
+  /// by more than the noise.
   const std::vector<Index>& with_several_sheets() const { return several_; }
 
-  /// Averages over patches of the patches' averages: a mean over about twice `members` points. O(n).
+  /// Averages over patches of the patches' averages: a mean over about twice `members` points. \param values
+  /// n. Not after another Patches was given the same memory. O(members of all patches).
   std::vector<float> mean(const std::vector<float>& values, const Context& context) const;
 
  private:
@@ -64,7 +67,7 @@ class Patches {
   std::vector<Index> seeds_;
   PatchMembers& memory_;
   Prediction prediction_;
-  std::vector<float> around_;  ///< n: the point's weight in all of them
+  std::vector<float> around_;  ///< n: sum of the point's weights in all of them, in 1/65535
   std::vector<Index> several_;
 };
 

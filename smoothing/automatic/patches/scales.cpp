@@ -84,18 +84,20 @@ void average_near(const HeightField& field, std::vector<Scale>& scales, const Co
 }
 
 /// What the learned step is told of the scales.
-std::vector<ScalesSay> tell(const std::vector<Scale>& scales, const rfs_mesh::NoiseField& noise,
-                            std::size_t n, const Context& context) {
-  std::vector<ScalesSay> told(n);
+std::vector<ScalesSay> tell(const HeightField& field, const std::vector<Scale>& scales,
+                            const rfs_mesh::NoiseField& noise, const Context& context) {
+  std::vector<ScalesSay> told(field.size());
   for (std::size_t t = 0; t < kTold; ++t) {
     const Scale& scale = scales[told_scale(t, scales.size())];
-    for_each_index(context, n, [&](std::size_t i) {
-      const bool covered = scale.prediction.covered[i] != 0;
-      const float near = scale.worse[i], height = covered
-                                                      ? scale.prediction.height[i] / learned_scale(noise, i)
-                                                      : std::numeric_limits<float>::quiet_NaN();
-      told[i][t] = {Eigen::half(height), Eigen::half(covered ? scale.prediction.own[i] : 1.0F),
-                    Eigen::half(near), Eigen::half(scale.mean.empty() ? near : scale.mean[i])};
+    for_each_index(context, told.size(), [&](std::size_t i) {
+      const Prediction& said = scale.prediction;
+      const float near = scale.worse[i], wide = scale.mean.empty() ? near : scale.mean[i];
+      if (said.covered[i] != 0)
+        told[i][t] = {Eigen::half((said.height[i] - field.local()[i].height) / learned_scale(noise, i)),
+                      Eigen::half(said.own[i]), Eigen::half(near), Eigen::half(wide)};
+      else
+        told[i][t] = {Eigen::half(std::numeric_limits<float>::quiet_NaN()), Eigen::half(1.0F),
+                      Eigen::half(near), Eigen::half(wide)};
     });
   }
   return told;
@@ -215,7 +217,7 @@ class Ladder {
   std::vector<float> risk_;  ///< n: of the last scale
   PatchMembers memory_;
   std::vector<Index> seeds_;
-  std::size_t thinnings_ = 0;  ///< 0: the seeds are all points
+  std::size_t thinnings_ = 0;  ///< of the seeds; 0: there are none yet
 };
 
 /// Enters the mixture of all scales by their evidence, and of the data or what stands for them. \param
@@ -230,7 +232,7 @@ void mix(const HeightField& field, Rungs rungs, const rfs_mesh::NoiseField& nois
     const std::vector<float> around = field.local_mean(field.local_mean(precision, context), context);
     for (Scale& scale : rungs.scales) in_own_units(precision, around, scale.worse, context);
   }
-  if (learned) mixed.told = tell(rungs.scales, noise, field.size(), context);
+  if (learned) mixed.told = tell(field, rungs.scales, noise, context);
   for (Scale& scale : rungs.scales) {
     // A wide patch is judged over its own width, but must not be far off anywhere near the point either:
     // the few points that it misses by sigmas would be outvoted.

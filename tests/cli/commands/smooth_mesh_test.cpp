@@ -310,6 +310,73 @@ TEST_F(SmoothMesh, RidgesAreWrittenAsAField) {
   EXPECT_TRUE(same || opposite);
 }
 
+/// An octahedron squeezed along z, subdivided by nothing: its faces outward, or all inward.
+std::string flat_octahedron(double x, bool inward, int first) {
+  const int s[6][3] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+  std::string text;
+  if (first < 0) {
+    for (const auto& v : s)
+      text += std::to_string(x + v[0]) + " " + std::to_string(v[1]) + " " + std::to_string(0.5 * v[2]) + "\n";
+    return text;
+  }
+  for (const auto& f : {std::array{0, 2, 4}, std::array{2, 1, 4}, std::array{1, 3, 4}, std::array{3, 0, 4},
+                        std::array{2, 0, 5}, std::array{1, 2, 5}, std::array{3, 1, 5}, std::array{0, 3, 5}})
+    text += "3 " + std::to_string(first + f[0]) + " " + std::to_string(first + f[inward ? 2 : 1]) + " " +
+            std::to_string(first + f[inward ? 1 : 2]) + "\n";
+  return text;
+}
+
+TEST_F(SmoothMesh, RidgesOfAPartKeepTheSideOfTheFileWhateverStandsBesideIt) {
+  const auto file = [](bool two) {
+    return "ply\nformat ascii 1.0\nelement vertex " + std::to_string(two ? 12 : 6) +
+           "\nproperty double x\nproperty double y\nproperty double z\nelement face " +
+           std::to_string(two ? 16 : 8) + "\nproperty list uchar int vertex_indices\nend_header\n" +
+           flat_octahedron(0, true, -1) + (two ? flat_octahedron(10, false, -1) : "") +
+           flat_octahedron(0, true, 0) + (two ? flat_octahedron(10, false, 6) : "");
+  };
+  const auto alone = smoothed(file(false), {"--iterations", "0", "--ridges"}, 6),
+             beside = smoothed(file(true), {"--iterations", "0", "--ridges"}, 12);
+  int marked = 0;
+  for (std::size_t v = 0; v < 6; ++v) {
+    EXPECT_EQ(alone[v][3], beside[v][3]) << v;
+    EXPECT_EQ(beside[v][3], -beside[6 + v][3]) << v;
+    marked += alone[v][3] != 0;
+  }
+  EXPECT_GT(marked, 0);
+}
+
+TEST_F(SmoothMesh, RidgesOfAnOffFileGoIntoAPly) {
+  put("in.off", "OFF\n6 8 0\n" + flat_octahedron(0, false, -1) + flat_octahedron(0, false, 0));
+  const Ran ran = run({"smooth-mesh", "in.off", "out.ply", "--iterations", "0", "--ridges"});
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  EXPECT_THAT(take("out.ply"), HasSubstr("ridge"));
+  const Ran off = run({"smooth-mesh", "in.off", "out.off", "--iterations", "0", "--ridges"});
+  EXPECT_EQ(off.code, 2);
+  EXPECT_THAT(off.err, HasSubstr("out.off: OFF cannot hold the field of --ridges; use PLY"));
+  EXPECT_FALSE(there("out.off"));
+}
+
+TEST_F(SmoothMesh, AFaceWithoutAreaMakesNoSharpEdges) {
+  // A face of the corner, of its neighbour and of the corner again would be none; one along an edge of the
+  // grid, through a vertex in the middle of it, is.
+  std::string mesh = bumpy_grid(
+      "", [](int, int) { return ""; }, 9);
+  const std::string count = "element face 128", more = "element face 129";
+  mesh.replace(mesh.find(count), count.size(), more);
+  mesh += "3 0 2 1\n";
+  put("with.ply", mesh);
+  put("without.ply", bumpy_grid(
+                         "", [](int, int) { return ""; }, 9));
+  for (const char* name : {"with", "without"}) {
+    const Ran ran = run({"smooth-mesh", std::string(name) + ".ply", std::string(name) + "_out.ply",
+                         "--iterations", "0", "--refine", "1", "--sharp-angle", "60"});
+    ASSERT_EQ(ran.code, 0) << ran.err;
+  }
+  const auto with = rows_of(take("with_out.ply"), 81), without = rows_of(take("without_out.ply"), 81);
+  for (std::size_t v = 27; v < 81; ++v)  // away from the face
+    for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(with[v][c], without[v][c], 1e-5) << v;
+}
+
 TEST_F(SmoothMesh, FacesWithACornerThatIsNotFiniteAreSaid) {
   std::string mesh = bumpy_grid("");
   const std::size_t first = mesh.find("end_header\n") + 11;

@@ -21,6 +21,7 @@ Statistics full() {
   all.noise->across = 128;
   all.noise->shared = 3.7;
   all.noise->step = 1.0 / 30;
+  all.noise->apart = 0.05;
   all.noise->on_grid = true;
   all.noise->sites = {{0.1, 0.2, 0.3}, {1, 2, 3}};
   all.noise->at_sites = {0.1, 1.0 / 3};
@@ -44,6 +45,7 @@ TEST(StatisticsJson, IsTheSameWhenReadAgain) {
   ASSERT_TRUE(again.noise);
   EXPECT_EQ(again.noise->across, full().noise->across);
   EXPECT_EQ(again.noise->shared, full().noise->shared);
+  EXPECT_EQ(again.noise->apart, 0.05);
   EXPECT_TRUE(again.noise->on_grid);
   EXPECT_EQ(again.noise->at_sites, full().noise->at_sites);
   EXPECT_EQ(again.noise->spacing_at_sites, full().noise->spacing_at_sites);

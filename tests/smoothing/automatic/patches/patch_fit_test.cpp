@@ -15,14 +15,16 @@ using namespace rfsmooth::smoothing;
 
 namespace {
 
-/// A flat guide of 20 x 20 points, jittered, and heights over it of the size of a spacing.
+/// A flat guide of 20 x 20 points, jittered, and heights over it of the size of a spacing. \param bent down
+/// by so much times the squared distance from the middle
 struct Sheet {
-  Sheet() {
+  explicit Sheet(double bent = 0) {
     std::mt19937 random(11);
     std::uniform_real_distribution<double> jitter(-0.3, 0.3);
     for (int i = 0; i < 20; ++i)
       for (int j = 0; j < 20; ++j) {
-        guide.emplace_back(i + jitter(random), j + jitter(random), 0);
+        const double x = i + jitter(random), y = j + jitter(random);
+        guide.emplace_back(x, y, -bent * ((x - 10) * (x - 10) + (y - 10) * (y - 10)));
         data.emplace_back(guide.back().x(), guide.back().y(), 2 * jitter(random));
       }
   }
@@ -103,7 +105,50 @@ TEST(PatchFit, RoughPlacesSaySoAndCountLess) {
   EXPECT_GT(patch.say(), 0);
 }
 
-TEST(PatchFit, PointsAtOnePlaceAreFlat) {
+// On a bent guide the quadric is over the tangent plane, and what it says along the normals of others.
+TEST(PatchFit, SaysHeightsAlongThePointsOwnNormals) {
+  Sheet sheet(0.02);
+  const HeightField normals = sheet.field();
+  for (std::size_t i = 0; i < sheet.guide.size(); ++i)
+    sheet.data[i] = sheet.guide[i] + (normals.normal(i).z() > 0 ? 0.3 : -0.3) * normals.normal(i);
+  const HeightField field = sheet.field();
+  PatchFit patch(field, 40);
+  patch.fit(210, 0.1);
+  ASSERT_GT(patch.size(), 35u);
+  for (std::size_t k = 0; k < patch.size(); ++k)
+    EXPECT_NEAR(double(patch.height()[k]), field.height(patch.point()[k]), 0.02);
+}
+
+// Of members in a line the normal equations say next to nothing across it; A^-1 itself, in single precision,
+// has no digits left there.
+TEST(PatchFit, SharesAddUpToThoseOfAParabolaWhereMembersLieInALine) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise;
+  for (const double beside : {0.0, 1e-3, 1e-2}) {
+    Positions guide, data;
+    for (int i = 0; i < 64; ++i) {
+      const double off = beside * noise(random);
+      guide.emplace_back(0.8 * i - 0.6 * off, 0.6 * i + 0.8 * off, 0);
+      data.push_back(guide.back() + Eigen::Vector3d(0, 0, 0.1 * noise(random)));
+    }
+    const HeightField field(guide, rfs_mesh::KdTree(guide, {}), support::near_on(guide), data, {}, {});
+    PatchFit patch(field, 16);
+    patch.fit(30, 0.1);
+    ASSERT_GE(patch.size(), 8u);
+    double shares = 0;
+    for (std::size_t k = 0; k < patch.size(); ++k) {
+      EXPECT_GE(patch.own()[k], 0);
+      const double share = double(patch.own()[k]) * double(patch.weight()[k]) / double(kMemberUnit);
+      EXPECT_LE(share, 1.001);
+      shares += share;
+    }
+    // The trace of a projection: as many as coefficients can be told, 3 along the line, at most 6.
+    EXPECT_GT(shares, 2.9) << beside;
+    EXPECT_LT(shares, 6.01) << beside;
+  }
+}
+
+TEST(PatchFit, PointsAtOnePlaceGiveNumbers) {
   Sheet sheet;
   for (std::size_t i = 0; i < 60; ++i) sheet.guide[i] = sheet.guide[0];
   const HeightField field = sheet.field();

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <rfsmooth/result.h>
+
 using namespace rfsmooth;
 using namespace rfsmooth::smoothing;
 
@@ -22,6 +24,7 @@ std::vector<PutIn> fill(PatchMembers& members, std::size_t points, std::size_t p
   std::mt19937 random(5);
   std::vector<PutIn> all;
   members.clear(points);
+  members.reserve(batch * kStride, batch * kStride);
   for (std::size_t first = 0; first < patches; first += batch) {
     std::vector<std::size_t> kept;
     std::vector<Index> point(batch * kStride);
@@ -36,7 +39,7 @@ std::vector<PutIn> fill(PatchMembers& members, std::size_t points, std::size_t p
         all.push_back({p, point[at], weight[at]});
       }
     }
-    members.reserve(kept.size() * kStride);
+    if (first > 0) members.reserve(kept.size() * kStride, 0);
     members.append(kept, kStride, point.data(), weight.data(), {});
   }
   return all;
@@ -70,9 +73,22 @@ TEST(PatchMembers, AreUsedAgainForOtherPoints) {
   fill(members, 50000, 300, 300);
   const std::vector<PutIn> all = fill(members, 100, 20, 20);
   ASSERT_EQ(members.patches(), 20u);
-  std::size_t told = 0;
+  std::size_t told = 0;  // one range: one thread
   members.for_each_by_point(0, [&](std::size_t, std::size_t, std::size_t) { ++told; }, {});
   EXPECT_EQ(told, all.size());
+}
+
+TEST(PatchMembers, RefuseMoreThanAnIndexCountsButNoSpareRoom) {
+  PatchMembers members;
+  members.clear(10);
+  EXPECT_EQ(members.most_more(), std::size_t(kNone));
+  EXPECT_THROW(members.reserve(std::size_t{1} << 32, 0), Failure);
+  members.reserve(1, 0);  // and can be used afterwards
+  const Index point = 3;
+  const MemberWeight weight = 9;
+  members.append({1}, 1, &point, &weight, {});
+  EXPECT_EQ(members.patches(), 1u);
+  EXPECT_EQ(members.most_more(), std::size_t(kNone) - 1);
 }
 
 }  // namespace

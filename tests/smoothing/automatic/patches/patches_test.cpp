@@ -197,6 +197,25 @@ TEST(Patches, DoNotBridgeAStepFarAboveTheNoise) {
   EXPECT_GT(far, 1000u);
 }
 
+// Noise is stated larger than it is, so that none of it is a second sheet by chance.
+TEST(Patches, SeveralSheetsAreSeenWhereTheyAre) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise;
+  const HeightField field = flat_field(
+      40, [&](double x, double) { return noise(random) + (x < 20 ? 0 : 8 * double(random() % 2)); });
+  PatchMembers memory;
+  const Patches patches(field, 48, seeds_of(field.guide()), std::vector<double>(field.size(), 1.4), memory,
+                        {});
+  const std::vector<Index>& several = patches.with_several_sheets();
+  EXPECT_TRUE(std::is_sorted(several.begin(), several.end()));
+  std::size_t there = 0;
+  for (const Index i : several) {
+    EXPECT_GT(field.guide()[i].x(), 15);
+    there += std::size_t(field.guide()[i].x() > 24);
+  }
+  EXPECT_GT(there, 30u);
+}
+
 TEST(Patches, PlacesWithoutASeedGetOneOfTheirOwn) {
   const HeightField field = flat_field(30, [](double x, double y) { return 0.1 * x - 0.2 * y; });
   PatchMembers memory;
@@ -210,7 +229,8 @@ TEST(Patches, PlacesWithoutASeedGetOneOfTheirOwn) {
 
 TEST(Patches, SameForAnyNumberOfThreads) {
   const HeightField field =
-      flat_field(40, [](double x, double y) { return std::sin(3 * x) * std::cos(2 * y); });
+      flat_field(200, [](double x, double y) { return std::sin(3 * x) * std::cos(2 * y); });
+  ASSERT_GT(field.size(), 2 * 16384u);  // several ranges of points that are added up side by side
   const std::vector<double> sigma(field.size(), 0.3);
   const auto predicted = [&](int threads) {
     Context context;
