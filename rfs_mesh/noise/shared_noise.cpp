@@ -6,6 +6,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "base/quantile.h"
 #include "rfs_mesh/levels.h"
 #include "rfs_mesh/sample.h"
 #include "rfs_mesh/sheets/two_sheets.h"
@@ -108,25 +109,28 @@ double points_sharing(const std::vector<double>& m, const std::vector<double>& l
 /// What calm places show, by the number of neighbours, ascending.
 struct Calm {
   std::vector<double> m, seen;  ///< points, variance about a quadric
-  /// Means of those of Scatter: together is 1, less what patches follow of it, of noise that points have of
-  /// their own, up to kRing where they share it.
-  std::vector<double> together, flatness;
+  /// Means of that of Scatter: 1, less what patches follow of it, of noise that points have of their own, up
+  /// to kRing where they share it.
+  std::vector<double> together;
+  std::vector<double>
+      flatness;  ///< medians of that of Scatter, since a few rocks on a sea floor have a large one
   std::vector<double> radius;  ///< mean, of their balls
   double steps = 0;            ///< variance that depths in steps make sure of
 };
 
 /// Enters what the fits of at most this variance show of how points err.
 void enter(const std::vector<Scatter>& all, double variance, Calm& calm) {
-  double together = 0, flatness = 0, radius = 0, count = 0;
+  double together = 0, radius = 0, count = 0;
+  std::vector<double> flatness;
   for (const Scatter& s : all) {
     if (!says(s) || s.variance > variance) continue;
     together += s.together;
-    flatness += s.flatness;
+    flatness.push_back(s.flatness);
     radius += s.radius;
     ++count;
   }
   calm.together.push_back(count > 0 ? together / count : 0);
-  calm.flatness.push_back(count > 0 ? flatness / count : 0);
+  calm.flatness.push_back(median(flatness));
   calm.radius.push_back(count > 0 ? radius / count : 0);
 }
 
@@ -159,6 +163,14 @@ bool hold_slab(const Calm& calm, std::size_t i) {
 /// Whether nearest points lie off patches of the i-th m the same way.
 bool err_together(const Calm& calm, std::size_t i) {
   return calm.together[i] > calm.m[i] / (calm.m[i] + kFollows) + kTogether;
+}
+
+/// How flat the i-th residuals are beyond the noise that points have of their own, of the variance `own`.
+/// That is normal and adds nothing to the fourth cumulant, so what is left of the variance has all of it.
+/// Half of the variance is taken at least: the flatness of next to nothing is chance.
+double flatness_beyond(const Calm& calm, std::size_t i, double own) {
+  const double left = std::max(0.5, 1 - own / calm.seen[i]);
+  return kNormalFlatness + (calm.flatness[i] - kNormalFlatness) / (left * left);
 }
 
 /// What is left of the i-th variance without the part that grows with m as shape does.
@@ -202,7 +214,7 @@ SharedNoise find_shared_noise(Places& places, const NoiseStart& start, const Dep
     // After it grew as shape does, one slow growth may be the end of a bump.
     wide = terraces ? wide || slow > 0 : slow >= (fast ? kSlowInARow : 1);
     if (!wide) continue;
-    if (calm.flatness[i + 1] < kFlatnessOfSheets) continue;
+    if (flatness_beyond(calm, i + 1, start.sigma * start.sigma) < kFlatnessOfSheets) continue;
     if (!terraces && !err_together(calm, i + 1)) continue;
     if (terraces || err_together(calm, i))
       surely = std::max(surely, without_shape(calm, i, kLeastGrowthOfShape));

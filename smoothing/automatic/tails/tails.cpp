@@ -117,9 +117,12 @@ double Tails::unit() const {
 
 Statistics::Tails find_tails(const std::vector<float>& residuals, const std::vector<float>& least) {
   Statistics::Tails tails;
-  if (residuals.empty() || !(share_of_far(least, scale(least)) > kLeastFar)) return tails;
   const double unit = scale(residuals);
   if (!(unit > 0)) return tails;
+  // Where many points had to follow themselves, `least` is smaller than the noise, and all of its larger values
+  // would be far. The residuals tell how much noise there is, but beside shape more than that.
+  const double noise = std::max(scale(least), std::min(1.0, unit));
+  if (!(share_of_far(least, noise) > kLeastFar)) return tails;
   const Squares squares(residuals, unit);
   double share = 0.1, narrow = 1, wide = 9;
   for (int round = 0; round < kTailRounds; ++round) {

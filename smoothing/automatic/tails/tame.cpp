@@ -96,7 +96,7 @@ Tails tame(const HeightField& field, const MixedScales& pass, const Mesh& mesh, 
   if (is_of_steps(noise) || noise.across) return {};
   constexpr float kMostItsOwn = 0.8F;
   constexpr double kByChance = 1.6;  // far points together: tails have 0.7 to 1.1 in ten thousand points
-  constexpr double kGroups = 5;      // the same: groups of points that share what they are off by
+  constexpr double kGroups = 5;      // the same, off wide patches, too: of shape, or noise that points share
   const std::vector<float> off = off_neighbours(field, pass, noise, context);
   constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
   std::vector<float> relative(off.size(), kUnknown), least(off.size(), kUnknown);
@@ -111,7 +111,7 @@ Tails tame(const HeightField& field, const MixedScales& pass, const Mesh& mesh, 
   });
   if (!whole) {
     const double together = far_together(field, least, context);
-    if (noise.shared > 1 && together > kGroups)
+    if (std::max(together, far_together(field, relative, context)) > kGroups)
       whole = Statistics::Tails();
     else {
       if (together > kByChance) relate_to_neighbours(field, relative, least, context);

@@ -55,6 +55,29 @@ TEST(Tails, ANormalDistributionHasNone) {
   EXPECT_EQ(find_tails(residuals, least).share, 0);
 }
 
+// Beside recesses and on fins patches are narrow, and many points follow themselves: what is left of them
+// says nothing, neither of the noise nor of tails.
+TEST(Tails, PointsThatFollowThemselvesDoNotMakeTheOthersFar) {
+  for (const double following : {0.3, 0.45}) {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> even;
+    const std::vector<double> values = drawn(law_of(0, 1), 100000);
+    std::vector<float> residuals(values.begin(), values.end()), least(residuals);
+    for (std::size_t i = 0; i < least.size(); ++i) {
+      least[i] = std::abs(least[i]);
+      if (even(random) < 0.05) residuals[i] *= 5;  // off the wide patch, beside an edge
+      if (even(random) < following) least[i] *= 0.01F;
+    }
+    EXPECT_EQ(find_tails(residuals, least).share, 0) << following;
+    // True ones are found all the same.
+    const std::vector<double> wide = drawn(law_of(0.1, 4), 100000);
+    std::vector<float> off(wide.begin(), wide.end());
+    for (std::size_t i = 0; i < least.size(); ++i)
+      least[i] = std::abs(off[i]) * (even(random) < following ? 0.01F : 1.0F);
+    EXPECT_NEAR(find_tails(off, least).share, 0.1, 0.02) << following;
+  }
+}
+
 TEST(Tails, WithoutThemAResidualIsItself) {
   const Tails none;
   for (const double r : {-7.0, -0.5, 0.0, 2.0, 30.0}) {
