@@ -214,7 +214,10 @@ SharedNoise find_shared_noise(Places& places, const NoiseStart& start, const Dep
     // After it grew as shape does, one slow growth may be the end of a bump.
     wide = terraces ? wide || slow > 0 : slow >= (fast ? kSlowInARow : 1);
     if (!wide) continue;
-    if (flatness_beyond(calm, i + 1, start.sigma * start.sigma) < kFlatnessOfSheets) continue;
+    // Within terraces no noise is normal.
+    const double flatness =
+        terraces ? calm.flatness[i + 1] : flatness_beyond(calm, i + 1, start.sigma * start.sigma);
+    if (flatness < kFlatnessOfSheets) continue;
     if (!terraces && !err_together(calm, i + 1)) continue;
     if (terraces || err_together(calm, i))
       surely = std::max(surely, without_shape(calm, i, kLeastGrowthOfShape));

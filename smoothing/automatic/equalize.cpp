@@ -17,7 +17,7 @@
 #include "rfs_mesh/fit/plane_normal.h"
 #include "rfs_mesh/levels.h"
 #include "rfs_mesh/search/neighbors.h"
-#include "smoothing/automatic/patches/quadric_sums.h"
+#include "smoothing/automatic/patches/fit/quadric_sums.h"
 
 namespace rfsmooth::smoothing {
 

@@ -6,7 +6,7 @@
 #include "base/collect.h"
 #include "base/parallel.h"
 #include "rfs_mesh/search/thinning.h"
-#include "smoothing/automatic/patches/patch_fit.h"
+#include "smoothing/automatic/patches/fit/patch_fit.h"
 #include "smoothing/automatic/patches/weighted_sum.h"
 
 namespace rfsmooth::smoothing {

@@ -1,4 +1,4 @@
-#include "smoothing/automatic/patches/quadric_sums.h"
+#include "smoothing/automatic/patches/fit/quadric_sums.h"
 
 #include <cstring>
 

@@ -1,4 +1,4 @@
-#include "smoothing/automatic/patches/patch_fit.h"
+#include "smoothing/automatic/patches/fit/patch_fit.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 #include "base/linear/small_cholesky.h"
 #include "rfs_mesh/fit/scatter.h"
-#include "smoothing/automatic/patches/quadric_sums.h"
+#include "smoothing/automatic/patches/fit/quadric_sums.h"
 
 namespace rfsmooth::smoothing {
 

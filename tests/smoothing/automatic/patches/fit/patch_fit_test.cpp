@@ -1,4 +1,4 @@
-#include "smoothing/automatic/patches/patch_fit.h"
+#include "smoothing/automatic/patches/fit/patch_fit.h"
 
 #include <algorithm>
 #include <cmath>
