@@ -119,8 +119,8 @@ Statistics::Tails find_tails(const std::vector<float>& residuals, const std::vec
   Statistics::Tails tails;
   const double unit = scale(residuals);
   if (!(unit > 0)) return tails;
-  // Where many points had to follow themselves, `least` is smaller than the noise, and all of its larger values
-  // would be far. The residuals tell how much noise there is, but beside shape more than that.
+  // Where many points had to follow themselves, `least` is smaller than the noise, and all of its larger
+  // values would be far. The residuals tell how much noise there is, but beside shape more than that.
   const double noise = std::max(scale(least), std::min(1.0, unit));
   if (!(share_of_far(least, noise) > kLeastFar)) return tails;
   const Squares squares(residuals, unit);

@@ -19,7 +19,7 @@ struct PutIn {
 };
 
 /// Patches of up to 40 members, near each other or anywhere, put in by `batch`.
-std::vector<PutIn> fill(PatchMembers& members, std::size_t points, std::size_t patches, std::size_t batch) {
+std::vector<PutIn> put_in(PatchMembers& members, std::size_t points, std::size_t patches, std::size_t batch) {
   constexpr std::size_t kStride = 40;
   std::mt19937 random(5);
   std::vector<PutIn> all;
@@ -49,7 +49,7 @@ TEST(PatchMembers, EveryPointIsToldByItsPatchesInAscendingOrder) {
   constexpr std::size_t kPoints = 50000, kPatches = 3000;  // more than three ranges of points
   PatchMembers members;
   for (const std::size_t batch : {kPatches, std::size_t(700)}) {
-    const std::vector<PutIn> all = fill(members, kPoints, kPatches, batch);
+    const std::vector<PutIn> all = put_in(members, kPoints, kPatches, batch);
     ASSERT_EQ(members.patches(), kPatches);
     ASSERT_GT(all.size(), 30000u);
     for (const std::size_t from : {std::size_t(0), batch % kPatches, 2 * batch % kPatches}) {
@@ -70,8 +70,8 @@ TEST(PatchMembers, EveryPointIsToldByItsPatchesInAscendingOrder) {
 
 TEST(PatchMembers, AreUsedAgainForOtherPoints) {
   PatchMembers members;
-  fill(members, 50000, 300, 300);
-  const std::vector<PutIn> all = fill(members, 100, 20, 20);
+  put_in(members, 50000, 300, 300);
+  const std::vector<PutIn> all = put_in(members, 100, 20, 20);
   ASSERT_EQ(members.patches(), 20u);
   std::size_t told = 0;  // one range: one thread
   members.for_each_by_point(0, [&](std::size_t, std::size_t, std::size_t) { ++told; }, {});

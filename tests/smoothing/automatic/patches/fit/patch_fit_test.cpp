@@ -17,8 +17,8 @@ namespace {
 
 /// A flat guide of 20 x 20 points, jittered, and heights over it of the size of a spacing. \param bent down
 /// by so much times the squared distance from the middle
-struct Sheet {
-  explicit Sheet(double bent = 0) {
+struct JitteredGrid {
+  explicit JitteredGrid(double bent = 0) {
     std::mt19937 random(11);
     std::uniform_real_distribution<double> jitter(-0.3, 0.3);
     for (int i = 0; i < 20; ++i)
@@ -39,7 +39,7 @@ Eigen::Matrix<double, 6, 1> monomials(double u, double v) {
 }
 
 TEST(PatchFit, SaysWhatALeastSquaresFitInDoublePrecisionSays) {
-  const Sheet sheet;
+  const JitteredGrid sheet;
   const HeightField field = sheet.field();
   constexpr std::size_t kMembers = 45;
   constexpr Index kSeed = 210;
@@ -68,7 +68,7 @@ TEST(PatchFit, SaysWhatALeastSquaresFitInDoublePrecisionSays) {
 }
 
 TEST(PatchFit, MembersAreTheNearestAndWeighLessTheFartherTheyAre) {
-  const Sheet sheet;
+  const JitteredGrid sheet;
   const HeightField field = sheet.field();
   constexpr std::size_t kMembers = 30;
   constexpr Index kSeed = 187;
@@ -93,7 +93,7 @@ TEST(PatchFit, MembersAreTheNearestAndWeighLessTheFartherTheyAre) {
 }
 
 TEST(PatchFit, RoughPlacesSaySoAndCountLess) {
-  const Sheet sheet;
+  const JitteredGrid sheet;
   const HeightField field = sheet.field();
   PatchFit patch(field, 60);
   patch.fit(210, 5);
@@ -107,7 +107,7 @@ TEST(PatchFit, RoughPlacesSaySoAndCountLess) {
 
 // On a bent guide the quadric is over the tangent plane, and what it says along the normals of others.
 TEST(PatchFit, SaysHeightsAlongThePointsOwnNormals) {
-  Sheet sheet(0.02);
+  JitteredGrid sheet(0.02);
   const HeightField normals = sheet.field();
   for (std::size_t i = 0; i < sheet.guide.size(); ++i)
     sheet.data[i] = sheet.guide[i] + (normals.normal(i).z() > 0 ? 0.3 : -0.3) * normals.normal(i);
@@ -149,7 +149,7 @@ TEST(PatchFit, SharesAddUpToThoseOfAParabolaWhereMembersLieInALine) {
 }
 
 TEST(PatchFit, PointsAtOnePlaceGiveNumbers) {
-  Sheet sheet;
+  JitteredGrid sheet;
   for (std::size_t i = 0; i < 60; ++i) sheet.guide[i] = sheet.guide[0];
   const HeightField field = sheet.field();
   PatchFit patch(field, 16);
