@@ -112,10 +112,9 @@ struct Calm {
   /// Means of that of Scatter: 1, less what patches follow of it, of noise that points have of their own, up
   /// to kRing where they share it.
   std::vector<double> together;
-  std::vector<double>
-      flatness;  ///< medians of that of Scatter, since a few rocks on a sea floor have a large one
-  std::vector<double> radius;  ///< mean, of their balls
-  double steps = 0;            ///< variance that depths in steps make sure of
+  std::vector<double> flatness;  ///< medians, since that of a few rocks on a sea floor is large
+  std::vector<double> radius;    ///< mean, of their balls
+  double steps = 0;              ///< variance that depths in steps make sure of
 };
 
 /// Enters what the fits of at most this variance show of how points err.

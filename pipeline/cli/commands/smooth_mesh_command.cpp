@@ -115,6 +115,7 @@ void make_agree(Mesh& mesh) {
     parts.join(first[0].face, first[1].face);
     if (first[0].forward == first[1].forward) at_odds.push_back(first->face);
   });
+  if (at_odds.empty()) return;
   std::vector<char> turns(mesh.faces.size(), 0);
   for (const Index face : at_odds) turns[parts.of(face)] = 1;
   const std::vector<Face> agreeing = smoothing::oriented_as_far_as_possible(mesh);

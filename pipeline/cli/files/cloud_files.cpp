@@ -75,18 +75,22 @@ void need_different_outputs(const std::vector<std::pair<std::string, std::string
   }
 }
 
+std::string name_of_input(const std::string& input) {
+  return input == "-" ? "standard input" : input;
+}
+
 io::Cloud load_cloud(const std::string& input, const Context& context) {
   context.report("read", 0);
   const std::string standard_input = "/dev/stdin", path = input == "-" ? standard_input : input;
   std::error_code unknown;
   // The file's own size is the least that reading it takes.
   if (const auto bytes = std::filesystem::file_size(path, unknown); !unknown)
-    need_memory(input == "-" ? "standard input" : input, bytes);
+    need_memory(name_of_input(input), bytes);
   auto cloud = io::read_cloud(path, {}, context);
   if (input != "-" || cloud.ok()) return value_or_throw(std::move(cloud));
   Error error = cloud.error();
   if (error.message.rfind(standard_input, 0) == 0)
-    error.message.replace(0, standard_input.size(), "standard input");
+    error.message.replace(0, standard_input.size(), name_of_input(input));
   throw Failure(std::move(error));
 }
 

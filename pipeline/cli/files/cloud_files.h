@@ -28,6 +28,9 @@ std::vector<Job> plan_cloud_jobs(const std::vector<std::string>& arguments, cons
 /// Failure (usage).
 void need_different_outputs(const std::vector<std::pair<std::string, std::string>>& outputs);
 
+/// What an input is called in messages: its path, "standard input" for "-".
+std::string name_of_input(const std::string& input);
+
 /// Reads a path, or standard input for "-", as stage "read". \throw Failure, also if the file is larger than
 /// the available memory.
 pipeline::io::Cloud load_cloud(const std::string& input, const Context& context);

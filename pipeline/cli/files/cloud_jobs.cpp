@@ -60,7 +60,7 @@ void run_one(const Job& job, const JobOptions& options, const OnCloud& on_cloud,
   console.set_points(cloud.size());
   const std::size_t columns = cloud.points().fields.size();
   std::vector<std::string> dropped = left_behind(cloud, on_cloud);
-  const std::string summary = pipeline::io::naming(job.input == "-" ? "standard input" : job.input, [&] {
+  const std::string summary = pipeline::io::naming(name_of_input(job.input), [&] {
     return on_cloud.work(cloud, {job, context, console, stages, entry});
   });
   const pipeline::io::Format format = output_format(cloud, job.output, options.files);

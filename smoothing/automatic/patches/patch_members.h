@@ -50,7 +50,7 @@ class PatchMembers {
 
   /// Calls add(point, patch, member) for the members of the patches from `first` on: 0, or the number of
   /// patches before an append. Each point is told in ascending order of patches; those of one range by one
-  /// thread. O(members times the ranges that their group has members in): few for narrow patches, all for
+  /// thread. O(members times the ranges that their bundle has members in): few for narrow patches, all for
   /// patches as large as the cloud.
   template <class Add>
   void for_each_by_point(std::size_t first, Add&& add, const Context& context) const {

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/cli/support/folder.h"
+#include "tests/support/meshes.h"
 
 using ::testing::HasSubstr;
 
@@ -310,17 +311,19 @@ TEST_F(SmoothMesh, RidgesAreWrittenAsAField) {
   EXPECT_TRUE(same || opposite);
 }
 
-/// An octahedron squeezed along z, subdivided by nothing: its faces outward, or all inward.
-std::string flat_octahedron(double x, bool inward, int first) {
-  const int s[6][3] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+/// The vertices of an octahedron about (x, 0, 0), half as high as wide: a line each.
+std::string octahedron_vertices(double x) {
   std::string text;
-  if (first < 0) {
-    for (const auto& v : s)
-      text += std::to_string(x + v[0]) + " " + std::to_string(v[1]) + " " + std::to_string(0.5 * v[2]) + "\n";
-    return text;
-  }
-  for (const auto& f : {std::array{0, 2, 4}, std::array{2, 1, 4}, std::array{1, 3, 4}, std::array{3, 0, 4},
-                        std::array{2, 0, 5}, std::array{1, 2, 5}, std::array{3, 1, 5}, std::array{0, 3, 5}})
+  for (const Eigen::Vector3d& v : support::octahedron().positions)
+    text +=
+        std::to_string(x + v.x()) + " " + std::to_string(v.y()) + " " + std::to_string(0.5 * v.z()) + "\n";
+  return text;
+}
+
+/// Its faces, outward or all inward. \param first the row of its first vertex
+std::string octahedron_faces(Index first, bool inward) {
+  std::string text;
+  for (const Face& f : support::octahedron().faces)
     text += "3 " + std::to_string(first + f[0]) + " " + std::to_string(first + f[inward ? 2 : 1]) + " " +
             std::to_string(first + f[inward ? 1 : 2]) + "\n";
   return text;
@@ -331,8 +334,8 @@ TEST_F(SmoothMesh, RidgesOfAPartKeepTheSideOfTheFileWhateverStandsBesideIt) {
     return "ply\nformat ascii 1.0\nelement vertex " + std::to_string(two ? 12 : 6) +
            "\nproperty double x\nproperty double y\nproperty double z\nelement face " +
            std::to_string(two ? 16 : 8) + "\nproperty list uchar int vertex_indices\nend_header\n" +
-           flat_octahedron(0, true, -1) + (two ? flat_octahedron(10, false, -1) : "") +
-           flat_octahedron(0, true, 0) + (two ? flat_octahedron(10, false, 6) : "");
+           octahedron_vertices(0) + (two ? octahedron_vertices(10) : "") + octahedron_faces(0, true) +
+           (two ? octahedron_faces(6, false) : "");
   };
   const auto alone = smoothed(file(false), {"--iterations", "0", "--ridges"}, 6),
              beside = smoothed(file(true), {"--iterations", "0", "--ridges"}, 12);
@@ -346,7 +349,7 @@ TEST_F(SmoothMesh, RidgesOfAPartKeepTheSideOfTheFileWhateverStandsBesideIt) {
 }
 
 TEST_F(SmoothMesh, RidgesOfAnOffFileGoIntoAPly) {
-  put("in.off", "OFF\n6 8 0\n" + flat_octahedron(0, false, -1) + flat_octahedron(0, false, 0));
+  put("in.off", "OFF\n6 8 0\n" + octahedron_vertices(0) + octahedron_faces(0, false));
   const Ran ran = run({"smooth-mesh", "in.off", "out.ply", "--iterations", "0", "--ridges"});
   EXPECT_EQ(ran.code, 0) << ran.err;
   EXPECT_THAT(take("out.ply"), HasSubstr("ridge"));
@@ -357,16 +360,13 @@ TEST_F(SmoothMesh, RidgesOfAnOffFileGoIntoAPly) {
 }
 
 TEST_F(SmoothMesh, AFaceWithoutAreaMakesNoSharpEdges) {
-  // A face of the corner, of its neighbour and of the corner again would be none; one along an edge of the
-  // grid, through a vertex in the middle of it, is.
-  std::string mesh = bumpy_grid(
-      "", [](int, int) { return ""; }, 9);
+  // Three vertices in a row of the grid's border.
+  std::string mesh = bumpy_grid("");
   const std::string count = "element face 128", more = "element face 129";
   mesh.replace(mesh.find(count), count.size(), more);
   mesh += "3 0 2 1\n";
   put("with.ply", mesh);
-  put("without.ply", bumpy_grid(
-                         "", [](int, int) { return ""; }, 9));
+  put("without.ply", bumpy_grid(""));
   for (const char* name : {"with", "without"}) {
     const Ran ran = run({"smooth-mesh", std::string(name) + ".ply", std::string(name) + "_out.ply",
                          "--iterations", "0", "--refine", "1", "--sharp-angle", "60"});
