@@ -8,6 +8,7 @@
 #include "base/linear/symmetric_eigen.h"
 #include "base/parallel.h"
 #include "pipeline/io/table/text.h"
+#include "rfs_mesh/levels.h"
 
 namespace rfsmooth::pipeline {
 
@@ -15,7 +16,6 @@ using Eigen::Vector3d;
 
 bool seen_from(const Vector3d& viewpoint, const double* xyz, std::size_t width, std::size_t height,
                const Context& context) {
-  constexpr double kShare = 0.9;  // noise and edges of depth turn some triangles over
   const auto ray = [&](std::size_t row, std::size_t column) {
     const double* p = xyz + 3 * (row * width + column);
     return Vector3d(p[0] - viewpoint[0], p[1] - viewpoint[1], p[2] - viewpoint[2]);
@@ -29,7 +29,8 @@ bool seen_from(const Vector3d& viewpoint, const double* xyz, std::size_t width, 
     return sides;
   };
   const Eigen::Array2d sides = sum_over(context, height > 1 ? height - 1 : 0, Eigen::Array2d(0, 0), of_row);
-  return sides.maxCoeff() > kShare * sides.sum();
+  // Noise and edges of depth turn some triangles over.
+  return sides.maxCoeff() > (1 - rfs_mesh::kLeastPart) * sides.sum();
 }
 
 std::optional<Vector3d> recorded_viewpoint(const io::Cloud& cloud, const double* xyz,

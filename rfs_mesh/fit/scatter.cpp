@@ -59,11 +59,15 @@ double ScatterFit::err_together() {
 
 void ScatterFit::look_at_residuals(Scatter& s) const {
   double weights = 0, second = 0, third = 0, fourth = 0, middle = 0;
+  Eigen::Array4d weight = Eigen::Array4d::Zero(), cubes = weight;  // of the quadrants
   for (std::size_t i = 0; i < residual_.size(); ++i) {
-    const double e = residual_[i], w = weight_[i];
+    const double e = residual_[i], w = weight_[i], cube = w * e * e * e;
+    const int quadrant = (u_[i] > 0 ? 1 : 0) + (v_[i] > 0 ? 2 : 0);
+    weight[quadrant] += w;
+    cubes[quadrant] += cube;
     weights += w;
     second += w * e * e;
-    third += w * e * e * e;
+    third += cube;
     fourth += w * e * e * e * e;
   }
   if (!(second > 0)) return;
@@ -74,6 +78,8 @@ void ScatterFit::look_at_residuals(Scatter& s) const {
   s.flatness = fourth * weights / (second * second);
   s.lean = third * third * weights / (second * second * second);
   s.middle = middle / weights;
+  const double pairs = weights * weights - weight.square().sum(), mean = second / weights;
+  if (pairs > 0) s.lean_in_common = (third * third - cubes.square().sum()) / (pairs * mean * mean * mean);
 }
 
 RFSMOOTH_AVX2

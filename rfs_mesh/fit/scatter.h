@@ -47,6 +47,9 @@ struct Scatter {
   double flatness = kNormalFlatness;
   double lean = 0;  ///< third moment of the residuals squared, over the cube of the second: 0 of a
                     ///< symmetric distribution. Without window
+  /// The same of every two of the patch's quadrants, multiplied with each other: without what of it is
+  /// chance, so that it may be below 0. Without window.
+  double lean_in_common = 0;
   /// Share of the weight within half a deviation of the quadric: 0.383 of a normal distribution, 0.289 of an
   /// even one, 0 of two sheets. Without window.
   double middle = kNormalMiddle;
@@ -84,7 +87,7 @@ class ScatterFit {
 
   void find_residuals(const Vector6& c);     ///< from a quadric
   double err_together();                     ///< Scatter::together of the residuals
-  void look_at_residuals(Scatter& s) const;  ///< Scatter::flatness, lean and middle
+  void look_at_residuals(Scatter& s) const;  ///< Scatter::flatness to middle
   /// Fills `x_`, `y_` and `z_` with the points of `near_` from the place, over r.
   void scale(const Positions& points, const Eigen::Vector3d& place, double r);
   /// Axes of least to most spread of these, nearer ones weighing more. `breadth`: as in Scatter.

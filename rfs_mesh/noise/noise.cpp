@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "rfs_mesh/fit/local_surface.h"
 #include "rfs_mesh/levels.h"
+#include "rfs_mesh/noise/held_out.h"
 #include "rfs_mesh/noise/noise_field.h"
 #include "rfs_mesh/noise/shared_noise.h"
 
@@ -106,6 +107,22 @@ double calm_fifth(const NoiseSites& sites) {
   return quantile(all, kCalmFifth);
 }
 
+/// Whether one figure is that of all: all but the loudest tenth of the sites are less than three times as
+/// loud as the calmest tenth, both of those that speak, and if what is seen without windows stands for the
+/// others, such as exact ones.
+bool is_even(const NoiseSites& sites) {
+  const auto even = [](std::vector<Weighed> values) {
+    return !values.empty() && quantile(values, 1 - kLeastPart) < kMuchLouder * quantile(values, kLeastPart);
+  };
+  std::vector<Weighed> speaking, all;
+  for (std::size_t s = 0; s < sites.at.size(); ++s) {
+    const bool speaks = sites.speaks[s] != 0;
+    all.push_back({speaks ? sites.sigma[s] : sites.most[s], sites.area[s]});
+    if (speaks) speaking.push_back(all.back());
+  }
+  return even(std::move(speaking)) && even(std::move(all));
+}
+
 /// NoiseModel::spacing_at_sites, also where all are `spacing`.
 std::vector<double> spacing_around(const NoiseSites& sites, double spacing) {
   double mean = 0;
@@ -191,6 +208,16 @@ void measure(const SpatialIndex& index, const DepthSteps* steps, NoiseModel& noi
     noise.sigma = most;
   }
   if (!(noise.sigma > 0)) return;
+  // Where there are several sheets at most places, windows let them in. Noise of a part of the cloud or that
+  // points do not have of their own is not foretold by a surface.
+  const bool own = steps == nullptr && !noise.on_grid && !start.on_lines && !(noise.shared > 1);
+  if (own && start.in_kernels && is_even(sites)) {
+    const std::optional<double> most = held_out_bound(index, noise.sigma, context);
+    if (most && noise.sigma > kSameNoise * *most) {
+      bound_sites(noise.sigma, *most, sites);
+      noise.sigma = *most;
+    }
+  }
   noise.at_sites = relative_noise(sites, noise.sigma, context);
   for (double& v : noise.at_sites) v = noise.sigma * std::max(v, kStays);
   noise.sites = std::move(sites.at);

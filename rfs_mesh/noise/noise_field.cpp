@@ -17,7 +17,6 @@ namespace {
 // (tests/bench/noise), but for the narrow pair: that is for clouds of which one half is louder
 // (noise_test.cpp).
 constexpr double kAlike = 2.5;
-constexpr float kMuchLouder = 3;  // times: so much calmer ones say nothing of a place
 // How far below and above the mean a fit pulls in proportion: logarithm of variance. Edges and second sheets
 // are above, places within one step of the depths below.
 constexpr float kBelow = 2, kAbove = 1.5;
@@ -169,7 +168,7 @@ Means around(const Heard& heard, const Reach& reach, const Context& context) {
   Eigen::ArrayXd gain = Eigen::ArrayXd::Zero(n);
   const auto near = float(1 / (reach.place * reach.place)),
              alike = float(1 / (reach.direction * reach.direction));
-  const float louder = 1 / (std::log(kMuchLouder) * std::log(kMuchLouder));
+  const auto louder = float(1 / (std::log(kMuchLouder) * std::log(kMuchLouder)));
   for_blocks(context, std::size_t(n), 64, [&](std::size_t begin, std::size_t end) {
     Eigen::ArrayXf squared(n), like(n);
     Eigen::ArrayXf w, off, value, weight, about, radius;  // of few

@@ -17,10 +17,13 @@ namespace {
 // Chosen on the development shapes with noise of 0.1 to 4 spacings, Gaussian and along the ray
 // (tests/bench/noise).
 constexpr std::size_t kSearchSites = 500;
-constexpr std::size_t kShareOfCloud = 12;  // m: at most n / 12
-constexpr double kFlat = 2;                // sigma: the least radius of a patch
+constexpr std::size_t kMostOfCloud = 24;  // m is at most so small a part: else parts are shape
+constexpr double kFlat = 2;               // sigma: the least radius of a patch
 constexpr std::size_t kSites = 2000, kFewestSites = 250;
 constexpr std::size_t kWork = 100000;  // sites x m
+
+// Of the breadth: 1 in a disk, a quarter in a strip twice as long as wide. Scans have 0.56 and more.
+constexpr double kSurface = 0.4;
 
 double median_radius(const Places& places, std::size_t m) {
   std::vector<Neighbor> near;
@@ -57,14 +60,16 @@ double bound(Places& places, std::size_t narrowest) {
 
 /// Where second sheets are as near as the neighbours nearly everywhere, fits without a window tell their
 /// distance. So windows from an eighth of that on are tried: the first that a calm quarter of the cloud fills
-/// no wider than it is. \param sure no narrower ones.
+/// no wider than it is. Not of places whose points are a strip: a plane through a few rings of a laser turns
+/// about them to pass through the noise. \param sure no narrower windows.
 double lowest(Places& places, std::size_t m, double sigma, double sure) {
   constexpr double kStep = 1.3;
   for (double window = std::max(sure, kNarrowestWindow * sigma); window < 0.8 * sigma; window *= kStep) {
-    const std::vector<Scatter> all = places.fits(m, window);
+    std::vector<Scatter> all = places.fits(m, window);
     const std::vector<double> area = areas(all);
     double saying = 0, whole = 0;
     for (std::size_t i = 0; i < all.size(); ++i) {
+      if (all[i].breadth < kSurface) all[i].freedom = 0;
       whole += area[i];
       if (says(all[i])) saying += area[i];
     }
@@ -95,8 +100,6 @@ bool same_planes(Places& places, const std::vector<Scatter>& all, std::size_t m)
 /// Terraces only tell how far points share their rounding: there the search starts from few.
 /// `all`: the fits at the narrowest m, without windows.
 void find_surface(Places& places, std::vector<Scatter> all, bool terraces, NoiseStart& start) {
-  // Of the breadth: 1 in a disk, a quarter in a strip twice as long as wide. Scans have 0.56 and more.
-  constexpr double kSurface = 0.4;
   const auto breadth = [&] {
     std::vector<double> breadths;
     for (const Scatter& s : all) breadths.push_back(s.breadth);
@@ -151,7 +154,7 @@ void open_windows(Places& places, double narrow, NoiseStart& start) {
 }  // namespace
 
 std::size_t widest_scatter(const SpatialIndex& index) {
-  return std::clamp(index.points().size() / kShareOfCloud, kNarrowestPatch, kWidestFit);
+  return std::clamp(index.points().size() / kMostOfCloud, kNarrowestPatch, kWidestFit);
 }
 
 double variance_of_steps(const DepthSteps& steps, const Places& places, const std::vector<Scatter>& all) {

@@ -17,13 +17,15 @@ namespace {
 
 // Chosen on the laws of tests/bench/quality (six shapes, 10,000 points) and on the raw scans of
 // tests/bench/scans.
-constexpr std::size_t kMostOfCloud = 24;       // m is at most so small a part: else parts are shape
 constexpr std::size_t kPointsLooked = 500000;  // at each m: of wide places fewer say as much
 // Of the variance, from m to 2 m: second sheets and detail grow faster than noise, shape at least so.
 constexpr double kMostGrowthOfNoise = 1.8, kLeastGrowthOfShape = 2.38;
 constexpr double kGrowthAcrossEdges = 2;  // 2^p of shape
 constexpr std::size_t kSlowInARow = 2;    // the least that is a row
-constexpr double kTogether = 0.4;         // above that of points on their own: two standard deviations
+// The same of ground, whose roughness has no scale of its own: 2^H, H from 0.5 on (Mandelbrot 1982).
+constexpr double kLeastGrowthOfGround = 1.414;
+constexpr double kLeanOfRelief = 0.05;  // a skewness of 0.22
+constexpr double kTogether = 0.4;       // above that of points on their own: two standard deviations
 // Patches of m points follow noise of their own so that m / (m + kFollows) of 1 is left of `together`: 0.43,
 // 0.58, 0.75, 0.82, 0.91 for 32, 64, ... 512 on a plane.
 constexpr double kFollows = 45;
@@ -112,31 +114,34 @@ struct Calm {
   /// Means of that of Scatter: 1, less what patches follow of it, of noise that points have of their own, up
   /// to kRing where they share it.
   std::vector<double> together;
-  std::vector<double> flatness;  ///< medians, since that of a few rocks on a sea floor is large
-  std::vector<double> radius;    ///< mean, of their balls
-  double steps = 0;              ///< variance that depths in steps make sure of
+  /// Medians, since that of a few rocks on a sea floor is large.
+  std::vector<double> flatness, lean;
+  std::vector<double> radius;  ///< mean, of their balls
+  double steps = 0;            ///< variance that depths in steps make sure of
 };
 
 /// Enters what the fits of at most this variance show of how points err.
 void enter(const std::vector<Scatter>& all, double variance, Calm& calm) {
   double together = 0, radius = 0, count = 0;
-  std::vector<double> flatness;
+  std::vector<double> flatness, lean;
   for (const Scatter& s : all) {
     if (!says(s) || s.variance > variance) continue;
     together += s.together;
     flatness.push_back(s.flatness);
+    lean.push_back(s.lean_in_common);
     radius += s.radius;
     ++count;
   }
   calm.together.push_back(count > 0 ? together / count : 0);
   calm.flatness.push_back(median(flatness));
+  calm.lean.push_back(median(lean));
   calm.radius.push_back(count > 0 ? radius / count : 0);
 }
 
 Calm look(Places& places, const NoiseStart& start, const DepthSteps* steps, const Context& context) {
   Calm calm;
   const SpatialIndex& index = places.index();
-  const std::size_t last = std::min(widest_scatter(index), index.points().size() / kMostOfCloud);
+  const std::size_t last = widest_scatter(index);
   for (std::size_t m = std::max(start.m, start.narrowest); m <= last; m *= 2) {
     Places fewer(index, sample(places.at(), kPointsLooked / m), 0, context);
     Places& some = fewer.size() < places.size() ? fewer : places;
@@ -210,13 +215,15 @@ SharedNoise find_shared_noise(Places& places, const NoiseStart& start, const Dep
     slow = growth > (terraces ? kGrowthAcrossEdges : kMostGrowthOfNoise) ? 0 : slow + 1;
     if (slow == 0 && wide && (terraces || surely > 0)) break;
     fast = fast || slow == 0;
-    // After it grew as shape does, one slow growth may be the end of a bump.
-    wide = terraces ? wide || slow > 0 : slow >= (fast ? kSlowInARow : 1);
+    // After it grew as shape does, one slow growth may be the end of a bump, and ground never stops growing.
+    const bool stops = !fast || (slow >= kSlowInARow && (wide || growth < kLeastGrowthOfGround));
+    wide = terraces ? wide || slow > 0 : slow > 0 && stops;
     if (!wide) continue;
     // Within terraces no noise is normal.
     const double flatness =
         terraces ? calm.flatness[i + 1] : flatness_beyond(calm, i + 1, start.sigma * start.sigma);
     if (flatness < kFlatnessOfSheets) continue;
+    if (!terraces && calm.lean[i + 1] > kLeanOfRelief) continue;
     if (!terraces && !err_together(calm, i + 1)) continue;
     if (terraces || err_together(calm, i))
       surely = std::max(surely, without_shape(calm, i, kLeastGrowthOfShape));

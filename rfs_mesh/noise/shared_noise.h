@@ -20,14 +20,17 @@
 /// or if depths in steps (depth_steps.h) make sure of it. Its variance is then the largest S with p = 3, or
 /// that of the steps as far as it is seen. Of noise, s^2 grows at most 1.8 times from m to 2 m (2 on
 /// terraces). An m counts from the first growth as slow as that; off terraces, after a faster one, from the
-/// second in a row, since one may be the end of a bump. (Few points follow noise all of which neighbours
-/// share, as of cameras that match windows, and s^2 grows as fast as that of shape at first.) The first fast
-/// growth after an m that counted ends the search (off terraces only once some noise is sure). Neighbourhoods
-/// whose residuals (off terraces: beyond the noise that points have of their own) are flatter than
-/// kFlatnessOfSheets (two_sheets.h) are of two sheets or of waves in rows (a sine has 1.5, threads and
-/// ripples measured under noise 1.6 to 2.1, noise that points share 2.9 and more), and tell nothing. Those
-/// that do not hold a slab as thick as they scatter (kFlatSlab) tell nothing while they are narrow, and wider
-/// ones than some that do are the last, too: leaves and twigs fill them. k is the number for which
+/// second in a row, since one may be the end of a bump, and only once it is less than 1.41: ground, hills
+/// upon hills, never stops growing. (Few points follow noise all of which neighbours share, as of cameras
+/// that match windows, and s^2 grows as fast as that of shape at first.) The first fast growth after an m
+/// that counted ends the search (off terraces only once some noise is sure). Neighbourhoods whose residuals
+/// (off terraces: beyond the noise that points have of their own) are flatter than kFlatnessOfSheets
+/// (two_sheets.h) are of two sheets or of waves in rows (a sine has 1.5, threads and ripples measured under
+/// noise 1.6 to 2.1, noise that points share 2.9 and more), and tell nothing. Nor do those that lean off
+/// terraces (Scatter::lean_in_common): noise is as often above as below, stones are round above and end in
+/// clefts. Those that do not hold a slab as thick as they scatter (kFlatSlab) tell nothing while they are
+/// narrow, and wider ones than some that do are the last, too: leaves and twigs fill them. k is the number
+/// for which
 ///
 ///     s^2(m) = sigma^2 g(k / m)
 ///

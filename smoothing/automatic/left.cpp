@@ -57,7 +57,6 @@ class ToldByResiduals {
   /// sum e^2 / sigma^2 over sum (1 - own) around a point, over the median of that for normal noise.
   static Place look(const HeightField& field, const std::vector<float>& height, const std::vector<float>& own,
                     const rfs_mesh::NoiseField& noise, std::size_t at) {
-    constexpr double kSmoothed = 0.5;  // mean of 1 - own: elsewhere the data stayed, and tell nothing
     constexpr double kMostSquare = kStray * kStray;
     Eigen::Vector4d sums = Eigen::Vector4d::Zero();  // of weights, their squares, e^2 / sigma^2, 1 - own
     const auto add = [&](std::size_t i, double weight) {
@@ -68,7 +67,7 @@ class ToldByResiduals {
     add(at, 1);
     for (const Index j : field.neighbors()[at])
       add(j, double(same_sheet(field.local()[at].normal.dot(field.local()[j].normal))));
-    if (!(sums[3] > kSmoothed * sums[0])) return {};
+    if (!(2 * sums[3] > sums[0])) return {};  // most of the data stayed, and tell nothing
     // The median of chi-square over its degrees of freedom, by Wilson and Hilferty 1931.
     const double freedom = sums[0] * sums[0] / sums[1];
     return {noise.local[at], sums[2] / sums[3] / std::pow(1 - 2 / (9 * freedom), 3)};

@@ -487,6 +487,63 @@ TEST(NoiseLaws, AThreadIsNoNoiseThatNeighboursShare) {
   EXPECT_LT(rms_off_thread(points), 0.55 * before);  // 0.42; taken for shared noise it was 1.0 to 1.2
 }
 
+// Stones of three to eight spacings, scattered over each other: their residuals are as those of noise that
+// neighbours share, but lean, for stones are round above and end in clefts below.
+TEST(NoiseLaws, GravelIsNoNoiseThatNeighboursShare) {
+  constexpr double kSide = 140, kNoise = 0.55;  // one point a square unit
+  std::mt19937_64 engine(2);
+  std::normal_distribution<double> normal(0, kNoise);
+  std::uniform_real_distribution<double> uniform;
+  struct Stone {
+    double x, y, z, radius;
+  };
+  std::vector<Stone> stones(400);
+  for (Stone& stone : stones) {
+    stone.x = kSide * uniform(engine);
+    stone.y = kSide * uniform(engine);
+    stone.radius = 3 + 5.5 * uniform(engine);
+    stone.z = -0.3 * stone.radius * uniform(engine);
+  }
+  const auto top = [&](double x, double y) {
+    double z = -2;
+    for (const Stone& s : stones) {
+      const double square = s.radius * s.radius - std::pow(x - s.x, 2) - std::pow(y - s.y, 2);
+      if (square > 0) z = std::max(z, s.z + std::sqrt(square));
+    }
+    return z;
+  };
+  Positions points;
+  for (int i = 0; i < int(kSide * kSide); ++i) {
+    const double x = kSide * uniform(engine), y = kSide * uniform(engine);
+    points.emplace_back(x, y, top(x, y) + normal(engine));
+  }
+  const DenoiseReport report = denoise(points);
+  EXPECT_EQ(report.statistics.noise->shared, 1);
+  EXPECT_LT(report.noise, 1.2 * kNoise);  // it was 1.8 times
+}
+
+// Hills, and hills on these: the finer the lower. They never stop growing with the neighbourhood as noise
+// does, only ever slower.
+TEST(NoiseLaws, GroundIsNoNoiseThatNeighboursShare) {
+  constexpr int kSide = 160;
+  std::mt19937_64 engine(1);
+  std::uniform_real_distribution<double> turn(0, 2 * M_PI);
+  Positions points;
+  for (int x = 0; x < kSide; ++x)
+    for (int y = 0; y < kSide; ++y) points.emplace_back(x, y, 0);
+  for (double length = 25; length > 3; length /= 1.4)
+    for (int wave = 0; wave < 12; ++wave) {
+      const double along = turn(engine), from = turn(engine), high = 0.05 * std::pow(length, 0.75);
+      for (Eigen::Vector3d& p : points)
+        p.z() +=
+            high * std::cos(2 * M_PI / length * (std::cos(along) * p.x() + std::sin(along) * p.y()) + from);
+    }
+  const double relief = rms_height(points, 0);
+  const DenoiseReport report = denoise(points);
+  EXPECT_EQ(report.statistics.noise->shared, 1);
+  EXPECT_LT(report.rms_move, 0.1 * relief);  // it was a half
+}
+
 // A wall in nine depths: rows and columns of the image leave few values across, too.
 TEST(NoiseLaws, AWallBeforeADepthCameraIsCleaned) {
   std::mt19937_64 engine(9);

@@ -48,6 +48,22 @@ TEST(Scatter, LeanTellsUnequalSheetsFromAsManyPointsOnEach) {
   EXPECT_NEAR(lean_of(0.7), 0.4 * 0.4 / (0.3 * 0.7), 0.15);
 }
 
+TEST(Scatter, WhatLeansInCommonIsNoChance) {
+  std::mt19937_64 engine(8);
+  std::normal_distribution<double> normal(0, 0.01);
+  std::exponential_distribution<double> tail(100);
+  double alike = 0, lean = 0, by_chance = 0;
+  for (int round = 0; round < 300; ++round) {
+    const auto fit = middle_fit(60, [&](const auto&) { return normal(engine); });
+    alike += fit.lean_in_common / 300;
+    by_chance += fit.lean / 300;
+    lean += middle_fit(600, [&](const auto&) { return tail(engine); }).lean_in_common / 300;
+  }
+  EXPECT_NEAR(alike, -0.06, 0.06);  // a quadric makes quadrants lean against each other
+  EXPECT_GT(by_chance, 0.1);
+  EXPECT_NEAR(lean, 4, 1);  // the square of the skewness of an exponential distribution
+}
+
 TEST(Scatter, NearestPointsErrTogetherWhereTheyShareTheNoise) {
   std::mt19937_64 engine(6);
   std::normal_distribution<double> normal(0, 0.01);

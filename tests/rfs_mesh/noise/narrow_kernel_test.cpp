@@ -18,12 +18,12 @@ using rfs_mesh::SpatialIndex;
 
 namespace {
 
-constexpr double kSigma = 0.03, kMost = 5 * kSigma;
+constexpr double kNoiseInSlab = 0.03, kMost = 5 * kNoiseInSlab;
 
 /// So many points of a surface, given by two uniform numbers, with isotropic noise.
 Positions noisy(std::size_t n, const std::function<Eigen::Vector3d(double, double)>& surface) {
   std::mt19937_64 engine(3);
-  std::normal_distribution<double> normal(0, kSigma);
+  std::normal_distribution<double> normal(0, kNoiseInSlab);
   std::uniform_real_distribution<double> uniform;
   Positions points(n);
   for (Eigen::Vector3d& p : points) {
@@ -42,7 +42,7 @@ std::optional<rfs_mesh::NoiseInKernels> read_from(const Positions& points, doubl
 /// Of the true noise.
 double share_read(const Positions& points) {
   const auto read = read_from(points);
-  return read ? read->sigma.value_or(0) / kSigma : 0;
+  return read ? read->sigma.value_or(0) / kNoiseInSlab : 0;
 }
 
 Eigen::Vector3d plane(double u, double v) {
@@ -72,14 +72,16 @@ TEST(NarrowKernel, ReadsTheNoiseOfAPlaneAndOfASphere) {
 
 TEST(NarrowKernel, ReadsTheNoiseOfRodsAndStacksAFewSigmaThick) {
   for (const double sigmas : {2.0, 3.0, 5.0})
-    EXPECT_NEAR(share_read(noisy(10000, [&](double u, double v) { return rod(sigmas * kSigma, u, v); })), 1,
-                0.15)
+    EXPECT_NEAR(
+        share_read(noisy(10000, [&](double u, double v) { return rod(sigmas * kNoiseInSlab, u, v); })), 1,
+        0.15)
         << "rods with a radius of " << sigmas << " sigma";
   for (const double sigmas : {3.0, 4.0})
     for (const int sheets : {2, 5})
-      EXPECT_NEAR(share_read(noisy(std::size_t(sheets) * 6000,
-                                   [&](double u, double v) { return stack(sheets, sigmas * kSigma, u, v); })),
-                  1, 0.3)
+      EXPECT_NEAR(
+          share_read(noisy(std::size_t(sheets) * 6000,
+                           [&](double u, double v) { return stack(sheets, sigmas * kNoiseInSlab, u, v); })),
+          1, 0.3)
           << sheets << " sheets, " << sigmas << " sigma apart";
 }
 
@@ -101,8 +103,8 @@ TEST(NarrowKernel, BoundsNoiseOfLessThanASpacingAndDoesNotTellIt) {
     const auto read = read_from(noisy(points, plane));
     ASSERT_TRUE(read) << points;
     EXPECT_FALSE(read->sigma) << points;
-    EXPECT_GT(read->bound, 0.9 * kSigma) << points;
-    EXPECT_LT(read->bound, 1.6 * kSigma) << points;
+    EXPECT_GT(read->bound, 0.9 * kNoiseInSlab) << points;
+    EXPECT_LT(read->bound, 1.6 * kNoiseInSlab) << points;
   }
 }
 
@@ -115,14 +117,15 @@ TEST(NarrowKernel, TellsNothingOfExactPoints) {
 TEST(NarrowKernel, BoundsTheWholeMeasureOnStacksAndRods) {
   const auto measured = [](const Positions& points) {
     const Context context;
-    return rfs_mesh::measure_noise(SpatialIndex(points, context), context).sigma / kSigma;
+    return rfs_mesh::measure_noise(SpatialIndex(points, context), context).sigma / kNoiseInSlab;
   };
-  EXPECT_NEAR(measured(noisy(24000, [](double u, double v) { return stack(5, 3 * kSigma, u, v); })), 1.3,
-              0.3);
-  EXPECT_NEAR(measured(noisy(10000, [](double u, double v) { return rod(1.5 * kSigma, u, v); })), 1.2, 0.2);
+  EXPECT_NEAR(measured(noisy(24000, [](double u, double v) { return stack(5, 3 * kNoiseInSlab, u, v); })),
+              1.3, 0.3);
+  EXPECT_NEAR(measured(noisy(10000, [](double u, double v) { return rod(1.5 * kNoiseInSlab, u, v); })), 1.2,
+              0.2);
   // Noise of 0.8 spacings, which windows alone took for 2.8 times as much.
-  EXPECT_NEAR(measured(noisy(1972, [](double u, double v) { return stack(3, 3.5 * kSigma, u, v); })), 1.3,
-              0.3);
+  EXPECT_NEAR(measured(noisy(1972, [](double u, double v) { return stack(3, 3.5 * kNoiseInSlab, u, v); })),
+              1.3, 0.3);
 }
 
 }  // namespace
