@@ -9,9 +9,8 @@
 /// edges of vertices that no face reaches (`Mesh::loose_edges`).
 ///
 /// Differs from the paper: connectivity is tested on the shadow of the cloud (local_surface.h) where noise
-/// exceeds a share of the spacing, or on positions the caller gives; points that noise carried between two
-/// near sheets have no neighbours (part_sheets.h); thresholds are ours (SheetsOptions, SdgOptions,
-/// UmbrellaOptions).
+/// exceeds a share of the spacing; points that noise carried between two near sheets have no neighbours
+/// (part_sheets.h); thresholds are ours (SheetsOptions, SdgOptions, UmbrellaOptions).
 #pragma once
 
 #include <cstddef>
@@ -158,8 +157,8 @@ struct UmbrellaOptions {
   }
 };
 
-/// How far to connect. `emst`: the tree of the points (or of the guide), no noise is measured; `tree`: the
-/// tree that the SDG extends, which stands on the shadow where noise is large.
+/// How far to connect. `emst`: the tree of the points, no noise is measured; `tree`: the tree that the SDG
+/// extends, which stands on the shadow where noise is large.
 enum class ConnectUpTo { emst, tree, sdg, mesh };
 
 /// How to connect.
@@ -215,8 +214,8 @@ struct NoiseLevel {
 struct Connection {
   Mesh mesh;                           ///< the RFS-mesh over the points as given
   std::vector<Edge> emst;              ///< n - 1, ascending by length; empty if not wanted and not needed
-  std::vector<Edge> tree;              ///< what the SDG extends, ascending: the EMST, or that of the shadows
-                                       ///< or the guide; empty if no tree is wanted
+  std::vector<Edge> tree;              ///< what the SDG extends, ascending: the EMST, or that of the
+                                       ///< shadows; empty if no tree is wanted
   std::vector<Edge> sdg;               ///< ascending; without the bridges
   std::vector<Edge> bridges;           ///< tree edges that are not neighbourhood: not in mesh.one_ring
   std::vector<LocalSurface> surfaces;  ///< n; the shadow of point i is surfaces[i].shadow
@@ -227,12 +226,9 @@ struct Connection {
 };
 
 /// Connects n points (finite, in any frame; distinct where `make_working_cloud` made them, but coincident
-/// ones do no harm). With `guide`, n smoothed positions of the same points: all tests, the EMST too, are made
-/// on them, taken as free of noise; the mesh still has `points` as its positions. Any n, zero too, has a
-/// result. Errors: usage (options), out_of_memory, cancelled. \throw std::invalid_argument if `guide` has
-/// another size. O(n log n); parallel, the same bytes for any number of threads. Thread safe.
-Result<Connection> connect(const Positions& points, const ConnectOptions& options, const Context& context,
-                           const Positions* guide = nullptr);
+/// ones do no harm). Any n, zero too, has a result. Errors: usage (options), out_of_memory, cancelled. O(n
+/// log n); parallel, the same bytes for any number of threads. Thread safe.
+Result<Connection> connect(const Positions& points, const ConnectOptions& options, const Context& context);
 
 /// When a dihedral edge swap is worth it.
 struct SwapOptions {

@@ -58,17 +58,6 @@ struct Ground {
   std::vector<char> between;  // two sheets: n flags, or none
 };
 
-/// The ground at smoothed positions that the caller gives.
-Ground ground_at(const Positions& guide, int k, const Context& context) {
-  Ground ground;
-  ground.at = guide;
-  const SpatialIndex index(ground.at, context);
-  ground.near = index.nearest(k, context);
-  ground.tree = emst_unsorted(index, ground.near, context);
-  ground.surfaces = local_surfaces(ground.at, ground.near, context);
-  return ground;
-}
-
 /// A quadric through m points leaves about a third of the noise in the shadow at the m that noise_scale
 /// picks.
 constexpr double kNoiseLeft = 1.0 / 3;
@@ -180,8 +169,8 @@ Measured measure(const SpatialIndex& index, const NeighborTable& near, const Con
 
 /// The first stages, up to the surfaces: what is measured on the points themselves. Fills emst, noise and
 /// on_shadow of `c`; returns what the tests are made on.
-Ground survey(Cloud cloud, const ConnectOptions& options, const Context& context, const Positions* guide,
-              Statistics& whole, Connection& c, Stages& stages) {
+Ground survey(Cloud cloud, const ConnectOptions& options, const Context& context, Statistics& whole,
+              Connection& c, Stages& stages) {
   const SpatialIndex& index = cloud.index;
   const NeighborTable& near = cloud.near;
   const Positions& points = index.points();
@@ -190,7 +179,7 @@ Ground survey(Cloud cloud, const ConnectOptions& options, const Context& context
   c.noise = std::move(measured.level);
   const std::vector<Index>& wider = measured.wider;
   const NoiseScale scale = *whole.scale;
-  c.on_shadow = guide == nullptr && n > 0 && scale.sigma > options.shadow_from * c.noise.spacing;
+  c.on_shadow = n > 0 && scale.sigma > options.shadow_from * c.noise.spacing;
   c.emst = stages.run("emst", 0.2, [&] {
     return options.tree_of_points || !c.on_shadow ? emst(index, near, context) : std::vector<Edge>();
   });
@@ -199,13 +188,10 @@ Ground survey(Cloud cloud, const ConnectOptions& options, const Context& context
     return c.on_shadow ? shared_local_surfaces(index, near, scale, c.noise.field, wider, least, context)
                        : local_surfaces(points, near, context);
   });
-  if (guide == nullptr && !c.on_shadow)
-    return {points, std::move(surfaces), std::move(cloud.near), c.emst, {}};
+  if (!c.on_shadow) return {points, std::move(surfaces), std::move(cloud.near), c.emst, {}};
   cloud.near = NeighborTable();  // neighbours among the noisy points: not needed any more
-  return stages.run(guide != nullptr ? "guide" : "shadow", 0.5, [&] {
-    return guide != nullptr
-               ? ground_at(*guide, options.neighbours, context)
-               : shadow_ground(points, std::move(surfaces), scale, c.noise, wider, options, context);
+  return stages.run("shadow", 0.5, [&] {
+    return shadow_ground(points, std::move(surfaces), scale, c.noise, wider, options, context);
   });
 }
 
@@ -216,11 +202,10 @@ void keep_tree(Ground& ground, Connection& c, const Context& context) {
 
 /// The tree of the points and nothing else.
 Connection connect_tree(const Positions& points, std::optional<Cloud> known, const ConnectOptions& options,
-                        const Context& context, const Positions* guide) {
+                        const Context& context) {
   Connection c;
   Stages stages(c.seconds, context);
-  if (!known || guide != nullptr)
-    known.emplace(search(guide != nullptr ? *guide : points, options, context, stages));
+  if (!known) known.emplace(search(points, options, context, stages));
   c.noise.spacing = mean_spacing(known->index.points(), known->near, context);
   c.emst = stages.run("emst", 0.2, [&] { return emst(known->index, known->near, context); });
   return c;
@@ -228,16 +213,15 @@ Connection connect_tree(const Positions& points, std::optional<Cloud> known, con
 
 /// `known`: the caller's search, or none. `whole`: what is there is taken, the rest entered.
 Connection connect_all(const Positions& points, std::optional<Cloud> known, const ConnectOptions& options,
-                       const Context& context, const Positions* guide, Statistics& whole) {
-  if (options.up_to == ConnectUpTo::emst)
-    return connect_tree(points, std::move(known), options, context, guide);
+                       const Context& context, Statistics& whole) {
+  if (options.up_to == ConnectUpTo::emst) return connect_tree(points, std::move(known), options, context);
   Connection c;
   Stages stages(c.seconds, context);
   const std::size_t n = points.size();
   if (!known) known.emplace(search(points, options, context, stages));
-  Ground ground = survey(std::move(*known), options, context, guide, whole, c, stages);
+  Ground ground = survey(std::move(*known), options, context, whole, c, stages);
   known.reset();
-  const double noise = guide != nullptr ? 0 : c.on_shadow ? kNoiseLeft * c.noise.sigma : c.noise.sigma;
+  const double noise = c.on_shadow ? kNoiseLeft * c.noise.sigma : c.noise.sigma;
   if (options.up_to == ConnectUpTo::tree) {
     keep_tree(ground, c, context);
     return c;
@@ -279,14 +263,14 @@ Connection connect_all(const Positions& points, std::optional<Cloud> known, cons
 /// connect_all() behind a front door. `statistics`: as `whole`, or null.
 Result<Connection> connect_or_fail(const Positions& points, std::optional<Cloud> known,
                                    const ConnectOptions& options, const Context& context,
-                                   const Positions* guide, Statistics* statistics) {
+                                   Statistics* statistics) {
   return guarded([&] {
     value_or_throw(validate(options));
     Connection connection;
     Statistics own;
     in_arena(context, [&] {
-      connection = connect_all(points, std::move(known), options, context, guide,
-                               statistics != nullptr ? *statistics : own);
+      connection =
+          connect_all(points, std::move(known), options, context, statistics != nullptr ? *statistics : own);
     });
     return connection;
   });
@@ -308,19 +292,15 @@ Result<Connection> connect(SpatialIndex index, NeighborTable near, const Connect
       std::min(std::size_t(options.neighbours), std::max<std::size_t>(points.size(), 1) - 1);
   if (near.items.size() != points.size() * width)
     throw std::invalid_argument("connect: near is not the table that the options ask for");
-  return connect_or_fail(points, Cloud{std::move(index), std::move(near)}, options, context, nullptr,
-                         statistics);
+  return connect_or_fail(points, Cloud{std::move(index), std::move(near)}, options, context, statistics);
 }
 
 }  // namespace rfsmooth::rfs_mesh
 
 namespace rfsmooth {
 
-Result<Connection> connect(const Positions& points, const ConnectOptions& options, const Context& context,
-                           const Positions* guide) {
-  if (guide != nullptr && guide->size() != points.size())
-    throw std::invalid_argument("connect: guide must hold one position per point");
-  return rfs_mesh::connect_or_fail(points, {}, options, context, guide, nullptr);
+Result<Connection> connect(const Positions& points, const ConnectOptions& options, const Context& context) {
+  return rfs_mesh::connect_or_fail(points, {}, options, context, nullptr);
 }
 
 }  // namespace rfsmooth

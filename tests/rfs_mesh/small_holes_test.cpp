@@ -62,7 +62,7 @@ TEST(SmallHoles, TheRoughMeshHasNone) {
   std::mt19937_64 engine(3);
   Positions points(4000);
   for (Eigen::Vector3d& p : points) p = torus.sample(engine);
-  const auto connection = rfsmooth::connect(points, {}, {}, nullptr);
+  const auto connection = rfsmooth::connect(points, {}, {});
   ASSERT_TRUE(connection.ok());
   const Mesh& mesh = connection.value().mesh;
   EXPECT_TRUE(check(mesh).empty());

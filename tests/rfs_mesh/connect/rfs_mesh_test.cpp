@@ -203,18 +203,6 @@ TEST_P(NoisyThinPlate, KeepsItsTwoSides) {
 
 INSTANTIATE_TEST_SUITE_P(Noise, NoisyThinPlate, testing::Values(0.3, 0.5));
 
-TEST(Connection, GuideDecidesConnectivityAndPointsStay) {
-  const Positions clean = test::poisson_points(test::unit_sphere(), 3000, 1);
-  Positions noisy = clean;
-  std::mt19937_64 engine(4);
-  std::normal_distribution<double> normal(0, 0.1);
-  for (auto& p : noisy) p += Eigen::Vector3d(normal(engine), normal(engine), normal(engine));
-  const Connection guided = connect(noisy, ConnectOptions{}, Context{}, &clean).value();
-  const Connection ideal = connected(clean);
-  EXPECT_GT(share_in_common(guided.mesh.faces, ideal.mesh.faces), 0.95);
-  EXPECT_TRUE(guided.mesh.positions == noisy);
-}
-
 TEST(Connection, StandsOnTheOneMeasureOfNoise) {
   // Depths in steps of three spacings: residuals of narrow neighbourhoods are zero on a terrace, and yet the
   // noise is known, and the tests are made on the shadow.
@@ -246,8 +234,6 @@ TEST(Connection, SaysWhatItCannotDo) {
   const auto c = connect(Positions(3, Eigen::Vector3d::Zero()), options, Context{});
   ASSERT_FALSE(c.ok());
   EXPECT_EQ(c.error().code, ErrorCode::usage);
-  const Positions guide(2, Eigen::Vector3d::Zero());
-  EXPECT_THROW((void)connect(Positions(3, Eigen::Vector3d::Zero()), {}, {}, &guide), std::invalid_argument);
 }
 
 TEST(Connection, CanBeCancelled) {
