@@ -292,17 +292,17 @@ bool reads_faces(const DenoiseOptions& options) {
 Connection connected(rfs_mesh::WorkingCloud& cloud, const DenoiseOptions& options, const Context& context,
                      DenoiseReport& report) {
   Statistics& whole = report.statistics;
-  ConnectOptions connect = options.connect;
-  connect.tree_of_points = false;
+  rfs_mesh::Wanted wanted;
+  wanted.tree_of_points = false;
   // Points that no face reaches have no surface to be smoothed onto: as in the paper their edges go, and
   // without neighbours they stay. Kept, such an edge would carry a stray over its whole length, and HC's
   // push-back would throw its neighbour after it.
-  connect.loose_edges = false;
-  connect.fill_holes = reads_faces(options);
-  Searched found = search(cloud, connect.neighbours, options, context, report);
+  wanted.loose_edges = false;
+  wanted.fill_holes = reads_faces(options);
+  Searched found = search(cloud, options.connect.neighbours, options, context, report);
   if (!whole.points) whole.points = found.index->points().size();
-  return value_or_throw(
-      rfs_mesh::connect(std::move(*found.index), std::move(found.near), connect, context, &whole));
+  return value_or_throw(rfs_mesh::connect(std::move(*found.index), std::move(found.near), options.connect,
+                                          wanted, context, &whole));
 }
 
 /// What the connection says of the cloud. Of the rest only the mesh is needed while smoothing.

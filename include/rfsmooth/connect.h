@@ -157,8 +157,9 @@ struct UmbrellaOptions {
   }
 };
 
-/// How far to connect. `emst`: the tree of the points, no noise is measured; `tree`: the tree that the SDG
-/// extends, which stands on the shadow where noise is large.
+/// The last stage of connecting that is wanted; what only later ones make stays empty. `emst`: the tree of
+/// the points, no noise is measured; `tree`: the tree that the SDG extends, which stands on the shadow where
+/// noise is large.
 enum class ConnectUpTo { emst, tree, sdg, mesh };
 
 /// How to connect.
@@ -168,17 +169,6 @@ struct ConnectOptions {
   SheetsOptions sheets;
   SdgOptions sdg;
   UmbrellaOptions umbrella;
-  /// Whether Connection::tree is wanted, and Connection::emst where the tests are made on the shadow, on a
-  /// tree of its own.
-  bool tree_of_points = true;
-  /// Whether vertices that no face reaches keep their SDG edges (Mesh::loose_edges) and are neighbours by
-  /// them.
-  bool loose_edges = true;
-  /// Whether small holes are filled: it adds faces, and no edge or neighbour.
-  bool fill_holes = true;
-  /// The last stage that is wanted; what only later ones make stays empty. Its tree is made even where
-  /// `tree_of_points` is false.
-  ConnectUpTo up_to = ConnectUpTo::mesh;
 
   template <class Self, class Visit>
   static void describe(Self& self, Visit&& visit) {
@@ -213,9 +203,9 @@ struct NoiseLevel {
 /// Everything the stages made. All of it refers to the points by index.
 struct Connection {
   Mesh mesh;                           ///< the RFS-mesh over the points as given
-  std::vector<Edge> emst;              ///< n - 1, ascending by length; empty if not wanted and not needed
+  std::vector<Edge> emst;              ///< n - 1, ascending by length; of the points
   std::vector<Edge> tree;              ///< what the SDG extends, ascending: the EMST, or that of the
-                                       ///< shadows; empty if no tree is wanted
+                                       ///< shadows
   std::vector<Edge> sdg;               ///< ascending; without the bridges
   std::vector<Edge> bridges;           ///< tree edges that are not neighbourhood: not in mesh.one_ring
   std::vector<LocalSurface> surfaces;  ///< n; the shadow of point i is surfaces[i].shadow
@@ -226,9 +216,10 @@ struct Connection {
 };
 
 /// Connects n points (finite, in any frame; distinct where `make_working_cloud` made them, but coincident
-/// ones do no harm). Any n, zero too, has a result. Errors: usage (options), out_of_memory, cancelled. O(n
-/// log n); parallel, the same bytes for any number of threads. Thread safe.
-Result<Connection> connect(const Positions& points, const ConnectOptions& options, const Context& context);
+/// ones do no harm), up to a stage. Any n, zero too, has a result. Errors: usage (options), out_of_memory,
+/// cancelled. O(n log n); parallel, the same bytes for any number of threads. Thread safe.
+Result<Connection> connect(const Positions& points, const ConnectOptions& options, const Context& context,
+                           ConnectUpTo up_to = ConnectUpTo::mesh);
 
 /// When a dihedral edge swap is worth it.
 struct SwapOptions {

@@ -169,8 +169,8 @@ Measured measure(const SpatialIndex& index, const NeighborTable& near, const Con
 
 /// The first stages, up to the surfaces: what is measured on the points themselves. Fills emst, noise and
 /// on_shadow of `c`; returns what the tests are made on.
-Ground survey(Cloud cloud, const ConnectOptions& options, const Context& context, Statistics& whole,
-              Connection& c, Stages& stages) {
+Ground survey(Cloud cloud, const ConnectOptions& options, const Wanted& wanted, const Context& context,
+              Statistics& whole, Connection& c, Stages& stages) {
   const SpatialIndex& index = cloud.index;
   const NeighborTable& near = cloud.near;
   const Positions& points = index.points();
@@ -181,7 +181,7 @@ Ground survey(Cloud cloud, const ConnectOptions& options, const Context& context
   const NoiseScale scale = *whole.scale;
   c.on_shadow = n > 0 && scale.sigma > options.shadow_from * c.noise.spacing;
   c.emst = stages.run("emst", 0.2, [&] {
-    return options.tree_of_points || !c.on_shadow ? emst(index, near, context) : std::vector<Edge>();
+    return wanted.tree_of_points || !c.on_shadow ? emst(index, near, context) : std::vector<Edge>();
   });
   auto surfaces = stages.run("local surfaces", 0.4, [&] {
     const auto least = std::min(std::size_t(options.neighbours), scale.neighbours);
@@ -213,16 +213,16 @@ Connection connect_tree(const Positions& points, std::optional<Cloud> known, con
 
 /// `known`: the caller's search, or none. `whole`: what is there is taken, the rest entered.
 Connection connect_all(const Positions& points, std::optional<Cloud> known, const ConnectOptions& options,
-                       const Context& context, Statistics& whole) {
-  if (options.up_to == ConnectUpTo::emst) return connect_tree(points, std::move(known), options, context);
+                       const Wanted& wanted, const Context& context, Statistics& whole) {
+  if (wanted.up_to == ConnectUpTo::emst) return connect_tree(points, std::move(known), options, context);
   Connection c;
   Stages stages(c.seconds, context);
   const std::size_t n = points.size();
   if (!known) known.emplace(search(points, options, context, stages));
-  Ground ground = survey(std::move(*known), options, context, whole, c, stages);
+  Ground ground = survey(std::move(*known), options, wanted, context, whole, c, stages);
   known.reset();
   const double noise = c.on_shadow ? kNoiseLeft * c.noise.sigma : c.noise.sigma;
-  if (options.up_to == ConnectUpTo::tree) {
+  if (wanted.up_to == ConnectUpTo::tree) {
     keep_tree(ground, c, context);
     return c;
   }
@@ -231,8 +231,8 @@ Connection connect_all(const Positions& points, std::optional<Cloud> known, cons
   Sdg sdg = stages.run("sdg", 0.6, [&] { return make_sdg(terrain, ground.tree, options.sdg, context); });
   c.sdg = std::move(sdg.edges);
   c.bridges = std::move(sdg.bridges);
-  if (options.tree_of_points) keep_tree(ground, c, context);
-  if (options.up_to == ConnectUpTo::sdg) {
+  if (wanted.tree_of_points) keep_tree(ground, c, context);
+  if (wanted.up_to == ConnectUpTo::sdg) {
     c.surfaces = std::move(ground.surfaces);
     return c;
   }
@@ -247,11 +247,11 @@ Connection connect_all(const Positions& points, std::optional<Cloud> known, cons
     FlattestPairs kept = keep_flattest_pairs(ground.at, proposed, options.umbrella.same_fold, context);
     c.mesh.faces = std::move(kept.faces);
     c.mesh.one_ring = std::move(kept.one_ring);  // filling holes adds no edge
-    if (options.fill_holes) fill_small_holes(ground.at, options.umbrella.quality, c.mesh.faces, context);
+    if (wanted.fill_holes) fill_small_holes(ground.at, options.umbrella.quality, c.mesh.faces, context);
     Positions().swap(ground.at);
     c.mesh.positions = points;
     for (std::size_t i = 0; i < n; ++i) c.faceless += std::size_t(c.mesh.one_ring.degree(i) == 0);
-    if (options.loose_edges && c.faceless > 0) {
+    if (wanted.loose_edges && c.faceless > 0) {
       c.mesh.loose_edges = loose_edges(c.mesh.one_ring, c.sdg, context);
       rebuild_adjacency(c.mesh, context);
     }
@@ -262,15 +262,15 @@ Connection connect_all(const Positions& points, std::optional<Cloud> known, cons
 
 /// connect_all() behind a front door. `statistics`: as `whole`, or null.
 Result<Connection> connect_or_fail(const Positions& points, std::optional<Cloud> known,
-                                   const ConnectOptions& options, const Context& context,
-                                   Statistics* statistics) {
+                                   const ConnectOptions& options, const Wanted& wanted,
+                                   const Context& context, Statistics* statistics) {
   return guarded([&] {
     value_or_throw(validate(options));
     Connection connection;
     Statistics own;
     in_arena(context, [&] {
-      connection =
-          connect_all(points, std::move(known), options, context, statistics != nullptr ? *statistics : own);
+      connection = connect_all(points, std::move(known), options, wanted, context,
+                               statistics != nullptr ? *statistics : own);
     });
     return connection;
   });
@@ -285,22 +285,31 @@ void measure_cloud(const SpatialIndex& index, const NeighborTable& near, Statist
   if (!whole.scale) whole.scale = scale_for(index, noise, context);
 }
 
+Result<Connection> connect(const Positions& points, const ConnectOptions& options, const Wanted& wanted,
+                           const Context& context) {
+  return connect_or_fail(points, {}, options, wanted, context, nullptr);
+}
+
 Result<Connection> connect(SpatialIndex index, NeighborTable near, const ConnectOptions& options,
-                           const Context& context, Statistics* statistics) {
+                           const Wanted& wanted, const Context& context, Statistics* statistics) {
   const Positions& points = index.points();
   const std::size_t width =
       std::min(std::size_t(options.neighbours), std::max<std::size_t>(points.size(), 1) - 1);
   if (near.items.size() != points.size() * width)
     throw std::invalid_argument("connect: near is not the table that the options ask for");
-  return connect_or_fail(points, Cloud{std::move(index), std::move(near)}, options, context, statistics);
+  return connect_or_fail(points, Cloud{std::move(index), std::move(near)}, options, wanted, context,
+                         statistics);
 }
 
 }  // namespace rfsmooth::rfs_mesh
 
 namespace rfsmooth {
 
-Result<Connection> connect(const Positions& points, const ConnectOptions& options, const Context& context) {
-  return rfs_mesh::connect_or_fail(points, {}, options, context, nullptr);
+Result<Connection> connect(const Positions& points, const ConnectOptions& options, const Context& context,
+                           ConnectUpTo up_to) {
+  rfs_mesh::Wanted wanted;
+  wanted.up_to = up_to;
+  return rfs_mesh::connect(points, options, wanted, context);
 }
 
 }  // namespace rfsmooth

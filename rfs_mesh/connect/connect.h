@@ -1,4 +1,5 @@
-/// `connect` (rfsmooth/connect.h) for a caller who has searched the points already.
+/// `connect` (rfsmooth/connect.h) for callers inside, who need less of it or have searched the points
+/// already.
 #pragma once
 
 #include <rfsmooth/connect.h>
@@ -13,10 +14,28 @@ namespace rfsmooth::rfs_mesh {
 void measure_cloud(const SpatialIndex& index, const NeighborTable& near, Statistics& whole,
                    const Context& context);
 
-/// Connects the points of `index`. `near`: their nearest `options.neighbours`. \throw std::invalid_argument
-/// if `near` is of another width or size. \param statistics `scale` and `spacing` are taken if they are
-/// there, else entered.
+/// What is wanted of a connection; what is not may stay empty.
+struct Wanted {
+  /// The last stage. Its tree is made even where `tree_of_points` is false.
+  ConnectUpTo up_to = ConnectUpTo::mesh;
+  /// Whether Connection::tree is wanted, and Connection::emst where the tests are made on the shadow, on a
+  /// tree of its own.
+  bool tree_of_points = true;
+  /// Whether vertices that no face reaches keep their SDG edges (Mesh::loose_edges) and are neighbours by
+  /// them.
+  bool loose_edges = true;
+  /// Whether small holes are filled: it adds faces, and no edge or neighbour.
+  bool fill_holes = true;
+};
+
+/// Connects the points as the public `connect` does, and makes no more than what is wanted.
+Result<Connection> connect(const Positions& points, const ConnectOptions& options, const Wanted& wanted,
+                           const Context& context);
+
+/// The same for the points of `index`. `near`: their nearest `options.neighbours`. \throw
+/// std::invalid_argument if `near` is of another width or size. \param statistics `scale` and `spacing` are
+/// taken if they are there, else entered.
 Result<Connection> connect(SpatialIndex index, NeighborTable near, const ConnectOptions& options,
-                           const Context& context, Statistics* statistics = nullptr);
+                           const Wanted& wanted, const Context& context, Statistics* statistics = nullptr);
 
 }  // namespace rfsmooth::rfs_mesh

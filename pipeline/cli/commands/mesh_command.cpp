@@ -5,8 +5,6 @@
 
 #include <fmt/format.h>
 
-#include <rfsmooth/connect.h>
-
 #include "base/fail.h"
 #include "base/parallel.h"
 #include "pipeline/cli/commands/command.h"
@@ -14,6 +12,7 @@
 #include "pipeline/cli/files/memory.h"
 #include "pipeline/io/mesh_file.h"
 #include "pipeline/row_order.h"
+#include "rfs_mesh/connect/connect.h"
 
 namespace rfsmooth::cli {
 
@@ -48,15 +47,15 @@ std::vector<Edge> renumbered(std::vector<Edge> edges, const std::vector<Index>& 
   return edges;
 }
 
-/// The options of the stage: what only later ones need is not made.
-ConnectOptions connect_options(const MeshOptions& options) {
-  ConnectOptions connect = options.connect;
-  connect.up_to = options.stage == "emst-points" ? ConnectUpTo::emst
-                  : options.stage == "emst"      ? ConnectUpTo::tree
-                  : options.stage == "sdg"       ? ConnectUpTo::sdg
-                                                 : ConnectUpTo::mesh;
-  connect.tree_of_points = options.stage == "sdg";
-  return connect;
+/// What a stage needs: what only later ones need is not made.
+rfs_mesh::Wanted wanted_for(const std::string& stage) {
+  rfs_mesh::Wanted wanted;
+  wanted.up_to = stage == "emst-points" ? ConnectUpTo::emst
+                 : stage == "emst"      ? ConnectUpTo::tree
+                 : stage == "sdg"       ? ConnectUpTo::sdg
+                                        : ConnectUpTo::mesh;
+  wanted.tree_of_points = stage == "sdg";
+  return wanted;
 }
 
 /// What the stages up to the one that was asked for made.
@@ -103,8 +102,8 @@ std::string connect_cloud(const MeshCommandOptions& options, pipeline::io::Cloud
       value_or_fail(rfs_mesh::make_working_cloud(xyz.data(), cloud.size(), context), job.input);
   Connection connection;
   in_arena(context, [&] {
-    connection =
-        value_or_throw(rfsmooth::connect(working.points, connect_options(options.mesh), task.context));
+    connection = value_or_throw(rfs_mesh::connect(working.points, options.mesh.connect,
+                                                  wanted_for(options.mesh.stage), task.context));
   });
   stages.insert(stages.end(), connection.seconds.begin(), connection.seconds.end());
   warn_if_coarse(cloud, xyz, connection.noise.spacing, job.input, console);

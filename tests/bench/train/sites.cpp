@@ -11,11 +11,10 @@
 
 #include <CLI/CLI.hpp>
 
-#include <rfsmooth/connect.h>
-
 #include "base/parallel.h"
 #include "clouds/scanner/laws.h"
 #include "clouds/shapes/sampling.h"
+#include "rfs_mesh/connect/connect.h"
 #include "rfs_mesh/points.h"
 #include "smoothing/automatic/flow_auto.h"
 #include "smoothing/automatic/learned/weights.h"
@@ -105,9 +104,9 @@ LearnedSites sites_of(const Cloud& cloud, const Recipe& recipe, const Context& c
   auto working = value_or_throw(
       rfs_mesh::make_working_cloud(cloud.measured.data()->data(), cloud.measured.size(), context));
   for (auto& p : working.points) p += working.origin;
-  ConnectOptions connecting;
-  connecting.tree_of_points = connecting.loose_edges = false;
-  Mesh mesh = value_or_throw(connect(working.points, connecting, context)).mesh;
+  rfs_mesh::Wanted wanted;
+  wanted.tree_of_points = wanted.loose_edges = false;
+  Mesh mesh = value_or_throw(rfs_mesh::connect(working.points, {}, wanted, context)).mesh;
   AutomaticOptions options;
   if (recipe.disturbed) options.noise = Length{*recipe.disturbed * cloud.sigma, false};
   LearnedSites sites;

@@ -221,11 +221,11 @@ TEST(Connection, StandsOnTheOneMeasureOfNoise) {
 TEST(Connection, IsTheSameFromNeighboursThatAreKnown) {
   const Positions points = test::noisy_sphere(3000, 0.02, 1);
   const SpatialIndex index(points, {});
-  const Connection from_known = rfs_mesh::connect(index, index.nearest(24, {}), {}, {}).value(),
+  const Connection from_known = rfs_mesh::connect(index, index.nearest(24, {}), {}, {}, {}).value(),
                    own = connected(points);
   EXPECT_EQ(from_known.mesh.faces, own.mesh.faces);
   EXPECT_EQ(from_known.noise.field, own.noise.field);
-  EXPECT_THROW((void)rfs_mesh::connect(index, index.nearest(23, {}), {}, {}), std::invalid_argument);
+  EXPECT_THROW((void)rfs_mesh::connect(index, index.nearest(23, {}), {}, {}, {}), std::invalid_argument);
 }
 
 TEST(Connection, SaysWhatItCannotDo) {
