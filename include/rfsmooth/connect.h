@@ -187,7 +187,6 @@ struct ConnectOptions {
 struct LocalSurface {
   Eigen::Vector3d normal;  ///< unit; its side is arbitrary
   Eigen::Vector3d shadow;  ///< the point moved along the normal onto its quadric, same frame as the points
-  double curvature = 0;    ///< the larger absolute principal curvature, 1 / world unit
   double residual = 0;     ///< sqrt(weighted RSS / degrees of freedom): local noise, world units
 };
 

@@ -37,7 +37,6 @@ LocalSurface surface_at_centre(const Quadric& q) {
   if (q.radius == 0) return surface;
   surface.normal = q.normal(0, 0);
   surface.shadow = q.centre + (q.radius * q.c[0] * q.n.dot(surface.normal)) * surface.normal;
-  surface.curvature = q.curvature();
   surface.residual = q.residual;
   return surface;
 }

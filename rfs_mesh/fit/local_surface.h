@@ -1,5 +1,5 @@
-/// The surface as one point sees it: a robust local quadric. It gives the normal, the curvature, the residual
-/// (how far the points scatter about it), and the point's shadow on it.
+/// The surface as one point sees it: a robust local quadric. It gives the normal, the residual (how far the
+/// points scatter about it), and the point's shadow on it.
 ///
 /// In the frame (t1, t2, n) at point p the neighbours d_j = x_j - p are fitted by
 ///

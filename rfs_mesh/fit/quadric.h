@@ -3,7 +3,6 @@
 /// with one workspace per thread.
 #pragma once
 
-#include <cmath>
 #include <vector>
 
 #include <Eigen/Core>
@@ -31,8 +30,6 @@ struct Quadric {
   Vector3d normal(double u, double v) const {
     return (n - (c[1] + 2 * c[3] * u + c[4] * v) * t1 - (c[2] + c[4] * u + 2 * c[5] * v) * t2).normalized();
   }
-  /// The larger absolute principal curvature at the centre, 1 / world unit.
-  double curvature() const { return (std::abs(c[3] + c[5]) + std::hypot(c[3] - c[5], c[4])) / radius; }
 };
 
 /// Scratch memory for the neighbours of one point, reused so that nothing is allocated per point. One array

@@ -86,13 +86,11 @@ class SharedQuadrics {
     const auto members = std::max(kFewestInGroup, std::size_t(kPointsPerSeed * double(scale.neighbours)));
     const Adjacency groups = group_around_kept(index.points(), near, members, context);
     quadrics_.resize(groups.size());
-    curvature_.resize(groups.size());
     for_blocks(context, groups.size(), 16, [&](std::size_t begin, std::size_t end) {
       Fitter fitter(index, scale, noise, wider, least);
       for (std::size_t g = begin; g < end; ++g) {
         for (const Index i : groups[g]) group_[i] = Index(g);
         quadrics_[g] = fitter.fit(middle(groups[g]));
-        curvature_[g] = quadrics_[g].radius > 0 ? quadrics_[g].curvature() : 0;
       }
     });
   }
@@ -104,7 +102,7 @@ class SharedQuadrics {
       if (std::find(around.begin(), around.end(), group_[j]) == around.end()) around.push_back(group_[j]);
     const Vector3d& p = index_.points()[i];
     const double sigma = noise_[i];
-    double total = 0, agreement = 0, residual = 0, curvature = 0;
+    double total = 0, agreement = 0, residual = 0;
     Vector3d normal = Vector3d::Zero(), shift = Vector3d::Zero();
     for (const Index g : around) {
       const Quadric& q = quadrics_[g];
@@ -132,10 +130,9 @@ class SharedQuadrics {
       agreement += trust;
       total += weight;
       residual += weight * q.residual;
-      curvature += weight * curvature_[g];
     }
     if (total < kLeastWeight || normal.norm() < 0.5 * agreement) return false;
-    surface = {normal.normalized(), p + shift / total, curvature / total, residual / total};
+    surface = {normal.normalized(), p + shift / total, residual / total};
     return true;
   }
 
@@ -154,8 +151,7 @@ class SharedQuadrics {
   const SpatialIndex& index_;
   const std::vector<double>& noise_;
   std::vector<Quadric> quadrics_;
-  std::vector<double> curvature_;  // of each quadric
-  std::vector<Index> group_;       // n
+  std::vector<Index> group_;  // n
 };
 
 }  // namespace
