@@ -192,11 +192,8 @@ struct LocalSurface {
 
 /// Spacing and noise of a cloud.
 struct NoiseLevel {
-  double spacing = 0;         ///< h: mean distance to the nearest neighbour, world units
-  double sigma = 0;           ///< standard deviation of the noise along the normal, world units
-  std::vector<double> field;  ///< n: sigma that the surface of each point was fitted for, world units:
-                              ///< the measured one, less where narrow neighbourhoods show less than the
-                              ///< figure, at least 0.05 spacings
+  double spacing = 0;  ///< h: mean distance to the nearest neighbour, world units
+  double sigma = 0;    ///< standard deviation of the noise along the normal, world units
 };
 
 /// Everything the stages made. All of it refers to the points by index.

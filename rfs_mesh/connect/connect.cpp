@@ -62,11 +62,18 @@ struct Ground {
 /// picks.
 constexpr double kNoiseLeft = 1.0 / 3;
 
+/// The noise of a cloud, and what the surface of each point is fitted by.
+struct Measured {
+  NoiseLevel level;
+  std::vector<double> field;  ///< n: the noise there, world units: the measured one, less where narrow
+                              ///< neighbourhoods show less than the figure, at least 0.05 spacings
+  std::vector<Index> wider;   ///< as wider_where_dense() says
+};
+
 /// The ground at the shadows of the points. Quadrics no wider than the neighbourhoods looked at are fitted a
 /// second time, on the shadows; wider ones have the better normals already.
 Ground shadow_ground(const Positions& points, std::vector<LocalSurface> surfaces, const NoiseScale& scale,
-                     const NoiseLevel& noise, const std::vector<Index>& wider, const ConnectOptions& options,
-                     const Context& context) {
+                     const Measured& measured, const ConnectOptions& options, const Context& context) {
   const int k = options.neighbours;
   Ground ground;
   ground.surfaces = std::move(surfaces);
@@ -75,13 +82,13 @@ Ground shadow_ground(const Positions& points, std::vector<LocalSurface> surfaces
   ground.near = index.nearest(k, context);
   ground.tree = emst_unsorted(index, ground.near, context);
   if (scale.neighbours <= std::size_t(k)) {
-    std::vector<double> left = noise.field;
+    std::vector<double> left = measured.field;
     for (double& sigma : left) sigma *= kNoiseLeft;
     ground.surfaces =
-        shared_local_surfaces(index, ground.near, scale, left, wider, scale.neighbours, context);
+        shared_local_surfaces(index, ground.near, scale, left, measured.wider, scale.neighbours, context);
   }
   ground.between =
-      part_sheets(points, index, ground.near, noise.sigma, options.sheets, ground.surfaces, context);
+      part_sheets(points, index, ground.near, measured.level.sigma, options.sheets, ground.surfaces, context);
   ground.at = shadows(ground.surfaces, context);
   return ground;
 }
@@ -149,12 +156,6 @@ std::vector<Index> wider_where_dense(const NoiseField& noise, double loud, const
   return wider;
 }
 
-/// The noise, and wider_where_dense() of it.
-struct Measured {
-  NoiseLevel level;
-  std::vector<Index> wider;
-};
-
 /// What `whole` says of the noise; what it does not say is measured and entered.
 Measured measure(const SpatialIndex& index, const NeighborTable& near, const Context& context,
                  Statistics& whole) {
@@ -164,7 +165,7 @@ Measured measure(const SpatialIndex& index, const NeighborTable& near, const Con
   const double share = loud > 0 ? whole.scale->sigma / loud : 0;
   std::vector<Index> wider = wider_where_dense(field, loud, *whole.scale);
   for (double& sigma : field.local) sigma = std::max(share * sigma, least);
-  return {{*whole.spacing, field.sigma, std::move(field.local)}, std::move(wider)};
+  return {{*whole.spacing, field.sigma}, std::move(field.local), std::move(wider)};
 }
 
 /// The first stages, up to the surfaces: what is measured on the points themselves. Fills emst, noise and
@@ -175,9 +176,8 @@ Ground survey(Cloud cloud, const ConnectOptions& options, const Wanted& wanted, 
   const NeighborTable& near = cloud.near;
   const Positions& points = index.points();
   const std::size_t n = points.size();
-  Measured measured = stages.run("noise", 0.15, [&] { return measure(index, near, context, whole); });
-  c.noise = std::move(measured.level);
-  const std::vector<Index>& wider = measured.wider;
+  const Measured measured = stages.run("noise", 0.15, [&] { return measure(index, near, context, whole); });
+  c.noise = measured.level;
   const NoiseScale scale = *whole.scale;
   c.on_shadow = n > 0 && scale.sigma > options.shadow_from * c.noise.spacing;
   c.emst = stages.run("emst", 0.2, [&] {
@@ -185,13 +185,14 @@ Ground survey(Cloud cloud, const ConnectOptions& options, const Wanted& wanted, 
   });
   auto surfaces = stages.run("local surfaces", 0.4, [&] {
     const auto least = std::min(std::size_t(options.neighbours), scale.neighbours);
-    return c.on_shadow ? shared_local_surfaces(index, near, scale, c.noise.field, wider, least, context)
-                       : local_surfaces(points, near, context);
+    return c.on_shadow
+               ? shared_local_surfaces(index, near, scale, measured.field, measured.wider, least, context)
+               : local_surfaces(points, near, context);
   });
   if (!c.on_shadow) return {points, std::move(surfaces), std::move(cloud.near), c.emst, {}};
   cloud.near = NeighborTable();  // neighbours among the noisy points: not needed any more
   return stages.run("shadow", 0.5, [&] {
-    return shadow_ground(points, std::move(surfaces), scale, c.noise, wider, options, context);
+    return shadow_ground(points, std::move(surfaces), scale, measured, options, context);
   });
 }
 
