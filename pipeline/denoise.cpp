@@ -294,9 +294,9 @@ Connection connected(rfs_mesh::WorkingCloud& cloud, const DenoiseOptions& option
   Statistics& whole = report.statistics;
   rfs_mesh::Wanted wanted;
   wanted.tree_of_points = false;
-  // Points that no face reaches have no surface to be smoothed onto: as in the paper their edges go, and
-  // without neighbours they stay. Kept, such an edge would carry a stray over its whole length, and HC's
-  // push-back would throw its neighbour after it.
+  // As in the paper the edges of points that no face reaches go. Without neighbours such points stay under
+  // flows; the automatic smoother puts them onto the surface (stranded.h). Kept, such an edge would carry a
+  // stray over its whole length, and HC's push-back would throw its neighbour after it.
   wanted.loose_edges = false;
   wanted.fill_holes = reads_faces(options);
   Searched found = search(cloud, options.connect.neighbours, options, context, report);

@@ -8,9 +8,10 @@
 /// and is not meant to be. At most two faces meet at an edge, and no edge is without a face, except the SDG
 /// edges of vertices that no face reaches (`Mesh::loose_edges`).
 ///
-/// Differs from the paper: connectivity is tested on the shadow of the cloud (local_surface.h) where noise
-/// exceeds a share of the spacing; points that noise carried between two near sheets have no neighbours
-/// (part_sheets.h); thresholds are ours (SheetsOptions, SdgOptions, UmbrellaOptions).
+/// Differs from the paper: connectivity is tested on the shadow of the cloud, its points put onto quadrics
+/// fitted around them (LocalSurface), where noise exceeds a share of the spacing; points that noise carried
+/// between two near sheets have no neighbours; thresholds are ours (SheetsOptions, SdgOptions,
+/// UmbrellaOptions).
 #pragma once
 
 #include <cstddef>
@@ -129,8 +130,8 @@ struct UmbrellaOptions {
   double face_angle =
       120;  ///< consecutive ribs further apart span no face: a rim, or a hole for others to close
   double quality = 0.35;  ///< Bank & Smith quality below which a face is deleted (1 = equilateral)
-  /// On a smooth surface the flattest of several pairs of faces is an accident of sampling: within this angle
-  /// votes and quality choose (flattest_pair.h).
+  /// Of the faces that umbrellas propose at an edge the flattest pair stays. On a smooth surface which that
+  /// is is an accident of sampling: within this angle votes and quality choose.
   double same_fold = 10;
   double normal_angle = 60;  ///< as in the SDG: ribs stay on one sheet
   double steepness = 0.75;   ///< as in the SDG, but a rib may bend further than an edge chosen to lead on
@@ -211,9 +212,9 @@ struct Connection {
   std::vector<StageTime> seconds;  ///< in the order done
 };
 
-/// Connects n points (finite, in any frame; distinct where `make_working_cloud` made them, but coincident
-/// ones do no harm), up to a stage. Any n, zero too, has a result. Errors: usage (options), out_of_memory,
-/// cancelled. O(n log n); parallel, the same bytes for any number of threads. Thread safe.
+/// Connects n points (finite, in any frame; coincident ones do no harm), up to a stage. Any n, zero too, has
+/// a result. Errors: usage (options), out_of_memory, cancelled. O(n log n); parallel, the same bytes for any
+/// number of threads. Thread safe.
 Result<Connection> connect(const Positions& points, const ConnectOptions& options, const Context& context,
                            ConnectUpTo up_to = ConnectUpTo::mesh);
 

@@ -8,10 +8,11 @@
 ///
 /// That is how flows run; the default, the automatic smoother, takes one step of its own.
 ///
-/// Differs from the paper: points that no face reaches stay where they are, as do outliers
-/// (pipeline/outliers.h), which are not connected at all. And a point moves only so far: four times the noise
-/// around it (of the noisiest points where noise has heavy tails; more with a strength above 1), or under a
-/// flow, which knows of no noise, the median length of its edges.
+/// Differs from the paper: outliers, which are isolated and off the surface around them, are not connected at
+/// all and stay where they are. So do points that no face reaches under flows; the automatic smoother puts
+/// those near the surface onto it. And a point moves only so far: four times the noise around it (of the
+/// noisiest points where noise has heavy tails; more with a strength above 1), or under a flow, which knows
+/// of no noise, the median length of its edges.
 #pragma once
 
 #include <cstddef>

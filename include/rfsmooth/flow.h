@@ -81,7 +81,7 @@ struct HardConstraint {
   enum class Kind { fixed, axis, plane };
   Index vertex = 0;
   Kind kind = Kind::fixed;
-  Eigen::Vector3d direction = Eigen::Vector3d::Zero();  ///< along the axis, or the plane's normal; any length
+  Eigen::Vector3d direction = Eigen::Vector3d::Zero();  ///< along the axis, or the plane's normal; not zero
 };
 
 /// Constraints relative to the places the vertices have at the start.
@@ -142,7 +142,8 @@ Result<std::unique_ptr<Flow>> make_flow(const Mesh& mesh, const FlowOptions& opt
                                         const Constraints& constraints = {});
 
 /// The same with a flow of your own: `make` makes it, and the modifiers of `options` go around it. Of the
-/// flow in `options` only the step length is used, by which the threshold measures speeds.
+/// flow in `options` the threshold takes the step length and the scheme, and under Boundary::curve the
+/// boundary follows that flow, ahead of the rest if it is implicit.
 Result<std::unique_ptr<Flow>> make_flow(const FlowMaker& make, const Mesh& mesh, const FlowOptions& options,
                                         const Context& context, const Constraints& constraints = {});
 

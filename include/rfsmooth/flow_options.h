@@ -5,7 +5,8 @@
 /// `rings`, and clouds can be smoothed by it in tiles. An option that means something only beside another one
 /// says so; without it, it must be left at its default (`validate`). Defaults are the fields' initialisers;
 /// ranges stand in `describe`, which every help text, report and check is made from. Options of one name mean
-/// the same in every flow. Dimensionless unless a unit is given. Plain values: thread safe as those are.
+/// the same in every flow. docs/FLOWS.md shows each flow at work. Dimensionless unless a unit is given. Plain
+/// values: thread safe as those are.
 #pragma once
 
 #include <memory>
@@ -32,7 +33,7 @@ enum class UmbrellaWeights { equal, inverse_distance };
 enum class Update { simultaneous, sequential };
 /// The point that is averaged with the neighbours' mean: none, the vertex before the step, or at the start.
 enum class Anchor { none, centre, original };
-/// The Laplacians of operator.h. Options take any but the last, which is for explicit steps.
+/// The Laplacian that a flow steps by. Options take any but the last, which is for explicit steps.
 enum class OperatorKind {
   umbrella,
   inverse_distance,
@@ -50,11 +51,14 @@ enum class Chart { tangent, exponential, mixed, uniform };
 /// A step whose size is bounded where a mesh is bad, with the mixed area in H n; or the papers' equation as
 /// it is printed: no bounds, and in H n the area of the whole one-ring, which makes it a third.
 enum class Scheme { safe, printed };
-/// Where the threshold comes from that vertices must be faster than (threshold.h).
+/// Where the threshold comes from that vertices must be faster than: a constant, or the mean curvature of
+/// the first ring of neighbours, or of the first and the second.
 enum class ThresholdKind { none, constant, one_ring, two_ring };
-/// The invariant that is restored after every step (preserve.h).
+/// The invariant that is restored after every step: the volume of a closed mesh, the area of an open one, or
+/// the volume between a height field and the plane z = 0.
 enum class Preserve { none, volume, area, height_field };
-/// What happens at edges with one face (boundary.h).
+/// What happens at edges with one face: nothing special; their vertices stay; they follow the flow along the
+/// curve that they make; or each loop is closed by a virtual vertex, for the flow only.
 enum class Boundary { free, fixed, curve, virtual_vertices };
 
 /// What lists say of a flow.
@@ -88,7 +92,7 @@ struct Shared {
                                         0, 8};
 };
 
-/// The automatic smoother (flow_auto.h).
+/// The automatic smoother.
 struct AutomaticOptions {
   static constexpr FlowInfo kInfo{"auto",
                                   "strength chosen at every point from the measured noise; the default",
@@ -116,7 +120,7 @@ struct AutomaticOptions {
   }
 };
 
-/// Laplacian smoothing and its anchored variants (flow_laplacian.cpp).
+/// Laplacian smoothing and its anchored variants.
 struct LaplacianOptions {
   static constexpr FlowInfo kInfo{"laplacian", "each vertex to the mean of its neighbours; fast, shrinks",
                                   "Vollmer 3; Ohtake (1)-(4)"};
@@ -144,7 +148,7 @@ struct LaplacianOptions {
   }
 };
 
-/// The HC algorithm (flow_hc.cpp).
+/// The HC algorithm.
 struct HcOptions {
   static constexpr FlowInfo kInfo{
       "hc", "Laplacian steps pushed back by the mean difference; keeps size and shape", "Vollmer 4"};
@@ -166,7 +170,7 @@ struct HcOptions {
   }
 };
 
-/// HC's limit (flow_hc_limit.cpp).
+/// HC's limit.
 struct HcLimitOptions {
   static constexpr FlowInfo kInfo{"hc-limit", "what HC converges to, in one solve",
                                   "Vollmer 4, theorem 5.2; our derivation"};
@@ -187,7 +191,7 @@ struct HcLimitOptions {
   }
 };
 
-/// Taubin's pair of steps (flow_taubin.cpp).
+/// Taubin's pair of steps.
 struct TaubinOptions {
   static constexpr FlowInfo kInfo{"taubin",
                                   "alternates shrinking and inflating steps; keeps volume, may leave waves",
@@ -208,7 +212,7 @@ struct TaubinOptions {
   }
 };
 
-/// Bilaplacian flow (flow_bilaplacian.cpp).
+/// Bilaplacian flow.
 struct BilaplacianOptions {
   static constexpr FlowInfo kInfo{"bilaplacian", "descends the thin-plate energy; shrinks little",
                                   "Ohtake 2"};
@@ -224,7 +228,7 @@ struct BilaplacianOptions {
   }
 };
 
-/// Explicit mean curvature flow (flow_curvature.cpp).
+/// Explicit mean curvature flow.
 struct CurvatureOptions {
   static constexpr FlowInfo kInfo{
       "curvature", "along the normal by the mean curvature; leaves flat parts and the sampling alone",
@@ -245,7 +249,7 @@ struct CurvatureOptions {
   }
 };
 
-/// Implicit fairing (flow_implicit.cpp).
+/// Implicit fairing.
 struct ImplicitOptions {
   static constexpr FlowInfo kInfo{"implicit", "one stable linear solve per step, of first to fourth order",
                                   "Desbrun 2.3-2.7, 4, 5"};
@@ -279,7 +283,7 @@ struct ImplicitOptions {
   }
 };
 
-/// Mean curvature flow that evens the sampling (flow_modified_curvature.cpp).
+/// Mean curvature flow that evens the sampling.
 struct ModifiedCurvatureOptions {
   static constexpr FlowInfo kInfo{"modified-curvature",
                                   "curvature flow that evens the sampling by the umbrella's tangential part",
@@ -300,7 +304,7 @@ struct ModifiedCurvatureOptions {
   }
 };
 
-/// Curvature speed in the median direction (flow_median_direction.cpp).
+/// Curvature speed in the median direction.
 struct MedianDirectionOptions {
   static constexpr FlowInfo kInfo{
       "median-direction", "curvature flow moving towards the neighbours' mean; smooths and evens edges",
@@ -324,7 +328,7 @@ struct MedianDirectionOptions {
   }
 };
 
-/// Directional diffusion (flow_directional.cpp).
+/// Directional diffusion.
 struct DirectionalOptions {
   static constexpr FlowInfo kInfo{
       "directional",
@@ -334,7 +338,7 @@ struct DirectionalOptions {
   int iterations = 4;    ///< steps
   double lambda = 0.05;  ///< in units of the squared mean edge length
   int power = 0;         ///< m of the energy, the integral of H^(2m), that falls; only without a direction
-  std::optional<Eigen::Vector3d> direction;  ///< any length; empty = the one in which the energy falls
+  std::optional<Eigen::Vector3d> direction;  ///< not zero; empty = the one in which the energy falls
   Scheme scheme = Scheme::safe;              ///< safe also keeps the volume to first order
 
   std::unique_ptr<Flow> start(const Mesh&, const Constraints&, const Context&) const;
@@ -348,7 +352,7 @@ struct DirectionalOptions {
   }
 };
 
-/// Local directional diffusion (flow_local_directional.cpp).
+/// Local directional diffusion.
 struct LocalDirectionalOptions {
   static constexpr FlowInfo kInfo{"local-directional",
                                   "diffusion weighted by Gauss curvature on each one-ring, for meshes whose "
@@ -373,7 +377,7 @@ struct LocalDirectionalOptions {
   }
 };
 
-/// Approximating discrete fairing (flow_discrete_fairing.cpp).
+/// Approximating discrete fairing.
 struct DiscreteFairingOptions {
   static constexpr FlowInfo kInfo{"discrete-fairing",
                                   "thin-plate smoothing spline from divided differences in local charts",
@@ -412,7 +416,7 @@ using AnyFlow = std::variant<AutomaticOptions,          //
 
 /// What goes around any flow, after each of its steps.
 struct Modifiers {
-  bool push_back = false;                         ///< HC's second half (pushback.h)
+  bool push_back = false;                         ///< HC's second half
   double push_alpha = 0, push_beta = 0.6;         ///< its weights, HC's own defaults; only with push_back
   ThresholdKind threshold = ThresholdKind::none;  ///< of the speed, below which vertices stay
   double threshold_value = 0.1;  ///< of the constant one, x mean edge length of the first mesh per unit step

@@ -62,7 +62,7 @@ struct Mesh {
   Adjacency one_ring;             ///< n rows; call rebuild_adjacency after changing faces or loose_edges
 
   Index closing = kNone;  ///< vertices from this one on only close holes for a flow and are no part of the
-                          ///< surface: their edges do not count for lengths (smoothing/modifiers/boundary.h)
+                          ///< surface: their edges do not count for lengths (Boundary::virtual_vertices)
 
   std::size_t edge_count() const { return one_ring.items.size() / 2; }
 };

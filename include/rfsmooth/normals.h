@@ -2,9 +2,9 @@
 /// known.
 ///
 ///     cloud -> working cloud -> connect (EMST, RFS-mesh) -> local quadrics -> bilateral normals ->
-///     orient (rfs_mesh/normals/orient.h) -> settle those that stand against all around them ->
-///     without a viewpoint: turn those of merged walls and limbs outward (rfs_mesh/normals/thin_parts.h) ->
-///     turn those between the sheets of a wall to the nearer one (rfs_mesh/normals/wall_sides.h)
+///     orient along the tree -> settle those that stand against all around them ->
+///     without a viewpoint: turn those of merged walls and limbs outward ->
+///     turn those between the sheets of a wall to the nearer one
 ///
 /// Meant for what `denoise` gives back, and for any cloud: neighbourhoods are as wide as its noise asks.
 #pragma once

@@ -16,7 +16,7 @@ enum class ErrorCode {
   internal,          ///< a bug of ours
   usage,             ///< an option or argument outside its range
   input_unreadable,  ///< a file that is not what it says it is
-  no_usable_points,  ///< no finite point to work on
+  no_usable_points,  ///< no finite point to work on, or no surface in the points
   cannot_write,      ///< the target cannot be created, replaced or completed
   out_of_memory,     ///< not enough memory, estimated before starting or met on the way
   not_installed,     ///< a program or library that the work needs is not there

@@ -31,8 +31,8 @@ enum class Covariances {
 
 /// Denoises the cloud in place. Rows with a NaN or infinite coordinate keep all they have and influence
 /// nothing; arrays that are not one per point are left alone. On an error, a cancel or an exception the cloud
-/// is untouched. Same bytes out for any number of threads, but for `Covariances::estimated`, which is
-/// Open3D's own. Errors and cost: those of rfsmooth::denoise. Thread safe on distinct clouds.
+/// is untouched. Same bytes out for any number of threads. Errors and cost: those of rfsmooth::denoise.
+/// Thread safe on distinct clouds.
 Result<DenoiseReport> denoise(::open3d::geometry::PointCloud& cloud, const DenoiseOptions& options = {},
                               const Context& context = {}, Covariances covariances = Covariances::estimated);
 

@@ -25,8 +25,8 @@ std::shared_ptr<::open3d::geometry::TriangleMesh> to_triangle_mesh(const Mesh& m
                                                                    const Positions& normals = {});
 
 /// The RFS-mesh that denoising works on, of a cloud's finite, distinct points in their order, with their
-/// colours and with normals on one side (rfs_mesh/normals/orient.h). For viewing: the RFS-mesh may cross
-/// itself and have holes. Errors: usage (options), no_usable_points, out_of_memory, cancelled. O(n log n).
+/// colours and with normals on one side. For viewing: the RFS-mesh may cross itself and have holes. Errors:
+/// usage (options), no_usable_points, out_of_memory, cancelled. O(n log n).
 Result<std::shared_ptr<::open3d::geometry::TriangleMesh>> rough_mesh(
     const ::open3d::geometry::PointCloud& cloud, const ConnectOptions& options = {},
     const Context& context = {});

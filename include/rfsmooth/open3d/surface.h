@@ -1,6 +1,6 @@
 /// Surface reconstruction by Open3D: screened Poisson (Kazhdan and Hoppe 2013) and ball pivoting (Bernardini
-/// et al. 1999), with their scale parameters taken from the measured spacing. Open3D's headers stay in
-/// surface.cpp.
+/// et al. 1999), with their scale parameters taken from the measured spacing. No header of Open3D is needed
+/// for this one.
 #pragma once
 
 #include <vector>
