@@ -67,7 +67,8 @@ void keep_first(std::atomic<T>& kept, T value, Before&& before) {
 }
 
 /// Sorts in parallel: blocks first, then merges. `less` must be a total order: two elements are equivalent
-/// only if they are equal.
+/// only if they are equal. T has a default constructor and is copied; more than 32,768 elements take a second
+/// array of as many while they are sorted.
 template <class T, class Less>
 void parallel_sort(const Context& context, std::vector<T>& v, Less less) {
   constexpr std::size_t kBlock = std::size_t{1} << 15;
