@@ -73,7 +73,6 @@ struct AutomaticReport {
   double equalized_most = 0;  ///< the largest of them
   double tail_times = 1;      ///< noise of the points of the tails over that of the others; 1: none
   std::size_t stranded = 0;   ///< points that the fairing had left beside the surface
-  std::size_t learned = 0;    ///< points that the learned last step was asked for
 };
 
 /// A vertex that may not move freely.

@@ -168,7 +168,7 @@ AutomaticResult automatic_smoothing(AutomaticTask task, AutomaticReport& report,
     if (task.sites != nullptr)
       *task.sites = learned_sites(field, data, smoothed, noise, context);
     else
-      report.learned = take_learned_step(field, data, smoothed, noise, may_go, smooth, context);
+      take_learned_step(field, data, smoothed, noise, may_go, smooth, context);
   }
   // What is left is left of the cloud's own noise, whatever it was smoothed as.
   task.noise.sigma /= task.strength;

@@ -68,11 +68,11 @@ LearnedSites learned_sites(const HeightField& field, const Positions& data, cons
   return sites;
 }
 
-std::size_t take_learned_step(const HeightField& field, const Positions& data, const Smoothed& smoothed,
-                              const rfs_mesh::NoiseField& noise, const MayGo& may_go, Positions& place,
-                              const Context& context) {
+void take_learned_step(const HeightField& field, const Positions& data, const Smoothed& smoothed,
+                       const rfs_mesh::NoiseField& noise, const MayGo& may_go, Positions& place,
+                       const Context& context) {
   const std::vector<Index> points = asked_for(smoothed.scales, noise);
-  if (points.empty()) return 0;
+  if (points.empty()) return;
   const Features features(field, data, smoothed, noise, context);
   const Network network;
   Positions there(points.size());  // neighbours are seen where they were
@@ -90,7 +90,6 @@ std::size_t take_learned_step(const HeightField& field, const Positions& data, c
   for_each_index(context, points.size(), [&](std::size_t k) {
     if (may_go(points[k], there[k])) place[points[k]] = there[k];
   });
-  return points.size();
 }
 
 }  // namespace rfsmooth::smoothing

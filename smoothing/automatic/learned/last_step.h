@@ -34,12 +34,11 @@ struct LearnedSites {
 /// Whether point i may go to `there`.
 using MayGo = std::function<bool(std::size_t i, const Eigen::Vector3d& there)>;
 
-/// Moves the points of `place` (n x 3: smoothed.place, which this may be) along their normals. Returns the
-/// number of points that the network was asked for. O(n) times the points within 6.5 sigma; parallel, the
-/// same bits for any number of threads.
-std::size_t take_learned_step(const HeightField& field, const Positions& data, const Smoothed& smoothed,
-                              const rfs_mesh::NoiseField& noise, const MayGo& may_go, Positions& place,
-                              const Context& context);
+/// Moves the points of `place` (n x 3: smoothed.place, which this may be) along their normals. O(n)
+/// times the points within 6.5 sigma; parallel, the same bits for any number of threads.
+void take_learned_step(const HeightField& field, const Positions& data, const Smoothed& smoothed,
+                       const rfs_mesh::NoiseField& noise, const MayGo& may_go, Positions& place,
+                       const Context& context);
 
 /// What the step would be given, for training. As long as that takes.
 LearnedSites learned_sites(const HeightField& field, const Positions& data, const Smoothed& smoothed,
