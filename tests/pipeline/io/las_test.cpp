@@ -358,6 +358,25 @@ TEST(LasConversion, CarriesFieldsAndNamesWhatIsLost) {
   }
 }
 
+TEST(LasConversion, ScaledFloatsAreWorthTheSameElsewhere) {
+  LasBytes las = las_bytes(4, 6, 5);
+  las.records = las.behind = false;
+  las.undescribed = 4;  // a float64 in the place of the float32 and these
+  std::string bytes = las.bytes();
+  const std::size_t description = las.header() + 54 + 192;
+  bytes[description + 2] = 10;      // float64
+  bytes[description + 3] = 8 | 16;  // has a scale and an offset
+  LasBytes::put(bytes, description + 112, 0.25);
+  LasBytes::put(bytes, description + 136, 100.0);
+  for (std::size_t i = 0; i < 5; ++i)
+    LasBytes::put(bytes, las.points() + (i + 1) * las.row() - 8, double(i) + 0.5);
+  const Cloud cloud = las_cloud(bytes);
+  const std::vector<double> expected = {100.125, 100.375, 100.625, 100.875, 101.125};
+  ASSERT_EQ(values_of(cloud, "range"), expected);
+  for (const Format target : {Format::ply, Format::pcd, Format::xyz})
+    EXPECT_EQ(values_of(las_cloud(las_text(cloud, target)), "range"), expected) << int(target);
+}
+
 TEST(LasConversion, ThereAndBackKeepsEveryValue) {
   LasBytes las = las_bytes(4, 8, 12);
   las.records = las.behind = false;

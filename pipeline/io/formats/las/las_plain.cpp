@@ -78,7 +78,7 @@ void put_plain(const Origin& o, const char* row, char* out) {
   const char* p = row + o.at;
   if (o.bits > 0) {
     *out = char((std::uint8_t(*p) >> o.shift) & ((1 << o.bits) - 1));
-  } else if (o.field.type != o.stored->type) {
+  } else if (o.field.type != o.stored->type || o.stored->is_scaled()) {
     store(o.field.type, out, load(*o.stored, p) / o.divide);
   } else {
     std::memcpy(out, p, o.field.bytes());
