@@ -243,6 +243,7 @@ std::unique_ptr<Flow> with_boundary_rule(const FlowOptions& options, const Mesh&
                                          const FlowMaker& make) {
   const Boundary rule = options.modifiers.boundary;
   if (rule == Boundary::free) return make(mesh, constraints);
+  (void)AllowedMoves(constraints, mesh.positions.size());  // throws for those that do not fit this mesh
   if (rule == Boundary::virtual_vertices)
     return std::make_unique<VirtualVertices>(mesh, constraints, make, context);
   const Adjacency boundary = rfsmooth::make_adjacency(mesh.positions.size(), boundary_edges(mesh), context);

@@ -27,7 +27,7 @@
 namespace rfsmooth::smoothing {
 
 /// The flow that `make` makes, on the closed mesh or with the boundary fixed if need be, with the boundary
-/// rule of the options.
+/// rule of the options. \throw std::invalid_argument for constraints that do not fit the mesh.
 std::unique_ptr<Flow> with_boundary_rule(const FlowOptions& options, const Mesh& mesh,
                                          const Constraints& constraints, const Context& context,
                                          const FlowMaker& make);

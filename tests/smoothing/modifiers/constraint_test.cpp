@@ -2,7 +2,9 @@
 #include "smoothing/modifiers/constraint.h"
 
 #include <algorithm>
+#include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -130,6 +132,33 @@ TEST(Constraints, StrengthZeroIsFixedUnderEveryFlowWithAndWithoutPushBack) {
       ASSERT_TRUE(smooth(zero, o, {}, with_strength(vertices, 0, zero.positions.size())).ok());
       EXPECT_LT(support::rms_distance(hard.positions, zero.positions), 1e-13)
           << name_of(flow) << (push_back ? " pushed back" : "");
+    }
+}
+
+/// Each with one thing wrong, for a mesh of n vertices.
+std::vector<std::pair<const char*, Constraints>> that_do_not_fit(std::size_t n) {
+  const auto last = Index(n - 1);
+  const auto fixed = [](Index i) { return HardConstraint{i, HardConstraint::Kind::fixed, Vector3d::Zero()}; };
+  return {{"a strength too many", {{}, std::vector<double>(n + 1, 1)}},
+          {"a strength too few", {{}, std::vector<double>(n - 1, 1)}},
+          {"a strength above one", {{}, std::vector<double>(n, 2)}},
+          {"a vertex that is not there", {{fixed(Index(n))}, {}}},
+          {"two on one vertex", {{fixed(last), fixed(last)}, {}}},
+          {"a direction of no length", {{{last, HardConstraint::Kind::axis, Vector3d::Zero()}}, {}}}};
+}
+
+TEST(Constraints, ThatDoNotFitAreRefusedUnderEveryBoundaryRule) {
+  const Mesh tube = support::cylinder(12, 5, 0.3);  // its last vertex is on a rim
+  for (const Boundary rule : {Boundary::free, Boundary::fixed, Boundary::curve, Boundary::virtual_vertices})
+    for (const auto& [wrong, constraints] : that_do_not_fit(tube.positions.size())) {
+      FlowOptions o{HcOptions{}};
+      o.modifiers.boundary = rule;
+      Mesh mesh = tube;
+      EXPECT_THROW((void)smooth(mesh, o, {}, constraints), std::invalid_argument)
+          << wrong << ' ' << int(rule);
+      EXPECT_THROW((void)make_flow(mesh, o, {}, constraints), std::invalid_argument)
+          << wrong << ' ' << int(rule);
+      EXPECT_EQ(mesh.positions, tube.positions);
     }
 }
 
