@@ -182,10 +182,11 @@ FlowReport run(Mesh& mesh, const FlowOptions& options, const Context& context,
   const int steps = iterations(options.flow);
   Tracer tracer(options.trace ? &report.trace : nullptr, mesh, context);
   for (; report.steps < steps; ++report.steps) {
-    context.report(name_of(options.flow), double(report.steps) / steps);
+    context.report("smooth", double(report.steps) / steps);
     flow->step(mesh, context);
     tracer.add(mesh, context);
   }
+  context.report("smooth", 1);
   report.solver = flow->solver();
   return report;
 }

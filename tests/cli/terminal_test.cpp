@@ -9,9 +9,13 @@
 #include "tests/cli/support/small_clouds.h"
 #include "tests/support/sanitized.h"
 
+using ::testing::AllOf;
 using ::testing::AnyOf;
+using ::testing::Contains;
 using ::testing::ElementsAre;
+using ::testing::Gt;
 using ::testing::HasSubstr;
+using ::testing::Lt;
 using ::testing::Not;
 
 namespace rfsmooth::test {
@@ -81,6 +85,20 @@ TEST_F(Terminal, TheBarGoesOnceFromNothingToAHundred) {
     EXPECT_EQ(shown.back(), 100);
     EXPECT_TRUE(std::is_sorted(shown.begin(), shown.end())) << ran.err;
   }
+}
+
+TEST_F(Terminal, TheBarMovesWhileAMeshIsSmoothed) {
+  put("in.ply", noisy_plane(60).bytes());
+  ASSERT_EQ(run({"mesh", "in.ply", "mesh.ply"}).code, 0);
+  RunSetup setup;
+  setup.terminal = true;
+  setup.environment = {"TERM=xterm"};
+  const Ran ran =
+      run({"smooth-mesh", "--flow", "hc", "--iterations", kSanitized ? "500" : "5000", "mesh.ply", "out.ply"},
+          setup);
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  EXPECT_THAT(ran.err, HasSubstr("\x1b[Ksmooth"));
+  EXPECT_THAT(percents(ran.err), Contains(AllOf(Gt(15), Lt(75)))) << ran.err;
 }
 
 TEST_F(Terminal, QuietAndDumbTerminalsShowNoBar) {

@@ -372,6 +372,21 @@ TEST_P(EveryFlow, ItsDefaultsAreValid) {
   EXPECT_TRUE(result.ok()) << (result.ok() ? "" : result.error().message);
 }
 
+TEST(Flows, ReportOneStageFromNothingToTheEnd) {
+  Mesh mesh = support::icosphere(2);
+  std::vector<double> shares;
+  Context context;
+  context.progress = [&](std::string_view stage, double fraction) {
+    EXPECT_EQ(stage, "smooth");
+    shares.push_back(fraction);
+    return true;
+  };
+  FlowOptions options{HcOptions{}};
+  iterations(options.flow) = 4;
+  ASSERT_TRUE(smooth(mesh, options, context).ok());
+  EXPECT_EQ(shares, (std::vector<double>{0, 0.25, 0.5, 0.75, 1}));
+}
+
 TEST(Flows, CancelLeavesTheMesh) {
   Mesh mesh = support::icosphere(3);
   support::add_noise(mesh, 0.01, 1);
