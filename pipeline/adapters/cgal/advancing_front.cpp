@@ -147,7 +147,7 @@ Mesh surface_of(const Positions& points, const Positions& normals, double longes
                 const Context& context) {
   const Failure none({ErrorCode::no_usable_points, "the advancing front finds no surface in these points"});
   if (points.size() < 3) throw none;
-  context.report("advancing front", 0);
+  context.report("advancing-front", 0);
   Delaunay tetrahedra = tetrahedra_of(points, scale_of(points));
   const bool in_space = tetrahedra.dimension() == 3;  // CGAL adds a point of its own to points in a plane
   CGAL::Advancing_front_surface_reconstruction<Delaunay> run(tetrahedra);

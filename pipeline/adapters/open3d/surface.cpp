@@ -52,7 +52,7 @@ Result<Mesh> poisson(const Positions& points, const Positions& normals, double s
                      const Context& context) {
   const PointCloud cloud = to_open3d(points, normals, spacing);
   return guarded([&] {
-    context.report("Poisson", 0);
+    context.report("poisson", 0);
     constexpr int kThreads = 1;  // with more its sums, and so the bytes, depend on who comes first
     const auto surface = std::get<0>(TriangleMesh::CreateFromPointCloudPoisson(
         cloud, depth_for(cloud, spacing), 0.0F, 1.1F, false, kThreads));
@@ -64,7 +64,7 @@ Result<Mesh> ball_pivoting(const Positions& points, const Positions& normals, do
                            const Context& context) {
   const PointCloud cloud = to_open3d(points, normals, spacing);
   return guarded([&] {
-    context.report("ball pivoting", 0);
+    context.report("ball-pivoting", 0);
     const auto surface =
         TriangleMesh::CreateFromPointCloudBallPivoting(cloud, {spacing, 2 * spacing, 4 * spacing});
     return from_open3d(*surface, "ball pivoting", context);

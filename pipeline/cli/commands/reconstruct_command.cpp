@@ -87,10 +87,7 @@ std::vector<StageShare> reconstructing_stages(const ReconstructCommandOptions& o
   std::vector<StageShare> stages = options.reconstruct.denoise
                                        ? denoising_stages(true)
                                        : std::vector<StageShare>{{"read", 1}, {"normals", 100}};
-  for (const auto& [method, stage] : {std::pair("poisson", "Poisson"),
-                                      {"advancing-front", "advancing front"},
-                                      {"ball-pivoting", "ball pivoting"}})
-    if (options.reconstruct.method == method) stages.push_back({stage, 100});
+  stages.push_back({options.reconstruct.method, 100});
   return stages;
 }
 

@@ -1,5 +1,6 @@
 #include <cmath>
 #include <random>
+#include <string>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -59,6 +60,17 @@ TEST(AdvancingFront, CancellingIsAnErrorNotAnException) {
   const auto made = cgal::advancing_front(sheet(12, 4, 8), {}, 0, context);
   ASSERT_FALSE(made.ok());
   EXPECT_EQ(made.error().code, ErrorCode::cancelled);
+}
+
+TEST(AdvancingFront, ReportsItsNameAsTheStage) {
+  std::vector<std::string> stages;
+  Context context;
+  context.progress = [&](std::string_view stage, double) {
+    stages.emplace_back(stage);
+    return true;
+  };
+  ASSERT_TRUE(cgal::advancing_front(sheet(12, 4, 8), {}, 0, context).ok());
+  EXPECT_EQ(stages, std::vector<std::string>{cgal::advancing_front_method().name});
 }
 
 TEST(AdvancingFront, AFrontThatAllButBoundsASolidIsClosed) {

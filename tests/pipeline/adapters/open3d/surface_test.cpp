@@ -1,4 +1,6 @@
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
@@ -127,6 +129,20 @@ TEST(SurfaceMethods, AreCalledAsTheCommandCallsThem) {
   std::vector<std::string> names;
   for (const auto& method : open3d::surface_methods()) names.push_back(method.name);
   EXPECT_EQ(names, (std::vector<std::string>{"poisson", "ball-pivoting"}));
+}
+
+TEST(SurfaceMethods, ReportTheirNamesAsTheStage) {
+  const Oriented cloud = sphere(200);
+  for (const auto& method : open3d::surface_methods()) {
+    std::vector<std::string> stages;
+    Context context;
+    context.progress = [&](std::string_view stage, double) {
+      stages.emplace_back(stage);
+      return true;
+    };
+    ASSERT_TRUE(method.run({cloud.points, cloud.normals, 0.2}, context).ok()) << method.name;
+    EXPECT_EQ(stages, std::vector<std::string>{method.name});
+  }
 }
 
 }  // namespace
