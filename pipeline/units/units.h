@@ -11,9 +11,11 @@
 
 namespace rfsmooth::pipeline {
 
-/// What to multiply the n x 3 coordinates by: 1 where most points are within 1e-12 to 1e12 of their middle,
-/// or all of them are at one place; else a power of two that brings them to about 1. Single strays do not
-/// count. The same for any order of the rows. O(n).
+/// What to multiply the n x 3 coordinates by: 1 where the box of all of them is 1e-12 to 1e12 along its
+/// longest side, strays included, or the half of the points nearest to their middle is that wide, or all are
+/// at one place; else a power of two that brings that half to about 1. So strays do not make a cloud unusual.
+/// But beside a stray at a usual distance, a cloud smaller than 1e-12 stays as small as it is: telling it
+/// apart would take every cloud two medians along each axis. The same for any order of the rows. O(n).
 double working_unit(const double* xyz, std::size_t n, const Context& context);
 
 /// Multiplies every length of the options by `unit`, a power of two.
