@@ -67,11 +67,13 @@ Patches::Patches(const HeightField& field, std::size_t members, std::vector<Inde
 
 /// A place between sheets or at the end of something thin may be in no patch, or only at the rim of one: such
 /// places get patches of their own. Where there are many, some of these patches reach most of the others.
+/// Where there is no room for more patches, places stay uncovered.
 void Patches::cover_missing(const std::vector<double>& sigma, Sums& sums, const Context& context) {
-  const std::size_t room = memory_.most_more() / members_,
-                    most = std::min(kMostForMissing * seeds_.size(), room);
+  const std::size_t given = seeds_.size();
   std::size_t before = field_.size() + 1;  // so many were missing
   for (bool last = false; !last;) {
+    const std::size_t room = memory_.most_more() / members_, most = std::min(kMostForMissing * given, room);
+    if (room == 0) return;
     const auto missing = rfsmooth::collect<Index>(context, field_.size(), [&](std::size_t i, auto&& emit) {
       if (sums.well_inside[i] == 0) emit(Index(i));
     });
