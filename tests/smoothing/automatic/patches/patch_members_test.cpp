@@ -1,6 +1,8 @@
 #include "smoothing/automatic/patches/patch_members.h"
 
 #include <random>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -45,6 +47,24 @@ std::vector<PutIn> put_in(PatchMembers& members, std::size_t points, std::size_t
   return all;
 }
 
+using Told = std::vector<std::vector<std::pair<std::size_t, MemberWeight>>>;  // patches and weights by point
+
+/// Checks that the points are told what was put in of the patches from `from` on.
+void expect_told(const PatchMembers& members, std::size_t points, const std::vector<PutIn>& all,
+                 std::size_t from) {
+  Told expected(points), told(points);
+  for (const PutIn& one : all)
+    if (one.patch >= from) expected[one.point].emplace_back(one.patch, one.weight);
+  members.for_each_by_point(from,
+                            [&](std::size_t point, std::size_t patch, std::size_t k) {
+                              EXPECT_GE(k, members.begin(patch));
+                              EXPECT_LT(k, members.begin(patch) + members.size(patch));
+                              told[point].emplace_back(patch, members.weight()[k]);
+                            },
+                            {});
+  EXPECT_EQ(told, expected) << "from " << from;
+}
+
 TEST(PatchMembers, EveryPointIsToldByItsPatchesInAscendingOrder) {
   constexpr std::size_t kPoints = 50000, kPatches = 3000;  // more than three ranges of points
   PatchMembers members;
@@ -52,19 +72,9 @@ TEST(PatchMembers, EveryPointIsToldByItsPatchesInAscendingOrder) {
     const std::vector<PutIn> all = put_in(members, kPoints, kPatches, batch);
     ASSERT_EQ(members.patches(), kPatches);
     ASSERT_GT(all.size(), 30000u);
-    for (const std::size_t from : {std::size_t(0), batch % kPatches, 2 * batch % kPatches}) {
-      std::vector<std::vector<std::pair<std::size_t, MemberWeight>>> expected(kPoints), told(kPoints);
-      for (const PutIn& one : all)
-        if (one.patch >= from) expected[one.point].emplace_back(one.patch, one.weight);
-      members.for_each_by_point(from,
-                                [&](std::size_t point, std::size_t patch, std::size_t k) {
-                                  EXPECT_GE(k, members.begin(patch));
-                                  EXPECT_LT(k, members.begin(patch) + members.size(patch));
-                                  told[point].emplace_back(patch, members.weight()[k]);
-                                },
-                                {});
-      EXPECT_EQ(told, expected) << batch << " at a time, from " << from;
-    }
+    SCOPED_TRACE(batch);
+    for (const std::size_t from : {std::size_t(0), batch % kPatches, 2 * batch % kPatches})
+      expect_told(members, kPoints, all, from);
   }
 }
 
@@ -73,9 +83,7 @@ TEST(PatchMembers, AreUsedAgainForOtherPoints) {
   put_in(members, 50000, 300, 300);
   const std::vector<PutIn> all = put_in(members, 100, 20, 20);
   ASSERT_EQ(members.patches(), 20u);
-  std::size_t told = 0;  // one range: one thread
-  members.for_each_by_point(0, [&](std::size_t, std::size_t, std::size_t) { ++told; }, {});
-  EXPECT_EQ(told, all.size());
+  expect_told(members, 100, all, 0);
 }
 
 TEST(PatchMembers, RefuseMoreThanAnIndexCountsButNoSpareRoom) {
