@@ -17,8 +17,7 @@ namespace {
 // Chosen on the development shapes with noise of 0.1 to 4 spacings, Gaussian and along the ray
 // (tests/bench/noise).
 constexpr std::size_t kSearchSites = 500;
-constexpr std::size_t kMostOfCloud = 24;  // m is at most so small a part: else parts are shape
-constexpr double kFlat = 2;               // sigma: the least radius of a patch
+constexpr double kFlat = 2;  // sigma: the least radius of a patch
 constexpr std::size_t kSites = 2000, kFewestSites = 250;
 constexpr std::size_t kWork = 100000;  // sites x m
 
@@ -154,7 +153,7 @@ void open_windows(Places& places, double narrow, NoiseStart& start) {
 }  // namespace
 
 std::size_t widest_scatter(const SpatialIndex& index) {
-  return std::clamp(index.points().size() / kMostOfCloud, kNarrowestPatch, kWidestFit);
+  return std::clamp(index.points().size() / kShareOfCloud, kNarrowestPatch, kWidestFit);
 }
 
 double variance_of_steps(const DepthSteps& steps, const Places& places, const std::vector<Scatter>& all) {

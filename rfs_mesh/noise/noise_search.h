@@ -46,6 +46,9 @@ struct NoiseStart {
   bool on_lines = false;    ///< whether twice kNarrowestPatch points lie along a line, and `narrowest` do not
 };
 
+/// A fit takes at most one of so many points of the cloud.
+constexpr std::size_t kShareOfCloud = 12;
+
 /// Most neighbours of a fit in a cloud.
 std::size_t widest_scatter(const SpatialIndex& index);
 

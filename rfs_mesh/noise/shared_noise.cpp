@@ -141,7 +141,8 @@ void enter(const std::vector<Scatter>& all, double variance, Calm& calm) {
 Calm look(Places& places, const NoiseStart& start, const DepthSteps* steps, const Context& context) {
   Calm calm;
   const SpatialIndex& index = places.index();
-  const std::size_t last = widest_scatter(index);
+  // Half of what fits take at most: else parts of the cloud are shape.
+  const std::size_t last = std::min(widest_scatter(index), index.points().size() / (2 * kShareOfCloud));
   for (std::size_t m = std::max(start.m, start.narrowest); m <= last; m *= 2) {
     Places fewer(index, sample(places.at(), kPointsLooked / m), 0, context);
     Places& some = fewer.size() < places.size() ? fewer : places;
