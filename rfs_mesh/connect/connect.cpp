@@ -43,12 +43,6 @@ class Stages {
   const Context& context_;
 };
 
-Positions shadows(const std::vector<LocalSurface>& surfaces, const Context& context) {
-  Positions at(surfaces.size());
-  for_each_index(context, at.size(), [&](std::size_t i) { at[i] = surfaces[i].shadow; });
-  return at;
-}
-
 /// What the tests are made on: positions, the surface through each, their own neighbours and tree.
 struct Ground {
   Positions at;

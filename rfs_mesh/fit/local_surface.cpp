@@ -127,4 +127,10 @@ NoiseScale noise_scale(const SpatialIndex& index, const Context& context, double
   });
 }
 
+Positions shadows(const std::vector<LocalSurface>& surfaces, const Context& context) {
+  Positions at(surfaces.size());
+  for_each_index(context, at.size(), [&](std::size_t i) { at[i] = surfaces[i].shadow; });
+  return at;
+}
+
 }  // namespace rfsmooth::rfs_mesh

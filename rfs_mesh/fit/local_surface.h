@@ -83,4 +83,7 @@ double mean_spacing(const std::vector<double>& nearest, const Context& context);
 NoiseScale noise_scale(const SpatialIndex& index, const Context& context, double measured = 0,
                        double louder = 1, bool understated = false);
 
+/// The shadow of each point. O(n), parallel.
+Positions shadows(const std::vector<LocalSurface>& surfaces, const Context& context);
+
 }  // namespace rfsmooth::rfs_mesh

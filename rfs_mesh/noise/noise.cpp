@@ -203,20 +203,17 @@ void measure(const SpatialIndex& index, const DepthSteps* steps, NoiseModel& noi
   bound_sites(calm_fifth(sites), std::max(start.most, kNoNoise * noise.spacing), sites);
   std::vector<double> spacing = spacing_around(sites, noise.spacing);
   sum_up(sites, spacing, start, noise);
-  if (const double most = kSameNoise * start.most; start.in_kernels && noise.sigma > most) {
+  const auto bound = [&](double most) {
     bound_sites(noise.sigma, most, sites);
-    noise.sigma = most;
-  }
+    noise.sigma = std::min(noise.sigma, most);
+  };
+  if (start.in_kernels) bound(kSameNoise * start.most);
   if (!(noise.sigma > 0)) return;
   // Where there are several sheets at most places, windows let them in. Noise of a part of the cloud or that
-  // points do not have of their own is not foretold by a surface.
-  const bool own = steps == nullptr && !noise.on_grid && !start.on_lines && !(noise.shared > 1);
-  if (own && start.in_kernels && is_even(sites)) {
+  // points do not have of their own is not foretold by a surface; steps and lines are not read in kernels.
+  if (start.in_kernels && !noise.on_grid && !(noise.shared > 1) && is_even(sites)) {
     const std::optional<double> most = held_out_bound(index, noise.sigma, context);
-    if (most && noise.sigma > kSameNoise * *most) {
-      bound_sites(noise.sigma, *most, sites);
-      noise.sigma = *most;
-    }
+    if (most && noise.sigma > kSameNoise * *most) bound(*most);
   }
   noise.at_sites = relative_noise(sites, noise.sigma, context);
   for (double& v : noise.at_sites) v = noise.sigma * std::max(v, kStays);

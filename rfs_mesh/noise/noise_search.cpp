@@ -24,14 +24,11 @@ constexpr std::size_t kWork = 100000;  // sites x m
 // Of the breadth: 1 in a disk, a quarter in a strip twice as long as wide. Scans have 0.56 and more.
 constexpr double kSurface = 0.4;
 
-double median_radius(const Places& places, std::size_t m) {
-  std::vector<Neighbor> near;
-  std::vector<double> radii;
-  for (std::size_t s = 0; s < places.size(); s += 4) {
-    places.index().nearest(places.at()[s], int(m), near);
-    radii.push_back(std::sqrt(near.back().squared_distance));
-  }
-  return quantile(radii, 0.5);
+/// At every fourth of the places.
+double median_radius_at(const Places& places, std::size_t m) {
+  Positions fourth;
+  for (std::size_t s = 0; s < places.size(); s += 4) fourth.push_back(places.at()[s]);
+  return median_radius(places.index(), fourth, m);
 }
 
 /// Sigma of the normal distribution of which a window of 3 `window` shows a deviation of `seen`.
@@ -128,7 +125,7 @@ void open_windows(Places& places, double narrow, NoiseStart& start) {
   double said = 0;
   while (start.sigma > start.least) {
     const double reach = scatter_reach(start.sigma, narrow);
-    while (5 * start.m / 4 <= widest && median_radius(places, start.m) < 0.97 * reach)
+    while (5 * start.m / 4 <= widest && median_radius_at(places, start.m) < 0.97 * reach)
       start.m = 5 * start.m / 4;
     const std::vector<Scatter> all = places.fits(points_to_fit(places, start), start.sigma);
     places.move_to_feet(all);
@@ -151,6 +148,16 @@ void open_windows(Places& places, double narrow, NoiseStart& start) {
 }
 
 }  // namespace
+
+double median_radius(const SpatialIndex& index, const Positions& at, std::size_t m) {
+  std::vector<Neighbor> near;
+  std::vector<double> radii;
+  for (const Eigen::Vector3d& p : at) {
+    index.nearest(p, int(m), near);
+    radii.push_back(std::sqrt(near.back().squared_distance));
+  }
+  return quantile(radii, 0.5);
+}
 
 std::size_t widest_scatter(const SpatialIndex& index) {
   return std::clamp(index.points().size() / kShareOfCloud, kNarrowestPatch, kWidestFit);
@@ -190,7 +197,7 @@ NoiseStart search_noise(Places& places, const DepthSteps* steps) {
   std::vector<Scatter> all = places.fits(start.m);
   find_surface(places, all, steps != nullptr && !steps->on_shells(), start);
   if (start.m > kNarrowestPatch || start.on_lines) all = places.fits(points_to_fit(places, start));
-  const double narrow = median_radius(places, start.m);
+  const double narrow = median_radius_at(places, start.m);
   start.least = 1e-9 * narrow;
   start.sigma = std::sqrt(mean_variance(all, kCalmPlaces, kCalmDeviate));
   const double sure =

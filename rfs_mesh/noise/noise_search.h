@@ -52,6 +52,9 @@ constexpr std::size_t kShareOfCloud = 12;
 /// Most neighbours of a fit in a cloud.
 std::size_t widest_scatter(const SpatialIndex& index);
 
+/// The median distance to the m-th nearest point. \param at places, at least one. O(m) after the index.
+double median_radius(const SpatialIndex& index, const Positions& at, std::size_t m);
+
 /// Variance that steps make sure of at calm places. \param all fits at the places.
 double variance_of_steps(const DepthSteps& steps, const Places& places, const std::vector<Scatter>& all);
 
