@@ -77,15 +77,21 @@ bool is_site(const Eigen::Vector3d& p) {
 
 void check_sites(const NoiseModel& noise, Wrong& wrong) {
   const std::size_t sites = noise.sites.size(), at = noise.at_sites.size(),
-                    spaced = noise.spacing_at_sites.size(), told = noise.told_at_sites.size();
-  wrong.expect(at == sites && (spaced == 0 || spaced == sites) && (told == 0 || told == sites),
-               fmt::format("noise: sigma at {}, spacing at {} and what is told at {} of {} sites", at, spaced,
-                           told, sites));
+                    spaced = noise.spacing_at_sites.size(), told = noise.told_at_sites.size(),
+                    shared = noise.shared_at_sites.size();
+  const auto all_or_none = [&](std::size_t of) { return of == 0 || of == sites; };
+  wrong.expect(
+      at == sites && all_or_none(spaced) && all_or_none(told) && all_or_none(shared),
+      fmt::format("noise: sigma at {}, spacing at {}, what is told at {} and what is shared at {} of "
+                  "{} sites",
+                  at, spaced, told, shared, sites));
   wrong.expect(are(noise.sites, is_site), "noise: a site is farther away than any cloud is large");
   wrong.expect(are(noise.at_sites, is_length) && are(noise.spacing_at_sites, is_some_length),
                "noise: at a site sigma is no length, or the spacing none above 0");
   wrong.expect(are(noise.told_at_sites, [](double v) { return is_within(v, 0, 1); }),
                "noise: what is told at a site is not from 0 to 1");
+  wrong.expect(are(noise.shared_at_sites, [](double v) { return is_within(v, 1, kNone); }),
+               "noise: what points share it at a site is no number of points");
 }
 
 void check_noise(const NoiseModel& noise, Wrong& wrong) {

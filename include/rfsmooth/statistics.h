@@ -51,6 +51,8 @@ struct NoiseModel {
   /// 1 where more neighbours show no more scatter, so that it is no detail, however small; else 0; empty: it
   /// is nowhere so.
   std::vector<double> told_at_sites;
+  /// `shared` there, where parts of the cloud differ in that; at least 1; empty: they do not.
+  std::vector<double> shared_at_sites;
 };
 
 /// What `denoise` measures on a cloud as a whole. Lengths are in world units.

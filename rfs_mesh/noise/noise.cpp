@@ -10,7 +10,7 @@
 #include "rfs_mesh/levels.h"
 #include "rfs_mesh/noise/held_out.h"
 #include "rfs_mesh/noise/noise_field.h"
-#include "rfs_mesh/noise/shared_noise.h"
+#include "rfs_mesh/noise/shared/shared_noise.h"
 
 namespace rfsmooth::rfs_mesh {
 
@@ -220,12 +220,14 @@ void measure(const SpatialIndex& index, const DepthSteps* steps, NoiseModel& noi
   noise.sites = std::move(sites.at);
   if (std::find(sites.told.begin(), sites.told.end(), 1) != sites.told.end())
     noise.told_at_sites.assign(sites.told.begin(), sites.told.end());
+  for (double& shared : sites.shared) shared = std::max(shared, noise.shared);
   const auto even = [](const std::vector<double>& values, double value) {
     return std::all_of(values.begin(), values.end(), [&](double v) { return v == value; });
   };
+  if (!even(sites.shared, noise.shared)) noise.shared_at_sites = std::move(sites.shared);
   if (!even(spacing, noise.spacing)) {
     noise.spacing_at_sites = std::move(spacing);
-  } else if (even(noise.at_sites, noise.at_sites.front())) {
+  } else if (even(noise.at_sites, noise.at_sites.front()) && noise.shared_at_sites.empty()) {
     noise.sites.resize(1);
     noise.at_sites.resize(1);
     noise.told_at_sites.clear();
@@ -265,7 +267,7 @@ const NoiseModel& known_noise(const SpatialIndex& index, Statistics& whole, cons
 }
 
 NoiseField spread_noise(NoiseModel model, const Positions& points, const Context& context) {
-  NoiseField noise{std::move(model), {}, {}, {}};
+  NoiseField noise{std::move(model), {}, {}, {}, {}};
   if (noise.sites.empty()) {
     noise.local.assign(points.size(), 0);
     return noise;
@@ -274,6 +276,8 @@ NoiseField spread_noise(NoiseModel model, const Positions& points, const Context
   noise.local = blend(sites, noise.at_sites, points, context);
   if (!noise.spacing_at_sites.empty())
     noise.local_spacing = blend(sites, noise.spacing_at_sites, points, context);
+  if (!noise.shared_at_sites.empty())
+    noise.local_shared = blend(sites, noise.shared_at_sites, points, context);
   if (!noise.told_at_sites.empty()) noise.local_told = blend(sites, noise.told_at_sites, points, context);
   return noise;
 }

@@ -8,7 +8,7 @@
 ///   holds a patch of 2 sigma in radius.
 /// - Shape that a quadric does not follow: it grows with the neighbourhood, and is taken off.
 /// - Depths in steps and noise that neighbours share: they grow, too, but stop growing (site_views.h,
-///   shared_noise.h).
+///   shared_noise.h, shared_around.h).
 /// - Places that are louder than the rest: their windows open until they hold the scatter (noise_sites.h).
 /// - Scans have most points where their surface is nearest: places count by their area.
 ///
@@ -59,8 +59,11 @@ inline bool is_of_steps(const NoiseModel& noise) {
 struct NoiseField : NoiseModel {
   std::vector<double> local;          ///< n: sigma near each point, world units
   std::vector<double> local_spacing;  ///< n: spacing_at_sites near each point; empty: `spacing` everywhere
+  std::vector<double> local_shared;   ///< n: shared_at_sites near each point; empty: `shared` everywhere
   std::vector<double> local_told;     ///< n: told_at_sites near each point, 0 to 1; empty: 0 everywhere
 
+  /// How many points say as much as one, near point i.
+  double shared_by(std::size_t i) const { return local_shared.empty() ? shared : local_shared[i]; }
   /// How far the noise may have carried point i, world units: what is farther off is a stray.
   double reach(std::size_t i) const { return kStray * std::max(local[i], sigma); }
   /// n: that of each point, of so many times the noise.

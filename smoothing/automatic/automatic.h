@@ -29,11 +29,12 @@
 ///    be much. Points farther than 5 sigma from the result stay where they are and do not count: strays are
 ///    no noise.
 ///
-/// Noise that k neighbours share (rfs_mesh/shared_noise.h) is that of n / k points, each seen k times: scales
-/// begin at 16 k points or more, c is k times as large, evidence counts a k-th, and of a prediction that
-/// has the share `own` of the point's height k own / (1 + (k - 1) own) is the point's and its neighbours'
-/// noise. What such points have of their own beside it is noise for sure: in place of the data the patches of
-/// 16 points are the first candidate, so that where every wide patch is worse the points are left calm.
+/// Noise that k neighbours share (rfs_mesh/noise/shared/shared_noise.h) is that of n / k points, each seen k
+/// times: scales begin at 16 k points or more, c is k times as large, evidence counts a k-th, and of a
+/// prediction that has the share `own` of the point's height k own / (1 + (k - 1) own) is the point's and its
+/// neighbours' noise. What such points have of their own beside it is noise for sure: in place of the data
+/// the patches of 16 points are the first candidate, so that where every wide patch is worse the points are
+/// left calm.
 ///
 /// Where the nearest points lie along lines (NoiseModel::across), as on the rings of a spinning laser, the
 /// guide is faired along them, over the nearest of each point in place of the mesh. Normals are those of

@@ -96,6 +96,8 @@ NoiseSummary summary_of(const rfs_mesh::NoiseField& noise) {
   if (noise.local.empty()) return summary;
   std::vector<double> local = noise.local;
   summary.loudest = quantile(local, 0.9);
+  std::vector<double> shared = noise.local_shared;
+  if (!shared.empty()) summary.shared = median(shared);
   return summary;
 }
 

@@ -62,7 +62,7 @@ class ToldByResiduals {
     const auto add = [&](std::size_t i, double weight) {
       const double e = (field.height(i) - double(height[i])) / noise.local[i];
       sums += weight * Eigen::Vector4d(1, weight, std::min(e * e, kMostSquare),
-                                       1 - double(own_of_all(own[i], float(noise.shared))));
+                                       1 - double(own_of_all(own[i], float(noise.shared_by(i)))));
     };
     add(at, 1);
     for (const Index j : field.neighbors()[at])
@@ -93,7 +93,7 @@ double noise_left(const HeightField& field, const std::vector<float>& height, co
   const Eigen::Vector4d sums =
       sum_over(context, field.size(), Eigen::Vector4d(0, 0, 0, 0), [&](std::size_t i) {
         const double e = field.height(i) - double(height[i]),
-                     share = double(own_of_all(own[i], float(noise.shared))),
+                     share = double(own_of_all(own[i], float(noise.shared_by(i)))),
                      measured = noise.local[i] * noise.local[i], square = told.at(noise.local[i]) * measured;
         if (!(std::abs(e) <= noise.reach(i))) return Eigen::Vector4d(0, 0, 0, 0);
         return Eigen::Vector4d(1, share * square, e * e + (2 * share - 1) * square, measured);

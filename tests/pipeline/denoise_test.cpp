@@ -484,6 +484,7 @@ TEST(Denoise, StatisticsThatNoCloudHasAreRefused) {
         s.noise->at_sites.clear();
         s.noise->spacing_at_sites.clear();
         s.noise->told_at_sites.clear();
+        s.noise->shared_at_sites.clear();
       },
       "no site");
   expect_refused([](Statistics& s) { s.noise->spacing = 0; }, "spacing");
@@ -493,6 +494,8 @@ TEST(Denoise, StatisticsThatNoCloudHasAreRefused) {
   expect_refused([](Statistics& s) { s.noise->sites[0][2] = std::nan(""); }, "farther away");
   expect_refused([](Statistics& s) { s.noise->spacing_at_sites.assign(s.noise->sites.size(), 0); },
                  "the spacing none above 0");
+  expect_refused([](Statistics& s) { s.noise->shared_at_sites.assign(s.noise->sites.size(), 0.5); },
+                 "share it at a site");
   expect_refused([](Statistics& s) { s.tails = {0.5, 0, 1, 1}; }, "tails: times");
   expect_refused([](Statistics& s) { s.tails = {0.5, 1e9, 1, 1}; }, "tails: times");
   expect_refused([](Statistics& s) { s.tails = {0.5, 3, 0, 1}; }, "tails: narrow");

@@ -27,6 +27,7 @@ ordered_json json_of_noise(const NoiseModel& noise) {
   if (noise.across) json["across"] = *noise.across;
   if (!noise.spacing_at_sites.empty()) json["spacing_at_sites"] = noise.spacing_at_sites;
   if (!noise.told_at_sites.empty()) json["told_at_sites"] = noise.told_at_sites;
+  if (!noise.shared_at_sites.empty()) json["shared_at_sites"] = noise.shared_at_sites;
   json["sites"] = ordered_json::array();
   for (const auto& p : noise.sites) json["sites"].push_back(json_of_place(p));
   return json;
@@ -48,6 +49,8 @@ NoiseModel noise_of(const ordered_json& json) {
     noise.spacing_at_sites = json.at("spacing_at_sites").get<std::vector<double>>();
   if (json.contains("told_at_sites"))
     noise.told_at_sites = json.at("told_at_sites").get<std::vector<double>>();
+  if (json.contains("shared_at_sites"))
+    noise.shared_at_sites = json.at("shared_at_sites").get<std::vector<double>>();
   for (const auto& p : json.at("sites")) noise.sites.push_back(place_of(p));
   return noise;
 }

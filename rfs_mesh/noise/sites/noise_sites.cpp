@@ -272,6 +272,7 @@ NoiseSites listen(const SpatialIndex& index, Positions at, const NoiseStart& sta
   for (const SiteView& view : listener.views) {
     sites.most.push_back(view.most);
     sites.told.push_back(char(view.told));
+    sites.shared.push_back(view.shared);
   }
   for (int round = 0; round < 2; ++round) listener.hear(2, false);
 

@@ -6,6 +6,8 @@
 
 #include "base/parallel.h"
 #include "rfs_mesh/levels.h"
+#include "rfs_mesh/noise/sites/open_fits.h"
+#include "rfs_mesh/noise/sites/shared_around.h"
 #include "rfs_mesh/sheets/two_sheets.h"
 
 namespace rfsmooth::rfs_mesh {
@@ -13,7 +15,8 @@ namespace rfsmooth::rfs_mesh {
 namespace {
 
 // Of eight times the points: inside a thick slab their ball has twice the radius and sees twice the scatter.
-constexpr std::size_t kPlateauTo = 8 * kNeighbourhood;
+constexpr std::size_t kFarther = 8, kPlateauTo = kFarther * kNeighbourhood,
+                      kWidestView = kFarther * kPlateauTo;
 // Scatter::middle above which noise so flat is that of no two sheets: nearly that of an even distribution.
 constexpr double kMiddleOfSheets = 0.25;
 // Points at two depths that follow each other scatter by half a step, and rounding by 1 / sqrt(12) of it; of
@@ -39,17 +42,6 @@ double plateau(double few, double many, double radius) {
                        std::clamp((kThick - share) / (kThick - kThin), 0.0, 1.0);
   return trust * std::max(few, kSure * many);
 }
-
-/// Fits at all sites to so many points.
-struct OpenFits {
-  OpenFits(std::size_t count, std::vector<Scatter> fits)
-      : points(count), all(std::move(fits)), said(what_they_say(all, kTypicalDeviate)) {}
-
-  std::size_t points;
-  std::vector<Scatter> all;
-  std::vector<Said> said;
-  std::vector<double> rounding;  ///< what depths in steps add there, world units; empty: not in steps
-};
 
 /// By site: what depths in steps add by their rounding along the normal of its fit, world units.
 std::vector<double> rounding_at(const Places& places, const std::vector<Scatter>& all,
@@ -234,28 +226,16 @@ std::vector<Shown> shown_around(const SiteGroups& groups, const OpenFits& open, 
   return shown;
 }
 
-/// Fits to so many points that their balls overlap: some sites are fitted, and each takes the fit of the
-/// nearest of these.
-OpenFits fit_wide(const Places& places, std::size_t points, const Context& context) {
-  const Positions some = listening_places(places.at(), points);
-  const std::vector<Scatter> fits = Places(places.index(), some, points, context).fits(points);
-  std::vector<Scatter> all;
-  for (const Index nearest : nearest_points(SpatialIndex(some, context), places.at(), context))
-    all.push_back(fits[nearest]);
-  return {points, std::move(all)};
-}
-
 /// Sets `held` and `plain`. \param open from kNeighbourhood points on, each of twice as many
 void hold_slabs(const Places& places, const SiteGroups& groups, const std::vector<OpenFits>& open,
                 std::vector<SiteView>& views, const Context& context) {
-  constexpr std::size_t kFarther = kPlateauTo / kNeighbourhood;
-  const std::size_t widest = std::min(kFarther * kPlateauTo, widest_scatter(places.index()));
+  const std::size_t widest = widest_scatter(places.index());
   std::vector<Shown> before;
-  std::size_t holding = kNeighbourhood, scale = 0;
-  for (std::size_t points = kNeighbourhood; points <= widest; points *= 2, ++scale) {
-    std::vector<Shown> now = scale < open.size()
-                                 ? shown_around(groups, open[scale], context)
-                                 : shown_around(groups, fit_wide(places, points, context), context);
+  std::size_t holding = kNeighbourhood;
+  for (const OpenFits& fits : open) {
+    const std::size_t points = fits.points;
+    if (points > widest) break;
+    std::vector<Shown> now = shown_around(groups, fits, context);
     for (std::size_t s = 0; s < views.size(); ++s) {
       SiteView& view = views[s];
       if (points == holding && !(view.held > 0) && now[s].held) view.held = now[s].scatter;
@@ -276,8 +256,8 @@ std::vector<SiteView> look_without_windows(Places& places, const SiteGroups& gro
                                            const DepthSteps* steps, const Context& context) {
   const std::size_t n = places.index().points().size();
   std::vector<OpenFits> open;
-  for (std::size_t points = kNeighbourhood; open.empty() || (points <= kPlateauTo && n >= 2 * points);
-       points *= 2)
+  std::size_t points = kNeighbourhood;
+  for (; open.empty() || (points <= kPlateauTo && n >= 2 * points); points *= 2)
     open.emplace_back(points, places.fits(points));
   if (steps != nullptr)
     for (OpenFits& fits : open) fits.rounding = rounding_at(places, fits.all, *steps, context);
@@ -298,10 +278,14 @@ std::vector<SiteView> look_without_windows(Places& places, const SiteGroups& gro
       },
       64);
   forget_flat_noise(middle, views);
-  if (open.back().points == kPlateauTo)
+  const bool plateau = open.back().points == kPlateauTo;
+  if (plateau)
     for_each_index(
         context, groups.size(),
         [&](std::size_t s) { sites.find_floor(s, open.front(), open.back(), views[s]); }, 64);
+  for (; points <= std::min(kWidestView, widest_scatter(places.index())); points *= 2)
+    open.push_back(fit_wide(places, points, context));
+  if (plateau && !start.on_lines && !sites.on_grid()) find_shared_around(groups, open, views, context);
   hold_slabs(places, groups, open, views, context);
   return views;
 }

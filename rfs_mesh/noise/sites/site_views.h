@@ -27,7 +27,8 @@
 /// (time of flight, stereo, structured light) and noise that neighbours share make it grow, too, but it stops
 /// where the neighbourhood is wider than a step. Where s(192) < 1.6 s(24) the scatter is noise: at least
 /// s(24) and 0.65 s(192), where s(24) is less than 0.14 of the radius of its ball. Up to 1.9, and 0.2, this
-/// fades out. Equal scatter needs no such floor: it is plain noise, or two sheets. Counted steps
+/// fades out. Equal scatter needs no such floor: it is plain noise, or two sheets. Where it is seen
+/// to have stopped, and neighbours err together, all of it is (shared_around.h). Counted steps
 /// (depth_steps.h) make sure of their rounding, as far as s(192) shows it. Clouds of fewer than 384 points
 /// have none of this.
 #pragma once
@@ -60,6 +61,7 @@ struct SiteView {
   double plain = 0;      ///< noise of one sheet and no shape that is seen for sure; 0: none
   double sheet = kNone;  ///< what each of two sheets shows; kNone: there is one
   double floor = 0;      ///< what steps, shared noise or layers make sure of
+  double shared = 1;     ///< points that share the noise around it (shared_around.h)
   bool told = false;     ///< whether the scatter stops growing, and is no detail
 };
 

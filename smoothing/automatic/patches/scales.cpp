@@ -158,7 +158,6 @@ class Ladder {
   Scale try_scale(std::size_t members) {
     const std::vector<double>& sigma = noise_.local;
     const std::vector<float>& precision = rungs_.precision;
-    const auto shared = float(noise_.shared);
     Patches patches(field_, members, seeds_, sigma, memory_, context_);
     Scale scale{members,
                 patches.take_prediction(),
@@ -169,7 +168,7 @@ class Ladder {
     for_each_index(context_, field_.size(), [&](std::size_t i) {
       const float off = (field_.local()[i].height - prediction.height[i]) / float(sigma[i]),
                   e = std::clamp(off, -kFarthest, kFarthest);
-      const float of_all = own_of_all(prediction.own[i], shared);
+      const float of_all = own_of_all(prediction.own[i], float(noise_.shared_by(i)));
       const float risk = prediction.covered[i] != 0 ? e * e + 2 * of_all - 1 : risk_[i];
       scale.worse[i] = precision.empty() || precision[i] > 0 ? risk - risk_[i] : 0;
       risk_[i] = risk;
@@ -224,7 +223,6 @@ class Ladder {
 /// learned whether the learned step will be told. \param shares of Statistics::Pass.
 void mix(const HeightField& field, Rungs rungs, const rfs_mesh::NoiseField& noise, bool learned,
          std::vector<double>& shares, MixedScales& mixed, const Context& context) {
-  const auto alone = float(1 / noise.shared);
   const std::vector<float>& precision = rungs.precision;
   Mixture mixture(std::move(rungs.first));
   average_near(field, rungs.scales, context);
@@ -242,7 +240,8 @@ void mix(const HeightField& field, Rungs rungs, const rfs_mesh::NoiseField& nois
       const float against = scale.mean.empty() ? kNearEvidence * near
                                                : kPatchEvidence * float(scale.members) * scale.mean[i] +
                                                      kNearEvidence * std::max(0.0F, near - kTolerated);
-      gain[i] = scale.prediction.covered[i] != 0 ? -alone * against : std::numeric_limits<float>::quiet_NaN();
+      gain[i] = scale.prediction.covered[i] != 0 ? -against / float(noise.shared_by(i))
+                                                 : std::numeric_limits<float>::quiet_NaN();
     });
     mixture.add(std::move(scale.prediction.height), std::move(scale.prediction.own), std::move(gain),
                 context);

@@ -27,6 +27,7 @@ Statistics full() {
   all.noise->at_sites = {0.1, 1.0 / 3};
   all.noise->spacing_at_sites = {1.0 / 7, 0.01};
   all.noise->told_at_sites = {1, 0};
+  all.noise->shared_at_sites = {3.7, 5};
   all.tails = {0.05, 4.1, 0.9, 1.2};
   all.passes.resize(2);
   all.passes[0].reductions = {0.5, 1.0 / 3};
@@ -50,6 +51,7 @@ TEST(StatisticsJson, IsTheSameWhenReadAgain) {
   EXPECT_EQ(again.noise->at_sites, full().noise->at_sites);
   EXPECT_EQ(again.noise->spacing_at_sites, full().noise->spacing_at_sites);
   EXPECT_EQ(again.noise->told_at_sites, full().noise->told_at_sites);
+  EXPECT_EQ(again.noise->shared_at_sites, full().noise->shared_at_sites);
   EXPECT_EQ(again.passes.at(0).shares, full().passes[0].shares);
   EXPECT_EQ(again.spacing, full().spacing);
 }

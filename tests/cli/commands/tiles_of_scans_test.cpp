@@ -65,7 +65,7 @@ std::vector<Scan> scans() {
       // of the noise or groups (tame.cpp) is a close call, which a sample decides otherwise.
       {kFloorCrop, "2000", "4000", 0.15, 1.3},
       // The sample is less than half of the points, and their noise is that of the whole cloud.
-      {kBoxCrop, "2000", "4000", 0.005, 0.02},
+      {kBoxCrop, "2000", "4000", 0.005, 0.04},
       {kBuildingCrop, "2000", "4000", 0.02, 0.05}};
   if (kSanitized) return {all[1]};
   // Its points lie twice at one place, and its walls stand out of the noise as tails do: in some of its

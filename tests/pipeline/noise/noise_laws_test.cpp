@@ -377,21 +377,48 @@ TEST(NoiseLaws, ATorusInDepthsOfStepsIsNotTornIntoSheets) {
   }
 }
 
-TEST(NoiseLaws, NoiseThatNeighboursShareIsSmoothedOverMoreOfThem) {
-  // The mean of independent noise over the seven nearest of each point.
+/// By point of the sphere: the mean of independent noise over the seven nearest, of the standard deviation
+/// `sigma`.
+std::vector<double> shared_by_seven(double sigma) {
   std::mt19937_64 engine(5);
-  std::normal_distribution<double> normal(0, 0.5 * spacing() * std::sqrt(7.0));
-  std::vector<double> own(sphere().size());
+  std::normal_distribution<double> normal(0, sigma * std::sqrt(7.0));
+  std::vector<double> own(sphere().size()), shared(sphere().size(), 0);
   for (double& x : own) x = normal(engine);
   const rfs_mesh::SpatialIndex index(sphere(), {});
   std::vector<rfs_mesh::Neighbor> near;
-  const Positions noisy = off_sphere([&](std::size_t i) {
+  for (std::size_t i = 0; i < shared.size(); ++i) {
     index.nearest(sphere()[i], 7, near);
-    double sum = 0;
-    for (const auto& q : near) sum += own[q.index] / 7;
-    return sum;
-  });
+    for (const auto& q : near) shared[i] += own[q.index] / 7;
+  }
+  return shared;
+}
+
+TEST(NoiseLaws, NoiseThatNeighboursShareIsSmoothedOverMoreOfThem) {
+  const std::vector<double> shared = shared_by_seven(0.5 * spacing());
+  const Positions noisy = off_sphere([&](std::size_t i) { return shared[i]; });
   EXPECT_LT(rms_off(denoised(noisy), everywhere), 0.7 * rms_off(noisy, everywhere));
+}
+
+// As the rings of a laser on the road before it, while farther off each point errs by itself.
+TEST(NoiseLaws, NoiseThatNeighboursShareInAPartIsSmoothedThere) {
+  const std::vector<double> shared = shared_by_seven(0.2 * spacing());
+  const auto loud = [](std::size_t i) { return sphere()[i].x() > 0; };
+  const auto calm = [](std::size_t i) { return sphere()[i].x() < -0.2; };
+  const Positions noisy = off_sphere([&](std::size_t i) { return loud(i) ? shared[i] : 0; });
+  Positions smooth = noisy;
+  const NoiseModel found = *denoise(smooth).statistics.noise;
+  EXPECT_LT(rms_off(smooth, loud), 0.7 * rms_off(noisy, loud));  // of the figure alone it left 0.9
+  EXPECT_LT(rms_off(smooth, calm), 0.05 * spacing());
+  ASSERT_FALSE(found.sites.empty());
+  ASSERT_EQ(found.shared_at_sites.size(), found.sites.size());
+  double at_loud = 0, of_loud = 0, at_calm = 0, of_calm = 0;
+  for (std::size_t s = 0; s < found.sites.size(); ++s) {
+    double &at = found.sites[s].x() > 0 ? at_loud : at_calm, &of = found.sites[s].x() > 0 ? of_loud : of_calm;
+    at += found.shared_at_sites[s];
+    ++of;
+  }
+  EXPECT_GT(at_loud, 2 * of_loud);
+  EXPECT_LT(at_calm, 1.5 * of_calm);
 }
 
 constexpr double kRing = M_PI / 36, kAlongRing = kRing / 20;  // angles between rings, and between points
@@ -519,6 +546,7 @@ TEST(NoiseLaws, GravelIsNoNoiseThatNeighboursShare) {
   }
   const DenoiseReport report = denoise(points);
   EXPECT_EQ(report.statistics.noise->shared, 1);
+  EXPECT_TRUE(report.statistics.noise->shared_at_sites.empty());
   EXPECT_LT(report.noise, 1.2 * kNoise);  // it was 1.8 times
 }
 
@@ -541,6 +569,7 @@ TEST(NoiseLaws, GroundIsNoNoiseThatNeighboursShare) {
   const double relief = rms_height(points, 0);
   const DenoiseReport report = denoise(points);
   EXPECT_EQ(report.statistics.noise->shared, 1);
+  EXPECT_TRUE(report.statistics.noise->shared_at_sites.empty());
   EXPECT_LT(report.rms_move, 0.1 * relief);  // it was a half
 }
 

@@ -1,13 +1,11 @@
-#include "rfs_mesh/noise/shared_noise.h"
+#include "rfs_mesh/noise/shared/shared_noise.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-
-#include <Eigen/Cholesky>
 
 #include "base/quantile.h"
 #include "rfs_mesh/levels.h"
+#include "rfs_mesh/noise/shared/signs_of_sharing.h"
 #include "rfs_mesh/sample.h"
 #include "rfs_mesh/sheets/two_sheets.h"
 
@@ -18,95 +16,12 @@ namespace {
 // Chosen on the laws of tests/bench/quality (six shapes, 10,000 points) and on the raw scans of
 // tests/bench/scans.
 constexpr std::size_t kPointsLooked = 500000;  // at each m: of wide places fewer say as much
-// Of the variance, from m to 2 m: second sheets and detail grow faster than noise, shape at least so.
-constexpr double kMostGrowthOfNoise = 1.8, kLeastGrowthOfShape = 2.38;
+// Of the variance, from m to 2 m: second sheets and detail grow faster than noise.
+constexpr double kMostGrowthOfNoise = 1.8;
 constexpr double kGrowthAcrossEdges = 2;  // 2^p of shape
 constexpr std::size_t kSlowInARow = 2;    // the least that is a row
 // The same of ground, whose roughness has no scale of its own: 2^H, H from 0.5 on (Mandelbrot 1982).
 constexpr double kLeastGrowthOfGround = 1.414;
-constexpr double kLeanOfRelief = 0.05;  // a skewness of 0.22
-constexpr double kTogether = 0.4;       // above that of points on their own: two standard deviations
-// Patches of m points follow noise of their own so that m / (m + kFollows) of 1 is left of `together`: 0.43,
-// 0.58, 0.75, 0.82, 0.91 for 32, 64, ... 512 on a plane.
-constexpr double kFollows = 45;
-constexpr std::size_t kDiskPoints = 300;  // of the disk on which g is computed
-
-/// Share of the area that two disks of radius r have in common at a distance d.
-double overlap(double d, double r) {
-  if (d >= 2 * r) return 0;
-  const double x = d / (2 * r);
-  return 2 / M_PI * (std::acos(x) - x * std::sqrt(1 - x * x));
-}
-
-/// What a quadric takes of noise shared over a share of the points, q(share) = tr(A^-1 F^T W S W F) / tr W:
-/// for shares of 2^-kShares to 1 in powers of two.
-constexpr std::size_t kShares = 5;
-std::array<double, kShares + 1> taken_shares() {
-  using Vector6 = Eigen::Matrix<double, 6, 1>;
-  using Matrix6 = Eigen::Matrix<double, 6, 6>;
-  std::array<Eigen::Vector2d, kDiskPoints> at;
-  std::array<Vector6, kDiskPoints> f;
-  Matrix6 a = Matrix6::Zero();
-  double weights = 0;
-  for (std::size_t i = 0; i < kDiskPoints; ++i) {  // Vogel's spiral: evenly
-    const double r = std::sqrt((double(i) + 0.5) / double(kDiskPoints)), turn = M_PI * (3 - std::sqrt(5.0));
-    at[i] = r * Eigen::Vector2d(std::cos(double(i) * turn), std::sin(double(i) * turn));
-    const double u = at[i].x(), v = at[i].y(), t = r / 1.1, w = (1 - t * t) * (1 - t * t);
-    f[i] << 1, u, v, u * u, u * v, v * v;
-    a += w * f[i] * f[i].transpose();
-    weights += w;
-    f[i] *= w;
-  }
-  std::array<double, kShares + 1> taken = {};
-  for (std::size_t s = 0; s <= kShares; ++s) {
-    const double radius = std::sqrt(std::pow(0.5, double(kShares - s)));
-    Matrix6 shared = Matrix6::Zero();
-    for (std::size_t i = 0; i < kDiskPoints; ++i) {
-      Vector6 sum = Vector6::Zero();
-      for (std::size_t j = 0; j < kDiskPoints; ++j) sum += overlap((at[i] - at[j]).norm(), radius) * f[j];
-      shared += f[i] * sum.transpose();
-    }
-    taken[s] = a.ldlt().solve(shared).trace() / weights;
-  }
-  return taken;
-}
-
-/// g(k / m).
-double left_by_quadric(double points, double m) {
-  static const std::array<double, kShares + 1> taken = taken_shares();
-  const double least = std::pow(0.5, double(kShares)), own = std::min(0.9, taken[0] / least / m);
-  if (points <= 1) return 1;
-  const double share = points / m;
-  double q = 0;
-  if (share <= least) {
-    q = taken[0] * share / least;
-  } else {
-    const double place = std::min(double(kShares), std::log2(share) + double(kShares));
-    const auto below = std::min(kShares - 1, std::size_t(place));
-    q = taken[below] + (place - double(below)) * (taken[below + 1] - taken[below]);
-    if (share > 1) q = 1 - (1 - q) / (share * share);  // a quadric follows all but what is left of the edge
-  }
-  return std::max(1e-3, (1 - q) / (1 - own));
-}
-
-/// k by the neighbourhood that sees half of the noise's variance, or by the narrowest if that sees more:
-/// what follows such noise is what k is asked for. `left`: what a quadric leaves of the noise, over its
-/// variance, at each m, ascending to 1.
-double points_sharing(const std::vector<double>& m, const std::vector<double>& left) {
-  constexpr double kHalf = 0.5;
-  double at = m.front(), seen = left.front();
-  for (std::size_t i = 0; i + 1 < left.size() && left[i] < kHalf; ++i) {
-    const double part = std::min(1.0, (kHalf - left[i]) / std::max(1e-9, left[i + 1] - left[i]));
-    at = m[i] * std::pow(m[i + 1] / m[i], part);
-    seen = std::min(kHalf, left[i + 1]);
-  }
-  double fewest = 1, most = m.back();
-  for (int round = 0; round < 40; ++round) {
-    const double middle = std::sqrt(fewest * most);
-    (left_by_quadric(middle, at) > seen ? fewest : most) = middle;
-  }
-  return fewest;
-}
 
 /// What calm places show, by the number of neighbours, ascending.
 struct Calm {
@@ -166,16 +81,8 @@ bool hold_slab(const Calm& calm, std::size_t i) {
 }
 
 /// Whether nearest points lie off patches of the i-th m the same way.
-bool err_together(const Calm& calm, std::size_t i) {
-  return calm.together[i] > calm.m[i] / (calm.m[i] + kFollows) + kTogether;
-}
-
-/// How flat the i-th residuals are beyond the noise that points have of their own, of the variance `own`.
-/// That is normal and adds nothing to the fourth cumulant, so what is left of the variance has all of it.
-/// Half of the variance is taken at least: the flatness of next to nothing is chance.
-double flatness_beyond(const Calm& calm, std::size_t i, double own) {
-  const double left = std::max(0.5, 1 - own / calm.seen[i]);
-  return kNormalFlatness + (calm.flatness[i] - kNormalFlatness) / (left * left);
+bool errs_together(const Calm& calm, std::size_t i) {
+  return err_together(calm.together[i], calm.m[i]);
 }
 
 /// What is left of the i-th variance without the part that grows with m as shape does.
@@ -222,11 +129,12 @@ SharedNoise find_shared_noise(Places& places, const NoiseStart& start, const Dep
     if (!wide) continue;
     // Within terraces no noise is normal.
     const double flatness =
-        terraces ? calm.flatness[i + 1] : flatness_beyond(calm, i + 1, start.sigma * start.sigma);
+        terraces ? calm.flatness[i + 1]
+                 : flatness_beyond(calm.flatness[i + 1], start.sigma * start.sigma / calm.seen[i + 1]);
     if (flatness < kFlatnessOfSheets) continue;
-    if (!terraces && calm.lean[i + 1] > kLeanOfRelief) continue;
-    if (!terraces && !err_together(calm, i + 1)) continue;
-    if (terraces || err_together(calm, i))
+    if (!terraces && leans_as_relief(calm.lean[i + 1])) continue;
+    if (!terraces && !errs_together(calm, i + 1)) continue;
+    if (terraces || errs_together(calm, i))
       surely = std::max(surely, without_shape(calm, i, kLeastGrowthOfShape));
     make_sure(i, without_shape(calm, i, kGrowthOfSmoothShape));
   }

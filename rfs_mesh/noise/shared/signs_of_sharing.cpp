@@ -1,0 +1,113 @@
+#include "rfs_mesh/noise/shared/signs_of_sharing.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+
+#include "rfs_mesh/fit/scatter.h"
+
+namespace rfsmooth::rfs_mesh {
+
+namespace {
+
+// Chosen on the laws of tests/bench/quality (six shapes, 10,000 points) and on the raw scans of
+// tests/bench/scans.
+constexpr double kLeanOfRelief = 0.05;  // a skewness of 0.22
+constexpr double kTogether = 0.4;       // above that of points on their own: two standard deviations
+// Patches of m points follow noise of their own so that m / (m + kFollows) of 1 is left of `together`: 0.43,
+// 0.58, 0.75, 0.82, 0.91 for 32, 64, ... 512 on a plane.
+constexpr double kFollows = 45;
+constexpr std::size_t kDiskPoints = 300;  // of the disk on which g is computed
+
+/// Share of the area that two disks of radius r have in common at a distance d.
+double overlap(double d, double r) {
+  if (d >= 2 * r) return 0;
+  const double x = d / (2 * r);
+  return 2 / M_PI * (std::acos(x) - x * std::sqrt(1 - x * x));
+}
+
+/// What a quadric takes of noise shared over a share of the points, q(share) = tr(A^-1 F^T W S W F) / tr W:
+/// for shares of 2^-kShares to 1 in powers of two.
+constexpr std::size_t kShares = 5;
+std::array<double, kShares + 1> taken_shares() {
+  using Vector6 = Eigen::Matrix<double, 6, 1>;
+  using Matrix6 = Eigen::Matrix<double, 6, 6>;
+  std::array<Eigen::Vector2d, kDiskPoints> at;
+  std::array<Vector6, kDiskPoints> f;
+  Matrix6 a = Matrix6::Zero();
+  double weights = 0;
+  for (std::size_t i = 0; i < kDiskPoints; ++i) {  // Vogel's spiral: evenly
+    const double r = std::sqrt((double(i) + 0.5) / double(kDiskPoints)), turn = M_PI * (3 - std::sqrt(5.0));
+    at[i] = r * Eigen::Vector2d(std::cos(double(i) * turn), std::sin(double(i) * turn));
+    const double u = at[i].x(), v = at[i].y(), t = r / 1.1, w = (1 - t * t) * (1 - t * t);
+    f[i] << 1, u, v, u * u, u * v, v * v;
+    a += w * f[i] * f[i].transpose();
+    weights += w;
+    f[i] *= w;
+  }
+  std::array<double, kShares + 1> taken = {};
+  for (std::size_t s = 0; s <= kShares; ++s) {
+    const double radius = std::sqrt(std::pow(0.5, double(kShares - s)));
+    Matrix6 shared = Matrix6::Zero();
+    for (std::size_t i = 0; i < kDiskPoints; ++i) {
+      Vector6 sum = Vector6::Zero();
+      for (std::size_t j = 0; j < kDiskPoints; ++j) sum += overlap((at[i] - at[j]).norm(), radius) * f[j];
+      shared += f[i] * sum.transpose();
+    }
+    taken[s] = a.ldlt().solve(shared).trace() / weights;
+  }
+  return taken;
+}
+
+/// g(k / m).
+double left_by_quadric(double points, double m) {
+  static const std::array<double, kShares + 1> taken = taken_shares();
+  const double least = std::pow(0.5, double(kShares)), own = std::min(0.9, taken[0] / least / m);
+  if (points <= 1) return 1;
+  const double share = points / m;
+  double q = 0;
+  if (share <= least) {
+    q = taken[0] * share / least;
+  } else {
+    const double place = std::min(double(kShares), std::log2(share) + double(kShares));
+    const auto below = std::min(kShares - 1, std::size_t(place));
+    q = taken[below] + (place - double(below)) * (taken[below + 1] - taken[below]);
+    if (share > 1) q = 1 - (1 - q) / (share * share);  // a quadric follows all but what is left of the edge
+  }
+  return std::max(1e-3, (1 - q) / (1 - own));
+}
+
+}  // namespace
+
+bool err_together(double together, double m) {
+  return together > m / (m + kFollows) + kTogether;
+}
+
+double flatness_beyond(double flatness, double own) {
+  const double left = std::max(0.5, 1 - own);
+  return kNormalFlatness + (flatness - kNormalFlatness) / (left * left);
+}
+
+bool leans_as_relief(double lean) {
+  return lean > kLeanOfRelief;
+}
+
+double points_sharing(const std::vector<double>& m, const std::vector<double>& left) {
+  constexpr double kHalf = 0.5;
+  double at = m.front(), seen = left.front();
+  for (std::size_t i = 0; i + 1 < left.size() && left[i] < kHalf; ++i) {
+    const double part = std::min(1.0, (kHalf - left[i]) / std::max(1e-9, left[i + 1] - left[i]));
+    at = m[i] * std::pow(m[i + 1] / m[i], part);
+    seen = std::min(kHalf, left[i + 1]);
+  }
+  double fewest = 1, most = m.back();
+  for (int round = 0; round < 40; ++round) {
+    const double middle = std::sqrt(fewest * most);
+    (left_by_quadric(middle, at) > seen ? fewest : most) = middle;
+  }
+  return fewest;
+}
+
+}  // namespace rfsmooth::rfs_mesh

@@ -1,0 +1,32 @@
+/// What tells noise that neighbours share from noise of their own and from shape, and how many share it: for
+/// a cloud (shared_noise.h) as for the places around a site (sites/shared_around.h). Thread safe.
+#pragma once
+
+#include <vector>
+
+namespace rfsmooth::rfs_mesh {
+
+/// Of the variance about a quadric, from m points to 2 m: shape that it does not follow grows at least so.
+constexpr double kLeastGrowthOfShape = 2.38;
+
+/// Whether nearest points lie off patches of m points the same way. \param together mean of
+/// Scatter::together: above that of points on their own, which is what patches do not follow of it,
+/// m / (m + 45).
+bool err_together(double together, double m);
+
+/// How flat residuals are beyond the noise that points have of their own, `own` of the variance. That is
+/// normal and adds nothing to the fourth cumulant, so what is left of the variance has all of it. Half of the
+/// variance is taken at least: the flatness of next to nothing is chance. \param flatness Scatter::flatness
+double flatness_beyond(double flatness, double own);
+
+/// Whether residuals lean as those of stones do, round above and in clefts below. \param lean median of
+/// Scatter::lean_in_common
+bool leans_as_relief(double lean);
+
+/// k, the points that share the noise, by the neighbourhood that sees half of its variance, or by the
+/// narrowest if that sees more: what follows such noise is what k is asked for. \param m points of the
+/// neighbourhoods, ascending, at least one. \param left what a quadric leaves of the noise there, over its
+/// variance, ascending to 1: g(k / m) of shared_noise.h. At least 1, at most the last m.
+double points_sharing(const std::vector<double>& m, const std::vector<double>& left);
+
+}  // namespace rfsmooth::rfs_mesh

@@ -1,0 +1,29 @@
+/// Fits without windows at all sites of a cloud.
+#pragma once
+
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "rfs_mesh/fit/places.h"
+#include "rfs_mesh/noise/scatter_statistics.h"
+#include "rfs_mesh/noise/sites/site_views.h"
+
+namespace rfsmooth::rfs_mesh {
+
+/// Fits at all sites to so many points.
+struct OpenFits {
+  OpenFits(std::size_t count, std::vector<Scatter> fits)
+      : points(count), all(std::move(fits)), said(what_they_say(all, kTypicalDeviate)) {}
+
+  std::size_t points;
+  std::vector<Scatter> all;
+  std::vector<Said> said;
+  std::vector<double> rounding;  ///< what depths in steps add there, world units; empty: not in steps
+};
+
+/// Fits to so many points that their balls overlap: some sites are fitted, and each takes the fit of the
+/// nearest of these. O(sites). Parallel, deterministic. \param places the sites
+OpenFits fit_wide(const Places& places, std::size_t points, const Context& context);
+
+}  // namespace rfsmooth::rfs_mesh

@@ -1,0 +1,105 @@
+#include "rfs_mesh/noise/sites/shared_around.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "base/quantile.h"
+#include "rfs_mesh/levels.h"
+#include "rfs_mesh/noise/shared/signs_of_sharing.h"
+#include "rfs_mesh/sheets/two_sheets.h"
+
+namespace rfsmooth::rfs_mesh {
+
+namespace {
+
+/// What the fits around a site show to so many points.
+struct ShownTogether {
+  ShownTogether(const std::vector<Neighbor>& group, const OpenFits& open) : points(double(open.points)) {
+    std::vector<double> variance, radii, of_sheets, leans;
+    for (const Neighbor& q : group) {
+      const Scatter& fit = open.all[q.index];
+      if (!says(fit)) continue;
+      variance.push_back(fit.variance);
+      radii.push_back(fit.radius);
+      of_sheets.push_back(fit.flatness);
+      leans.push_back(fit.lean_in_common);
+      together += fit.together;
+    }
+    if (variance.empty()) return;
+    together /= double(variance.size());
+    scatter = std::sqrt(quantile(variance, kTypical));
+    radius = median(radii);
+    flatness = median(of_sheets);
+    lean = median(leans);
+  }
+
+  bool holds_slab() const { return scatter < kFlatSlab * radius; }
+  /// \param own variance that points have of their own, or more
+  bool of_one_smooth_sheet(double own) const {
+    return flatness_beyond(flatness, own / (scatter * scatter)) >= kFlatnessOfSheets &&
+           !leans_as_relief(lean);
+  }
+
+  double points;
+  double scatter = 0;  ///< world units; 0: no fit says a thing
+  double radius = 0, flatness = 0, lean = 0, together = 0;
+};
+
+/// The first scale from which the scatter has stopped growing, and is of noise that neighbours share, if it
+/// never grew as shape does before; or how many there are.
+std::size_t stops_at(const std::vector<ShownTogether>& shown) {
+  const double own = shown.front().scatter * shown.front().scatter;
+  for (std::size_t i = 0; i + 2 < shown.size(); ++i) {
+    const ShownTogether &here = shown[i], &next = shown[i + 1];
+    if (i > 0 && here.holds_slab() && next.of_one_smooth_sheet(own) &&
+        shown[i + 2].scatter <= kGrowthOfNoise * here.scatter && err_together(here.together, here.points))
+      return i;
+    if (next.scatter * next.scatter > kLeastGrowthOfShape * here.scatter * here.scatter) break;
+  }
+  return shown.size();
+}
+
+/// What is found at a site.
+struct SharedAround {
+  double sigma = 0;  ///< world units; 0: nothing
+  double points = 1;
+};
+
+SharedAround look_around(const std::vector<Neighbor>& group, const std::vector<OpenFits>& open) {
+  std::vector<ShownTogether> shown;
+  for (const OpenFits& fits : open) shown.emplace_back(group, fits);
+  const std::size_t stop = stops_at(shown);
+  if (stop == shown.size() || !(shown.front().scatter > 0)) return {};
+  const double sigma = shown[stop + 1].scatter;
+  std::vector<double> m, left;
+  for (std::size_t i = 0; i <= stop + 1; ++i) {
+    const double share = shown[i].scatter / sigma;
+    m.push_back(shown[i].points);
+    left.push_back(std::min(1.0, share * share));
+  }
+  return {sigma, points_sharing(m, left)};
+}
+
+}  // namespace
+
+void find_shared_around(const SiteGroups& groups, const std::vector<OpenFits>& open,
+                        std::vector<SiteView>& views, const Context& context) {
+  std::vector<SharedAround> found(views.size());
+  for_each_index(
+      context, groups.size(),
+      [&](std::size_t s) {
+        if (views[s].sheet == SiteView::kNone) found[s] = look_around(groups[s], open);
+      },
+      64);
+  const auto count = std::count_if(found.begin(), found.end(), [](const auto& f) { return f.sigma > 0; });
+  if (!(double(count) > kLeastPart * double(found.size()))) return;
+  for (std::size_t s = 0; s < views.size(); ++s) {
+    if (!(found[s].sigma > 0)) continue;
+    views[s].floor = std::max(views[s].floor, found[s].sigma);
+    views[s].told = true;
+    views[s].shared = found[s].points;
+  }
+}
+
+}  // namespace rfsmooth::rfs_mesh

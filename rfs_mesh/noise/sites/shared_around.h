@@ -1,0 +1,25 @@
+/// Noise that neighbours share around some sites of a cloud, other than all of it has (shared_noise.h): the
+/// rings of a laser that are each a little off, where they are near each other.
+///
+/// Around a site the scatter s(m) about a quadric stops growing where the neighbourhood is wider than such
+/// noise reaches. What is left of it, s(2 m) of the first m from which s(4 m) < 1.26 s(m), is noise, all of
+/// it, under the conditions that shared_noise.h asks of m and 2 m for: the ball holds the slab, the nearest
+/// points err together, the residuals are neither of two sheets nor of waves in rows nor of stones. (Shape
+/// that a quadric does not follow makes s grow 8 times from m to 4 m, ground 1.4 times and more.) Nothing is
+/// found where s^2 grew 2.38 times from some narrower m to its double: bumps have a size, too, beyond which
+/// they do not grow. Less than a tenth of the sites are not believed: scales of a statue. k follows from what
+/// the narrower neighbourhoods see (points_sharing).
+#pragma once
+
+#include <vector>
+
+#include "rfs_mesh/noise/sites/open_fits.h"
+
+namespace rfsmooth::rfs_mesh {
+
+/// Sets `shared`, and raises `floor` and sets `told` there, but where two sheets are seen. O(sites).
+/// Parallel, deterministic. \param open from kNeighbourhood points on, each of twice as many
+void find_shared_around(const SiteGroups& groups, const std::vector<OpenFits>& open,
+                        std::vector<SiteView>& views, const Context& context);
+
+}  // namespace rfsmooth::rfs_mesh
