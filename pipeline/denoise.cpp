@@ -298,6 +298,7 @@ Connection connected(rfs_mesh::WorkingCloud& cloud, const DenoiseOptions& option
   // flows; the automatic smoother puts them onto the surface (stranded.h). Kept, such an edge would carry a
   // stray over its whole length, and HC's push-back would throw its neighbour after it.
   wanted.loose_edges = false;
+  wanted.surfaces = false;
   wanted.fill_holes = reads_faces(options);
   Searched found = search(cloud, options.connect.neighbours, options, context, report);
   if (!whole.points) whole.points = found.index->points().size();

@@ -236,6 +236,10 @@ Connection connect_all(const Positions& points, std::optional<Cloud> known, cons
     const std::vector<Umbrella> umbrellas = open_umbrellas(terrain, sdg.graph, options.umbrella, context);
     ground.near = NeighborTable();
     sdg = {};
+    if (wanted.surfaces)
+      c.surfaces = std::move(ground.surfaces);
+    else
+      std::vector<LocalSurface>().swap(ground.surfaces);
     return proposed_faces(umbrellas, context);
   });
   stages.run("rfs-mesh", 0.9, [&] {
@@ -251,7 +255,6 @@ Connection connect_all(const Positions& points, std::optional<Cloud> known, cons
       rebuild_adjacency(c.mesh, context);
     }
   });
-  c.surfaces = std::move(ground.surfaces);
   return c;
 }
 

@@ -24,6 +24,8 @@ struct Wanted {
   /// Whether vertices that no face reaches keep their SDG edges (Mesh::loose_edges) and are neighbours by
   /// them.
   bool loose_edges = true;
+  /// Whether Connection::surfaces are wanted.
+  bool surfaces = true;
   /// Whether small holes are filled: it adds faces, and no edge or neighbour.
   bool fill_holes = true;
 };

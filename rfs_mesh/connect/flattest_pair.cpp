@@ -104,7 +104,9 @@ class Chooser {
 
   bool kept(std::size_t f) const { return state_[f] == State::kept; }
 
-  FlattestPairs result() const {
+  /// Once.
+  FlattestPairs result() {
+    crowded_.reset();
     std::vector<char> kept_flag(state_.size());
     for_each_index(context_, state_.size(), [&](std::size_t f) { kept_flag[f] = kept(f) ? 1 : 0; });
     FlattestPairs pairs;

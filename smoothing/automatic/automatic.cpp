@@ -70,20 +70,20 @@ double strength_of_guide(const rfs_mesh::NoiseField& noise) {
 struct Mixed {
   std::unique_ptr<HeightField> field;
   MixedScales heights;
-  Positions tamed;           ///< the points, if there are tails; else none
-  std::vector<double> most;  ///< how far each may move, world units
   Tails tails;
+  Positions tamed;                                  ///< if there are tails: the points; else none
+  std::optional<rfs_mesh::NoiseField> tamed_noise;  ///< if there are tails
 };
 
 /// Steps 1 to 3, twice where there are tails: then the noise is as tamed.
-Mixed mix_scales(AutomaticTask& task, AutomaticReport& report, Statistics& whole, const Context& context) {
+Mixed mix_scales(const AutomaticTask& task, AutomaticReport& report, Statistics& whole,
+                 const Context& context) {
   const Mesh& mesh = task.mesh;
-  rfs_mesh::NoiseField& noise = task.noise;
   std::optional<Adjacency> lines;
-  if (noise.across) lines = along_lines(mesh.positions, context);
+  if (task.noise.across) lines = along_lines(mesh.positions, context);
   const Adjacency& rings = lines ? *lines : mesh.one_ring;
   Mixed mixed;
-  const auto smooth = [&](const Positions& points, std::size_t pass) {
+  const auto smooth = [&](const Positions& points, const rfs_mesh::NoiseField& noise, std::size_t pass) {
     whole.passes.resize(std::max(pass + 1, whole.passes.size()));
     report.guide_strength = strength_of_guide(noise);
     mixed.field.reset();
@@ -91,13 +91,12 @@ Mixed mix_scales(AutomaticTask& task, AutomaticReport& report, Statistics& whole
     context.report("smooth", 0.1);
     mixed.heights = smooth_heights(*mixed.field, noise, task.learned, whole.passes[pass], context);
   };
-  smooth(mesh.positions, 0);
-  mixed.most = noise.reaches(1, context);
-  mixed.tails = tame(*mixed.field, mixed.heights, mesh, noise, whole.tails, mixed.tamed, context);
+  smooth(mesh.positions, task.noise, 0);
+  mixed.tails = tame(*mixed.field, mixed.heights, mesh, task.noise, whole.tails, mixed.tamed, context);
   if (mixed.tails.share > 0) {
     report.tail_times = mixed.tails.times;
-    for (double& limit : mixed.most) limit *= mixed.tails.times;
-    smooth(mixed.tamed, 1);
+    mixed.tamed_noise = tamed(task.noise, mixed.tails);
+    smooth(mixed.tamed, *mixed.tamed_noise, 1);
   }
   return mixed;
 }
@@ -125,13 +124,13 @@ Eigen::Vector3d place_at(const HeightField& field, std::size_t i, const Eigen::V
 
 }  // namespace
 
-AutomaticResult automatic_smoothing(AutomaticTask task, AutomaticReport& report, Statistics& whole,
+AutomaticResult automatic_smoothing(const AutomaticTask& task, AutomaticReport& report, Statistics& whole,
                                     const Context& context) {
   Mesh& mesh = task.mesh;
   const std::size_t n = mesh.positions.size();
-  const double untamed = task.noise.sigma;
   Mixed mixed = mix_scales(task, report, whole, context);
-  const rfs_mesh::NoiseField& noise = task.noise;
+  const rfs_mesh::NoiseField& noise = mixed.tamed_noise ? *mixed.tamed_noise : task.noise;
+  const double untamed = task.noise.sigma, farther = mixed.tails.share > 0 ? mixed.tails.times : 1;
   HeightField& field = *mixed.field;
   MixedScales& heights = mixed.heights;
   const Positions& data = mixed.tails.share > 0 ? mixed.tamed : mesh.positions;
@@ -147,7 +146,7 @@ AutomaticResult automatic_smoothing(AutomaticTask task, AutomaticReport& report,
         field, residuals_of(field, heights.height, mesh.positions, noise, untamed, mixed.tails, context),
         heights.height, heights.own, of_whole, whole.sheets, context);
   const auto allowed = [&](std::size_t i, const Eigen::Vector3d& move) {
-    return move.allFinite() && move.norm() <= mixed.most[i];
+    return move.allFinite() && move.norm() <= farther * task.noise.reach(i);
   };
   Positions smooth(n);
   for_each_index(context, n, [&](std::size_t i) {
@@ -171,9 +170,13 @@ AutomaticResult automatic_smoothing(AutomaticTask task, AutomaticReport& report,
       take_learned_step(field, data, smoothed, noise, may_go, smooth, context);
   }
   // What is left is left of the cloud's own noise, whatever it was smoothed as.
-  task.noise.sigma /= task.strength;
-  for (double& sigma : task.noise.local) sigma /= task.strength;
-  report.left = noise_left(field, heights.height, heights.own, task.noise, context);
+  std::optional<rfs_mesh::NoiseField> own;
+  if (task.strength != 1) {
+    own = noise;
+    own->sigma /= task.strength;
+    for (double& sigma : own->local) sigma /= task.strength;
+  }
+  report.left = noise_left(field, heights.height, heights.own, own ? *own : noise, context);
   return {std::move(smooth), field.release_neighbors()};
 }
 

@@ -62,9 +62,9 @@ namespace rfsmooth::smoothing {
 
 /// What is smoothed, and how.
 struct AutomaticTask {
-  Mesh& mesh;                     ///< of at least HeightField::kNear points; they stay where they are
-  rfs_mesh::NoiseField noise;     ///< along the normal, of positive sigma; local: n, positive
-  bool learned = true;            ///< whether the learned step is taken
+  Mesh& mesh;                         ///< of at least HeightField::kNear points; they stay where they are
+  const rfs_mesh::NoiseField& noise;  ///< along the normal, of positive sigma; local: n, positive
+  bool learned = true;                ///< whether the learned step is taken
   bool keep_rings = true;         ///< false: the mesh is left without its one-rings, as soon as they are read
   LearnedSites* sites = nullptr;  ///< out, with `learned`: what the step would be given; it is not taken
   double strength = 1;            ///< how many times that of the cloud `noise` is; positive
@@ -79,7 +79,7 @@ struct AutomaticResult {
 /// O(n log n); about 500 bytes a point beside the mesh. Parallel, the same bits for any number of threads. Of
 /// the report, what was measured and what was equalized are the flow's to enter (flow_auto.cpp).
 /// \param whole what is there is taken, the rest entered.
-AutomaticResult automatic_smoothing(AutomaticTask task, AutomaticReport& report, Statistics& whole,
+AutomaticResult automatic_smoothing(const AutomaticTask& task, AutomaticReport& report, Statistics& whole,
                                     const Context& context);
 
 }  // namespace rfsmooth::smoothing

@@ -47,6 +47,8 @@ rfs_mesh::NoiseField scaled(rfs_mesh::NoiseField noise, double sigma, double str
   for (std::size_t i = 0; i < noise.local.size(); ++i)
     noise.local[i] = std::max(of(measured > 0 ? noise.local[i] * sigma / measured : sigma, hidden_at(i)),
                               rfs_mesh::kStays * noise.sigma);
+  std::vector<double>().swap(noise.local_spacing);  // nobody asks any more
+  std::vector<double>().swap(noise.local_told);
   return noise;
 }
 

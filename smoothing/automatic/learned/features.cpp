@@ -81,19 +81,24 @@ Features::Features(const HeightField& field, const Positions& data, const Smooth
                    const rfs_mesh::NoiseField& noise, const Context& context)
     : field_(field), smoothed_(smoothed), noise_(noise) {
   constexpr int kTimes = 4;
-  packed_.resize(field.size());
+  const auto residual = [&](std::size_t i) {
+    return std::clamp((field.local()[i].height - height(i)) / scale(i), -kFarResidual, kFarResidual);
+  };
   pooled_.resize(field.size());
   for_each_index(context, field.size(), [&](std::size_t i) {
-    const Eigen::Vector3d& guide = field.guide()[i];
-    const float r = std::clamp((field.local()[i].height - height(i)) / scale(i), -kFarResidual, kFarResidual);
-    packed_[i] = {(data[i] - guide).cast<float>(), (smoothed.place[i] - guide).cast<float>(),
-                  field.local()[i].normal, r};
+    const float r = residual(i);
     const float narrow = candidate(i, float(smoothed.scales[i][0].off)),
                 third = candidate(i, float(smoothed.scales[i][2].off));
     pooled_[i] << r, r * r, r * r * r / 6, r * r * r * r / 6, smoothed.own[i], narrow * narrow, third * third,
         0;
   });
   for (int t = 0; t < kTimes; ++t) pooled_ = field.local_mean(pooled_, context);
+  packed_.resize(field.size());  // only now: pooling takes as much for itself
+  for_each_index(context, field.size(), [&](std::size_t i) {
+    const Eigen::Vector3d& guide = field.guide()[i];
+    packed_[i] = {(data[i] - guide).cast<float>(), (smoothed.place[i] - guide).cast<float>(),
+                  field.local()[i].normal, residual(i)};
+  });
 }
 
 float Features::candidate(std::size_t i, float off) const {

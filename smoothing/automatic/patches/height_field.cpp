@@ -30,6 +30,9 @@ HeightField::HeightField(Positions guide, rfs_mesh::KdTree tree, rfs_mesh::Neigh
   for_each_index(context, size(), [&](std::size_t i) { local_[i].normal = normals[i]; });
   for_each_index(context, size(),
                  [&](std::size_t i) { local_[i].height = float(normal(i).dot(data[i] - guide_[i])); });
+}
+
+void HeightField::weigh_neighbors(const Context& context) {
   near_weight_.resize(near_.items.size());
   for_each_index(context, size(), [&](std::size_t i) {
     const auto row = near_[i];

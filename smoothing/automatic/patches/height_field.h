@@ -56,7 +56,12 @@ class HeightField {
   const std::vector<Local>& local() const { return local_; }          ///< n: normals and heights
   const rfs_mesh::NeighborTable& neighbors() const { return near_; }  ///< n x kNear, on the guide
 
-  /// The mean of `values` over the nearest points on the same sheet, nearer ones weighing more. O(n).
+  /// Weighs the neighbours, for the means below: nobody asks for these while patches are fitted, which take
+  /// the most memory. O(n).
+  void weigh_neighbors(const Context& context);
+
+  /// The mean of `values` over the nearest points on the same sheet, nearer ones weighing more. Once the
+  /// neighbours are weighed. O(n).
   std::vector<float> local_mean(const std::vector<float>& values, const Context& context) const;
 
   /// Several values of a point, whose means are taken together: reading the neighbours is what takes the
@@ -73,7 +78,8 @@ class HeightField {
   rfs_mesh::NeighborTable near_;
   bool on_lines_;
   std::vector<Local> local_;
-  RawArray<std::uint8_t> near_weight_;  ///< of near_, in 1/255: 1 - d^2/r^2; 0 on another sheet
+  RawArray<std::uint8_t> near_weight_;  ///< of near_, in 1/255: 1 - d^2/r^2; 0 on another sheet;
+                                        ///< empty until they are weighed
 };
 
 /// cos^2 of the angle between two normals from its cosine; 0 on another sheet.

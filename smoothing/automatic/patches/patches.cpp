@@ -18,7 +18,7 @@ constexpr float kCovered = 0.2F * kMemberUnit;  // least weight of the best patc
 // worse.
 constexpr std::size_t kMostForMissing = 8;
 constexpr std::size_t kTogether = 64;   // patches fitted in a row: each tells the next how far to look
-constexpr std::size_t kWave = 1 << 20;  // members fitted before they are added up, ...
+constexpr std::size_t kWave = 1 << 18;  // members fitted before they are added up, ...
 constexpr std::size_t kLeastWave = 8 * kTogether;  // ... of at least so many patches
 
 }  // namespace

@@ -37,7 +37,7 @@ class Patches {
   /// they leave uncovered get seeds of their own. \param sigma n: the noise, world units, > 0: how much a
   /// patch counts, and whether it sees several sheets. `memory` is for their members, outlives them and
   /// belongs to one Patches at a time. O(n log n); memory 6 bytes a point and patch over it, beside 14 bytes
-  /// of each of the 1,048,576 members, or of the 512 patches if these are more, that are fitted side by side.
+  /// of each of the 262,144 members, or of the 512 patches if these are more, that are fitted side by side.
   /// \throw std::invalid_argument without seeds or members, Failure for 2^32 members in all.
   Patches(const HeightField& field, std::size_t members, std::vector<Index> seeds,
           const std::vector<double>& sigma, PatchMembers& memory, const Context& context);

@@ -71,24 +71,26 @@ void average_near(const HeightField& field, std::vector<Scale>& scales, const Co
   constexpr std::size_t kColumns = HeightField::Columns::SizeAtCompileTime;
   for (std::size_t first = 0; first < scales.size(); first += kColumns) {
     const std::size_t count = std::min(kColumns, scales.size() - first);
-    std::vector<HeightField::Columns> near(field.size());
-    for_each_index(context, field.size(), [&](std::size_t i) {
-      near[i].setZero();
-      for (std::size_t s = 0; s < count; ++s) near[i][Eigen::Index(s)] = scales[first + s].worse[i];
-    });
-    near = field.local_mean(field.local_mean(near, context), context);
-    for_each_index(context, field.size(), [&](std::size_t i) {
-      for (std::size_t s = 0; s < count; ++s) scales[first + s].worse[i] = near[i][Eigen::Index(s)];
-    });
+    std::vector<HeightField::Columns> near(field.size(), HeightField::Columns::Zero());
+    for (std::size_t s = 0; s < count; ++s) {
+      std::vector<float>& worse = scales[first + s].worse;
+      for_each_index(context, field.size(), [&](std::size_t i) { near[i][Eigen::Index(s)] = worse[i]; });
+      std::vector<float>().swap(worse);
+    }
+    for (int twice = 0; twice < 2; ++twice) near = field.local_mean(near, context);
+    for (std::size_t s = 0; s < count; ++s) {
+      std::vector<float>& worse = scales[first + s].worse;
+      worse.resize(field.size());
+      for_each_index(context, field.size(), [&](std::size_t i) { worse[i] = near[i][Eigen::Index(s)]; });
+    }
   }
 }
 
-/// What the learned step is told of the scales.
-std::vector<ScalesSay> tell(const HeightField& field, const std::vector<Scale>& scales,
-                            const rfs_mesh::NoiseField& noise, const Context& context) {
-  std::vector<ScalesSay> told(field.size());
+/// Tells the learned step of one of `count` scales.
+void tell(const HeightField& field, const Scale& scale, std::size_t which, std::size_t count,
+          const rfs_mesh::NoiseField& noise, std::vector<ScalesSay>& told, const Context& context) {
   for (std::size_t t = 0; t < kTold; ++t) {
-    const Scale& scale = scales[told_scale(t, scales.size())];
+    if (told_scale(t, count) != which) continue;
     for_each_index(context, told.size(), [&](std::size_t i) {
       const Prediction& said = scale.prediction;
       const float near = scale.worse[i], wide = scale.mean.empty() ? near : scale.mean[i];
@@ -100,7 +102,6 @@ std::vector<ScalesSay> tell(const HeightField& field, const std::vector<Scale>& 
                       Eigen::half(near), Eigen::half(wide)};
     });
   }
-  return told;
 }
 
 /// All scales of a field, and what they are mixed with.
@@ -230,8 +231,10 @@ void mix(const HeightField& field, Rungs rungs, const rfs_mesh::NoiseField& nois
     const std::vector<float> around = field.local_mean(field.local_mean(precision, context), context);
     for (Scale& scale : rungs.scales) in_own_units(precision, around, scale.worse, context);
   }
-  if (learned) mixed.told = tell(field, rungs.scales, noise, context);
-  for (Scale& scale : rungs.scales) {
+  if (learned) mixed.told.resize(field.size());
+  for (std::size_t s = 0; s < rungs.scales.size(); ++s) {
+    Scale& scale = rungs.scales[s];
+    if (learned) tell(field, scale, s, rungs.scales.size(), noise, mixed.told, context);
     // A wide patch is judged over its own width, but must not be far off anywhere near the point either:
     // the few points that it misses by sigmas would be outvoted.
     std::vector<float>& gain = scale.worse;
@@ -256,9 +259,10 @@ void mix(const HeightField& field, Rungs rungs, const rfs_mesh::NoiseField& nois
 
 }  // namespace
 
-MixedScales smooth_heights(const HeightField& field, const rfs_mesh::NoiseField& noise, bool learned,
+MixedScales smooth_heights(HeightField& field, const rfs_mesh::NoiseField& noise, bool learned,
                            Statistics::Pass& whole, const Context& context) {
   Rungs rungs = Ladder(field, noise, whole, context).climb();
+  field.weigh_neighbors(context);
   MixedScales mixed;
   const std::vector<Scale>& scales = rungs.scales;
   const Scale& seeing = scales[std::min(std::size_t(kSeeing), scales.size() - 1)];

@@ -90,8 +90,9 @@ void land_hovering(const HeightField& field, const MixedScales& pass, const Mesh
 
 }  // namespace
 
-Tails tame(const HeightField& field, const MixedScales& pass, const Mesh& mesh, rfs_mesh::NoiseField& noise,
-           std::optional<Statistics::Tails>& whole, Positions& data, const Context& context) {
+Tails tame(const HeightField& field, const MixedScales& pass, const Mesh& mesh,
+           const rfs_mesh::NoiseField& noise, std::optional<Statistics::Tails>& whole, Positions& data,
+           const Context& context) {
   // Terraces stand out as tails do, and so does what lines of points pass over.
   if (is_of_steps(noise) || noise.across) return {};
   constexpr float kMostItsOwn = 0.8F;
@@ -129,10 +130,14 @@ Tails tame(const HeightField& field, const MixedScales& pass, const Mesh& mesh, 
       data[i] -= (1 - tails.weight(double(relative[i]))) * double(off[i]) * field.normal(i);
   });
   land_hovering(field, pass, mesh, tails, noise, data, context);
-  if (noise.shared > 1) return tails;  // what points share is not of their tails
+  return tails;
+}
+
+rfs_mesh::NoiseField tamed(rfs_mesh::NoiseField noise, const Tails& tails) {
+  if (noise.shared > 1) return noise;  // what points share is not of their tails
   noise.sigma *= tails.noise();
   for (double& local : noise.local) local *= tails.noise();
-  return tails;
+  return noise;
 }
 
 }  // namespace rfsmooth::smoothing
