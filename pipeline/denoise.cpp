@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -11,6 +12,7 @@
 #include "base/parallel.h"
 #include "base/quantile.h"
 #include "base/stopwatch.h"
+#include "pipeline/denoise_lean.h"
 #include "pipeline/measure_points.h"
 #include "pipeline/outliers.h"
 #include "pipeline/units/units.h"
@@ -26,6 +28,34 @@ namespace rfsmooth {
 using namespace pipeline;
 
 namespace {
+
+/// The coordinates of all rows, n x 3: a caller's. Where they can be made again, nobody holds them meanwhile.
+class Rows {
+ public:
+  Rows(double* xyz, std::size_t n) : xyz_(xyz), n_(n) {}
+  Rows(std::vector<double>& xyz, const std::function<std::vector<double>()>& again)
+      : xyz_(xyz.data()), n_(xyz.size() / 3), held_(&xyz), again_(again) {}
+
+  double* xyz() const { return xyz_; }
+  std::size_t size() const { return n_; }
+
+  void give_up() {
+    if (held_ == nullptr) return;
+    std::vector<double>().swap(*held_);
+    xyz_ = nullptr;
+  }
+  void take_back() {
+    if (held_ == nullptr) return;
+    *held_ = again_();
+    xyz_ = held_->data();
+  }
+
+ private:
+  double* xyz_;
+  std::size_t n_;
+  std::vector<double>* held_ = nullptr;
+  std::function<std::vector<double>()> again_;
+};
 
 /// Takes over what the automatic smoother measured of the cloud and did in its first step: later ones hear
 /// only what that left, and of it too little, for neighbours share it.
@@ -326,13 +356,14 @@ Mesh told_of(Connection connection, DenoiseReport& report) {
   return std::move(connection.mesh);
 }
 
-DenoiseReport run(double* xyz, std::size_t n, const DenoiseOptions& options, const Context& context,
+DenoiseReport run(Rows rows, const DenoiseOptions& options, const Context& context,
                   const std::vector<double>& strengths) {
   DenoiseReport report;
-  report.points = n;
+  report.points = rows.size();
   report.effective = options;
   if (options.statistics) report.statistics = *options.statistics;
-  rfs_mesh::WorkingCloud cloud = prepare(xyz, n, options, context, report);
+  rfs_mesh::WorkingCloud cloud = prepare(rows.xyz(), rows.size(), options, context, report);
+  rows.give_up();
   const std::vector<double> strength = least_strengths(strengths, cloud);
   refuse_noise_beyond(cloud.box, 0, options);
   Mesh mesh = told_of(connected(cloud, options, context, report), report);
@@ -343,9 +374,10 @@ DenoiseReport run(double* xyz, std::size_t n, const DenoiseOptions& options, con
   if (!std::holds_alternative<AutomaticOptions>(options.flow.flow)) reach = reaches(mesh, context);
   alternate(mesh, {{}, working_strengths(strength, cloud, mesh.positions.size())}, options, report, context);
   check_finite(mesh.positions, options, context);
-  land_tails(xyz, strength, options, context, cloud, mesh.positions, report);
+  rows.take_back();
+  land_tails(rows.xyz(), strength, options, context, cloud, mesh.positions, report);
   context.check_stop();
-  commit(xyz, cloud, mesh.positions, reach, report);
+  commit(rows.xyz(), cloud, mesh.positions, reach, report);
   return report;
 }
 
@@ -358,16 +390,18 @@ void refuse_too_many(std::size_t n) {
 }
 
 /// The same for clouds of any size; those that are far too large or too small in other units.
-DenoiseReport run_in_working_units(double* xyz, std::size_t n, const DenoiseOptions& options,
-                                   const Context& context, const std::vector<double>& strength) {
+DenoiseReport run_in_working_units(const Rows& rows, const DenoiseOptions& options, const Context& context,
+                                   const std::vector<double>& strength) {
+  double* const xyz = rows.xyz();
+  const std::size_t n = rows.size();
   const double unit = working_unit(xyz, n, context);
-  if (unit == 1) return run(xyz, n, options, context, strength);
+  if (unit == 1) return run(rows, options, context, strength);
   std::vector<double> before(xyz, xyz + 3 * n);
   for (double& x : before) x *= unit;
   std::vector<double> after = before;
   DenoiseOptions scaled = options;
   change_units(scaled, unit);
-  DenoiseReport report = run(after.data(), n, scaled, context, strength);
+  DenoiseReport report = run({after.data(), n}, scaled, context, strength);
   for (std::size_t i = 0; i < after.size(); ++i)
     if (std::isfinite(after[i]) && after[i] != before[i]) xyz[i] = after[i] / unit;
   change_units(report, 1 / unit);
@@ -387,10 +421,9 @@ void refuse_for_clouds(const Modifiers& modifiers) {
          "and encloses nothing; use smooth-mesh, or a flow that keeps size (auto, hc)");
 }
 
-}  // namespace
-
-Result<DenoiseReport> denoise(double* xyz, std::size_t n, const DenoiseOptions& options,
-                              const Context& context, const std::vector<double>& strength) {
+Result<DenoiseReport> denoise_rows(const Rows& rows, const DenoiseOptions& options, const Context& context,
+                                   const std::vector<double>& strength) {
+  const std::size_t n = rows.size();
   if (!strength.empty() && strength.size() != n)
     throw std::invalid_argument("the strengths are not one per row");
   for (const double s : strength)
@@ -404,9 +437,23 @@ Result<DenoiseReport> denoise(double* xyz, std::size_t n, const DenoiseOptions& 
       if (const auto wrong = check(*options.statistics); !wrong.empty())
         fail(ErrorCode::usage, "`statistics`: {}", wrong.front());
     DenoiseReport report;
-    in_arena(context, [&] { report = run_in_working_units(xyz, n, options, context, strength); });
+    in_arena(context, [&] { report = run_in_working_units(rows, options, context, strength); });
     return report;
   });
+}
+
+}  // namespace
+
+Result<DenoiseReport> denoise(double* xyz, std::size_t n, const DenoiseOptions& options,
+                              const Context& context, const std::vector<double>& strength) {
+  return denoise_rows({xyz, n}, options, context, strength);
+}
+
+Result<DenoiseReport> pipeline::denoise_lean(std::vector<double>& xyz,
+                                             const std::function<std::vector<double>()>& again,
+                                             const DenoiseOptions& options, const Context& context,
+                                             const std::vector<double>& strength) {
+  return denoise_rows({xyz, again}, options, context, strength);
 }
 
 Statistics pipeline::measure_points(std::vector<double> xyz, const DenoiseOptions& options,

@@ -153,6 +153,26 @@ KdTree::KdTree(const Positions& points, const Context& context) {
   Builder(points, nodes_, leaves_).build(root(), context);
 }
 
+KdTree::KdTree(const std::vector<Index>& order) : leaves_((order.size() + kLeaf - 1) / kLeaf) {
+  if (order.empty()) return;
+  nodes_.resize(2 * leaves_.size() - 1);
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < kLeaf * leaves_.size(); ++i) {
+    Leaf& leaf = leaves_[i / kLeaf];
+    leaf.x[i % kLeaf] = leaf.y[i % kLeaf] = leaf.z[i % kLeaf] = kInfinity;
+    leaf.id[i % kLeaf] = i < order.size() ? order[i] : kNone;
+  }
+}
+
+std::vector<Index> KdTree::order() const {
+  std::vector<Index> order;
+  order.reserve(kLeaf * leaves_.size());
+  for (const Leaf& leaf : leaves_)
+    for (const Index id : leaf.id)
+      if (id != kNone) order.push_back(id);
+  return order;
+}
+
 /// The box of every node; `enclose_leaf(leaf, node)` changes a leaf and makes its own.
 template <class Enclose>
 void KdTree::enclose_all(const Context& context, const Enclose& enclose_leaf) {
@@ -167,6 +187,7 @@ void KdTree::enclose_all(const Context& context, const Enclose& enclose_leaf) {
 void KdTree::follow(const Positions& points, const Context& context) {
   enclose_all(context, [&](Leaf& leaf, Node& box) {
     box.low = box.high = points[leaf.id[0]];
+    box.least_id = leaf.id[0];
     for (std::size_t i = 0; i < kLeaf && leaf.id[i] != kNone; ++i) {
       const Eigen::Vector3d& p = points[leaf.id[i]];
       check_size(p);

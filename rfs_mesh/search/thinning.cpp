@@ -119,6 +119,13 @@ std::vector<Index> thin_all(const Positions& points, const NeighborTable& near, 
 
 std::vector<Index> thin_dense(const SpatialIndex& index, const NeighborTable& near,
                               const std::vector<Index>& subset, const Context& context) {
+  const auto copy_row = [&](Index i, Index* row) { std::copy(near[i].begin(), near[i].end(), row); };
+  return thin_dense(index, std::size_t(near.k), copy_row, subset, context);
+}
+
+std::vector<Index> thin_dense(const SpatialIndex& index, std::size_t width,
+                              const std::function<void(Index i, Index* row)>& near,
+                              const std::vector<Index>& subset, const Context& context) {
   const Positions& points = index.points();
   if (subset.size() <= kThinNear) return first_of(subset);
   std::vector<Index> number(points.size(), kNone);
@@ -127,14 +134,16 @@ std::vector<Index> thin_dense(const SpatialIndex& index, const NeighborTable& ne
   three.items.resize(kThinNear * subset.size());
   for_blocks(context, subset.size(), 1024, [&](std::size_t begin, std::size_t end) {
     std::vector<Neighbor> found;
+    std::vector<Index> row(width);
     for (std::size_t s = begin; s < end; ++s) {
       std::size_t to = 0;
       const auto offer = [&](Index j) {
         if (to < kThinNear && number[j] != kNone && j != subset[s])
           three.items[kThinNear * s + to++] = number[j];
       };
-      for (const Index j : near[subset[s]]) offer(j);
-      for (std::size_t k = 4 * std::size_t(near.k); to < kThinNear; k *= 4) {
+      near(subset[s], row.data());
+      for (const Index j : row) offer(j);
+      for (std::size_t k = 4 * width; to < kThinNear; k *= 4) {
         index.nearest(points[subset[s]], int(std::min(k, points.size())), found);
         to = 0;
         for (const Neighbor& q : found) offer(q.index);

@@ -135,6 +135,7 @@ AutomaticResult automatic_smoothing(const AutomaticTask& task, AutomaticReport& 
   MixedScales& heights = mixed.heights;
   const Positions& data = mixed.tails.share > 0 ? mixed.tamed : mesh.positions;
   if (!task.keep_rings) mesh.one_ring = {};
+  std::vector<float>().swap(heights.wide);
   const double of_whole = whole.points ? double(*whole.points) / double(n) : 1;
   const std::vector<float> one_sheet = task.learned ? heights.height : std::vector<float>();
   // A k-th of the evidence never was enough for walls, across lines there is none, and noise that fills
@@ -154,6 +155,7 @@ AutomaticResult automatic_smoothing(const AutomaticTask& task, AutomaticReport& 
     const Eigen::Vector3d move = place_at(field, i, from, heights.height[i]) - from;
     smooth[i] = allowed(i, move) ? from + move : from;
   });
+  field.ready_for_searches(context);
   if (own_noise)
     part_thin_walls(field, data, heights.several, heights.members_seeing, noise, smooth, whole.thin_walls,
                     context);

@@ -57,6 +57,7 @@
 #include "rfs_mesh/noise/noise.h"
 #include "rfs_mesh/search/neighbors.h"
 #include "smoothing/automatic/learned/last_step.h"
+#include "smoothing/automatic/patches/near_rows.h"
 
 namespace rfsmooth::smoothing {
 
@@ -72,8 +73,8 @@ struct AutomaticTask {
 
 /// What has become of it.
 struct AutomaticResult {
-  Positions points;              ///< n x 3: the smoothed places
-  rfs_mesh::NeighborTable near;  ///< the nearest of every point on the guide (height_field.h)
+  Positions points;  ///< n x 3: the smoothed places
+  NearRows near;     ///< the nearest of every point on the guide (height_field.h)
 };
 
 /// O(n log n); about 500 bytes a point beside the mesh. Parallel, the same bits for any number of threads. Of

@@ -125,13 +125,15 @@ std::optional<AutomaticReport> smooth_automatically(Mesh& mesh, const AutomaticO
       whole, context);
   mesh.positions.swap(smooth.points);
   const Positions before = std::move(smooth.points);
+  rfs_mesh::NeighborTable near = smooth.near.first(NearRows::kMost, context);
+  smooth.near = {};
   if (!noise.across) {  // along lines only the normals are known
     if (options.equalize) {
-      const Equalized moved = equalize(mesh.positions, before, noise, std::move(smooth.near), context);
+      const Equalized moved = equalize(mesh.positions, before, noise, std::move(near), context);
       report.equalized = moved.rms;
       report.equalized_most = moved.largest;
     } else {  // back to where the guide took them from, so that they move along normals only
-      slide_back(mesh.positions, before, 1, std::move(smooth.near), context);
+      slide_back(mesh.positions, before, 1, std::move(near), context);
     }
   }
   limit(before, noise.local, options.strength, report.tail_times, mesh.positions, context);

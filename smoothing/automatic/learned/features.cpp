@@ -77,7 +77,7 @@ void write_residuals(const Sums<4>& s, Writer& to) {
 
 }  // namespace
 
-Features::Features(const HeightField& field, const Positions& data, const Smoothed& smoothed,
+Features::Features(HeightField& field, const Positions& data, const Smoothed& smoothed,
                    const rfs_mesh::NoiseField& noise, const Context& context)
     : field_(field), smoothed_(smoothed), noise_(noise) {
   constexpr int kTimes = 4;
@@ -92,7 +92,10 @@ Features::Features(const HeightField& field, const Positions& data, const Smooth
     pooled_[i] << r, r * r, r * r * r / 6, r * r * r * r / 6, smoothed.own[i], narrow * narrow, third * third,
         0;
   });
+  field.ready_for_means(context);
   for (int t = 0; t < kTimes; ++t) pooled_ = field.local_mean(pooled_, context);
+  field.drop_weights();
+  field.ready_for_searches(context);
   packed_.resize(field.size());  // only now: pooling takes as much for itself
   for_each_index(context, field.size(), [&](std::size_t i) {
     const Eigen::Vector3d& guide = field.guide()[i];

@@ -80,7 +80,7 @@ class Features {
   };
 
   /// The arguments outlive it. O(n), parallel, the same bits for any number of threads.
-  Features(const HeightField& field, const Positions& data, const Smoothed& smoothed,
+  Features(HeightField& field, const Positions& data, const Smoothed& smoothed,
            const rfs_mesh::NoiseField& noise, const Context& context);
 
   /// s, world units.

@@ -44,7 +44,7 @@ std::vector<Index> asked_for(const std::vector<ScalesSay>& scales, const rfs_mes
 
 }  // namespace
 
-LearnedSites learned_sites(const HeightField& field, const Positions& data, const Smoothed& smoothed,
+LearnedSites learned_sites(HeightField& field, const Positions& data, const Smoothed& smoothed,
                            const rfs_mesh::NoiseField& noise, const Context& context) {
   LearnedSites sites;
   sites.point = asked_for(smoothed.scales, noise);
@@ -68,7 +68,7 @@ LearnedSites learned_sites(const HeightField& field, const Positions& data, cons
   return sites;
 }
 
-void take_learned_step(const HeightField& field, const Positions& data, const Smoothed& smoothed,
+void take_learned_step(HeightField& field, const Positions& data, const Smoothed& smoothed,
                        const rfs_mesh::NoiseField& noise, const MayGo& may_go, Positions& place,
                        const Context& context) {
   const std::vector<Index> points = asked_for(smoothed.scales, noise);

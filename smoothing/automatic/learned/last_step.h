@@ -36,12 +36,12 @@ using MayGo = std::function<bool(std::size_t i, const Eigen::Vector3d& there)>;
 
 /// Moves the points of `place` (n x 3: smoothed.place, which this may be) along their normals. O(n)
 /// times the points within 6.5 sigma; parallel, the same bits for any number of threads.
-void take_learned_step(const HeightField& field, const Positions& data, const Smoothed& smoothed,
+void take_learned_step(HeightField& field, const Positions& data, const Smoothed& smoothed,
                        const rfs_mesh::NoiseField& noise, const MayGo& may_go, Positions& place,
                        const Context& context);
 
 /// What the step would be given, for training. As long as that takes.
-LearnedSites learned_sites(const HeightField& field, const Positions& data, const Smoothed& smoothed,
+LearnedSites learned_sites(HeightField& field, const Positions& data, const Smoothed& smoothed,
                            const rfs_mesh::NoiseField& noise, const Context& context);
 
 }  // namespace rfsmooth::smoothing

@@ -19,21 +19,30 @@ constexpr float kByteUnit = 255, kByteRounded = 0.5F;
 HeightField::HeightField(Positions guide, rfs_mesh::KdTree tree, rfs_mesh::NeighborTable near,
                          const Positions& data, std::optional<std::size_t> across, const Context& context)
     : guide_(std::move(guide)),
-      index_(guide_, std::move(tree), context),
-      near_(std::move(near)),
+      index_(std::in_place, guide_, std::move(tree), context),
       on_lines_(across.has_value()) {
-  if (near_.size() != size() || data.size() != size())
+  if (near.size() != size() || data.size() != size())
     throw std::invalid_argument("HeightField: guide, neighbours and data are not of the same points");
-  const std::vector<Eigen::Vector3f> normals = across ? normals_across_lines(guide_, near_, *across, context)
-                                                      : surface_normals(guide_, near_, context);
+  const std::vector<Eigen::Vector3f> normals =
+      across ? normals_across_lines(guide_, near, *across, context) : surface_normals(guide_, near, context);
+  near_ = NearRows(near, context);
   local_.resize(size());
   for_each_index(context, size(), [&](std::size_t i) { local_[i].normal = normals[i]; });
   for_each_index(context, size(),
                  [&](std::size_t i) { local_[i].height = float(normal(i).dot(data[i] - guide_[i])); });
 }
 
-void HeightField::weigh_neighbors(const Context& context) {
-  near_weight_.resize(near_.items.size());
+void HeightField::ready_for_searches(const Context& context) {
+  if (index_) return;
+  index_.emplace(guide_, rfs_mesh::KdTree(order_), context);
+  order_ = {};
+}
+
+void HeightField::ready_for_means(const Context& context) {
+  if (index_) order_ = index_->tree().order();
+  index_.reset();
+  if (near_weight_.size() > 0) return;
+  near_weight_.resize(size() * near_.width());
   for_each_index(context, size(), [&](std::size_t i) {
     const auto row = near_[i];
     if (row.size() == 0) return;
@@ -48,11 +57,12 @@ void HeightField::weigh_neighbors(const Context& context) {
 }
 
 std::vector<float> HeightField::local_mean(const std::vector<float>& values, const Context& context) const {
-  const auto width = std::size_t(near_.k);
+  const std::size_t width = near_.width();
   std::vector<float> mean(values.size());
   for_each_index(context, size(), [&](std::size_t i) {
+    const NearRows::Row row = near_[i];
     const WeightedSum around =
-        weighted_sum(width, near_.items.data() + i * width, near_weight_.data() + i * width, values.data());
+        weighted_sum(width, row.begin(), near_weight_.data() + i * width, values.data());
     mean[i] = (kByteUnit * values[i] + around.sum) / (kByteUnit + around.weights);
   });
   return mean;
@@ -60,10 +70,10 @@ std::vector<float> HeightField::local_mean(const std::vector<float>& values, con
 
 std::vector<HeightField::Columns> HeightField::local_mean(const std::vector<Columns>& values,
                                                           const Context& context) const {
-  const auto width = std::size_t(near_.k);
+  const std::size_t width = near_.width();
   std::vector<Columns> mean(values.size());
   for_each_index(context, size(), [&](std::size_t i) {
-    const Index* const row = near_.items.data() + i * width;
+    const NearRows::Row row = near_[i];
     const std::uint8_t* const weight = near_weight_.data() + i * width;
     Columns sum = kByteUnit * values[i];
     unsigned weights = unsigned(kByteUnit);

@@ -19,13 +19,14 @@
 #include "base/raw_array.h"
 #include "rfs_mesh/levels.h"
 #include "rfs_mesh/search/neighbors.h"
+#include "smoothing/automatic/patches/near_rows.h"
 
 namespace rfsmooth::smoothing {
 
 /// Heights of the data over the guide.
 class HeightField {
  public:
-  static constexpr int kNear = 32;  ///< neighbours over which values are averaged
+  static constexpr int kNear = int(NearRows::kMost);  ///< neighbours over which values are averaged
 
   /// A point's normal and height, together for those who read many at random.
   struct Local {
@@ -51,17 +52,19 @@ class HeightField {
   /// Unit; from single precision, like the height.
   Eigen::Vector3d normal(std::size_t i) const { return local_[i].normal.cast<double>(); }
   double height(std::size_t i) const { return double(local_[i].height); }  ///< z, world units
-  const rfs_mesh::SpatialIndex& index() const { return index_; }           ///< over the guide
+  const rfs_mesh::SpatialIndex& index() const { return *index_; }  ///< over the guide; ready for searches
 
-  const std::vector<Local>& local() const { return local_; }          ///< n: normals and heights
-  const rfs_mesh::NeighborTable& neighbors() const { return near_; }  ///< n x kNear, on the guide
+  const std::vector<Local>& local() const { return local_; }  ///< n: normals and heights
+  const NearRows& neighbors() const { return near_; }         ///< n x kNear, on the guide
 
-  /// Weighs the neighbours, for the means below: nobody asks for these while patches are fitted, which take
-  /// the most memory. O(n).
-  void weigh_neighbors(const Context& context);
+  /// Makes the field ready for means, without the index, or for searches, as it is at first. So little is
+  /// held at a time: an index, or weights of neighbours, and these are kept until they are dropped. O(n).
+  void ready_for_means(const Context& context);
+  void ready_for_searches(const Context& context);
+  void drop_weights() { near_weight_ = {}; }
 
-  /// The mean of `values` over the nearest points on the same sheet, nearer ones weighing more. Once the
-  /// neighbours are weighed. O(n).
+  /// The mean of `values` over the nearest points on the same sheet, nearer ones weighing more. Ready for
+  /// means. O(n).
   std::vector<float> local_mean(const std::vector<float>& values, const Context& context) const;
 
   /// Several values of a point, whose means are taken together: reading the neighbours is what takes the
@@ -70,16 +73,17 @@ class HeightField {
   std::vector<Columns> local_mean(const std::vector<Columns>& values, const Context& context) const;
 
   /// The neighbours, for one who goes on with them; the field is of no use afterwards.
-  rfs_mesh::NeighborTable release_neighbors() { return std::move(near_); }
+  NearRows release_neighbors() { return std::move(near_); }
 
  private:
   Positions guide_;
-  rfs_mesh::SpatialIndex index_;
-  rfs_mesh::NeighborTable near_;
+  std::optional<rfs_mesh::SpatialIndex> index_;
+  std::vector<Index> order_;  ///< of the index where there is none
+  NearRows near_;
   bool on_lines_;
   std::vector<Local> local_;
   RawArray<std::uint8_t> near_weight_;  ///< of near_, in 1/255: 1 - d^2/r^2; 0 on another sheet;
-                                        ///< empty until they are weighed
+                                        ///< empty without
 };
 
 /// cos^2 of the angle between two normals from its cosine; 0 on another sheet.

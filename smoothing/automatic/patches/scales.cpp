@@ -200,11 +200,13 @@ class Ladder {
   }
 
   void thin_to(std::size_t thinnings) {
+    const NearRows& near = field_.neighbors();
     for (; thinnings_ < thinnings; ++thinnings_)
       if (thinnings_ == 0)
-        seeds_ = rfs_mesh::thin_all(field_.guide(), field_.neighbors(), context_);
+        seeds_ = rfs_mesh::thin_all(field_.guide(), near.first(rfs_mesh::kThinNear, context_), context_);
       else if (seeds_.size() > field_.size() / kDense)
-        seeds_ = rfs_mesh::thin_dense(field_.index(), field_.neighbors(), seeds_, context_);
+        seeds_ = rfs_mesh::thin_dense(
+            field_.index(), near.width(), [&](Index i, Index* row) { near.copy(i, row); }, seeds_, context_);
       else
         seeds_ = rfs_mesh::thin(field_.guide(), seeds_, context_);
   }
@@ -262,7 +264,7 @@ void mix(const HeightField& field, Rungs rungs, const rfs_mesh::NoiseField& nois
 MixedScales smooth_heights(HeightField& field, const rfs_mesh::NoiseField& noise, bool learned,
                            Statistics::Pass& whole, const Context& context) {
   Rungs rungs = Ladder(field, noise, whole, context).climb();
-  field.weigh_neighbors(context);
+  field.ready_for_means(context);
   MixedScales mixed;
   const std::vector<Scale>& scales = rungs.scales;
   const Scale& seeing = scales[std::min(std::size_t(kSeeing), scales.size() - 1)];

@@ -23,7 +23,7 @@ struct MixedScales {
 };
 
 /// Of scales that begin at a radius of 4.5 sigma and go on doubling their points. \param learned whether the
-/// learned step will be taken. Leaves the field with weighed neighbours. \param whole how those of the whole
+/// learned step will be taken. Leaves the field ready for means. \param whole how those of the whole
 /// cloud are made; what is not there is entered. O(n) times the number of scales, about eight; parallel, the
 /// same bits for any number of threads.
 MixedScales smooth_heights(HeightField& field, const rfs_mesh::NoiseField& noise, bool learned,

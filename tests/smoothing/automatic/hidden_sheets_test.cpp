@@ -48,6 +48,7 @@ struct Sheet {
       }
     field = std::make_unique<HeightField>(guide, rfs_mesh::KdTree(guide, {}), support::near_on(guide), data,
                                           std::nullopt, Context{});
+    field->ready_for_means({});
     height.assign(guide.size(), 0);
     own.assign(guide.size(), 0.01F);
   }

@@ -15,6 +15,7 @@
 #include "pipeline/cli/console/solver_said.h"
 #include "pipeline/cli/files/constraint_fields.h"
 #include "pipeline/cli/files/memory.h"
+#include "pipeline/denoise_lean.h"
 #include "pipeline/io/formats/las/las_scale.h"
 #include "pipeline/io/point_fields.h"
 #include "pipeline/page/page.h"
@@ -88,8 +89,9 @@ Smoothed smooth(const DenoiseCommandOptions& options, const pipeline::io::Cloud&
   if (options.statistics)
     how.statistics = pipeline::tiles::read_settled(*options.statistics).report.statistics;
   Smoothed smoothed;
+  const auto again = [&] { return pipeline::io::positions(cloud, task.context); };
   smoothed.report =
-      value_or_fail(rfsmooth::denoise(xyz.data(), cloud.size(), how, task.context, strength), task.job.input);
+      value_or_fail(pipeline::denoise_lean(xyz, again, how, task.context, strength), task.job.input);
   smoothed.xyz = std::move(xyz);
   smoothed.leaving = way_out(options, smoothed.report, cloud);
   if (smoothed.leaving != Leaving::none)

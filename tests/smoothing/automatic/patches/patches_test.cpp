@@ -70,12 +70,13 @@ TEST(Patches, OwnIsTheDerivativeOfAPredictionByThePointsHeight) {
 
 TEST(Patches, MeanOfAConstantIsTheConstant) {
   const Mesh mesh = support::icosphere(3);
-  const HeightField field(mesh.positions, rfs_mesh::KdTree(mesh.positions, {}),
-                          support::near_on(mesh.positions), mesh.positions, {}, {});
+  HeightField field(mesh.positions, rfs_mesh::KdTree(mesh.positions, {}), support::near_on(mesh.positions),
+                    mesh.positions, {}, {});
   const std::vector<float> seven(field.size(), 7);
   PatchMembers memory;
   const Patches patches(field, 40, seeds_of(mesh.positions), std::vector<double>(field.size(), 1), memory,
                         {});
+  field.ready_for_means({});
   for (const std::vector<float>& means : {patches.mean(seven, {}), field.local_mean(seven, {})}) {
     ASSERT_EQ(means.size(), seven.size());
     for (const float v : means) EXPECT_NEAR(v, 7, 1e-5);
