@@ -15,6 +15,7 @@
 #include "smoothing/automatic/patches/height_field.h"
 #include "smoothing/automatic/patches/scales.h"
 #include "smoothing/automatic/stranded.h"
+#include "smoothing/automatic/tails/rings_at_rest.h"
 #include "smoothing/automatic/tails/tame.h"
 #include "smoothing/automatic/thin_walls.h"
 #include "smoothing/integrators/solver.h"
@@ -78,7 +79,7 @@ struct Mixed {
 /// Steps 1 to 3, twice where there are tails: then the noise is as tamed.
 Mixed mix_scales(const AutomaticTask& task, AutomaticReport& report, Statistics& whole,
                  const Context& context) {
-  const Mesh& mesh = task.mesh;
+  Mesh& mesh = task.mesh;
   std::optional<Adjacency> lines;
   if (task.noise.across) lines = along_lines(mesh.positions, context);
   const Adjacency& rings = lines ? *lines : mesh.one_ring;
@@ -89,7 +90,10 @@ Mixed mix_scales(const AutomaticTask& task, AutomaticReport& report, Statistics&
     mixed.field.reset();
     mixed.field = raise_field(points, rings, noise, report, whole.passes[pass], context);
     context.report("smooth", 0.1);
+    std::optional<RingsAtRest> rest;  // only with tails will they be read again
+    if (!task.keep_rings) rest.emplace(std::move(mesh.one_ring), context);
     mixed.heights = smooth_heights(*mixed.field, noise, task.learned, whole.passes[pass], context);
+    if (rest) mesh.one_ring = rest->wake(context);
   };
   smooth(mesh.positions, task.noise, 0);
   mixed.tails = tame(*mixed.field, mixed.heights, mesh, task.noise, whole.tails, mixed.tamed, context);

@@ -102,8 +102,8 @@ class Features {
   const HeightField& field_;
   const Smoothed smoothed_;
   const rfs_mesh::NoiseField& noise_;
-  std::vector<Packed> packed_;                ///< n
-  std::vector<HeightField::Columns> pooled_;  ///< n: moments
+  std::vector<Packed> packed_;                   ///< n
+  std::vector<HeightField::Columns<8>> pooled_;  ///< n: moments
 };
 
 }  // namespace rfsmooth::smoothing

@@ -35,7 +35,7 @@ HeightField::HeightField(Positions guide, rfs_mesh::KdTree tree, rfs_mesh::Neigh
 void HeightField::ready_for_searches(const Context& context) {
   if (index_) return;
   index_.emplace(guide_, rfs_mesh::KdTree(order_), context);
-  order_ = {};
+  std::vector<Index>().swap(order_);
 }
 
 void HeightField::ready_for_means(const Context& context) {
@@ -68,14 +68,15 @@ std::vector<float> HeightField::local_mean(const std::vector<float>& values, con
   return mean;
 }
 
-std::vector<HeightField::Columns> HeightField::local_mean(const std::vector<Columns>& values,
-                                                          const Context& context) const {
+template <int kCount>
+std::vector<HeightField::Columns<kCount>> HeightField::local_mean(const std::vector<Columns<kCount>>& values,
+                                                                  const Context& context) const {
   const std::size_t width = near_.width();
-  std::vector<Columns> mean(values.size());
+  std::vector<Columns<kCount>> mean(values.size());
   for_each_index(context, size(), [&](std::size_t i) {
     const NearRows::Row row = near_[i];
     const std::uint8_t* const weight = near_weight_.data() + i * width;
-    Columns sum = kByteUnit * values[i];
+    Columns<kCount> sum = kByteUnit * values[i];
     unsigned weights = unsigned(kByteUnit);
     for (std::size_t k = 0; k < width; ++k) {
       sum += float(weight[k]) * values[row[k]];
@@ -85,5 +86,10 @@ std::vector<HeightField::Columns> HeightField::local_mean(const std::vector<Colu
   });
   return mean;
 }
+
+template std::vector<HeightField::Columns<4>> HeightField::local_mean(const std::vector<Columns<4>>&,
+                                                                      const Context&) const;
+template std::vector<HeightField::Columns<8>> HeightField::local_mean(const std::vector<Columns<8>>&,
+                                                                      const Context&) const;
 
 }  // namespace rfsmooth::smoothing

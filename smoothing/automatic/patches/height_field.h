@@ -69,8 +69,11 @@ class HeightField {
 
   /// Several values of a point, whose means are taken together: reading the neighbours is what takes the
   /// time.
-  using Columns = Eigen::Array<float, 8, 1>;
-  std::vector<Columns> local_mean(const std::vector<Columns>& values, const Context& context) const;
+  template <int kCount>
+  using Columns = Eigen::Array<float, kCount, 1>;
+  template <int kCount>
+  std::vector<Columns<kCount>> local_mean(const std::vector<Columns<kCount>>& values,
+                                          const Context& context) const;
 
   /// The neighbours, for one who goes on with them; the field is of no use afterwards.
   NearRows release_neighbors() { return std::move(near_); }

@@ -68,10 +68,11 @@ struct Scale {
 
 /// Means over near neighbours for all scales, each in place of `worse`.
 void average_near(const HeightField& field, std::vector<Scale>& scales, const Context& context) {
-  constexpr std::size_t kColumns = HeightField::Columns::SizeAtCompileTime;
+  constexpr std::size_t kColumns = 4;  // with 8 they would be read half as often, but take the most memory
+  using Columns = HeightField::Columns<int(kColumns)>;
   for (std::size_t first = 0; first < scales.size(); first += kColumns) {
     const std::size_t count = std::min(kColumns, scales.size() - first);
-    std::vector<HeightField::Columns> near(field.size(), HeightField::Columns::Zero());
+    std::vector<Columns> near(field.size(), Columns::Zero());
     for (std::size_t s = 0; s < count; ++s) {
       std::vector<float>& worse = scales[first + s].worse;
       for_each_index(context, field.size(), [&](std::size_t i) { near[i][Eigen::Index(s)] = worse[i]; });
@@ -107,7 +108,7 @@ void tell(const HeightField& field, const Scale& scale, std::size_t which, std::
 /// All scales of a field, and what they are mixed with.
 struct Rungs {
   std::vector<float> precision;  ///< of precisions()
-  std::vector<float> first;      ///< n: the heights that stand for the data
+  std::vector<float> first;      ///< n: the heights that stand for the data; none: the data
   std::vector<Scale> scales;
 };
 
@@ -121,7 +122,7 @@ class Ladder {
         noise_(noise),
         whole_(whole),
         context_(context),
-        rungs_{precisions(noise, context), heights(field, context), {}},
+        rungs_{precisions(noise, context), {}, {}},
         risk_(field.size(), 1) {}  // of the data themselves: no error, all their own
 
   /// Once.
@@ -150,6 +151,7 @@ class Ladder {
     const std::size_t members = make_way(*whole_.narrow);
     const Prediction said =
         Patches(field_, members, seeds_, noise_.local, memory_, context_).take_prediction();
+    rungs_.first = heights(field_, context_);
     for_each_index(context_, rungs_.first.size(), [&](std::size_t i) {
       if (said.covered[i] != 0) rungs_.first[i] = said.height[i];
     });
@@ -227,13 +229,13 @@ class Ladder {
 void mix(const HeightField& field, Rungs rungs, const rfs_mesh::NoiseField& noise, bool learned,
          std::vector<double>& shares, MixedScales& mixed, const Context& context) {
   const std::vector<float>& precision = rungs.precision;
-  Mixture mixture(std::move(rungs.first));
   average_near(field, rungs.scales, context);
   if (!precision.empty()) {
     const std::vector<float> around = field.local_mean(field.local_mean(precision, context), context);
     for (Scale& scale : rungs.scales) in_own_units(precision, around, scale.worse, context);
   }
   if (learned) mixed.told.resize(field.size());
+  Mixture mixture(rungs.first.empty() ? heights(field, context) : std::move(rungs.first));
   for (std::size_t s = 0; s < rungs.scales.size(); ++s) {
     Scale& scale = rungs.scales[s];
     if (learned) tell(field, scale, s, rungs.scales.size(), noise, mixed.told, context);
