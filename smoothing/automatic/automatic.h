@@ -77,7 +77,7 @@ struct AutomaticResult {
   NearRows near;     ///< the nearest of every point on the guide (height_field.h)
 };
 
-/// O(n log n); about 500 bytes a point beside the mesh. Parallel, the same bits for any number of threads. Of
+/// O(n log n); about 350 bytes a point beside the mesh. Parallel, the same bits for any number of threads. Of
 /// the report, what was measured and what was equalized are the flow's to enter (flow_auto.cpp).
 /// \param whole what is there is taken, the rest entered.
 AutomaticResult automatic_smoothing(const AutomaticTask& task, AutomaticReport& report, Statistics& whole,

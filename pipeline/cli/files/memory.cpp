@@ -68,7 +68,7 @@ void need_memory(std::string_view input, std::size_t needed) {
 void give_memory_back() {
 #ifdef __GLIBC__
   // Left alone, glibc learns to keep pieces of up to 32 MB. At 16 MB the peak of denoising a million points
-  // is 417 bytes a point on one thread and 389 on two, at 1 MB 384 on both; that costs 2 % of the processor
+  // is 427 bytes a point on one thread and 398 on two, at 1 MB 393 on both; that costs 2 % of the processor
   // time for getting pages anew.
   mallopt(M_MMAP_THRESHOLD, 1 << 20);
 #endif

@@ -13,6 +13,7 @@ using rfsmooth::Context;
 using rfsmooth::Index;
 using rfsmooth::kNone;
 using rfsmooth::Positions;
+using rfsmooth::rfs_mesh::KdTree;
 using rfsmooth::rfs_mesh::Neighbor;
 using rfsmooth::rfs_mesh::NeighborTable;
 using rfsmooth::rfs_mesh::SpatialIndex;
@@ -51,6 +52,17 @@ TEST_P(Neighbors, NearestOfEveryPointMatchBruteForceIncludingTies) {
         ASSERT_EQ(row[j], expected[j].index) << "k " << k << " point " << i << " place " << j;
     }
   }
+}
+
+TEST_P(Neighbors, OfATreeMadeAgainFromItsOrderAreTheSame) {
+  const Positions points = GetParam().points;
+  const SpatialIndex index(points, {}), again(points, KdTree(index.tree().order()), {});
+  ASSERT_EQ(again.tree().node_count(), index.tree().node_count());
+  for (std::uint32_t i = 0; i < index.tree().node_count(); ++i) {
+    const KdTree::Node &one = index.tree().node(i), &other = again.tree().node(i);
+    ASSERT_TRUE(one.low == other.low && one.high == other.high && one.least_id == other.least_id);
+  }
+  EXPECT_EQ(again.nearest(8, {}).items, index.nearest(8, {}).items);
 }
 
 TEST_P(Neighbors, QueriesAnywhereMatchBruteForce) {
