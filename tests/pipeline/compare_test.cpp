@@ -6,6 +6,8 @@
 
 #include <rfsmooth/compare.h>
 
+#include "tests/support/threads.h"
+
 using namespace rfsmooth;
 
 namespace {
@@ -187,17 +189,19 @@ TEST(Compare, SameBitsForAnyNumberOfThreads) {
   const std::vector<double> xyz = random_sphere(3000, 1.01, 6), clean = random_sphere(2500, 1, 7);
   Truth truth = mesh_truth(sphere);
   truth.cloud = view(clean);
-  Measures first;
-  for (const int threads : {1, 2, 4, 7}) {
+  const auto with_threads = [&](int threads) {
     Context context;
     context.threads = threads;
-    const Measures m = compare(view(xyz), truth, {}, context).value().own_units;
-    if (threads == 1) first = m;
-    EXPECT_EQ(m.p2s_mean_square, first.p2s_mean_square);
-    EXPECT_EQ(m.chamfer, first.chamfer);
-    EXPECT_EQ(m.p2m, first.p2m);
-    EXPECT_EQ(m.mean_signed_distance, first.mean_signed_distance);
-    EXPECT_EQ(m.evenness, first.evenness);
+    return compare(view(xyz), truth, {}, context).value().own_units;
+  };
+  const Measures one = with_threads(1);
+  for (const int threads : test::several_threads()) {
+    const Measures m = with_threads(threads);
+    EXPECT_EQ(m.p2s_mean_square, one.p2s_mean_square);
+    EXPECT_EQ(m.chamfer, one.chamfer);
+    EXPECT_EQ(m.p2m, one.p2m);
+    EXPECT_EQ(m.mean_signed_distance, one.mean_signed_distance);
+    EXPECT_EQ(m.evenness, one.evenness);
   }
 }
 

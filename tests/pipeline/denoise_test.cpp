@@ -11,6 +11,7 @@
 
 #include "pipeline/outliers.h"
 #include "tests/support/awkward_clouds.h"
+#include "tests/support/threads.h"
 
 namespace rfsmooth::pipeline {
 namespace {
@@ -116,12 +117,12 @@ TEST(Denoise, OrderOfRowsDoesNotMatter) {
 }
 
 TEST(Denoise, SameBytesForAnyNumberOfThreads) {
-  Flat one = sphere(20000);
+  Flat one = sphere(10000);
   const Flat original = one;
   Context context;
   context.threads = 1;
   run(one, hc(), context);
-  for (const int threads : {2, 3, 4, 7}) {
+  for (const int threads : test::several_threads()) {
     Flat other = original;
     context.threads = threads;
     run(other, hc(), context);

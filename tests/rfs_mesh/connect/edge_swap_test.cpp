@@ -11,6 +11,7 @@
 #include "rfs_mesh/measure.h"
 #include "tests/support/edge_census.h"
 #include "tests/support/shapes.h"
+#include "tests/support/threads.h"
 
 using namespace rfsmooth;
 using namespace rfsmooth::rfs_mesh;
@@ -86,7 +87,7 @@ TEST_P(SwapOnShape, SameBytesForAnyNumberOfThreads) {
   Context context;
   context.threads = 1;
   swap_edges(one, {}, context);
-  for (const int threads : {2, 4, 7}) {
+  for (const int threads : test::several_threads()) {
     Mesh many = mesh;
     context.threads = threads;
     swap_edges(many, {}, context);

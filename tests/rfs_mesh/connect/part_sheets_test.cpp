@@ -8,6 +8,7 @@
 
 #include "base/parallel.h"
 #include "tests/support/shapes.h"
+#include "tests/support/threads.h"
 
 using namespace rfsmooth;
 using namespace rfsmooth::rfs_mesh;
@@ -138,7 +139,7 @@ TEST(PartSheets, SameForAnyNumberOfThreads) {
     }
   Scene one = scene;
   const auto between = one.part(1);
-  for (const int threads : {2, 4, 7}) {
+  for (const int threads : test::several_threads()) {
     Scene many = scene;
     EXPECT_EQ(many.part(threads), between);
     for (std::size_t i = 0; i < one.points.size(); ++i)

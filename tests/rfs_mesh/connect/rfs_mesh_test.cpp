@@ -9,6 +9,7 @@
 #include "tests/support/awkward_clouds.h"
 #include "tests/support/connection.h"
 #include "tests/support/shapes.h"
+#include "tests/support/threads.h"
 
 using namespace rfsmooth;
 using namespace rfsmooth::rfs_mesh;
@@ -49,7 +50,7 @@ TEST_P(CleanShape, ProportionsOfThePaperOnPoissonDiskPoints) {
 TEST_P(CleanShape, SameBytesForAnyNumberOfThreads) {
   const Positions points = test::random_points(GetParam(), 4000, 5);
   const Connection one = connected(points, 1);
-  for (const int threads : {2, 4, 7}) {
+  for (const int threads : test::several_threads()) {
     const Connection many = connected(points, threads);
     EXPECT_EQ(one.mesh.faces, many.mesh.faces);
     EXPECT_EQ(one.mesh.loose_edges, many.mesh.loose_edges);

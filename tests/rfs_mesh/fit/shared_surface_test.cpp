@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "rfs_mesh/fit/local_surface.h"
 #include "tests/support/shapes.h"
+#include "tests/support/threads.h"
 
 using namespace rfsmooth;
 using namespace rfsmooth::rfs_mesh;
@@ -91,17 +92,17 @@ INSTANTIATE_TEST_SUITE_P(Noise, SharedOnNoisySphere,
 
 TEST(SharedSurface, SheetsStayApart) {
   // Two sheets three spacings apart, noise of 0.3: nearly every shadow is on its own side.
-  constexpr double kUnit = 0.02;
+  const double spacing = 0.02;
   Positions clean;
-  for (const double z : {0.0, 3 * kUnit})
+  for (const double z : {0.0, 3 * spacing})
     for (Eigen::Vector3d p : test::poisson_points(test::plane(), 2500, z == 0 ? 1 : 2)) {
       p[2] = z;
       clean.push_back(p);
     }
-  const auto surfaces = shared(with_noise(clean, 0.3 * kUnit), 24, 0.3 * kUnit);
+  const auto surfaces = shared(with_noise(clean, 0.3 * spacing), 24, 0.3 * spacing);
   std::size_t strayed = 0;
   for (std::size_t i = 0; i < clean.size(); ++i)
-    strayed += std::abs(surfaces[i].shadow[2] - clean[i][2]) > 1.5 * kUnit;
+    strayed += std::abs(surfaces[i].shadow[2] - clean[i][2]) > 1.5 * spacing;
   EXPECT_LT(double(strayed), 0.001 * double(clean.size()));
 }
 
@@ -191,7 +192,7 @@ TEST(SharedSurface, SameBytesForAnyNumberOfThreads) {
     return surfaces;
   };
   const auto one = run(1);
-  for (const int threads : {2, 4, 7}) {
+  for (const int threads : test::several_threads()) {
     const auto many = run(threads);
     for (std::size_t i = 0; i < points.size(); ++i)
       ASSERT_TRUE(one[i].shadow == many[i].shadow && one[i].normal == many[i].normal) << i;

@@ -8,6 +8,7 @@
 
 #include "base/parallel.h"
 #include "tests/support/awkward_clouds.h"
+#include "tests/support/threads.h"
 
 using rfsmooth::Context;
 using rfsmooth::Index;
@@ -175,16 +176,16 @@ TEST(Neighbors, OnlyRowsThatAreWantedAreRenewed) {
 
 TEST(Neighbors, SameTableForAnyNumberOfThreads) {
   const Positions points = rfsmooth::test::noisy_sphere(30000, 0.01, 1);
-  decltype(NeighborTable::items) first;
-  for (const int threads : {1, 2, 4, 7}) {
+  const auto with_threads = [&](int threads) {
     Context context;
     context.threads = threads;
-    rfsmooth::in_arena(context, [&] {
-      const auto items = SpatialIndex(points, context).nearest(8, context).items;
-      if (first.empty()) first = items;
-      EXPECT_EQ(items, first) << threads;
-    });
-  }
+    decltype(NeighborTable::items) items;
+    rfsmooth::in_arena(context, [&] { items = SpatialIndex(points, context).nearest(8, context).items; });
+    return items;
+  };
+  const auto one = with_threads(1);
+  for (const int threads : rfsmooth::test::several_threads())
+    EXPECT_EQ(with_threads(threads), one) << threads;
 }
 
 TEST(Neighbors, NonFinitePointsAreRefused) {

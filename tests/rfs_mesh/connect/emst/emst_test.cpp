@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "tests/support/awkward_clouds.h"
 #include "tests/support/connection.h"
+#include "tests/support/threads.h"
 
 using rfsmooth::Context;
 using rfsmooth::Edge;
@@ -89,16 +90,16 @@ TEST_P(Emst, AnySeedTableGivesTheSameTree) {
 
 TEST_P(Emst, SameEdgesForAnyNumberOfThreads) {
   const Positions points = GetParam().points;
-  std::vector<Edge> first;
-  for (const int threads : {1, 2, 4, 7}) {
+  const auto with_threads = [&](int threads) {
     Context context;
     context.threads = threads;
-    rfsmooth::in_arena(context, [&] {
-      const std::vector<Edge> edges = emst_of(points, context);
-      if (threads == 1) first = edges;
-      EXPECT_EQ(edges, first) << threads;
-    });
-  }
+    std::vector<Edge> edges;
+    rfsmooth::in_arena(context, [&] { edges = emst_of(points, context); });
+    return edges;
+  };
+  const std::vector<Edge> one = with_threads(1);
+  for (const int threads : rfsmooth::test::several_threads())
+    EXPECT_EQ(with_threads(threads), one) << threads;
 }
 
 TEST(EmstOfMany, CoincidentPointsMakeAStarOfTheFirst) {

@@ -10,6 +10,7 @@
 #include "rfs_mesh/search/thinning.h"
 #include "tests/support/meshes.h"
 #include "tests/support/near.h"
+#include "tests/support/threads.h"
 
 using namespace rfsmooth;
 using namespace rfsmooth::smoothing;
@@ -244,7 +245,7 @@ TEST(Patches, SameForAnyNumberOfThreads) {
     return p;
   };
   const Prediction one = predicted(1);
-  for (const int threads : {2, 4}) {
+  for (const int threads : test::several_threads()) {
     const Prediction many = predicted(threads);
     EXPECT_EQ(one.height, many.height);
     EXPECT_EQ(one.own, many.own);
