@@ -140,13 +140,13 @@ TEST_F(Tiles, ACoarseScaleOfALasFileIsRefinedAsForTheWholeCloud) {
 // Each has its scale and its box from the results of its own rows; reading those of all inputs for each of
 // them took as long as there are inputs.
 TEST_F(Tiles, ManyLasFilesAreJoinedAsOneAndInTheTimeOfOne) {
-  constexpr int kFiles = kSanitized ? 8 : 100, kSide = kSanitized ? 16 : 200, kColumns = 200;
+  constexpr int kFiles = kSanitized ? 8 : 100, kWide = kSanitized ? 16 : 200, kColumns = 200;
   constexpr double kScale = 0.01;
   std::mt19937_64 engine(9);
   std::normal_distribution<double> noise(0, 0.3);
   LasBytes all;
   all.scale = {kScale, kScale, kScale};
-  for (int i = 0; i < kSide * kColumns; ++i) {
+  for (int i = 0; i < kWide * kColumns; ++i) {
     all.xyz.push_back({});
     const double at[] = {i / kColumns + noise(engine), i % kColumns + noise(engine), noise(engine)};
     for (std::size_t k = 0; k < 3; ++k) all.xyz.back()[k] = std::int32_t(std::lround(at[k] / kScale));
@@ -323,22 +323,22 @@ TEST_F(Tiles, AJobWhoseListsDoNotFitIsRefusedWithOneLineThatSaysWhich) {
   settled({"in.ply"}, "job");
   const auto right = nlohmann::ordered_json::parse(take("job/statistics.json"));
   const auto run_with = [&](const auto& change) {
-    auto json = right;
-    change(json);
-    put("job/statistics.json", json.dump());
+    auto changed = right;
+    change(changed);
+    put("job/statistics.json", changed.dump());
     return run({"tiles", "run", "job", "0"});
   };
-  const Ran sites = run_with([](auto& json) { json["statistics"]["noise"]["at_sites"].clear(); });
+  const Ran sites = run_with([](auto& job) { job["statistics"]["noise"]["at_sites"].clear(); });
   EXPECT_EQ(sites.code, 3);
   EXPECT_THAT(sites.err, HasSubstr("statistics.json: noise: sigma at 0"));
   EXPECT_EQ(std::count(sites.err.begin(), sites.err.end(), '\n'), 1) << sites.err;
   for (const char* name : {"widest", "halo_radii"}) {
-    const Ran none = run_with([&](auto& json) { json[name] = 0; });
+    const Ran none = run_with([&](auto& job) { job[name] = 0; });
     EXPECT_EQ(none.code, 3);
     EXPECT_THAT(none.err, HasSubstr("statistics.json: halo"));
   }
-  const Ran tails = run_with([](auto& json) {
-    json["statistics"]["tails"] = {{"share", 0.5}, {"times", 0}, {"narrow", 0}, {"together", 1}};
+  const Ran tails = run_with([](auto& job) {
+    job["statistics"]["tails"] = {{"share", 0.5}, {"times", 0}, {"narrow", 0}, {"together", 1}};
   });
   EXPECT_EQ(tails.code, 3);
   EXPECT_THAT(tails.err, HasSubstr("statistics.json: tails"));
