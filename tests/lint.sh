@@ -10,7 +10,7 @@ git ls-files -z '*.h' '*.cpp' '*.hpp' | xargs -0 clang-format-14 --dry-run -Werr
 echo "formatting: clean"
 [ "${1:-}" = --format-only ] && exit 0
 
-# Ten sources of a target are read as one: most of clang-tidy's time would go to the same headers again and again. Names in
+# Twenty sources of a target are read as one: most of clang-tidy's time would go to the same headers again and again. Names in
 # unnamed namespaces are unique within a target for that, as for the sanitized builds. The folder's name tells the analyzer
 # that such a source is many.
 units=build/UnifiedSource
