@@ -226,7 +226,7 @@ Connection connect_all(const Positions& points, std::optional<Cloud> known, cons
   Sdg sdg = stages.run("sdg", 0.6, [&] { return make_sdg(terrain, ground.tree, options.sdg, context); });
   c.sdg = std::move(sdg.edges);
   c.bridges = std::move(sdg.bridges);
-  if (wanted.tree_of_points) keep_tree(ground, c, context);
+  if (wanted.tree_of_points || wanted.up_to == ConnectUpTo::sdg) keep_tree(ground, c, context);
   if (wanted.up_to == ConnectUpTo::sdg) {
     c.surfaces = std::move(ground.surfaces);
     return c;

@@ -16,7 +16,7 @@ void measure_cloud(const SpatialIndex& index, const NeighborTable& near, Statist
 
 /// What is wanted of a connection; what is not may stay empty.
 struct Wanted {
-  /// The last stage. Its tree is made even where `tree_of_points` is false.
+  /// The last stage. Its tree is made even where `tree_of_points` is false, and that of the SDG kept.
   ConnectUpTo up_to = ConnectUpTo::mesh;
   /// Whether Connection::tree is wanted, and Connection::emst where the tests are made on the shadow, on a
   /// tree of its own.

@@ -54,7 +54,7 @@ rfs_mesh::Wanted wanted_for(const std::string& stage) {
                  : stage == "emst"      ? ConnectUpTo::tree
                  : stage == "sdg"       ? ConnectUpTo::sdg
                                         : ConnectUpTo::mesh;
-  wanted.tree_of_points = stage == "sdg";
+  wanted.tree_of_points = false;
   return wanted;
 }
 
