@@ -18,11 +18,8 @@
 
 namespace rfsmooth {
 
-/// How to reconstruct.
+/// How to reconstruct, whatever the method.
 struct ReconstructOptions {
-  /// One of "poisson", "advancing-front", "ball-pivoting". `reconstruct` runs the SurfaceMethod that it is
-  /// given; a program that has several of them looks the one up that is called so.
-  std::string method = "poisson";
   bool denoise = true;  ///< take the noise out first
   /// Poisson: faces with a corner farther than this from every point go. On the development shapes with 2 %
   /// noise the holes that it leaves can be filled from 2.5 spacings on; more leaves more of the flaps that
@@ -33,9 +30,6 @@ struct ReconstructOptions {
 
   template <class Self, class Visit>
   static void describe(Self& self, Visit&& visit) {
-    OptionInfo method{"method", "how the surface is made", ""};
-    method.choices = {"poisson", "advancing-front", "ball-pivoting"};
-    visit(method, self.method);
     visit(OptionInfo{"denoise", "take the noise out first", ""}, self.denoise);
     visit(OptionInfo{"trim", "poisson: drop faces that are farther than this from every point; 0 keeps all",
                      "world units or x spacing", 0},

@@ -51,16 +51,6 @@ ReconstructOptions without_denoising() {
   return options;
 }
 
-TEST(Reconstruct, AMethodThatThereIsNotIsNamed) {
-  ReconstructOptions options = without_denoising();
-  options.method = "posson";
-  const auto made = reconstruct(grid_rows(5), options, {"join", false, join_grid}, {});
-  ASSERT_FALSE(made.ok());
-  EXPECT_EQ(made.error().code, ErrorCode::usage);
-  EXPECT_EQ(made.error().message,
-            "`method` is 'posson'; it must be one of: poisson, advancing-front, ball-pivoting");
-}
-
 TEST(Reconstruct, VerticesKnowTheirRowsAndLieInTheWorld) {
   const std::vector<double> xyz = grid_rows(5);
   const auto made = reconstruct(xyz, without_denoising(), {"join", false, join_grid}, {});

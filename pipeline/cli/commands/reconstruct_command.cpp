@@ -17,8 +17,21 @@ namespace {
 
 using nlohmann::ordered_json;
 
+/// The method, by its name, and how it is used.
+struct SurfaceOptions : ReconstructOptions {
+  std::string method = "poisson";
+
+  template <class Self, class Visit>
+  static void describe(Self& self, Visit&& visit) {
+    OptionInfo method{"method", "how the surface is made", ""};
+    method.choices = {"poisson", "advancing-front", "ball-pivoting"};
+    visit(method, self.method);
+    ReconstructOptions::describe(self, visit);
+  }
+};
+
 struct ReconstructCommandOptions {
-  ReconstructOptions reconstruct;
+  SurfaceOptions reconstruct;
   JobOptions job;
 };
 
