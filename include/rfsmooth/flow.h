@@ -62,19 +62,6 @@ enum class NotSmoothed {
   too_little_noise,  ///< to be told from shape
 };
 
-/// What the automatic flow measured and chose.
-struct AutomaticReport {
-  NoiseSummary measured;
-  std::optional<NotSmoothed> not_smoothed;  ///< why not; none: there was something to smooth
-  double noise = 0;           ///< measured or stated, standard deviation along the normal, world units
-  double guide_strength = 0;  ///< c of the guide's fairing, dimensionless
-  double left = 0;            ///< estimate of the noise left, root mean square along the normal, world units
-  double equalized = 0;       ///< root mean square move along the surface afterwards, world units
-  double equalized_most = 0;  ///< the largest of them
-  double tail_times = 1;      ///< noise of the points of the tails over that of the others; 1: none
-  std::size_t stranded = 0;   ///< points that the fairing had left beside the surface
-};
-
 /// A vertex that may not move freely.
 struct HardConstraint {
   enum class Kind { fixed, axis, plane };
@@ -102,13 +89,13 @@ class Flow {
   /// `context.stop` is set; the positions may be of a part of the step then.
   virtual void step(Mesh& mesh, const Context& context) = 0;
 
-  /// Told that the connectivity changed (edge swaps) while the vertices stayed the same.
+  /// Called when the connectivity has changed (edge swaps) while the vertices stayed the same.
   virtual void connectivity_changed(const Mesh&, const Context&) {}
 
   /// Of all steps so far.
   virtual SolverSummary solver() const { return {}; }
 
-  /// Whether the flow heeds the constraints it was made with itself; if not, `make_flow` wraps it.
+  /// Whether the flow keeps to the constraints it was made with by itself; if not, `make_flow` wraps it.
   virtual bool applies_constraints() const { return false; }
 };
 

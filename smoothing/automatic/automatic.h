@@ -51,6 +51,8 @@
 /// guide's places, on lines from their own; those that would move more than 5 sigma are strays and stay.
 #pragma once
 
+#include <optional>
+
 #include <rfsmooth/flow.h>
 #include <rfsmooth/statistics.h>
 
@@ -69,6 +71,19 @@ struct AutomaticTask {
   bool keep_rings = true;         ///< false: the mesh is left without its one-rings, as soon as they are read
   LearnedSites* sites = nullptr;  ///< out, with `learned`: what the step would be given; it is not taken
   double strength = 1;            ///< how many times that of the cloud `noise` is; positive
+};
+
+/// What the automatic flow measured and chose.
+struct AutomaticReport {
+  NoiseSummary measured;
+  std::optional<NotSmoothed> not_smoothed;  ///< why not; none: there was something to smooth
+  double noise = 0;           ///< measured or stated, standard deviation along the normal, world units
+  double guide_strength = 0;  ///< c of the guide's fairing, dimensionless
+  double left = 0;            ///< estimate of the noise left, root mean square along the normal, world units
+  double equalized = 0;       ///< root mean square move along the surface afterwards, world units
+  double equalized_most = 0;  ///< the largest of them
+  double tail_times = 1;      ///< noise of the points of the tails over that of the others; 1: none
+  std::size_t stranded = 0;   ///< points that the fairing had left beside the surface
 };
 
 /// What has become of it.
