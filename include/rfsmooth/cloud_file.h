@@ -1,6 +1,6 @@
 /// Files of clouds and meshes, PLY, PCD, XYZ, OFF and LAS, read and written without losing anything.
 ///
-///     auto file = CloudFile::read("scan.ply");            // Result: the format is told by the content
+///     auto file = CloudFile::read("scan.ply");            // Result: the format is known by its content
 ///     std::vector<double> xyz = file.value().positions(); // n x 3
 ///     denoise(xyz.data(), xyz.size() / 3, {}, {});
 ///     file.value().set_positions(xyz.data());             // only what moved changes
@@ -38,12 +38,12 @@ enum class Encoding { ascii, binary_little_endian, binary_big_endian, binary_com
 
 /// How to read.
 struct ReadOptions {
-  std::optional<Format> format;  ///< empty: told by the content
+  std::optional<Format> format;  ///< empty: known by the content
 };
 
 /// How to write.
 struct WriteOptions {
-  std::optional<Format> format;      ///< empty: told by the extension of the path, else the cloud's own
+  std::optional<Format> format;      ///< empty: known by the extension of the path, else the cloud's own
   std::optional<Encoding> encoding;  ///< empty: the cloud's own, or the target format's nearest to it
   bool force = false;                ///< replace an existing file
   bool drop_unsupported = false;     ///< leave out what the target format cannot carry, instead of refusing

@@ -61,8 +61,10 @@ struct Mesh {
                                   ///< faceless vertices)
   Adjacency one_ring;             ///< n rows; call rebuild_adjacency after changing faces or loose_edges
 
-  Index closing = kNone;  ///< vertices from this one on only close holes for a flow and are no part of the
-                          ///< surface: their edges do not count for lengths (Boundary::virtual_vertices)
+  /// The first of the vertices that close holes for a flow, which are the last ones of its own copy of the
+  /// mesh (Boundary::virtual_vertices); kNone: there are none, as in every mesh that a user makes or is
+  /// given. They are no part of the surface: their edges do not count for lengths.
+  Index closing = kNone;
 
   std::size_t edge_count() const { return one_ring.items.size() / 2; }
 };

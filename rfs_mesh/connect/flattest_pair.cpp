@@ -227,7 +227,7 @@ class Chooser {
 }  // namespace
 
 ProposedFaces proposed_faces(const std::vector<Umbrella>& umbrellas, const Context& context) {
-  // Two bits for each rib: the votes for the face behind it, 0 where another corner speaks for it.
+  // Two bits for each rib: the votes for the face behind it, 0 where another corner votes for it.
   std::vector<std::uint32_t> votes(umbrellas.size());
   static_assert(2 * kMostRibs <= 32);
   for_each_index(context, umbrellas.size(), [&](std::size_t i) {
@@ -238,7 +238,7 @@ ProposedFaces proposed_faces(const std::vector<Umbrella>& umbrellas, const Conte
       if (!umbrella.spans(k)) continue;
       const Index a = umbrella.ribs[std::size_t(k)], b = umbrella.next(k);
       const bool by_a = umbrellas[a].spans(v, b), by_b = umbrellas[b].spans(v, a);
-      const bool lower = (by_a && a < v) || (by_b && b < v);  // a lower corner speaks for this face
+      const bool lower = (by_a && a < v) || (by_b && b < v);  // a lower corner votes for this face
       all |= lower ? 0 : std::uint32_t(1 + int(by_a) + int(by_b)) << (2 * k);
     }
     votes[i] = all;

@@ -105,7 +105,7 @@ class Growth {
     links_.swap(sorted);
   }
 
-  /// Whether the votes of two regions speak more against joining them than what links them does for it.
+  /// Whether the votes of two regions count more against joining them than their links do for it.
   bool refused(Index a, Index b, float agreement) const {
     if (votes_.empty()) return false;
     const double one = votes_[a], other = agreement < 0 ? -votes_[b] : votes_[b];

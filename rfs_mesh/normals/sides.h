@@ -10,7 +10,7 @@
 /// agree. Kruskal on single links, as in Hoppe et al. 1992, fails at one wrong link between two large parts.
 ///
 /// A vote is other evidence on the side of a point (positive: its normal is right). Two regions stay apart if
-/// their votes speak more against the join than the links for it. The functions are thread safe; a Sides
+/// their votes count more against the join than the links for it. The functions are thread safe; a Sides
 /// object is for one thread.
 #pragma once
 

@@ -100,7 +100,7 @@ class LocalDirectionalSpeed : public Speed {
     };
     Vector3d sum = integrand[i];
     for (const Index j : mesh.one_ring[i]) {
-      // Its side is told by the first face that has both.
+      // Its side is that of the first face that has both.
       const Index f = *std::find_if(row.begin(), row.end(),
                                     [&](Index g) { return rfs_mesh::has_corner(mesh.faces[g], j); });
       sum += opposed(f, i) == opposed(f, j) ? integrand[j] : Vector3d(-integrand[j]);

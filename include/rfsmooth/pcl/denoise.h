@@ -16,8 +16,8 @@
 ///
 /// What is wrong with an input (none set, no finite point, an index out of range) or an option is not thrown:
 /// `filter` gives a PCL_ERROR, an empty output and a line in `getStatus()`. Setters only remember: a value
-/// out of range, a flow that there is not, or an option that the flow has not is told by every `filter` until
-/// it is mended.
+/// out of range, a flow that there is not, or an option that the flow has not is reported by every `filter`
+/// until it is mended.
 ///
 /// Compiled for the XYZ types of PCL; for your own registered point type include
 /// "rfsmooth/pcl/impl/denoise.hpp". Thread safety: one object per thread, as for every PCL filter. Cost and
@@ -95,7 +95,8 @@ class DenoiseSettings {
   DenoiseOptions options_;
   DenoiseReport report_;
   Context context_;
-  std::string status_, mistake_;  ///< the last run's; and the setters', told by every run until it is mended
+  std::string status_;   ///< the last run's
+  std::string mistake_;  ///< the setters', reported by every run until it is mended
   bool keep_organized_ = false;
   float user_filter_value_ = std::numeric_limits<float>::quiet_NaN();
 };

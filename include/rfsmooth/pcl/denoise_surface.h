@@ -14,7 +14,7 @@
 /// finite, or outside the indices and without one in the input) have NaN there, and `is_dense` is then false,
 /// as after PCL's NormalEstimation.
 ///
-/// Errors are told as denoise.h says, and so are threads. `output` may be the input cloud if In = Out.
+/// Errors are reported as denoise.h says, and so are threads. `output` may be the input cloud if In = Out.
 /// Compiled from PointXYZ, PointXYZI, PointXYZRGB, PointXYZRGBA and PointXYZL to the type with the same
 /// fields and a normal (of PointXYZRGBA, PointXYZRGBNormal), and from PointNormal, PointXYZINormal and
 /// PointXYZRGBNormal to themselves. For other pairs, your own types too, include

@@ -1,4 +1,4 @@
-/// Long work for Python: the interpreter is free meanwhile, and hears of progress and Ctrl-C.
+/// Long work for Python: the interpreter is free meanwhile; progress and Ctrl-C reach it.
 #pragma once
 
 #include <functional>

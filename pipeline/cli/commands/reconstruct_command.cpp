@@ -35,7 +35,7 @@ struct ReconstructCommandOptions {
   JobOptions job;
 };
 
-/// Told before the work: the output must be able to hold faces.
+/// Checked before the work: the output must be able to hold faces.
 void check_format(const Job& job, const FileOptions& options) {
   std::optional<pipeline::io::Format> format;
   if (options.format)

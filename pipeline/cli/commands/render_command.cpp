@@ -27,7 +27,7 @@ Command render_table(const std::shared_ptr<RenderOptions>& options) {
   return command;
 }
 
-/// Told before the work. \throw Failure.
+/// Checks before the work. \throw Failure.
 void check_request(const RenderOptions& options, const Invocation& typed) {
   if (typed.arguments.empty()) fail(ErrorCode::usage, "no input given");
   if (!options.output) fail(ErrorCode::usage, "no picture named: -o OUT.png");

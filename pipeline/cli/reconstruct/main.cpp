@@ -22,7 +22,7 @@ volatile std::sig_atomic_t messages = STDERR_FILENO;
 
 extern "C" void cancel(int) {
   constexpr std::string_view kLine = "rfsmooth: error: cancelled\n";
-  if (write(messages, kLine.data(), kLine.size()) < 0) _exit(130);  // nobody listens
+  if (write(messages, kLine.data(), kLine.size()) < 0) _exit(130);  // nobody reads it
   _exit(130);
 }
 

@@ -206,7 +206,7 @@ def info(points):
 
 
 def read(path):
-    """Reads a file (PLY, PCD, XYZ, LAS, OFF; told by the content). Returns its points as a structured array, and a Cloud: the file
+    """Reads a file (PLY, PCD, XYZ, LAS, OFF; known by its content). Returns its points as a structured array, and a Cloud: the file
     with all that stands beside them, for `write`. Fields that are lists stay in the file.
     """
     file = _rfsmooth.read_file(os.fspath(path))

@@ -1,4 +1,4 @@
-"""Who hears how far a call is."""
+"""Where the progress of a call goes."""
 
 import contextlib
 

@@ -30,7 +30,7 @@ using nlohmann::ordered_json;
 
 constexpr const char *kDisplacement = "displacement", *kOutlier = "outlier";
 
-/// Fields that could not be added, told before the work. \throw Failure.
+/// Refuses fields that could not be added, before the work. \throw Failure.
 void check_fields(const DenoiseCommandOptions& options, const pipeline::io::Cloud& cloud) {
   if (options.write_displacement)
     pipeline::io::check_field(cloud, kDisplacement, pipeline::io::Scalar::float32);
