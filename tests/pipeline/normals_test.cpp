@@ -12,6 +12,7 @@
 
 #include "clouds/shapes/sampling.h"
 #include "clouds/shapes/shapes.h"
+#include "tests/support/sanitized.h"
 #include "tests/support/shapes.h"
 
 namespace rfsmooth::pipeline {
@@ -257,7 +258,7 @@ TEST(Normals, FewPointsAndPointsInALineGetSomeUnitVector) {
 }
 
 TEST(Normals, AreTheSameBytesForAnyNumberOfThreads) {
-  Positions points = clouds::sample(*clouds::make_plate(0.06), 5000, 1);
+  Positions points = clouds::sample(*clouds::make_plate(0.06), test::kSanitized ? 2500 : 5000, 1);
   clouds::add_noise(points, 0.015, 2);
   const Flat xyz = row_major(points);
   Context one, four;

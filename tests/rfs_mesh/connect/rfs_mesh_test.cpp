@@ -8,6 +8,7 @@
 #include "rfs_mesh/noise/noise.h"
 #include "tests/support/awkward_clouds.h"
 #include "tests/support/connection.h"
+#include "tests/support/sanitized.h"
 #include "tests/support/shapes.h"
 #include "tests/support/threads.h"
 
@@ -48,7 +49,7 @@ TEST_P(CleanShape, ProportionsOfThePaperOnPoissonDiskPoints) {
 }
 
 TEST_P(CleanShape, SameBytesForAnyNumberOfThreads) {
-  const Positions points = test::random_points(GetParam(), 4000, 5);
+  const Positions points = test::random_points(GetParam(), test::kSanitized ? 2000 : 4000, 5);
   const Connection one = connected(points, 1);
   for (const int threads : test::several_threads()) {
     const Connection many = connected(points, threads);

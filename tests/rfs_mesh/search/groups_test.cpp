@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "base/parallel.h"
+#include "tests/support/sanitized.h"
 #include "tests/support/shapes.h"
 
 using namespace rfsmooth;
@@ -94,7 +95,7 @@ TEST_P(GroupsOf, KnowNothingOfWhatIsFarAway) {
 }
 
 TEST_P(GroupsOf, AreTheSameForAnyNumberOfThreads) {
-  const Positions points = test::random_points(test::torus(), 50000, 1);
+  const Positions points = test::random_points(test::torus(), test::kSanitized ? 20000 : 50000, 1);
   const auto run = [&](int threads) {
     Context context;
     context.threads = threads;
