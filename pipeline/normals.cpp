@@ -37,7 +37,7 @@ void settle(const Positions& points, const rfs_mesh::SpatialIndex& index, const 
                        [&](Index j) { return normals[i].dot(normals[j]) < kSameSheet; }))
         continue;
       index.nearest(points[i], int(kNeighbourhood) + 1, near);
-      const double square = 1.1 * near.back().squared_distance;
+      const double square = kBeyond * near.back().squared_distance;
       if (!(square > 0)) continue;
       Eigen::Vector3d sum = Eigen::Vector3d::Zero();
       double weights = 0;

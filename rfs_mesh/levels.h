@@ -32,6 +32,10 @@ constexpr double kNoiseReach = 4;
 /// Standard deviations beyond which a point is a stray and does not belong to the surface.
 constexpr double kStray = 5;
 
+/// Of the distance to the farthest neighbour, or of its square: as far as weights (1 - d^2 / r^2)^2 reach, so
+/// that it keeps a little.
+constexpr double kBeyond = 1.1;
+
 /// The most sigma over radius of a ball of neighbours that holds the slab of noisy points, and is not inside
 /// of it: a radius of 5.5 sigma.
 constexpr double kFlatSlab = 0.18;
@@ -44,7 +48,7 @@ constexpr double kGrowthOfNoise = 1.26;
 /// of the square that has one point, its slab is flat in no smaller ball.
 constexpr std::size_t kWidestFit = 4096;
 
-/// Of the places or of their area: less does not speak for all of them.
+/// Of the places or of their area: less does not stand for all of them.
 constexpr double kLeastPart = 0.1;
 
 /// Points that stand for all of a cloud in a mean or a median over it, which they give to half a per cent.

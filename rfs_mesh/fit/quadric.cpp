@@ -210,7 +210,6 @@ Quadric fit_quadric(const Positions& points, const Vector3d& p, const Index* nei
   for (auto* all : {&w.x, &w.y, &w.z})
     std::fill(all->begin() + std::ptrdiff_t(w.count), all->begin() + std::ptrdiff_t(w.padded), 0);
   if (!(squared_reach > 0)) return q;
-  constexpr double kBeyond = 1.1;  // the farthest neighbour keeps a little weight
   const double r = kBeyond * std::sqrt(squared_reach);
   Matrix3d covariance;
   weigh(w, r, covariance);

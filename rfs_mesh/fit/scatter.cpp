@@ -186,7 +186,7 @@ Scatter ScatterFit::operator()(const SpatialIndex& index, const Eigen::Vector3d&
   s.foot = place;
   s.radius = std::sqrt(near_.back().squared_distance);
   if (!(s.radius > 0)) return s;
-  const double r = 1.1 * s.radius;  // the farthest neighbour keeps a little weight
+  const double r = kBeyond * s.radius;
   for (std::vector<double>* const values : {&x_, &y_, &z_, &u_, &v_, &weight_, &residual_})
     values->resize(near_.size());
   scale(index.points(), place, r);

@@ -112,7 +112,7 @@ Vector3d weighted_sum(const Ring& ring, const Eigen::Vector3f& n, float per_unli
 
 Vector3d filtered(const Vector3d& normal, const Oriented& here, Adjacency::Row row,
                   const std::vector<Oriented>& all, double most, Ring& ring) {
-  const double square = 1.1 * (all[row[row.size() - 1]].at - here.at).squaredNorm();
+  const double square = kBeyond * (all[row[row.size() - 1]].at - here.at).squaredNorm();
   if (!(square > 0)) return normal;
   const float tolerance = tolerance_at(here, row, all, most);
   ring.gather(here, row, all, 1 / square);

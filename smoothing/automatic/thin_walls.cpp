@@ -104,7 +104,7 @@ class Walls {
   void fit(Index seed, rfs_mesh::WideNeighbors& near, std::vector<rfs_mesh::SheetPoint>& points,
            std::vector<Move>& moves) const {
     near.find(field_.guide()[seed]);
-    const double square = 1.1 * double(near.farthest());  // a little beyond the farthest
+    const double square = rfs_mesh::kBeyond * double(near.farthest());
     if (!(square > 0)) return;
     // A patch of thousands that is no wall shows it to a few hundred of its members, spread evenly.
     if (const std::size_t stride = members_ / kFirstLook; stride > 1) {
