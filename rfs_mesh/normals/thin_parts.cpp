@@ -25,7 +25,6 @@ using Eigen::Vector3d;
 constexpr double kOff = 0.25;      // e above which something is tried
 constexpr double kMostOff = 0.3;   // share of the samples that may be: rotor's walls are 0.17
 constexpr double kMostLeft = 0.4;  // of all e squared, if more are: 0.31 on rotor after 2 %, 0.52 on scans
-constexpr double kLeastTurned = 0.12;
 constexpr int kMiddleCount = 64;
 constexpr double kThinnest = 1e-9;  // of C's eigenvalues, beside the largest
 
@@ -73,7 +72,7 @@ class ThinParts {
       const std::vector<double> then = offness(numbers(winding, tried));
       std::vector<char> better(at_.size());
       for_each_index(context_, at_.size(), [&](std::size_t s) {
-        better[s] = off[s] > kOff && then[s] < off[s] && turned_around(s, now, tried) >= kLeastTurned ? 1 : 0;
+        better[s] = off[s] > kOff && then[s] < off[s] && turned_around(s, now, tried) >= kLeastPart ? 1 : 0;
       });
       Positions next = now;
       for_each_index(context_, at_.size(), [&](std::size_t s) {

@@ -24,7 +24,8 @@ constexpr double kNarrowest = 52.6;  // m_0 = kNarrowest (sigma/h)^2 if that is 
 constexpr double kWidest = 1600;     // the widest patches, unless those that look for walls are wider
 constexpr int kSeeing = 2;           // index of the scale that looks for walls: of 4 m_0 points, 9 sigma
 
-constexpr std::size_t kDense = 4;     // a subset with a point in so many has its own among the nearest
+// A subset with a point in so many has a ring of its own among the nearest of every point.
+constexpr std::size_t kDense = HeightField::kNear / rfs_mesh::kRing;
 constexpr std::size_t kOwnMean = 60;  // from this many members on, patches average; below, near neighbours do
 constexpr float kNearEvidence = 10;   // nats per sigma^2 of a near mean
 constexpr float kPatchEvidence = 0.25F;  // the same of a patch mean, per member (Leung and Barron's 1/4)
