@@ -7,7 +7,7 @@
 #include <Eigen/Geometry>
 
 #include "base/fail.h"
-#include "pipeline/normals_by_part.h"
+#include "pipeline/normals/normals_by_part.h"
 #include "rfs_mesh/normals/sides.h"
 
 namespace rfsmooth::pipeline::tiles {

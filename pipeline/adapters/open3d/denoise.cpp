@@ -7,7 +7,7 @@
 
 #include "base/linear/symmetric_eigen.h"
 #include "base/parallel.h"
-#include "pipeline/normal_sides.h"
+#include "pipeline/normals/normal_sides.h"
 #include "rfs_mesh/points.h"
 
 namespace rfsmooth::open3d {

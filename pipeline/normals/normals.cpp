@@ -7,7 +7,7 @@
 
 #include "base/fail.h"
 #include "base/parallel.h"
-#include "pipeline/normals_by_part.h"
+#include "pipeline/normals/normals_by_part.h"
 #include "rfs_mesh/levels.h"
 #include "rfs_mesh/normals/bilateral_normals.h"
 #include "rfs_mesh/normals/orient.h"

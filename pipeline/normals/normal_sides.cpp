@@ -1,4 +1,4 @@
-#include "pipeline/normal_sides.h"
+#include "pipeline/normals/normal_sides.h"
 
 #include <cmath>
 #include <vector>
