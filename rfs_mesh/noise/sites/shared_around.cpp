@@ -47,13 +47,14 @@ struct ShownTogether {
 };
 
 /// The first scale from which the scatter has stopped growing, and is of noise that neighbours share, if it
-/// never grew as shape does before; or how many there are.
+/// never grew as shape does before; or how many there are. \param shown the narrowest holds the slab
 std::size_t stops_at(const std::vector<ShownTogether>& shown) {
-  const double own = shown.front().scatter * shown.front().scatter;
+  const double narrow = shown.front().scatter;
   for (std::size_t i = 0; i + 2 < shown.size(); ++i) {
     const ShownTogether &here = shown[i], &next = shown[i + 1];
-    if (i > 0 && here.holds_slab() && next.of_one_smooth_sheet(own) &&
-        shown[i + 2].scatter <= kGrowthOfNoise * here.scatter && err_together(here.together, here.points))
+    if (here.holds_slab() && next.of_one_smooth_sheet(narrow * narrow) &&
+        next.scatter > kGrowthOfNoise * narrow && shown[i + 2].scatter <= kGrowthOfNoise * here.scatter &&
+        err_together(here.together, here.points))
       return i;
     if (next.scatter * next.scatter > kLeastGrowthOfShape * here.scatter * here.scatter) break;
   }
@@ -68,9 +69,14 @@ struct SharedAround {
 
 SharedAround look_around(const std::vector<Neighbor>& group, const std::vector<OpenFits>& open) {
   std::vector<ShownTogether> shown;
-  for (const OpenFits& fits : open) shown.emplace_back(group, fits);
+  for (const OpenFits& fits : open) {
+    const ShownTogether next(group, fits);
+    // Narrower balls are inside of the slab, and see the less of the noise the narrower they are.
+    if (!shown.empty() || (next.scatter > 0 && next.holds_slab())) shown.push_back(next);
+  }
+  if (shown.empty()) return {};
   const std::size_t stop = stops_at(shown);
-  if (stop == shown.size() || !(shown.front().scatter > 0)) return {};
+  if (stop == shown.size()) return {};
   const double sigma = shown[stop + 1].scatter;
   std::vector<double> m, left;
   for (std::size_t i = 0; i <= stop + 1; ++i) {
