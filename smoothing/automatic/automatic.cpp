@@ -159,10 +159,11 @@ AutomaticResult automatic_smoothing(const AutomaticTask& task, AutomaticReport& 
     const Eigen::Vector3d move = place_at(field, i, from, heights.height[i]) - from;
     smooth[i] = allowed(i, move) ? from + move : from;
   });
-  field.ready_for_searches(context);
-  if (own_noise)
+  if (own_noise) {
+    field.ready_for_searches(context);
     part_thin_walls(field, data, heights.several, heights.members_seeing, noise, smooth, whole.thin_walls,
                     context);
+  }
   if (task.learned) {
     const Smoothed smoothed{heights.told, heights.own, one_sheet, smooth,
                             hidden.there() ? hidden.variance : 1};

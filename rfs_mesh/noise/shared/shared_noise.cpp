@@ -80,11 +80,6 @@ bool hold_slab(const Calm& calm, std::size_t i) {
   return std::sqrt(calm.seen[i]) < kFlatSlab * calm.radius[i];
 }
 
-/// Whether nearest points lie off patches of the i-th m the same way.
-bool errs_together(const Calm& calm, std::size_t i) {
-  return err_together(calm.together[i], calm.m[i]);
-}
-
 /// What is left of the i-th variance without the part that grows with m as shape does.
 double without_shape(const Calm& calm, std::size_t i, double growth) {
   return (growth * calm.seen[i] - calm.seen[i + 1]) / (growth - 1);
@@ -133,8 +128,8 @@ SharedNoise find_shared_noise(Places& places, const NoiseStart& start, const Dep
                  : flatness_beyond(calm.flatness[i + 1], start.sigma * start.sigma / calm.seen[i + 1]);
     if (flatness < kFlatnessOfSheets) continue;
     if (!terraces && leans_as_relief(calm.lean[i + 1])) continue;
-    if (!terraces && !errs_together(calm, i + 1)) continue;
-    if (terraces || errs_together(calm, i))
+    if (!terraces && !err_together(calm.together[i + 1], calm.m[i + 1])) continue;
+    if (terraces || err_together(calm.together[i], calm.m[i]))
       surely = std::max(surely, without_shape(calm, i, kLeastGrowthOfShape));
     make_sure(i, without_shape(calm, i, kGrowthOfSmoothShape));
   }

@@ -7,6 +7,7 @@
 #include <Eigen/Cholesky>
 
 #include "rfs_mesh/fit/scatter.h"
+#include "rfs_mesh/levels.h"
 
 namespace rfsmooth::rfs_mesh {
 
@@ -41,7 +42,7 @@ std::array<double, kShares + 1> taken_shares() {
   for (std::size_t i = 0; i < kDiskPoints; ++i) {  // Vogel's spiral: evenly
     const double r = std::sqrt((double(i) + 0.5) / double(kDiskPoints)), turn = M_PI * (3 - std::sqrt(5.0));
     at[i] = r * Eigen::Vector2d(std::cos(double(i) * turn), std::sin(double(i) * turn));
-    const double u = at[i].x(), v = at[i].y(), t = r / 1.1, w = (1 - t * t) * (1 - t * t);
+    const double u = at[i].x(), v = at[i].y(), t = r / kBeyond, w = (1 - t * t) * (1 - t * t);
     f[i] << 1, u, v, u * u, u * v, v * v;
     a += w * f[i] * f[i].transpose();
     weights += w;
