@@ -57,8 +57,8 @@ std::unique_ptr<HeightField> raise_field(const Positions& points, const Adjacenc
   Positions guide = fair(points, rings, report.guide_strength, whole.reductions, context);
   Landed landed = land_stranded(points, rings, noise.reaches(1, context), guide, context);
   report.stranded = landed.stranded;
-  return std::make_unique<HeightField>(std::move(guide), std::move(landed.tree), std::move(landed.near),
-                                       points, noise.across, context);
+  return std::make_unique<HeightField>(std::move(guide), std::move(landed.tree), landed.near, points,
+                                       noise.across, context);
 }
 
 /// c of the guide's fairing.

@@ -16,7 +16,7 @@ constexpr float kByteUnit = 255, kByteRounded = 0.5F;
 
 }  // namespace
 
-HeightField::HeightField(Positions guide, rfs_mesh::KdTree tree, rfs_mesh::NeighborTable near,
+HeightField::HeightField(Positions guide, rfs_mesh::KdTree tree, const rfs_mesh::NeighborTable& near,
                          const Positions& data, std::optional<std::size_t> across, const Context& context)
     : guide_(std::move(guide)),
       index_(std::in_place, guide_, std::move(tree), context),

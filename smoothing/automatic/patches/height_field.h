@@ -41,8 +41,8 @@ class HeightField {
   /// \param across as in normals_across_lines, where points lie along lines.
   /// \throw std::invalid_argument if the three differ in n.
   /// O(n log n), parallel, the same bits for any number of threads.
-  HeightField(Positions guide, rfs_mesh::KdTree tree, rfs_mesh::NeighborTable near, const Positions& data,
-              std::optional<std::size_t> across, const Context& context);
+  HeightField(Positions guide, rfs_mesh::KdTree tree, const rfs_mesh::NeighborTable& near,
+              const Positions& data, std::optional<std::size_t> across, const Context& context);
   HeightField(const HeightField&) = delete;
   HeightField& operator=(const HeightField&) = delete;
 
