@@ -11,6 +11,7 @@
 #include "rfs_mesh/noise/held_out.h"
 #include "rfs_mesh/noise/noise_field.h"
 #include "rfs_mesh/noise/shared/shared_noise.h"
+#include "rfs_mesh/noise/steps/voxels.h"
 
 namespace rfsmooth::rfs_mesh {
 
@@ -248,6 +249,8 @@ NoiseModel measure_noise(const SpatialIndex& index, const Context& context) {
   noise.spacing = mean_spacing(nearest, context);
   if (!nearest.empty()) noise.apart = quantile(nearest, kNearer);
   if (index.points().size() <= kNeighbourhood) return noise;
+  if (const auto voxel = voxel_size(index, quantile(nearest, 0.5), context))
+    noise.apart = std::max(noise.apart, *voxel);
   std::optional<DepthSteps> steps = find_depth_steps(index);
   const std::optional<DepthSteps> grid = find_grid(std::move(nearest));
   // Before a wall a camera's points are on a grid, too, of its pixels; a grid has few values along some
