@@ -9,6 +9,7 @@
 
 #include "base/linear/small_cholesky.h"
 #include "rfs_mesh/fit/quadric_moments.h"
+#include "rfs_mesh/levels.h"
 
 namespace rfsmooth::rfs_mesh {
 
@@ -20,10 +21,9 @@ using Vector9 = Eigen::Matrix<double, 9, 1>;
 using Matrix9 = Eigen::Matrix<double, 9, 9>;
 
 constexpr int kPairRounds = 12;
-constexpr double kRidgeOfPair = 1e-6;    // of the normal equations, beside the weights
-constexpr double kLeastWeights = 30;     // nine unknowns, and
-constexpr double kUnknowns = 9;          // of the two sheets
-constexpr double kLeastVariance = 0.35;  // c
+constexpr double kRidgeOfPair = 1e-6;  // of the normal equations, beside the weights
+constexpr double kLeastWeights = 30;   // nine unknowns, and
+constexpr double kUnknowns = 9;        // of the two sheets
 // Chosen on rotor, armadillo, anchor_dense and plate at 10,000 and 50,000 points, noise of 1 to 3 %, and so
 // that the depths of real sensors, which come in steps, say nothing: patches on rotor's walls at 1 % have
 // nats of 3 to 40, known of 0.65 to 1, and 1.3 to 2 between a sheet and the middle; those that did harm
@@ -158,7 +158,7 @@ void SheetPair::fit_two(std::vector<SheetPoint>& points) {
     // P (above - d)^2 + (1 - P) (above + d)^2
     const double squares = (of.weight * (above.square() + d.square() - 2 * labels * above * d)).sum();
     left_ = squares / (weights_ - kUnknowns);
-    variance_ = std::clamp(left_, kLeastVariance, 1.0);
+    variance_ = std::clamp(left_, kLeastPart, 1.0);
   }
   for (std::size_t k = 0; k < points.size(); ++k) points[k].upper = (1 + labels[Eigen::Index(k)]) / 2;
 }

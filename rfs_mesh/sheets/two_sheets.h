@@ -50,7 +50,7 @@ struct SheetPoint {
 /// The fit of two sheets to heights, m a quadric and d linear, and whether to believe it. m, d, c and P are
 /// found in turns (expectation maximisation, Dempster, Laird and Rubin 1977), starting from one quadric
 /// through all heights and the variance about it. Heights are in units of the measured noise. Walls make the
-/// measured noise too high, never too low, so c is kept between 0.35 and 1.
+/// measured noise too high, never too low, so c is kept between a tenth and 1.
 ///
 /// Differs from the source: points count for d by E[s | e]^2, not by E[s^2] = 1, so that those whose sheet
 /// is known decide. It makes d too large (1.5 for 1, 2.1 for 2); with 1, and the limits of what is believed
