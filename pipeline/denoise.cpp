@@ -15,6 +15,7 @@
 #include "pipeline/denoise_lean.h"
 #include "pipeline/measure_points.h"
 #include "pipeline/outliers.h"
+#include "pipeline/twins.h"
 #include "pipeline/units/units.h"
 #include "rfs_mesh/connect/connect.h"
 #include "rfs_mesh/connect/edge_swap.h"
@@ -153,11 +154,11 @@ void check_finite(const Positions& points, const DenoiseOptions& options, const 
 void commit(double* xyz, const rfs_mesh::WorkingCloud& cloud, const Positions& now,
             const std::vector<double>& reach, DenoiseReport& report) {
   double square_sum = 0;
-  for (std::size_t i = 0; i < cloud.of_input.size(); ++i) {
+  const auto move = [&](std::size_t i, const double* from) {
     const Index p = cloud.of_input[i];
-    if (p == kNone) continue;
+    if (p == kNone) return;
     double* const row = xyz + 3 * i;
-    Eigen::Vector3d moved = now[p] - (Eigen::Vector3d(row[0], row[1], row[2]) - cloud.origin);
+    Eigen::Vector3d moved = now[p] - (Eigen::Vector3d(from[0], from[1], from[2]) - cloud.origin);
     if (!reach.empty())
       if (const double length = moved.norm(); length > reach[p]) moved *= reach[p] / length;
     bool changed = false;
@@ -171,7 +172,12 @@ void commit(double* xyz, const rfs_mesh::WorkingCloud& cloud, const Positions& n
     const double square = moved.squaredNorm();
     square_sum += square;
     report.largest_move = std::max(report.largest_move, std::sqrt(square));
-  }
+  };
+  // Twins first: the rows that they move like are still where they were.
+  for (std::size_t i = 0; i < cloud.like.size(); ++i)
+    if (cloud.like[i] != kNone) move(i, xyz + 3 * std::size_t(cloud.like[i]));
+  for (std::size_t i = 0; i < cloud.of_input.size(); ++i)
+    if (cloud.like.empty() || cloud.like[i] == kNone) move(i, xyz + 3 * i);
   if (report.finite > 0) report.rms_move = std::sqrt(square_sum / double(report.finite));
 }
 
@@ -235,6 +241,7 @@ void land_tails(const double* xyz, const std::vector<double>& strength, const De
     if (!land(surface, most, landed)) continue;
     if (!strength.empty()) landed = was + strength[i] * (landed - was);
     cloud.of_input[i] = Index(now.size() + added.size());
+    if (!cloud.like.empty()) cloud.like[i] = kNone;
     added.push_back(landed);
     report.outlier[i] = 0;
     --report.outliers;
@@ -296,6 +303,10 @@ Searched search(rfs_mesh::WorkingCloud& cloud, int neighbours, const DenoiseOpti
     const Stopwatch watch(report.seconds, "neighbours");
     context.report("neighbours", 0);
     near = index->nearest(neighbours, context);
+    if (pipeline::join_twins(near, cloud, context)) {
+      index.emplace(cloud.points, context);
+      near = index->nearest(neighbours, context);
+    }
   }
   if (options.outliers == Outliers::smooth) return found;
   context.report("noise", 0);

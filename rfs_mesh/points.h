@@ -27,6 +27,7 @@ struct WorkingCloud {
   Positions points;                 ///< m x 3, finite, pairwise distinct, in Morton order
   std::vector<Index> of_input;      ///< n: the working point of each input row, kNone if not finite
   std::vector<Index> multiplicity;  ///< m: how many input rows share the point (>= 1)
+  std::vector<Index> like;  ///< n: the row that a twin moves like, else kNone; empty: there are no twins
 
   std::size_t finite() const;  ///< input rows that have a working point
 };

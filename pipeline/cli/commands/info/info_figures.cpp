@@ -1,6 +1,7 @@
 #include "pipeline/cli/commands/info/info_figures.h"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include "pipeline/cli/files/cloud_files.h"
 #include "pipeline/outliers.h"
 #include "pipeline/tiles/files/statistics_json.h"
+#include "pipeline/twins.h"
 #include "rfs_mesh/fit/local_surface.h"
 #include "rfs_mesh/noise/noise.h"
 #include "rfs_mesh/points.h"
@@ -48,7 +50,7 @@ ordered_json measure(const pipeline::io::Cloud& cloud, const Context& context) {
                        {"spacing", nullptr},    {"spacing_field", nullptr},
                        {"noise", nullptr},      {"noise_measured", nullptr},
                        {"noise_field", nullptr}};
-  const auto working = rfs_mesh::make_working_cloud(xyz.data(), cloud.size(), context);
+  auto working = rfs_mesh::make_working_cloud(xyz.data(), cloud.size(), context);
   if (!working.ok()) {
     if (working.error().code == ErrorCode::no_usable_points) return json;
     throw Failure(working.error());
@@ -61,7 +63,10 @@ ordered_json measure(const pipeline::io::Cloud& cloud, const Context& context) {
   json["high"] = {high[0], high[1], high[2]};
   if (points.size() < 2) return json;
   in_arena(context, [&] {
-    const rfs_mesh::SpatialIndex index(points, context);
+    std::optional<rfs_mesh::SpatialIndex> searched(std::in_place, points, context);
+    if (pipeline::join_twins(searched->nearest(int(rfs_mesh::kRing), context), working.value(), context))
+      searched.emplace(points, context);
+    const rfs_mesh::SpatialIndex& index = *searched;
     json["spacing"] = rfs_mesh::mean_spacing(points, index.nearest(1, context), context);
     json["spacing_field"] = tenths(rfs_mesh::measure_spacing(index, context));
     rfs_mesh::NoiseField noise = noise_of_surface(index, working.value().box, context);
