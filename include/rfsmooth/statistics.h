@@ -32,9 +32,9 @@ struct NoiseModel {
   double sigma = 0;
   /// Part of the scatter taken off as shape: 0 to 0.6, above half little is sure. At most 1.
   double shape = 0;
-  double spacing = 0;          ///< mean distance to the nearest neighbour, of up to 50,000 points; a length
-  /// What points keep from each other: the distance to their nearest of 99 of 100 of these, or the size of the
-  /// voxels that the cloud was thinned in; a length.
+  double spacing = 0;  ///< mean distance to the nearest neighbour, of up to 50,000 points; a length
+  /// What points keep from each other: the distance to their nearest of 99 of 100 of these, or the size of
+  /// the voxels that the cloud was thinned in; a length.
   double apart = 0;
   std::size_t neighbours = 0;  ///< of the fits that it was measured by
   /// Points that say as much as one, since they share the noise: 1, each its own, or more.
