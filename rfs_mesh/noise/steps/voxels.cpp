@@ -124,8 +124,8 @@ std::optional<double> voxel_size(const SpatialIndex& index, double nearest, cons
       1);
   const double extent = quantile(extents, 0.5), eighth = quantile(ring, 0.5),
                least = std::max(nearest, eighth / kAroundEighth), most = kAroundEighth * eighth;
-  // In a row of voxels the points would be no farther apart than that.
-  if (!(nearest > 0) || !(extent < double(points) * most)) return {};
+  // In a row of voxels the points would be no farther apart than that. Places may be denser than most points.
+  if (!(nearest > 0 && least < most && extent < double(points) * most)) return {};
   Frequencies asked{1 / most, 1 / (double(kOversampled) * extent), 0};
   asked.count = std::size_t((1 / least - asked.first) / asked.step) + 1;
   return repeats_along_two(spectra(around, asked, context), asked);
