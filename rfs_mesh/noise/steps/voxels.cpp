@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -95,13 +96,13 @@ std::optional<std::size_t> peak(Spectrum of) {
 
 /// What two axes have in common as their peak. Nothing if there is none.
 std::optional<double> repeats_along_two(const std::array<Spectrum, 3>& along, const Frequencies& asked) {
-  for (std::size_t a = 0; a < 3; ++a)
-    for (std::size_t b = a + 1; b < 3; ++b) {
-      const auto first = peak(along[a]), second = peak(along[b]);
-      if (!first || !second) continue;
-      const std::size_t between = std::max(*first, *second) - std::min(*first, *second);
-      if (2 * between <= kOversampled) return 2 / (asked.at(*first) + asked.at(*second));
-    }
+  const std::array<std::optional<std::size_t>, 3> peaks = {peak(along[0]), peak(along[1]), peak(along[2])};
+  for (const auto& [a, b] : {std::pair(0, 1), std::pair(0, 2), std::pair(1, 2)}) {
+    const auto first = peaks[std::size_t(a)], second = peaks[std::size_t(b)];
+    if (!first || !second) continue;
+    const std::size_t between = std::max(*first, *second) - std::min(*first, *second);
+    if (2 * between <= kOversampled) return 2 / (asked.at(*first) + asked.at(*second));
+  }
   return {};
 }
 
