@@ -11,7 +11,9 @@
 #include "rfs_mesh/noise/held_out.h"
 #include "rfs_mesh/noise/noise_field.h"
 #include "rfs_mesh/noise/shared/shared_noise.h"
+#include "rfs_mesh/noise/steps/rounding.h"
 #include "rfs_mesh/noise/steps/voxels.h"
+#include "rfs_mesh/sample.h"
 
 namespace rfsmooth::rfs_mesh {
 
@@ -170,10 +172,10 @@ void sum_up(const NoiseSites& sites, const std::vector<double>& spacing, const N
 
 /// Where the sites begin: at the noise that points have of their own, or at that which they share, of which
 /// it tells the model. The points coincide if `least` is 0.
-NoiseStart find_start(const SpatialIndex& index, const DepthSteps* steps, NoiseModel& noise,
+NoiseStart find_start(const SpatialIndex& index, const DepthSteps* steps, double rounding, NoiseModel& noise,
                       const Context& context) {
   Places places = search_places(index, context);
-  NoiseStart start = search_noise(places, steps);
+  NoiseStart start = search_noise(places, steps, rounding);
   start.apart = noise.apart;
   // Terraces of depths in steps look like lines, too; there the noise is shared.
   if (start.on_lines && steps == nullptr)
@@ -193,9 +195,10 @@ NoiseStart find_start(const SpatialIndex& index, const DepthSteps* steps, NoiseM
 }
 
 /// Fills the model's figures and sites.
-void measure(const SpatialIndex& index, const DepthSteps* steps, NoiseModel& noise, const Context& context) {
+void measure(const SpatialIndex& index, const DepthSteps* steps, double rounding, NoiseModel& noise,
+             const Context& context) {
   // What is on a grid may be exact, as stairs are: it makes sure of no noise.
-  const NoiseStart start = find_start(index, noise.on_grid ? nullptr : steps, noise, context);
+  const NoiseStart start = find_start(index, noise.on_grid ? nullptr : steps, rounding, noise, context);
   if (!(start.least > 0)) return;
   noise.neighbours = start.m;
   NoiseSites sites = listen(index, listening_places(index.points(), start.m), start, steps, context);
@@ -251,8 +254,9 @@ NoiseModel measure_noise(const SpatialIndex& index, const Context& context) {
   if (index.points().size() <= kNeighbourhood) return noise;
   if (const auto voxel = voxel_size(index, quantile(nearest, 0.5), context))
     noise.apart = std::max(noise.apart, *voxel);
-  std::optional<DepthSteps> steps = find_depth_steps(index);
-  const std::optional<DepthSteps> grid = find_grid(std::move(nearest));
+  const double rounding = rounding_of(sample(index.points(), kSampleOfCloud));
+  std::optional<DepthSteps> steps = find_depth_steps(index, rounding);
+  const std::optional<DepthSteps> grid = find_grid(std::move(nearest), rounding);
   // Before a wall a camera's points are on a grid, too, of its pixels; a grid has few values along some
   // directions, too, no farther from each other.
   if (grid && !(steps && steps->exceed(*grid))) steps = grid;
@@ -260,7 +264,7 @@ NoiseModel measure_noise(const SpatialIndex& index, const Context& context) {
     noise.step = steps->typical();
     noise.on_grid = steps->on_grid();
   }
-  measure(index, steps ? &*steps : nullptr, noise, context);
+  measure(index, steps ? &*steps : nullptr, rounding, noise, context);
   return noise;
 }
 

@@ -192,16 +192,18 @@ std::vector<std::size_t> points_to_fit(Places& places, const NoiseStart& start) 
   return points;
 }
 
-NoiseStart search_noise(Places& places, const DepthSteps* steps) {
+NoiseStart search_noise(Places& places, const DepthSteps* steps, double rounding) {
   NoiseStart start;
   std::vector<Scatter> all = places.fits(start.m);
   find_surface(places, all, steps != nullptr && !steps->on_shells(), start);
   if (start.m > kNarrowestPatch || start.on_lines) all = places.fits(points_to_fit(places, start));
   const double narrow = median_radius_at(places, start.m);
-  start.least = 1e-9 * narrow;
+  start.least = std::max(1e-9 * narrow, steps == nullptr ? 0 : steps->rounding());
   start.sigma = std::sqrt(mean_variance(all, kCalmPlaces, kCalmDeviate));
-  const double sure =
-      steps == nullptr ? 0 : std::min(start.sigma, std::sqrt(variance_of_steps(*steps, places, all)));
+  // Of coordinates that are rounded a narrower window holds those alone that are rounded alike.
+  const double rounded = kSameNoise * rounding / kScatterWindow,
+               of_steps = steps == nullptr ? 0 : std::sqrt(variance_of_steps(*steps, places, all)),
+               sure = std::min(start.sigma, std::max(rounded, of_steps));
   start.most = kSameNoise * bound(places, start.m);
   // Lines are no sheets, and a window narrow enough finds some that are exact. Nor are steps normal noise.
   const bool surface = start.narrowest == kNarrowestPatch;

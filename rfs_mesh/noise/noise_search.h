@@ -76,7 +76,8 @@ Positions listening_places(const Positions& places, std::size_t m);
 std::vector<std::size_t> points_to_fit(Places& places, const NoiseStart& start);
 
 /// O(log n). Parallel, deterministic. \param places at least one, of a cloud of at least 25 points; they are
-/// where they were when it is done. \param steps null: depths are not in steps.
-NoiseStart search_noise(Places& places, const DepthSteps* steps);
+/// where they were when it is done. \param steps null: depths are not in steps. \param rounding of the
+/// coordinates (steps/rounding.h).
+NoiseStart search_noise(Places& places, const DepthSteps* steps, double rounding);
 
 }  // namespace rfsmooth::rfs_mesh

@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <iterator>
-#include <limits>
 #include <utility>
 
 #include "rfs_mesh/levels.h"
 #include "rfs_mesh/noise/noise.h"
 #include "rfs_mesh/noise/scatter_statistics.h"
+#include "rfs_mesh/noise/steps/rounding.h"
 #include "rfs_mesh/noise/steps/scanner_places.h"
 #include "rfs_mesh/noise/steps/step_directions.h"
 #include "rfs_mesh/sample.h"
@@ -17,14 +18,7 @@ namespace rfsmooth::rfs_mesh {
 
 namespace {
 
-constexpr std::size_t kPointsOfStep = 10;  // in the mean: free coordinates hardly ever meet
-// Chosen, not derived: 2,000 steps are found. Those whose rounding is kNoNoise of the spacing may be more, up
-// to 11 sqrt(n) in a cloud of n points as deep as wide. Looking at all points finds steps in one more of the
-// real scans (1.5 units where its noise is 2.4).
-constexpr std::size_t kLookedAt = 20000;
 constexpr std::size_t kFewestSteps = 4;  // fewer are the sides of a box
-// Of a distance: how far two that are the same differ where files keep seven digits of each coordinate.
-constexpr double kSevenDigits = 2e-6;
 constexpr double kSame = 1e-3;  // of a distance between neighbours, some thousand of which make up the cloud
 
 /// Whether every depth is a step, or only those that more points share than would by chance.
@@ -37,7 +31,7 @@ bool is_step(const std::vector<double>& sorted, std::size_t begin, std::size_t e
   const auto low = std::lower_bound(sorted.begin(), sorted.end(), sorted[begin] - reach),
              high = std::upper_bound(low, sorted.end(), sorted[begin] + same + reach);
   const double count = double(end - begin), mean = (double(high - low) - count) / double(kNeighbourhood);
-  return count >= double(kPointsOfStep) && count > mean + kNoiseReach * std::sqrt(mean);
+  return kLeastPart * count >= 1 && count > mean + kNoiseReach * std::sqrt(mean);
 }
 
 /// Of sorted depths the first of each run of those that are the same; of a part, of those that are steps.
@@ -51,10 +45,10 @@ std::vector<double> commonest(const std::vector<double>& sorted, Steps steps, do
 }
 
 /// Sets the typical gap between depths. False if these are too few, too many, or no steps. \param some up to
-/// kLookedAt points.
+/// kSampleOfCloud points.
 bool measure_gaps(const Positions& some, Terraces& terraces) {
   const std::vector<double>& depths = terraces.depths;
-  if (depths.size() < kFewestSteps || depths.size() * kPointsOfStep >= some.size()) return false;
+  if (depths.size() < kFewestSteps || double(depths.size()) >= kLeastPart * double(some.size())) return false;
   std::vector<double> gaps, narrower;  // of the gaps on both sides
   for (const Eigen::Vector3d& p : some) {
     const auto at = terraces.step_of(p);
@@ -66,11 +60,11 @@ bool measure_gaps(const Positions& some, Terraces& terraces) {
   terraces.typical = quantile(gaps, 0.5);
   // Free depths that rounding runs together are hardly farther apart than that.
   return quantile(narrower, 0.5) > 2 * terraces.same &&
-         double(gaps.size()) > kLeastPart * double(some.size());
+         double(gaps.size()) > (kLeastPart + terraces.by_chance()) * double(some.size());
 }
 
 /// Fills terraces, which know along what, with the steps that all points have there, or that a part of them
-/// has. False if there are none. \param some up to kLookedAt points.
+/// has. False if there are none. \param some up to kSampleOfCloud points.
 bool fill(const Positions& some, Steps steps, Terraces& terraces) {
   std::vector<double> all(some.size());
   std::transform(some.begin(), some.end(), all.begin(), [&](const auto& p) { return terraces.depth(p); });
@@ -121,6 +115,11 @@ std::vector<Terraces> with_steps(const std::vector<Terraces>& all, const Positio
   return found;
 }
 
+/// Whether steps are so much larger than others that these make no difference.
+bool much_larger(double steps, double others) {
+  return (1 + kSame) * steps > kLouder * others;
+}
+
 /// Whether the commonest depth has most of the steps along another direction: more than half of the different
 /// ones that as many random draws from all of them would show. A grid shows all, a camera's columns, which
 /// are at other places at any other depth, a quarter or less.
@@ -137,23 +136,29 @@ bool is_same_at_depths(const Positions& points, const Terraces& depth, const Ter
   return drawn > 0 && 2 * double(most.size()) > values * (1 - std::exp(-drawn / values));
 }
 
-/// Whether two of these are those of a grid.
-bool are_of_grid(const std::vector<Terraces>& all, const Positions& some) {
-  for (std::size_t a = 0; a < all.size(); ++a)
-    for (std::size_t b = a + 1; b < all.size(); ++b)
-      if (is_same_at_depths(some, all[a], all[b])) return true;
-  return false;
+/// Whether steps are those of a grid, which others are the same at every depth of. Leaves those out that are,
+/// and so much smaller that it is none. \param depth of `all`: with those after it, which are smaller.
+bool are_of_grid(const Positions& some, std::vector<Terraces>& all, std::size_t depth) {
+  bool grid = false;
+  const auto same = [&](const Terraces& other) {
+    if (!is_same_at_depths(some, all[depth], other)) return false;
+    grid = grid || !much_larger(all[depth].typical, other.typical);
+    return true;
+  };
+  all.erase(std::remove_if(all.begin() + std::ptrdiff_t(depth + 1), all.end(), same), all.end());
+  return grid;
 }
 
-/// Those that hold more than a tenth of all points beyond what the ones before them hold: a camera's columns
-/// are on its depths already.
+/// Those that hold more than a tenth of all points beyond chance and what the ones before them hold: a
+/// camera's columns are on its depths already.
 std::vector<Terraces> that_hold_more(std::vector<Terraces> all, const Positions& some) {
   std::vector<Terraces> found;
   Positions free = some;
   for (Terraces& terraces : all) {
     const auto held =
         std::partition(free.begin(), free.end(), [&](const auto& p) { return !terraces.step_of(p); });
-    if (!(double(free.end() - held) > kLeastPart * double(some.size()))) continue;
+    const double more = double(free.end() - held) - terraces.by_chance() * double(free.size());
+    if (!(more > kLeastPart * double(some.size()))) continue;
     free.erase(held, free.end());
     found.push_back(std::move(terraces));
   }
@@ -205,33 +210,11 @@ bool are_none(const Terraces& terraces, const SpatialIndex& index) {
          are_lines(terraces, index);
 }
 
-/// The farthest that a point is from `from`.
-double farthest(const Positions& points, const Eigen::Vector3d& from) {
-  double most = 0;
-  for (const Eigen::Vector3d& p : points) most = std::max(most, (p - from).norm());
-  return most;
-}
-
-/// What a file rounds coordinates to: to seven digits, or to decimals, which no two coordinates are nearer
-/// than.
-double rounding_of(const Positions& some) {
-  const double digits = kSevenDigits * farthest(some, some.front());
-  double least = std::numeric_limits<double>::infinity();
-  for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    std::vector<double> values;
-    for (const Eigen::Vector3d& p : some) values.push_back(p[axis]);
-    std::sort(values.begin(), values.end());
-    for (std::size_t i = 1; i < values.size(); ++i)
-      if (const double gap = values[i] - values[i - 1]; gap > digits) least = std::min(least, gap);
-  }
-  return std::isfinite(least) ? least : digits;
-}
-
 }  // namespace
 
 DepthSteps::DepthSteps(std::vector<Terraces> terraces, const SpatialIndex& index)
     : typical_(terraces.front().typical), terraces_(std::move(terraces)) {
-  const Positions some = sample(index.points(), kLookedAt);
+  const Positions some = sample(index.points(), kSampleOfCloud);
   const auto held = std::count_if(some.begin(), some.end(), [&](const Eigen::Vector3d& p) {
     return terraces_.front().step_of(p).has_value();
   });
@@ -261,30 +244,31 @@ double DepthSteps::sigma(const Eigen::Vector3d& at, const Eigen::Vector3d& norma
   return of != nullptr ? of->sigma(at, normal) : 0;
 }
 
-std::optional<DepthSteps> find_depth_steps(const SpatialIndex& index) {
-  const Positions some = sample(index.points(), kLookedAt);
+std::optional<DepthSteps> find_depth_steps(const SpatialIndex& index, double rounding) {
+  const Positions some = sample(index.points(), kSampleOfCloud);
   const Positions axes = {Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ()};
   std::vector<Terraces> planes, shells;
   for (const Eigen::Vector3d& axis : axes) planes.push_back(along(axis, 0));
   planes = with_steps(planes, some, Steps::of_all);
-  for (std::size_t k = 1; k < planes.size(); ++k)
-    if (is_same_at_depths(some, planes.front(), planes[k])) return {};
+  if (!planes.empty() && !much_larger(planes.front().typical, rounding)) planes.clear();  // those of decimals
+  if (!planes.empty() && are_of_grid(some, planes, 0)) return {};
   planes.erase(
       std::remove_if(planes.begin(), planes.end(), [&](const auto& of) { return are_lines(of, index); }),
       planes.end());
   if (!planes.empty()) return without_strays(std::move(planes.front()), some, index);
   // Rounding three coordinates moves a difference along any line by at most sqrt(3) of that. Directions are
   // looked for with once as much: most neighbours keep to it, and fewer are level by chance.
-  const double rounding = rounding_of(some), same = 2 * rounding;
+  const double same = 2 * rounding;
   for (const Eigen::Vector3d& scanner : scanner_places(index, same))
-    shells.push_back(around(scanner, std::max(same, kSevenDigits * farthest(some, scanner))));
+    shells.push_back(around(scanner, std::max(same, seven_digits(some, scanner))));
   shells = with_steps(shells, some, Steps::of_part);
   shells.erase(std::remove_if(shells.begin(), shells.end(), [&](auto& of) { return !fill_in(some, of); }),
                shells.end());
   for (const Eigen::Vector3d& direction : step_directions(index, rounding))
     planes.push_back(along(direction, same));
   planes = with_steps(planes, some, Steps::of_part);
-  if (are_of_grid(planes, some)) planes.clear();
+  for (std::size_t k = 0; k < planes.size(); ++k)
+    if (are_of_grid(some, planes, k)) planes.clear();
   std::move(planes.begin(), planes.end(), std::back_inserter(shells));
   std::vector<Terraces> all = that_hold_more(std::move(shells), some);
   all.erase(std::remove_if(all.begin(), all.end(), [&](const auto& of) { return are_none(of, index); }),
@@ -293,10 +277,11 @@ std::optional<DepthSteps> find_depth_steps(const SpatialIndex& index) {
   return DepthSteps(std::move(all), index);
 }
 
-std::optional<DepthSteps> find_grid(std::vector<double> nearest) {
+std::optional<DepthSteps> find_grid(std::vector<double> nearest, double rounding) {
   if (nearest.empty()) return {};
   const double most = quantile(nearest, 0.75), least = quantile(nearest, 0.25);
   if (!(most - least < kSame * least)) return {};
+  if (rounding > kSame * least && much_larger(least, rounding)) return {};
   return DepthSteps(least);
 }
 

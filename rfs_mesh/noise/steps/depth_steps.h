@@ -2,15 +2,16 @@
 /// terraces; a laser scanner that tells whole centimetres puts them on shells around itself.
 ///
 /// Terraces are found where a coordinate has less than a tenth as many values as the points that are looked
-/// at, strays and all; or
-/// else where a tenth of the points are as far from a place at which a scanner stood (scanner_places.h), all
-/// at multiples of one distance, or lie level along some direction (step_directions.h), and others, as of
-/// other cameras, lie free between them. Of several coordinates it is the one with the largest steps: before
-/// a wall a camera knows so few depths that the columns of its image leave few values across, too, other ones
-/// at every depth. Where they are the same at every depth, the points are on a grid of their own, and depth
-/// has no steps; where those around a point that are on its step are in a line, they are rings of a lathe's
-/// part or profiles of a line scanner. Other directions do not count whose rounding cannot be told from
-/// detail. Between two steps every depth is as likely, so a surface of normal n has noise of at least
+/// at, strays and all; or else where a tenth of the points, and so many more than by chance, are as far from
+/// a place at which a scanner stood (scanner_places.h), all at multiples of one distance, or lie level along
+/// some direction (step_directions.h), and others, as of other cameras, lie free between them. Of several
+/// coordinates it is the one with the largest steps: before a wall a camera knows so few depths that the
+/// columns of its image leave few values across, too, other ones at every depth. Where they are the same at
+/// every depth, the points are on a grid of their own, and depth has no steps; unless those of depth are
+/// twice as large or more, and the others what coordinates were rounded to since, as to whole millimetres.
+/// Where those around a point that are on its step are in a line, they are rings of a lathe's part or
+/// profiles of a line scanner. Other directions do not count whose rounding cannot be told from detail.
+/// Between two steps every depth is as likely, so a surface of normal n has noise of at least
 /// |n . ray| gap / sqrt(12) from them.
 #pragma once
 
@@ -38,6 +39,9 @@ class DepthSteps {
   /// Terraces::typical of the first, or the grid's.
   double typical() const { return typical_; }
 
+  /// Standard deviation of what coordinates were rounded by since: what scatters less lies within a step.
+  double rounding() const { return on_grid() ? 0 : rounding_noise(terraces_.front().same); }
+
   /// Whether they are larger than another's, by more than files round.
   bool exceed(const DepthSteps& other) const;
 
@@ -52,12 +56,13 @@ class DepthSteps {
   const SpatialIndex* index_ = nullptr;  ///< null: nine tenths of the points are on the first
 };
 
-/// O(log n): looks at up to 20,000 points, at up to 50,000 for a scanner's place. Nothing where there are no
-/// steps. \param index of at least one point.
-std::optional<DepthSteps> find_depth_steps(const SpatialIndex& index);
+/// O(log n): looks at up to 50,000 points. Nothing where there are no steps. \param index of at least one
+/// point. \param rounding of its coordinates (rounding.h): steps are larger.
+std::optional<DepthSteps> find_depth_steps(const SpatialIndex& index, double rounding);
 
 /// The steps of a grid in space, turned any way: the quartiles of the distances to the nearest point are the
-/// same. Nothing if they are not. \param nearest these distances, of some points.
-std::optional<DepthSteps> find_grid(std::vector<double> nearest);
+/// same. Nothing if they are not, or if rounding makes them so. \param nearest these distances, of some
+/// points. \param rounding of the coordinates (rounding.h).
+std::optional<DepthSteps> find_grid(std::vector<double> nearest, double rounding);
 
 }  // namespace rfsmooth::rfs_mesh

@@ -32,7 +32,7 @@ NoiseSites sites_of(const Positions& points) {
   const SpatialIndex index(points, {});
   const Context context = {};
   Places places = search_places(index, context);
-  const NoiseStart start = search_noise(places, nullptr);
+  const NoiseStart start = search_noise(places, nullptr, 0);
   return listen(index, listening_places(points, start.m), start, nullptr, context);
 }
 
@@ -135,7 +135,7 @@ TEST(NoiseSites, HearNoMoreThanIsSeenWithoutAWindow) {
       const SpatialIndex index(points, {});
       const Context context = {};
       Places places = search_places(index, context);
-      const NoiseStart start = search_noise(places, nullptr);
+      const NoiseStart start = search_noise(places, nullptr, 0);
       const NoiseSites sites = listen(index, listening_places(points, start.m), start, nullptr, {});
       std::size_t known = 0, above = 0;
       for (std::size_t s = 0; s < sites.at.size(); ++s) {

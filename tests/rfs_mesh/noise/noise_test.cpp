@@ -401,6 +401,18 @@ TEST(Noise, ThatNeighboursShareIsSeenAlsoWhereItIsLargerThanTheSpacing) {
     }
 }
 
+// Rounding to whole units makes exact planes of few points, which have no noise.
+TEST(Noise, ThatNeighboursShareIsSeenInFewDecimalsToo) {
+  const Positions points = square_with_shared_noise(30, 0.35 * kCell);
+  const NoiseField noise = measured(points);
+  ASSERT_GT(noise.shared, 10);
+  for (const double unit : {0.1 * kCell, 0.3 * kCell}) {
+    Positions rounded = points;
+    for (Eigen::Vector3d& p : rounded) p = unit * (p / unit).array().round().matrix();
+    EXPECT_NEAR(measured(rounded).sigma / noise.sigma, 1, 0.15) << unit / kCell;
+  }
+}
+
 TEST(Noise, WithLoudPointsAmongTheOthersIsNotShared) {
   std::mt19937_64 engine(4);
   std::normal_distribution<double> normal(0, 0.4 * kCell);

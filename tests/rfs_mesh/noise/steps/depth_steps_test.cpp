@@ -6,6 +6,8 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include "rfs_mesh/noise/steps/rounding.h"
+
 using namespace rfsmooth;
 using rfs_mesh::SpatialIndex;
 using rfs_mesh::Terraces;
@@ -16,11 +18,18 @@ namespace {
 std::optional<Terraces> find_terraces(const Positions& points) {
   const Context context;
   const SpatialIndex index(points, context);
-  const auto steps = rfs_mesh::find_depth_steps(index);
+  const auto steps = rfs_mesh::find_depth_steps(index, rfs_mesh::rounding_of(points));
   if (!steps) return {};
   EXPECT_EQ(steps->terraces().size(), 1);
   EXPECT_EQ(steps->typical(), steps->terraces().front().typical);
   return steps->terraces().front();
+}
+
+/// The coordinates of `axes` to whole multiples of `step`.
+Positions rounded(Positions points, double step, const std::vector<Eigen::Index>& axes = {0, 1, 2}) {
+  for (Eigen::Vector3d& p : points)
+    for (const Eigen::Index axis : axes) p[axis] = step * std::round(p[axis] / step);
+  return points;
 }
 
 /// Random points; the coordinates of `axes` are whole multiples of `step`.
@@ -28,12 +37,8 @@ Positions stepped(double step, const std::vector<Eigen::Index>& axes) {
   std::mt19937_64 engine(2);
   std::uniform_real_distribution<double> uniform;
   Positions points;
-  for (int i = 0; i < 5000; ++i) {
-    Eigen::Vector3d p(uniform(engine), uniform(engine), uniform(engine));
-    for (const Eigen::Index axis : axes) p[axis] = step * std::round(p[axis] / step);
-    points.push_back(p);
-  }
-  return points;
+  for (int i = 0; i < 5000; ++i) points.emplace_back(uniform(engine), uniform(engine), uniform(engine));
+  return rounded(std::move(points), step, axes);
 }
 
 TEST(DepthSteps, AreFoundInWhicheverCoordinateHasThem) {
@@ -79,12 +84,37 @@ TEST(DepthSteps, AreFoundInACloudThatWasTurned) {
 }
 
 TEST(DepthSteps, AreFoundInATurnedCloudOfFewDecimals) {
-  Positions points = turned(terraces());
-  for (Eigen::Vector3d& p : points) p = 5e-4 * (p / 5e-4).array().round().matrix();
-  const auto steps = find_terraces(points);
+  const auto steps = find_terraces(rounded(turned(terraces()), 5e-4));
   ASSERT_TRUE(steps);
   EXPECT_NEAR(std::abs(steps->direction.dot(kTurn.col(2))), 1, 1e-8);
   EXPECT_NEAR(steps->typical, 0.01, 5e-4);
+}
+
+TEST(DepthSteps, AreFoundWhereCoordinatesWereRoundedSince) {
+  for (const double decimals : {1e-3, 4e-3}) {
+    const auto steps = find_terraces(rounded(terraces(), decimals));
+    ASSERT_TRUE(steps) << decimals;
+    EXPECT_EQ(steps->direction, Eigen::Vector3d::UnitZ());
+    EXPECT_NEAR(steps->typical, 0.01, decimals);
+  }
+  // Whole millimetres of a small cloud are few values along every axis.
+  const auto steps = find_terraces(rounded(turned(terraces(0.015)), 1e-3));
+  ASSERT_TRUE(steps);
+  EXPECT_NEAR(std::abs(steps->direction.dot(kTurn.col(2))), 1, 1e-6);
+  EXPECT_NEAR(steps->typical, 0.015, 1e-3);
+}
+
+// Single precision keeps fewer digits of the larger coordinate: half a metre north of the equator.
+TEST(DepthSteps, AreThoseOfTheCoarserAxisOfALattice) {
+  const Positions points = rounded(stepped(0.05, {1}), 1.0 / 128, {0});
+  for (const bool turn : {false, true}) {
+    const auto steps = find_terraces(turn ? turned(points) : points);
+    ASSERT_TRUE(steps) << turn;
+    const Eigen::Vector3d axis = Eigen::Vector3d::UnitY(),
+                          along = turn ? Eigen::Vector3d(kTurn * axis) : axis;
+    EXPECT_NEAR(std::abs(steps->direction.dot(along)), 1, 1e-8);
+    EXPECT_NEAR(steps->typical, 0.05, 1e-5);
+  }
 }
 
 // Seven digits of a wide cloud are coarse beside what is near its scanner: there many points are level by
@@ -123,7 +153,7 @@ TEST(DepthSteps, OfTwoCamerasAreThoseOfEachWhereItLooked) {
     points.emplace_back(beside + Eigen::Vector3d(uniform(engine), uniform(engine), uniform(engine)));
   const Context context;
   const SpatialIndex index(points, context);
-  const auto steps = rfs_mesh::find_depth_steps(index);
+  const auto steps = rfs_mesh::find_depth_steps(index, rfs_mesh::rounding_of(points));
   ASSERT_TRUE(steps);
   ASSERT_EQ(steps->terraces().size(), 2);
   EXPECT_NEAR(steps->typical(), 0.01, 1e-5);
@@ -185,7 +215,7 @@ TEST(Grid, IsFoundWhereMostAreAsFarFromTheirNearest) {
   std::vector<double> nearest(1000, 0.05);
   for (std::size_t i = 0; i < nearest.size(); i += 2) nearest[i] *= 1 + 1e-6;  // as files round
   for (std::size_t i = 0; i < nearest.size(); i += 12) nearest[i] *= std::sqrt(2.0);
-  const auto grid = rfs_mesh::find_grid(nearest);
+  const auto grid = rfs_mesh::find_grid(nearest, 0);
   ASSERT_TRUE(grid);
   EXPECT_TRUE(grid->on_grid());
   EXPECT_NEAR(grid->typical(), 0.05, 1e-6);
@@ -193,12 +223,20 @@ TEST(Grid, IsFoundWhereMostAreAsFarFromTheirNearest) {
     EXPECT_NEAR(grid->sigma({1, 2, 3}, normal), 0.05 / std::sqrt(12.0), 1e-6);
 }
 
+// Neighbours of a camera's image are eleven millimetres apart, or twelve, in a file of whole millimetres.
+TEST(Grid, IsNoneWhereDecimalsMakeDistancesTheSame) {
+  const std::vector<double> nearest(100, 11);
+  EXPECT_FALSE(rfs_mesh::find_grid(nearest, 1));
+  EXPECT_TRUE(rfs_mesh::find_grid(nearest, 11));  // a grid along the axes
+  EXPECT_TRUE(rfs_mesh::find_grid(nearest, 1e-6));
+}
+
 TEST(Grid, IsNoneElsewhere) {
-  EXPECT_FALSE(rfs_mesh::find_grid({}));
-  EXPECT_FALSE(rfs_mesh::find_grid({0, 0, 0}));  // of points that coincide
+  EXPECT_FALSE(rfs_mesh::find_grid({}, 0));
+  EXPECT_FALSE(rfs_mesh::find_grid({0, 0, 0}, 0));  // of points that coincide
   std::vector<double> nearest(1000, 0.05);
   for (std::size_t i = 0; i < nearest.size(); i += 3) nearest[i] *= 1.01;
-  EXPECT_FALSE(rfs_mesh::find_grid(nearest));
+  EXPECT_FALSE(rfs_mesh::find_grid(nearest, 0));
 }
 
 /// A wall two units before a laser that tells ranges in multiples of `step` (0: any), in a file that rounds
@@ -270,7 +308,7 @@ TEST(DepthSteps, OfTwoScannersAreThoseOfEachWhereItStood) {
   for (const Eigen::Vector3d& p : wall_before_laser(0.01, 1e-7, second)) points.push_back(p);
   const Context context;
   const SpatialIndex index(points, context);
-  const auto steps = rfs_mesh::find_depth_steps(index);
+  const auto steps = rfs_mesh::find_depth_steps(index, rfs_mesh::rounding_of(points));
   ASSERT_TRUE(steps);
   ASSERT_EQ(steps->terraces().size(), 2);
   for (const Eigen::Vector3d& scanner : {first, second})
