@@ -22,8 +22,8 @@ constexpr std::size_t kFold = 5;  // one point of so many is held out; with 8 fe
 // Of s over the radius of the balls: in narrower ones quadrics lie anyhow in the slab.
 constexpr double kThickSlab = 2 * kFlatSlab;
 constexpr double kThickAtFirst = 0.5;  // the same of sigma as it was read, which may be too much
-// Standard errors: twice as many take quadrics that are too wide; so much less, and wider ones are not tried.
-constexpr double kAsLikely = 0.5, kSurelyLess = 3;
+// Standard errors: twice as many take quadrics that are too wide.
+constexpr double kAsLikely = 0.5;
 constexpr std::size_t kTried = 12;  // values of s, each kSameNoise times less
 using OfEach = std::array<double, kTried>;
 
@@ -76,8 +76,8 @@ class HeldOut {
       all.push_back(std::move(found));
       if (all.back().mean > all[best].mean)
         best = all.size() - 1;
-      else if (likelier(all[best], all.back()) > kSurelyLess)
-        break;
+      else if (likelier(all[best], all.back()) > kNoiseReach)
+        break;  // wider ones are less likely, too
     }
     if (all.empty()) return {};
     std::size_t widest = best;

@@ -115,11 +115,6 @@ std::vector<Terraces> with_steps(const std::vector<Terraces>& all, const Positio
   return found;
 }
 
-/// Whether steps are so much larger than others that these make no difference.
-bool much_larger(double steps, double others) {
-  return (1 + kSame) * steps > kLouder * others;
-}
-
 /// Whether the commonest depth has most of the steps along another direction: more than half of the different
 /// ones that as many random draws from all of them would show. A grid shows all, a camera's columns, which
 /// are at other places at any other depth, a quarter or less.
@@ -134,19 +129,6 @@ bool is_same_at_depths(const Positions& points, const Terraces& depth, const Ter
   std::sort(most.begin(), most.end());
   most.erase(std::unique(most.begin(), most.end()), most.end());
   return drawn > 0 && 2 * double(most.size()) > values * (1 - std::exp(-drawn / values));
-}
-
-/// Whether steps are those of a grid, which others are the same at every depth of. Leaves those out that are,
-/// and so much smaller that it is none. \param depth of `all`: with those after it, which are smaller.
-bool are_of_grid(const Positions& some, std::vector<Terraces>& all, std::size_t depth) {
-  bool grid = false;
-  const auto same = [&](const Terraces& other) {
-    if (!is_same_at_depths(some, all[depth], other)) return false;
-    grid = grid || !much_larger(all[depth].typical, other.typical);
-    return true;
-  };
-  all.erase(std::remove_if(all.begin() + std::ptrdiff_t(depth + 1), all.end(), same), all.end());
-  return grid;
 }
 
 /// Those that hold more than a tenth of all points beyond chance and what the ones before them hold: a
@@ -186,6 +168,29 @@ bool are_lines(const Terraces& terraces, const SpatialIndex& index) {
     }));
   }
   return double(several) > kLeastPart * double(looked_at) && double(wide) <= kLeastPart * double(several);
+}
+
+/// Steps of less cannot be told from detail.
+double detail_in_steps(const SpatialIndex& index) {
+  std::vector<double> apart;
+  std::vector<Neighbor> near;
+  for (const Eigen::Vector3d& p : sample(index.points(), kPlacesOfCloud)) {
+    index.nearest(p, 2, near);
+    apart.push_back(std::sqrt(near.back().squared_distance));
+  }
+  return kNoNoise * quantile(apart, 0.5) / rounding_noise(1);
+}
+
+/// Whether steps are those of a grid: others are the same at every depth. Leaves out others that are the same
+/// and less than `least`, which make no difference. \param depth of `all`: with those after it, which are
+/// smaller.
+bool are_of_grid(const Positions& some, std::vector<Terraces>& all, std::size_t depth, double least) {
+  const auto others = all.begin() + std::ptrdiff_t(depth + 1);
+  const auto same = std::stable_partition(
+      others, all.end(), [&](const Terraces& other) { return !is_same_at_depths(some, all[depth], other); });
+  if (same != all.end() && same->typical >= least) return true;
+  all.erase(same, all.end());
+  return false;
 }
 
 /// Whether they are no depths in steps: lines; or told to fewer digits than points are apart; or of rounding
@@ -250,8 +255,11 @@ std::optional<DepthSteps> find_depth_steps(const SpatialIndex& index, double rou
   std::vector<Terraces> planes, shells;
   for (const Eigen::Vector3d& axis : axes) planes.push_back(along(axis, 0));
   planes = with_steps(planes, some, Steps::of_all);
-  if (!planes.empty() && !much_larger(planes.front().typical, rounding)) planes.clear();  // those of decimals
-  if (!planes.empty() && are_of_grid(some, planes, 0)) return {};
+  // Steps of less are those of decimals.
+  const double decimals = (1 - kSame) * kLouder * rounding,
+               least = std::max(decimals, detail_in_steps(index));
+  if (!planes.empty() && planes.front().typical < decimals) planes.clear();
+  if (!planes.empty() && are_of_grid(some, planes, 0, least)) return {};
   planes.erase(
       std::remove_if(planes.begin(), planes.end(), [&](const auto& of) { return are_lines(of, index); }),
       planes.end());
@@ -268,7 +276,7 @@ std::optional<DepthSteps> find_depth_steps(const SpatialIndex& index, double rou
     planes.push_back(along(direction, same));
   planes = with_steps(planes, some, Steps::of_part);
   for (std::size_t k = 0; k < planes.size(); ++k)
-    if (are_of_grid(some, planes, k)) planes.clear();
+    if (are_of_grid(some, planes, k, least)) planes.clear();
   std::move(planes.begin(), planes.end(), std::back_inserter(shells));
   std::vector<Terraces> all = that_hold_more(std::move(shells), some);
   all.erase(std::remove_if(all.begin(), all.end(), [&](const auto& of) { return are_none(of, index); }),
@@ -281,7 +289,7 @@ std::optional<DepthSteps> find_grid(std::vector<double> nearest, double rounding
   if (nearest.empty()) return {};
   const double most = quantile(nearest, 0.75), least = quantile(nearest, 0.25);
   if (!(most - least < kSame * least)) return {};
-  if (rounding > kSame * least && much_larger(least, rounding)) return {};
+  if (rounding > kSame * least && least > kLouder * rounding) return {};
   return DepthSteps(least);
 }
 

@@ -106,7 +106,7 @@ TEST(DepthSteps, AreFoundWhereCoordinatesWereRoundedSince) {
 
 // Single precision keeps fewer digits of the larger coordinate: half a metre north of the equator.
 TEST(DepthSteps, AreThoseOfTheCoarserAxisOfALattice) {
-  const Positions points = rounded(stepped(0.05, {1}), 1.0 / 128, {0});
+  const Positions points = rounded(stepped(0.05, {1}), 1.0 / 400, {0});
   for (const bool turn : {false, true}) {
     const auto steps = find_terraces(turn ? turned(points) : points);
     ASSERT_TRUE(steps) << turn;
