@@ -170,15 +170,15 @@ bool are_lines(const Terraces& terraces, const SpatialIndex& index) {
   return double(several) > kLeastPart * double(looked_at) && double(wide) <= kLeastPart * double(several);
 }
 
-/// Steps of less cannot be told from detail.
-double detail_in_steps(const SpatialIndex& index) {
+/// The median distance of points to their nearest.
+double median_nearest(const SpatialIndex& index) {
   std::vector<double> apart;
   std::vector<Neighbor> near;
   for (const Eigen::Vector3d& p : sample(index.points(), kPlacesOfCloud)) {
     index.nearest(p, 2, near);
     apart.push_back(std::sqrt(near.back().squared_distance));
   }
-  return kNoNoise * quantile(apart, 0.5) / rounding_noise(1);
+  return quantile(apart, 0.5);
 }
 
 /// Whether steps are those of a grid: others are the same at every depth. Leaves out others that are the same
@@ -255,9 +255,11 @@ std::optional<DepthSteps> find_depth_steps(const SpatialIndex& index, double rou
   std::vector<Terraces> planes, shells;
   for (const Eigen::Vector3d& axis : axes) planes.push_back(along(axis, 0));
   planes = with_steps(planes, some, Steps::of_all);
-  // Steps of less are those of decimals.
-  const double decimals = (1 - kSame) * kLouder * rounding,
-               least = std::max(decimals, detail_in_steps(index));
+  // Steps of less are those of decimals, or cannot be told from detail. Decimals no finer than points are
+  // from each other put them on a grid.
+  const double apart = median_nearest(index),
+               decimals = rounding < (1 - kSame) * apart ? (1 - kSame) * kLouder * rounding : 0,
+               least = std::max(decimals, kNoNoise * apart / rounding_noise(1));
   if (!planes.empty() && planes.front().typical < decimals) planes.clear();
   if (!planes.empty() && are_of_grid(some, planes, 0, least)) return {};
   planes.erase(
