@@ -185,12 +185,14 @@ double median_nearest(const SpatialIndex& index) {
 /// and less than `least`, which make no difference. \param depth of `all`: with those after it, which are
 /// smaller.
 bool are_of_grid(const Positions& some, std::vector<Terraces>& all, std::size_t depth, double least) {
-  const auto others = all.begin() + std::ptrdiff_t(depth + 1);
-  const auto same = std::stable_partition(
-      others, all.end(), [&](const Terraces& other) { return !is_same_at_depths(some, all[depth], other); });
-  if (same != all.end() && same->typical >= least) return true;
-  all.erase(same, all.end());
-  return false;
+  double largest = 0;  // of the same
+  const auto same = [&](const Terraces& other) {
+    if (!is_same_at_depths(some, all[depth], other)) return false;
+    largest = std::max(largest, other.typical);
+    return true;
+  };
+  all.erase(std::remove_if(all.begin() + std::ptrdiff_t(depth + 1), all.end(), same), all.end());
+  return largest >= least;
 }
 
 /// Whether they are no depths in steps: lines; or told to fewer digits than points are apart; or of rounding

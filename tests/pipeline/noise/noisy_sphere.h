@@ -68,4 +68,17 @@ inline double rms(const Positions& points, const std::function<double(const Eige
   return std::sqrt(sum / double(points.size()));
 }
 
+/// Of the heights over z = `level`.
+inline double rms_height(const Positions& points, double level) {
+  double sum = 0;
+  for (const Eigen::Vector3d& p : points) sum += std::pow(p.z() - level, 2);
+  return std::sqrt(sum / double(points.size()));
+}
+
+inline double rms_move(const Positions& from, const Positions& to) {
+  double sum = 0;
+  for (std::size_t i = 0; i < from.size(); ++i) sum += (to[i] - from[i]).squaredNorm();
+  return std::sqrt(sum / double(from.size()));
+}
+
 }  // namespace rfsmooth::noisy

@@ -91,7 +91,7 @@ TEST(DepthSteps, AreFoundInATurnedCloudOfFewDecimals) {
 }
 
 TEST(DepthSteps, AreFoundWhereCoordinatesWereRoundedSince) {
-  for (const double decimals : {1e-3, 4e-3}) {
+  for (const double decimals : {1e-3, 2e-3}) {
     const auto steps = find_terraces(rounded(terraces(), decimals));
     ASSERT_TRUE(steps) << decimals;
     EXPECT_EQ(steps->direction, Eigen::Vector3d::UnitZ());
