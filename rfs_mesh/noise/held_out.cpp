@@ -18,10 +18,10 @@ namespace {
 
 // Chosen on meshes of libcgal-demo beside the development shapes (tests/bench/quality), 10,000 points, noise
 // of 1 to 3 %: on the development shapes the bound never acts.
-constexpr std::size_t kFold = 5;  // one point of so many is held out; with 8 fewer stacks are told
+constexpr std::size_t kFold = 5;        // one point of so many is held out; with 8 fewer stacks are told
+constexpr std::size_t kLooked = 20000;  // points of larger clouds: with 50,000 stacks are found no better
 // Of s over the radius of the balls: in narrower ones quadrics lie anyhow in the slab.
 constexpr double kThickSlab = 2 * kFlatSlab;
-constexpr double kThickAtFirst = 0.5;  // the same of sigma as it was read, which may be too much
 // Standard errors: twice as many take quadrics that are too wide.
 constexpr double kAsLikely = 0.5;
 constexpr std::size_t kTried = 12;  // values of s, each kSameNoise times less
@@ -46,7 +46,7 @@ double likelier(const Likelihood& a, const Likelihood& b) {
 /// The points that are fitted, and those that are held out.
 struct Parts {
   explicit Parts(const Positions& points) {
-    const Positions some = sample(points, kSampleOfCloud);
+    const Positions some = sample(points, kLooked);
     for (std::size_t i = 0; i < some.size(); ++i)
       (i % kFold == kFold / 2 ? held_out : fitted).push_back(some[i]);
   }
@@ -70,7 +70,6 @@ class HeldOut {
     std::size_t best = 0;
     for (std::size_t m = kNarrowestPatch; m <= widest_scatter(index_); m += m / 2) {
       const double radius = median_radius(index_, places, m);
-      if (sigma > kThickAtFirst * radius) continue;
       Likelihood found = look(m, sigma, radius);
       if (found.s > kThickSlab * radius) continue;
       all.push_back(std::move(found));
