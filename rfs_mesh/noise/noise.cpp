@@ -252,10 +252,10 @@ NoiseModel measure_noise(const SpatialIndex& index, const Context& context) {
   noise.spacing = mean_spacing(nearest, context);
   if (!nearest.empty()) noise.apart = quantile(nearest, kNearer);
   if (index.points().size() <= kNeighbourhood) return noise;
-  if (const auto voxel = voxel_size(index, quantile(nearest, 0.5), context))
-    noise.apart = std::max(noise.apart, *voxel);
+  const double typical = quantile(nearest, 0.5);
+  if (const auto voxel = voxel_size(index, typical, context)) noise.apart = std::max(noise.apart, *voxel);
   const double rounding = rounding_of(sample(index.points(), kSampleOfCloud));
-  std::optional<DepthSteps> steps = find_depth_steps(index, rounding);
+  std::optional<DepthSteps> steps = find_depth_steps(index, rounding, typical);
   const std::optional<DepthSteps> grid = find_grid(std::move(nearest), rounding);
   // Before a wall a camera's points are on a grid, too, of its pixels; a grid has few values along some
   // directions, too, no farther from each other.

@@ -170,17 +170,6 @@ bool are_lines(const Terraces& terraces, const SpatialIndex& index) {
   return double(several) > kLeastPart * double(looked_at) && double(wide) <= kLeastPart * double(several);
 }
 
-/// The median distance of points to their nearest.
-double median_nearest(const SpatialIndex& index) {
-  std::vector<double> apart;
-  std::vector<Neighbor> near;
-  for (const Eigen::Vector3d& p : sample(index.points(), kPlacesOfCloud)) {
-    index.nearest(p, 2, near);
-    apart.push_back(std::sqrt(near.back().squared_distance));
-  }
-  return quantile(apart, 0.5);
-}
-
 /// Whether steps are those of a grid: others are the same at every depth. Leaves out others that are the same
 /// and less than `least`, which make no difference. \param depth of `all`: with those after it, which are
 /// smaller.
@@ -251,7 +240,7 @@ double DepthSteps::sigma(const Eigen::Vector3d& at, const Eigen::Vector3d& norma
   return of != nullptr ? of->sigma(at, normal) : 0;
 }
 
-std::optional<DepthSteps> find_depth_steps(const SpatialIndex& index, double rounding) {
+std::optional<DepthSteps> find_depth_steps(const SpatialIndex& index, double rounding, double nearest) {
   const Positions some = sample(index.points(), kSampleOfCloud);
   const Positions axes = {Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ()};
   std::vector<Terraces> planes, shells;
@@ -259,9 +248,8 @@ std::optional<DepthSteps> find_depth_steps(const SpatialIndex& index, double rou
   planes = with_steps(planes, some, Steps::of_all);
   // Steps of less are those of decimals, or cannot be told from detail. Decimals no finer than points are
   // from each other put them on a grid.
-  const double apart = median_nearest(index),
-               decimals = rounding < (1 - kSame) * apart ? (1 - kSame) * kLouder * rounding : 0,
-               least = std::max(decimals, kNoNoise * apart / rounding_noise(1));
+  const double decimals = rounding < (1 - kSame) * nearest ? (1 - kSame) * kLouder * rounding : 0,
+               least = std::max(decimals, kNoNoise * nearest / rounding_noise(1));
   if (!planes.empty() && planes.front().typical < decimals) planes.clear();
   if (!planes.empty() && are_of_grid(some, planes, 0, least)) return {};
   planes.erase(

@@ -7,8 +7,8 @@
 /// some direction (step_directions.h), and others, as of other cameras, lie free between them. Of several
 /// coordinates it is the one with the largest steps: before a wall a camera knows so few depths that the
 /// columns of its image leave few values across, too, other ones at every depth. Where they are the same at
-/// every depth, the points are on a grid of their own, and depth has no steps; unless those of depth are
-/// twice as large or more, and the others what coordinates were rounded to since, as to whole millimetres.
+/// every depth, the points are on a grid of their own, and depth has no steps; unless the others
+/// are what coordinates were rounded to since, as to whole millimetres, or cannot be told from detail.
 /// Where those around a point that are on its step are in a line, they are rings of a lathe's part or
 /// profiles of a line scanner. Other directions do not count whose rounding cannot be told from detail.
 /// Between two steps every depth is as likely, so a surface of normal n has noise of at least
@@ -57,8 +57,9 @@ class DepthSteps {
 };
 
 /// O(log n): looks at up to 50,000 points. Nothing where there are no steps. \param index of at least one
-/// point. \param rounding of its coordinates (rounding.h): steps are larger.
-std::optional<DepthSteps> find_depth_steps(const SpatialIndex& index, double rounding);
+/// point. \param rounding of its coordinates (rounding.h): steps are larger. \param nearest the median
+/// distance of points to their nearest.
+std::optional<DepthSteps> find_depth_steps(const SpatialIndex& index, double rounding, double nearest);
 
 /// The steps of a grid in space, turned any way: the quartiles of the distances to the nearest point are the
 /// same. Nothing if they are not, or if rounding makes them so. \param nearest these distances, of some

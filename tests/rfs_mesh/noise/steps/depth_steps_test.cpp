@@ -6,6 +6,8 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include "base/quantile.h"
+#include "rfs_mesh/fit/local_surface.h"
 #include "rfs_mesh/noise/steps/rounding.h"
 
 using namespace rfsmooth;
@@ -14,11 +16,16 @@ using rfs_mesh::Terraces;
 
 namespace {
 
+std::optional<rfs_mesh::DepthSteps> found_in(const SpatialIndex& index) {
+  std::vector<double> nearest = rfs_mesh::nearest_distances(index, {});
+  return rfs_mesh::find_depth_steps(index, rfs_mesh::rounding_of(index.points()), quantile(nearest, 0.5));
+}
+
 /// The only terraces of the points, if they have any.
 std::optional<Terraces> find_terraces(const Positions& points) {
   const Context context;
   const SpatialIndex index(points, context);
-  const auto steps = rfs_mesh::find_depth_steps(index, rfs_mesh::rounding_of(points));
+  const auto steps = found_in(index);
   if (!steps) return {};
   EXPECT_EQ(steps->terraces().size(), 1);
   EXPECT_EQ(steps->typical(), steps->terraces().front().typical);
@@ -153,7 +160,7 @@ TEST(DepthSteps, OfTwoCamerasAreThoseOfEachWhereItLooked) {
     points.emplace_back(beside + Eigen::Vector3d(uniform(engine), uniform(engine), uniform(engine)));
   const Context context;
   const SpatialIndex index(points, context);
-  const auto steps = rfs_mesh::find_depth_steps(index, rfs_mesh::rounding_of(points));
+  const auto steps = found_in(index);
   ASSERT_TRUE(steps);
   ASSERT_EQ(steps->terraces().size(), 2);
   EXPECT_NEAR(steps->typical(), 0.01, 1e-5);
@@ -308,7 +315,7 @@ TEST(DepthSteps, OfTwoScannersAreThoseOfEachWhereItStood) {
   for (const Eigen::Vector3d& p : wall_before_laser(0.01, 1e-7, second)) points.push_back(p);
   const Context context;
   const SpatialIndex index(points, context);
-  const auto steps = rfs_mesh::find_depth_steps(index, rfs_mesh::rounding_of(points));
+  const auto steps = found_in(index);
   ASSERT_TRUE(steps);
   ASSERT_EQ(steps->terraces().size(), 2);
   for (const Eigen::Vector3d& scanner : {first, second})
