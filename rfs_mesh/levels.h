@@ -40,6 +40,9 @@ constexpr double kBeyond = 1.1;
 /// of it: a radius of 5.5 sigma.
 constexpr double kFlatSlab = 0.18;
 
+/// The most of a ball that tells anything of a slab: in a narrower one any quadric lies within it.
+constexpr double kThickSlab = 2 * kFlatSlab;
+
 /// Times: by so much at most grows what is seen of noise, from m to 2 m points: it does where the ball of
 /// them is inside a slab of noisy points, as the radius does. The cube root of 2; faster growth is shape.
 constexpr double kGrowthOfNoise = 1.26;

@@ -20,8 +20,6 @@ namespace {
 // of 1 to 3 %: on the development shapes the bound never acts.
 constexpr std::size_t kFold = 5;        // one point of so many is held out; with 8 fewer stacks are told
 constexpr std::size_t kLooked = 20000;  // points of larger clouds: with 50,000 stacks are found no better
-// Of s over the radius of the balls: in narrower ones quadrics lie anyhow in the slab.
-constexpr double kThickSlab = 2 * kFlatSlab;
 // Standard errors: twice as many take quadrics that are too wide.
 constexpr double kAsLikely = 0.5;
 constexpr std::size_t kTried = 12;  // values of s, each kSameNoise times less

@@ -40,9 +40,6 @@
 
 namespace rfsmooth::rfs_mesh {
 
-/// Times: so much calmer sites say nothing of a place, and a cloud with such a tenth is not evenly noisy.
-constexpr double kMuchLouder = 3;
-
 /// By site: its noise over the figure of the cloud. \param figure typical of sites.sigma, positive.
 /// O(sites^2). Parallel, deterministic.
 std::vector<double> relative_noise(const NoiseSites& sites, double figure, const Context& context);

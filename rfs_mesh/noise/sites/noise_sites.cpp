@@ -113,6 +113,23 @@ class Listener {
     return fits_;
   }
 
+  /// Silences far louder sites whose ball never came to hold what they show, however many points it took:
+  /// leaves and twigs fill any ball, and are no surface. They have the noise of the start, and whoever speaks
+  /// near them speaks for them.
+  void silence_volumes() {
+    for_each_index(
+        context_, group_.size(),
+        [&](std::size_t s) {
+          if (!(sigma[s] > kMuchLouder * start_) || m[s] >= widest_ || floor[s] > 0) return;
+          std::vector<double> radius;
+          for (const Neighbor& q : group_[s]) radius.push_back(fits_[q.index].radius);
+          if (sigma[s] <= kThickSlab * quantile(radius, 0.5)) return;
+          speaks[s] = 0;
+          sigma[s] = start_;
+        },
+        64);
+  }
+
   /// By site: the radius of its ball over the root of m, so that balls of more points do not count as more
   /// surface. \param all fits to m points
   std::vector<double> reaches(const std::vector<Scatter>& all) const {
@@ -259,6 +276,7 @@ NoiseSites listen(const SpatialIndex& index, Positions at, const NoiseStart& sta
   for (int round = 0; round < kOpeningRounds && listener.open_windows(); ++round)
     ;
   for (int round = 0; round < 3; ++round) listener.hear(1, true);
+  listener.silence_volumes();
   const std::vector<double> windows = listener.sigma;
   sites.fits = listener.hear(1, false);
   for (std::size_t s = 0; s < windows.size(); ++s)

@@ -22,6 +22,10 @@
 /// their windows are as wide as that; two sheets that far apart would have been seen. Places that no fit
 /// speaks for take the window that is usual around them, then.
 ///
+/// Leaves and twigs fill a ball of any width: what scatters far more than the start by more than a third of
+/// the ball's radius, though more points were taken again and again, is no surface. Such a site does not
+/// speak, and has what those around it say.
+///
 /// What a site sees without any window (site_views.h) bounds what it shows in one: two sheets seen there keep
 /// windows as narrow as each of them is, nothing is louder than nearly all of the nearest sites see, and
 /// depths in steps, shared noise and layers are a floor.

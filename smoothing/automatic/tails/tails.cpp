@@ -17,7 +17,6 @@ namespace {
 constexpr double kLeastFar = 0.003;
 // s: what lies beyond is a stray and does not say how wide the tails are.
 constexpr double kFarthestTail = 12;
-constexpr double kMostInTails = 0.35;  // more is noise that differs over the cloud
 constexpr int kTailRounds = 50;
 
 /// Standard deviation of a normal distribution with the same median of absolute values.

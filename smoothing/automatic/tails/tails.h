@@ -22,6 +22,9 @@
 
 namespace rfsmooth::smoothing {
 
+/// Share of the points: more are noise that differs over the cloud, or around a point that is shape.
+constexpr double kMostInTails = 0.35;
+
 /// The law of a cloud's tails.
 class Tails : public Statistics::Tails {
  public:

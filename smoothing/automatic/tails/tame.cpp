@@ -55,7 +55,8 @@ double far_together(const HeightField& field, const std::vector<float>& off, con
 }
 
 /// Where the neighbours are farther off than the noise explains, too, divides by how many times: that is
-/// noise which was measured too small there, or shape, and no tail.
+/// noise which was measured too small there, or shape, and no tail. Where more of them are far than tails
+/// have, nothing is known.
 void relate_to_neighbours(const HeightField& field, std::vector<float>& relative, std::vector<float>& least,
                           const Context& context) {
   constexpr float kMeanOfNormal = 0.766F;  // the mean of min(|x|, kMostOfOne), x normal
@@ -65,6 +66,10 @@ void relate_to_neighbours(const HeightField& field, std::vector<float>& relative
   });
   typical = field.local_mean(typical, context);
   for_each_index(context, typical.size(), [&](std::size_t i) {
+    if (typical[i] > kMeanOfNormal + float(kMostInTails) * (kMostOfOne - kMeanOfNormal)) {
+      relative[i] = least[i] = std::numeric_limits<float>::quiet_NaN();
+      return;
+    }
     const float times = std::max(1.0F, typical[i] / kMeanOfNormal);
     relative[i] /= times;
     least[i] /= times;

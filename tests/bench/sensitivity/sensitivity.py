@@ -78,6 +78,11 @@ def patched(path, chosen):
     return text
 
 
+def follow(text, names):
+    """The source with those of its constants evaluated as the program starts that are worked out from tuned ones."""
+    return re.sub(r"(?m)^(\s*)constexpr ([^=;(){}]* = [^;{}]*\b(?:" + "|".join(names) + r")\b[^;{}]*;)", r"\1const \2", text)
+
+
 def copy_sources(tree, chosen):
     if tree.exists():
         shutil.rmtree(tree)
@@ -86,9 +91,12 @@ def copy_sources(tree, chosen):
         if (ROOT / name).is_file() and not name.startswith(("clouds/pictures", "tests/fuzz/corpus")):
             (tree / name).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy(ROOT / name, tree / name)
+    of_headers = {key.split(":")[1] for key in chosen if not key.split(":")[0].endswith(".cpp")}
     for path in sources():
-        if any(c.key in chosen for _, of_it in constants_in(path) for c in of_it):
-            (tree / path.relative_to(ROOT)).write_text(patched(path, chosen))
+        own = {c.name for _, of_it in constants_in(path) for c in of_it if c.key in chosen}
+        text = patched(path, chosen) if own else path.read_text()
+        names = own | of_headers
+        (tree / path.relative_to(ROOT)).write_text(follow(text, names) if names else text)
     (tree / "base/tuned.h").write_text(HOOK)
 
 

@@ -85,6 +85,29 @@ TEST(NoiseSites, KnowTheLoudHalfFromTheCalmOne) {
   EXPECT_NEAR(median_where(sites, 0.55, 0.95) / loud, 1, 0.25);
 }
 
+// A quadric through any number of leaves leaves a part of the ball that they fill.
+TEST(NoiseSites, LeavesAreNoSurfaceAndSpeakOfNoNoise) {
+  const double sigma = 0.3 * kSpacingOfPlane;
+  Positions points = rough_square([&](double) { return sigma; });
+  constexpr double kCrown = 0.12;  // radius
+  const Eigen::Vector3d middle(0.5, 0.5, 0.4);
+  std::mt19937_64 engine(8);
+  std::uniform_real_distribution<double> even(-1, 1);
+  while (points.size() < kOfPlane + 700) {
+    const Eigen::Vector3d p(even(engine), even(engine), even(engine));
+    if (p.norm() < 1) points.emplace_back(middle + kCrown * p);
+  }
+  const NoiseSites sites = sites_of(points);
+  std::size_t in_crown = 0, loud = 0;
+  for (std::size_t s = 0; s < sites.at.size(); ++s) {
+    if ((sites.at[s] - middle).norm() > kCrown) continue;
+    ++in_crown;
+    loud += std::size_t(sites.speaks[s] != 0 && sites.sigma[s] > 3 * sigma);
+  }
+  EXPECT_GT(in_crown, 50u);
+  EXPECT_LT(5 * loud, in_crown) << loud;  // a few balls take as many points as any may
+}
+
 TEST(NoiseSites, TheUnitDoesNotMatter) {
   Positions points = rough_square([](double) { return 0.5 * kSpacingOfPlane; });
   const NoiseSites here = sites_of(points);
