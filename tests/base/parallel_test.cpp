@@ -15,7 +15,7 @@ using namespace rfsmooth;
 
 namespace {
 
-TEST(Parallel, SumHasTheSameBitsForAnyThreadCount) {
+TEST(Parallel, SumOfSeveralThreadsHasTheBitsOfOne) {
   double first = 0;
   for (const int threads : {1, 2, 3, 4, 7}) {
     Context context;

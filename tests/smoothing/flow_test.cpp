@@ -65,7 +65,7 @@ TEST_P(EveryFlow, LeavesFinitePositionsOnEveryMesh) {
   }
 }
 
-TEST_P(EveryFlow, SameBytesForAnyThreadCount) {
+TEST_P(EveryFlow, SameBytesForAnyNumberOfThreads) {
   Mesh first = support::icosphere(4);
   support::add_noise(first, 0.01, 1);
   Mesh second = first;

@@ -204,7 +204,7 @@ TEST(Equalize, NoPointMovesMoreThanHalfASpacing) {
   for (std::size_t i = 0; i < points.size(); ++i) EXPECT_LT((points[i] - before[i]).norm(), 0.55 * spacing);
 }
 
-TEST(Equalize, TurnsWithTheCloudAndIsTheSameForAnyNumberOfThreads) {
+TEST(Equalize, IsTheSameForAnyNumberOfThreadsAndTurnsWithTheCloud) {
   Positions points = random_sphere(2000), turned = points, again = points;
   const Eigen::Matrix3d turn =
       Eigen::AngleAxisd(0.4, Eigen::Vector3d(1, 2, -1).normalized()).toRotationMatrix();

@@ -133,7 +133,7 @@ TEST(Solver, WarmStartFromTheSolutionNeedsNoIteration) {
   EXPECT_EQ(solve(system, mesh.positions, x, {}, options, {}).iterations, 0);
 }
 
-TEST(Solver, SameBitsForAnyThreadCountAndAnyOriginOfTheStoppingTest) {
+TEST(Solver, SameBitsForAnyNumberOfThreadsAndAnyOriginOfTheStoppingTest) {
   Mesh mesh = support::icosphere(5);
   support::add_noise(mesh, 0.01, 1);
   const Operator op = umbrella(mesh, {});
