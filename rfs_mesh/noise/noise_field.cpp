@@ -15,7 +15,7 @@ namespace {
 
 // Chosen on the development shapes with noise of 0.1 to 4 spacings, Gaussian and along the ray
 // (tests/bench/noise), but for the narrow pair: that is for clouds of which one half is louder
-// (noise_test.cpp).
+// (noise_accuracy_test.cpp).
 constexpr double kAlike = 2.5;
 // How far below and above the mean a fit pulls in proportion: logarithm of variance. Edges and second sheets
 // are above, places within one step of the depths below.

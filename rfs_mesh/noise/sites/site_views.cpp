@@ -26,8 +26,8 @@ constexpr double kTwoDepths = 3;
 constexpr double kOfQuadric = 6;
 
 // Times, from kNeighbourhood to kPlateauTo points: less than this, and scatter is noise; more than that,
-// shape. Chosen on depths in steps and shared noise (noise_test.cpp), so that it says nothing on the clean
-// development shapes.
+// shape. Chosen on depths in steps and shared noise (noise_accuracy_test.cpp), so that it says nothing on
+// the clean development shapes.
 constexpr double kStops = 1.6, kNeverStops = 1.9;
 
 /// What scatter at kNeighbourhood points, `few`, and at kPlateauTo, `many`, makes sure of. \param radius of

@@ -1,15 +1,12 @@
 #include "rfs_mesh/noise/narrow_kernel.h"
 
 #include <cmath>
-#include <functional>
 #include <optional>
-#include <random>
-#include <string>
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-#include "rfs_mesh/noise/noise.h"
+#include "tests/rfs_mesh/noise/noisy_solids.h"
 #include "tests/support/shapes.h"
 
 using namespace rfsmooth;
@@ -18,21 +15,12 @@ using rfs_mesh::SpatialIndex;
 
 namespace {
 
-constexpr double kNoiseInSlab = 0.03, kMost = 5 * kNoiseInSlab;
+using test::kNoiseInSlab;
+using test::noisy;
+using test::rod;
+using test::stack;
 
-/// So many points of a surface, given by two uniform numbers, with isotropic noise.
-Positions noisy(std::size_t n, const std::function<Eigen::Vector3d(double, double)>& surface) {
-  std::mt19937_64 engine(3);
-  std::normal_distribution<double> normal(0, kNoiseInSlab);
-  std::uniform_real_distribution<double> uniform;
-  Positions points(n);
-  for (Eigen::Vector3d& p : points) {
-    const double u = uniform(engine), v = uniform(engine);
-    const double x = normal(engine), y = normal(engine), z = normal(engine);
-    p = surface(u, v) + Eigen::Vector3d(x, y, z);
-  }
-  return points;
-}
+constexpr double kMost = 5 * kNoiseInSlab;
 
 std::optional<rfs_mesh::NoiseInKernels> read_from(const Positions& points, double most = kMost) {
   const Context context;
@@ -47,18 +35,6 @@ double share_read(const Positions& points) {
 
 Eigen::Vector3d plane(double u, double v) {
   return {u, v, 0};
-}
-
-/// Along z, of length 2.
-Eigen::Vector3d rod(double radius, double u, double v) {
-  const double angle = 2 * M_PI * u;
-  return {radius * std::cos(angle), radius * std::sin(angle), 2 * v};
-}
-
-/// So many sheets of 1 x 1, so far apart.
-Eigen::Vector3d stack(int sheets, double apart, double u, double v) {
-  const double of_all = sheets * u, sheet = std::floor(of_all);
-  return {of_all - sheet, v, apart * sheet};
 }
 
 TEST(NarrowKernel, ReadsTheNoiseOfAPlaneAndOfASphere) {
@@ -111,21 +87,6 @@ TEST(NarrowKernel, BoundsNoiseOfLessThanASpacingAndDoesNotTellIt) {
 TEST(NarrowKernel, TellsNothingOfExactPoints) {
   const auto read = read_from(test::random_points(test::cube(), 5000, 1));
   EXPECT_FALSE(read && read->sigma);
-}
-
-// Windows alone took it for 2.9 and 1.5 times as much, and smoothed stacks to less than they were.
-TEST(NarrowKernel, BoundsTheWholeMeasureOnStacksAndRods) {
-  const auto measured = [](const Positions& points) {
-    const Context context;
-    return rfs_mesh::measure_noise(SpatialIndex(points, context), context).sigma / kNoiseInSlab;
-  };
-  EXPECT_NEAR(measured(noisy(24000, [](double u, double v) { return stack(5, 3 * kNoiseInSlab, u, v); })),
-              1.3, 0.3);
-  EXPECT_NEAR(measured(noisy(10000, [](double u, double v) { return rod(1.5 * kNoiseInSlab, u, v); })), 1.2,
-              0.2);
-  // Noise of 0.8 spacings, which windows alone took for 2.8 times as much.
-  EXPECT_NEAR(measured(noisy(1972, [](double u, double v) { return stack(3, 3.5 * kNoiseInSlab, u, v); })),
-              1.3, 0.3);
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 /// What `denoise` makes of noise that is not the same everywhere. Of noise that neighbours share:
-/// shared_noise_test.cpp; in steps and along lines: steps_and_rings_test.cpp; of several scans:
-/// merged_scans_test.cpp.
+/// shared_noise_accuracy_test.cpp; in steps and along lines: steps_and_rings_accuracy_test.cpp; of several
+/// scans: merged_scans_accuracy_test.cpp.
 #include <array>
 #include <cmath>
 #include <functional>
