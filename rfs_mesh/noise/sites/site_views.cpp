@@ -188,8 +188,17 @@ struct Sites {
     if (view.sheet == SiteView::kNone)
       view.floor = std::max(view.floor, plateau(less, seen, quantile(radius, 0.5)));
     view.told = seen < kStops * less;
-    // A stack of slices has few depths, too, and none of the scatter; a grid may be exact.
-    if (!on_grid()) view.floor = std::max(view.floor, std::min(seen, rounding_around(s, many)));
+  }
+
+  /// Raises `floor` to what depths in steps make sure of, as far as the widest fits show it: those to fewer
+  /// points may lie within a step. A stack of slices has few depths, too, and none of the scatter; a grid may
+  /// be exact.
+  void find_rounding(std::size_t s, const OpenFits& many, const OpenFits& widest, SiteView& view) const {
+    if (steps == nullptr || on_grid()) return;
+    std::vector<double> variances;
+    for (const Neighbor& q : groups[s]) variances.push_back(widest.all[q.index].variance);
+    const double seen = std::sqrt(quantile(variances, kTypical));
+    view.floor = std::max(view.floor, std::min(seen, rounding_around(s, many)));
   }
 };
 
@@ -283,8 +292,13 @@ std::vector<SiteView> look_without_windows(Places& places, const SiteGroups& gro
     for_each_index(
         context, groups.size(),
         [&](std::size_t s) { sites.find_floor(s, open.front(), open.back(), views[s]); }, 64);
+  const std::size_t narrow = open.size();
   for (; points <= std::min(kWidestView, widest_scatter(places.index())); points *= 2)
     open.push_back(fit_wide(places, points, context));
+  if (plateau)
+    for_each_index(
+        context, groups.size(),
+        [&](std::size_t s) { sites.find_rounding(s, open[narrow - 1], open.back(), views[s]); }, 64);
   if (plateau && !start.on_lines && !sites.on_grid()) find_shared_around(groups, open, views, context);
   hold_slabs(places, groups, open, views, context);
   return views;

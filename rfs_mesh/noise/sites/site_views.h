@@ -29,8 +29,8 @@
 /// s(24) and 0.65 s(192), where s(24) is less than 0.14 of the radius of its ball. Up to 1.9, and 0.2, this
 /// fades out. Equal scatter needs no such floor: it is plain noise, or two sheets. Where it is seen
 /// to have stopped, and neighbours err together, all of it is (shared_around.h). Counted steps
-/// (depth_steps.h) make sure of their rounding, as far as s(192) shows it. Clouds of fewer than 384 points
-/// have none of this.
+/// (depth_steps.h) make sure of their rounding, as far as s(1,536) shows it: far from a camera a step is
+/// wide, and 192 points lie within it. Clouds of fewer than 384 points have none of this.
 #pragma once
 
 #include <algorithm>
