@@ -103,10 +103,11 @@ void bound_sites(double heard, double most, NoiseSites& sites) {
     sites.sigma[s] = std::max(sites.floor[s], most / heard * sites.sigma[s]);
 }
 
-/// What the calmer fifth hears.
+/// What the calmer fifth hears, what fills a ball included.
 double calm_fifth(const NoiseSites& sites) {
   std::vector<Weighed> all;
-  for (std::size_t s = 0; s < sites.at.size(); ++s) all.push_back({sites.sigma[s], sites.area[s]});
+  for (std::size_t s = 0; s < sites.at.size(); ++s)
+    all.push_back({std::max(sites.sigma[s], sites.volume[s]), sites.area[s]});
   return quantile(all, kCalmFifth);
 }
 

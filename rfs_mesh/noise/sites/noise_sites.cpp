@@ -115,8 +115,9 @@ class Listener {
 
   /// Silences far louder sites whose ball never came to hold what they show, however many points it took:
   /// leaves and twigs fill any ball, and are no surface. They have the noise of the start, and whoever speaks
-  /// near them speaks for them.
-  void silence_volumes() {
+  /// near them speaks for them. Returns NoiseSites::volume.
+  std::vector<double> silence_volumes() {
+    std::vector<double> volume(group_.size(), 0);
     for_each_index(
         context_, group_.size(),
         [&](std::size_t s) {
@@ -124,10 +125,12 @@ class Listener {
           std::vector<double> radius;
           for (const Neighbor& q : group_[s]) radius.push_back(fits_[q.index].radius);
           if (sigma[s] <= kThickSlab * quantile(radius, 0.5)) return;
+          volume[s] = sigma[s];
           speaks[s] = 0;
           sigma[s] = start_;
         },
         64);
+    return volume;
   }
 
   /// By site: the radius of its ball over the root of m, so that balls of more points do not count as more
@@ -276,7 +279,7 @@ NoiseSites listen(const SpatialIndex& index, Positions at, const NoiseStart& sta
   for (int round = 0; round < kOpeningRounds && listener.open_windows(); ++round)
     ;
   for (int round = 0; round < 3; ++round) listener.hear(1, true);
-  listener.silence_volumes();
+  sites.volume = listener.silence_volumes();
   const std::vector<double> windows = listener.sigma;
   sites.fits = listener.hear(1, false);
   for (std::size_t s = 0; s < windows.size(); ++s)

@@ -30,9 +30,13 @@ std::string why_not(const DenoiseReport& done) {
       return "not smoothed, as --strength 0 asks";
     case NotSmoothed::too_few_points:
       return "too few points to smooth";
-    case NotSmoothed::too_little_noise:
-      if (rfs_mesh::stays(done.noise, done.spacing)) return "too little to smooth";  // exact, or nearly
-      return "too little to smooth (--strength 2 does it all the same)";
+    case NotSmoothed::too_little_noise: {
+      const double with_shape = done.noise > 0 ? done.noise : done.measured.typical;
+      if (rfs_mesh::stays(with_shape, done.spacing)) return "too little to smooth";  // exact, or nearly
+      return fmt::format(
+          "{}too little to smooth (--strength 2 does it all the same)",
+          done.noise > 0 ? "" : fmt::format("{:.3g} with what looks like shape, ", with_shape));
+    }
   }
   throw std::invalid_argument("why_not: not a NotSmoothed");
 }
