@@ -51,8 +51,8 @@ struct NoiseSites {
   std::vector<double> shape;   ///< part of s^2(m) taken off as shape, 0 to 0.6
   std::vector<double> area;    ///< of the surface around it, over that where points are sparse: 0 to 1
   std::vector<char> speaks;    ///< whether sigma is of this place; else it is what came nearest to it
-  std::vector<double> volume;  ///< scatter of points that fill a ball around it as leaves do, world units: it
-                               ///< does not speak, and has the noise of the start; 0: they do not
+  std::vector<double> volume;  ///< scatter of points that fill a ball around it as leaves do, world units,
+                               ///< which was not believed; 0: there was none
   std::vector<char> full;      ///< whether the site's own fit fills its window, which is its neighbours'
   std::vector<double> most;    ///< what is seen without windows around it, world units; infinite: not known
   std::vector<double> floor;   ///< least noise, of steps, shared noise or layers, or of each of two sheets

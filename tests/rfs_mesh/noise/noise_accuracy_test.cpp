@@ -332,6 +332,18 @@ TEST(Noise, OfFewDepthsIsTheirRounding) {
   EXPECT_NEAR(noise.sigma / along_normal, 1, 0.2);
 }
 
+// As far from a camera: 192 points lie within a terrace.
+TEST(Noise, OfTerracesWiderThanFitsIsTheirRoundingToo) {
+  constexpr std::size_t kPoints = 40000;
+  constexpr double kSpacing = 0.5 / 200, kStep = 4 * kSpacing, kSlope = 0.045;  // 90 spacings wide
+  Positions points = test::random_points(test::plane(), kPoints, 3);
+  for (auto& p : points) p.z() = kStep * std::round(kSlope * p.x() / kStep);
+  const NoiseField noise = measured(points);
+  EXPECT_NEAR(noise.step, kStep, 1e-12);
+  EXPECT_GT(noise.sigma, 0.5 * kStep / std::sqrt(12.0));
+  EXPECT_LT(noise.sigma, 1.2 * kStep / std::sqrt(12.0));
+}
+
 // Two sheets are farther apart than rounding explains.
 TEST(Noise, OfAWallInFewDepthsIsTheirRounding) {
   constexpr std::size_t kPoints = 6000;
