@@ -16,6 +16,7 @@ import re
 import shutil
 import subprocess
 import sys
+import time
 
 from constants import LITERAL, ROOT, classified, constants_in, sources
 
@@ -50,7 +51,7 @@ MEANING = """Each cell is the change when the constant is halved / doubled. CD, 
 (mean squares), mean over the clouds, in per cent. Normals: their mean angle to the true ones, a wrong side included, in per
 cent. Strays: points judged wrongly, in per cent of those planted. Time: processor time of all, in per cent, on a machine
 that did other work, too: 5 are chance. One shape: the largest share that one shape has in the change of CD, in per cent; what
-rests on one shape has 100. A row stays until its constant is measured again (`--only`)."""
+rests on one shape has 100. "fails": no end, or more than ten times as long. A row stays until its constant is measured again (`--only`)."""
 
 
 def tuned_line(constant):
@@ -118,11 +119,11 @@ class Run:
         return {key: row for key, row in self.rows.items() if (key[1] if key[1] in ("normals", "strays") else "laws") in kinds}
 
 
-def measure(program, options, tuning=None):
-    """A Run, or None if it fails."""
+def measure(program, options, tuning=None, limit=None):
+    """A Run, or None if it fails or takes more than `limit` seconds."""
     environment = dict(os.environ, **({"RFSMOOTH_TUNED": tuning} if tuning else {}))
     try:
-        done = subprocess.run([program, *options], env=environment, capture_output=True, text=True, timeout=1200)
+        done = subprocess.run([program, *options], env=environment, capture_output=True, text=True, timeout=limit)
     except subprocess.TimeoutExpired:
         return None
     return Run(done.stdout) if done.returncode == 0 else None
@@ -216,11 +217,13 @@ def main():
     copy_sources(tree, {c.key for c in chosen})
     build(tree)
     program = str(tree / "build/bench/bin/sensitivity")
+    started = time.monotonic()
     before = measure(program, options.words)
     if not before:
         sys.exit("the program fails as it is")
+    limit = 10 * options.jobs * (time.monotonic() - started)
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-        runs = {(c.key, f): pool.submit(measure, program, options.words, f"{c.key}={f}") for c in chosen for f in (0.5, 2)}
+        runs = {(c.key, f): pool.submit(measure, program, options.words, f"{c.key}={f}", limit) for c in chosen for f in (0.5, 2)}
         for c in chosen:
             row = row_of(c, before, *(runs[c.key, f].result() for f in (0.5, 2)))
             print(row, flush=True)
