@@ -6,7 +6,6 @@
 
 #include "clouds/shapes/sampling.h"
 #include "clouds/shapes/shapes.h"
-#include "tests/support/sanitized.h"
 
 using namespace rfsmooth;
 
@@ -32,7 +31,7 @@ class DenoiseQuality : public ::testing::TestWithParam<const char*> {
  protected:
   /// Points with isotropic noise of half a spacing.
   std::vector<double> noisy() const {
-    Positions points = clouds::sample(*shape_, test::kSanitized ? 5000 : 20000, 21);
+    Positions points = clouds::sample(*shape_, 20000, 21);
     clouds::add_noise(points, 0.5 * clouds::mean_spacing(points), 22);
     std::vector<double> xyz;
     for (const auto& p : points) xyz.insert(xyz.end(), {p.x(), p.y(), p.z()});

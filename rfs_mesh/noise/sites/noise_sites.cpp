@@ -76,10 +76,9 @@ class Listener {
         context_, group_.size(),
         [&](std::size_t s) {
           if (!any_of_group(s, renewed)) return;
-          std::vector<double> full, radius;
+          std::vector<double> full;
           for (const Neighbor& q : group_[s]) {
             const Scatter& fit = fits_[q.index];
-            radius.push_back(fit.radius);
             if (fit.within > 0) full.push_back(fit.within / (window_[q.index] * window_[q.index]));
           }
           if (!hear_at(s, said, 1)) {
@@ -88,7 +87,7 @@ class Listener {
             if (views[s].sheet == SiteView::kNone) open_window(s, empty ? kEven : quantile(full, 0.5));
             opened[s] = char(sigma[s] > window_[s]);
           }
-          const double reach = quantile(radius, 0.5);
+          const double reach = radius_around(s);
           if (sigma[s] > (all_seen(s) ? kSameNoise : kLouder) * start_ ||
               denser(reach / std::sqrt(double(m[s])), typical_reach))
             opened[s] = char(widen(s, reach) || opened[s] != 0);
@@ -122,9 +121,7 @@ class Listener {
         context_, group_.size(),
         [&](std::size_t s) {
           if (!(sigma[s] > kMuchLouder * start_) || m[s] >= widest_ || floor[s] > 0) return;
-          std::vector<double> radius;
-          for (const Neighbor& q : group_[s]) radius.push_back(fits_[q.index].radius);
-          if (sigma[s] <= kThickSlab * quantile(radius, 0.5)) return;
+          if (sigma[s] <= kThickSlab * radius_around(s)) return;
           volume[s] = sigma[s];
           speaks[s] = 0;
           sigma[s] = start_;
@@ -152,6 +149,13 @@ class Listener {
   }
 
  private:
+  /// The median radius of the balls around a site, world units.
+  double radius_around(std::size_t s) const {
+    std::vector<double> radii;
+    for (const Neighbor& q : group_[s]) radii.push_back(fits_[q.index].radius);
+    return quantile(radii, 0.5);
+  }
+
   /// Fits `times` m points where these, the window or the place are others than before. Returns where.
   std::vector<char> renew_fits(std::size_t times) {
     std::vector<char> wanted(group_.size());

@@ -176,15 +176,18 @@ struct Sites {
     view.floor = std::sqrt(seen[0].variance());
   }
 
+  /// What the fits around there typically scatter by, world units.
+  double scatter_around(std::size_t s, const OpenFits& fits) const {
+    std::vector<double> variances;
+    for (const Neighbor& q : groups[s]) variances.push_back(fits.all[q.index].variance);
+    return std::sqrt(quantile(variances, kTypical));
+  }
+
   /// Raises `floor`, sets `told`. What two sheets scatter does not grow, either.
   void find_floor(std::size_t s, const OpenFits& few, const OpenFits& many, SiteView& view) const {
-    std::vector<double> narrow, wide, radius;
-    for (const Neighbor& q : groups[s]) {
-      radius.push_back(few.all[q.index].radius);
-      narrow.push_back(few.all[q.index].variance);
-      wide.push_back(many.all[q.index].variance);
-    }
-    const double less = std::sqrt(quantile(narrow, kTypical)), seen = std::sqrt(quantile(wide, kTypical));
+    std::vector<double> radius;
+    for (const Neighbor& q : groups[s]) radius.push_back(few.all[q.index].radius);
+    const double less = scatter_around(s, few), seen = scatter_around(s, many);
     if (view.sheet == SiteView::kNone)
       view.floor = std::max(view.floor, plateau(less, seen, quantile(radius, 0.5)));
     view.told = seen < kStops * less;
@@ -195,10 +198,7 @@ struct Sites {
   /// be exact.
   void find_rounding(std::size_t s, const OpenFits& many, const OpenFits& widest, SiteView& view) const {
     if (steps == nullptr || on_grid()) return;
-    std::vector<double> variances;
-    for (const Neighbor& q : groups[s]) variances.push_back(widest.all[q.index].variance);
-    const double seen = std::sqrt(quantile(variances, kTypical));
-    view.floor = std::max(view.floor, std::min(seen, rounding_around(s, many)));
+    view.floor = std::max(view.floor, std::min(scatter_around(s, widest), rounding_around(s, many)));
   }
 };
 
@@ -288,17 +288,17 @@ std::vector<SiteView> look_without_windows(Places& places, const SiteGroups& gro
       64);
   forget_flat_noise(middle, views);
   const bool plateau = open.back().points == kPlateauTo;
-  if (plateau)
-    for_each_index(
-        context, groups.size(),
-        [&](std::size_t s) { sites.find_floor(s, open.front(), open.back(), views[s]); }, 64);
-  const std::size_t narrow = open.size();
+  const std::size_t many = open.size() - 1;
   for (; points <= std::min(kWidestView, widest_scatter(places.index())); points *= 2)
     open.push_back(fit_wide(places, points, context));
   if (plateau)
     for_each_index(
         context, groups.size(),
-        [&](std::size_t s) { sites.find_rounding(s, open[narrow - 1], open.back(), views[s]); }, 64);
+        [&](std::size_t s) {
+          sites.find_floor(s, open.front(), open[many], views[s]);
+          sites.find_rounding(s, open[many], open.back(), views[s]);
+        },
+        64);
   if (plateau && !start.on_lines && !sites.on_grid()) find_shared_around(groups, open, views, context);
   hold_slabs(places, groups, open, views, context);
   return views;

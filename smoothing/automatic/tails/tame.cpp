@@ -60,13 +60,15 @@ double far_together(const HeightField& field, const std::vector<float>& off, con
 void relate_to_neighbours(const HeightField& field, std::vector<float>& relative, std::vector<float>& least,
                           const Context& context) {
   constexpr float kMeanOfNormal = 0.766F;  // the mean of min(|x|, kMostOfOne), x normal
+  // The same where as many of the neighbours are far as tails may have.
+  constexpr float kMostTypical = kMeanOfNormal + float(kMostInTails) * (kMostOfOne - kMeanOfNormal);
   std::vector<float> typical(field.size());
   for_each_index(context, typical.size(), [&](std::size_t i) {
     typical[i] = std::isnan(relative[i]) ? kMeanOfNormal : std::min(kMostOfOne, std::abs(relative[i]));
   });
   typical = field.local_mean(typical, context);
   for_each_index(context, typical.size(), [&](std::size_t i) {
-    if (typical[i] > kMeanOfNormal + float(kMostInTails) * (kMostOfOne - kMeanOfNormal)) {
+    if (typical[i] > kMostTypical) {
       relative[i] = least[i] = std::numeric_limits<float>::quiet_NaN();
       return;
     }

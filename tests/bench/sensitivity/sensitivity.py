@@ -51,7 +51,8 @@ MEANING = """Each cell is the change when the constant is halved / doubled. CD, 
 (mean squares), mean over the clouds, in per cent. Normals: their mean angle to the true ones, a wrong side included, in per
 cent. Strays: points judged wrongly, in per cent of those planted. Time: processor time of all, in per cent, on a machine
 that did other work, too: 5 are chance. One shape: the largest share that one shape has in the change of CD, in per cent; what
-rests on one shape has 100. "fails": no end, or more than ten times as long. A row stays until its constant is measured again (`--only`)."""
+rests on one shape has 100. "fails": no end, or more than ten times as long. A row stays until its constant is measured again
+(`--only`)."""
 
 
 def tuned_line(constant):
@@ -221,6 +222,7 @@ def main():
     before = measure(program, options.words)
     if not before:
         sys.exit("the program fails as it is")
+    # Of the jobs each has its part of the machine, which this run had for itself.
     limit = 10 * options.jobs * (time.monotonic() - started)
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         runs = {(c.key, f): pool.submit(measure, program, options.words, f"{c.key}={f}", limit) for c in chosen for f in (0.5, 2)}

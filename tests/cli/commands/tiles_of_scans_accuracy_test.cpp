@@ -10,7 +10,6 @@
 
 #include "tests/cli/support/cloud_file.h"
 #include "tests/cli/support/tile_jobs.h"
-#include "tests/support/sanitized.h"
 #include "tests/support/scans.h"
 
 namespace rfsmooth::test {
@@ -67,7 +66,6 @@ std::vector<Scan> scans() {
       // The sample is less than half of the points, and their noise is that of the whole cloud.
       {kBoxCrop, "2000", "4000", 0.005, 0.04},
       {kBuildingCrop, "2000", "4000", 0.02, 0.05}};
-  if (kSanitized) return {all[1]};
   // Its points lie twice at one place, and its walls stand out of the noise as tails do: in some of its
   // tiles.
   for (const std::string& room : whole_scans({"room_scan1.pcd"}))
