@@ -62,6 +62,8 @@ struct NoiseField : NoiseModel {
   std::vector<double> local_shared;   ///< n: shared_at_sites near each point; empty: `shared` everywhere
   std::vector<double> local_told;     ///< n: told_at_sites near each point, 0 to 1; empty: 0 everywhere
 
+  /// Whether neighbours share it, here or there.
+  bool is_shared() const { return shared > 1 || !local_shared.empty(); }
   /// How many points say as much as one, near point i.
   double shared_by(std::size_t i) const { return local_shared.empty() ? shared : local_shared[i]; }
   /// How far the noise may have carried point i, world units: what is farther off is a stray.

@@ -8,7 +8,8 @@
 #include "rfs_mesh/levels.h"
 #include "rfs_mesh/noise/noise.h"
 #include "rfs_mesh/noise/scatter_statistics.h"
-#include "smoothing/automatic/equalize.h"
+#include "smoothing/automatic/along_surface/equalize.h"
+#include "smoothing/automatic/along_surface/slide_back.h"
 #include "smoothing/automatic/patches/height_field.h"
 
 namespace rfsmooth::smoothing {
@@ -128,12 +129,12 @@ std::optional<AutomaticReport> smooth_automatically(Mesh& mesh, const AutomaticO
   rfs_mesh::NeighborTable near = smooth.near.first(NearRows::kMost, context);
   smooth.near = {};
   if (!noise.across) {  // along lines only the normals are known
-    if (options.equalize) {
+    if (options.equalize && !noise.is_shared()) {
       const Equalized moved = equalize(mesh.positions, before, noise, std::move(near), context);
       report.equalized = moved.rms;
       report.equalized_most = moved.largest;
-    } else {  // back to where the guide took them from, so that they move along normals only
-      slide_back(mesh.positions, before, 1, std::move(near), context);
+    } else {
+      slide_back(mesh.positions, before, std::move(near), context);
     }
   }
   limit(before, noise.local, options.strength, report.tail_times, mesh.positions, context);

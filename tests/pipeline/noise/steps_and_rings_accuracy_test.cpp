@@ -1,6 +1,8 @@
 /// What `denoise` makes of depths and ranges in steps, and of the rings of a laser.
 #include <cmath>
 #include <random>
+#include <set>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -59,6 +61,34 @@ TEST(NoiseLaws, RangesInStepsAreSeenWhereverTheLaserStood) {
   EXPECT_NEAR(denoise(moved).measured.step, 0.01, 1e-4);
   for (Eigen::Vector3d& p : moved) p -= shift;
   EXPECT_LT(rms_off_walls(moved), 0.4 * rms_off_walls(room));
+}
+
+TEST(NoiseLaws, AWallBeforeADepthCameraIsNotTorn) {
+  // Pixels of a camera whose disparities are whole: terraces of 25 mm, a dozen pixels wide, at 3 m.
+  constexpr int kWide = 100, kHigh = 75, kCell = 3;
+  constexpr double kFocal = 525, kDisparity = 360, kSlope = 0.3;
+  Positions seen;
+  for (int v = -kHigh; v < kHigh; ++v)
+    for (int u = -kWide; u < kWide; ++u) {
+      const double depth = 3 / (1 - kSlope * u / kFocal), told = kDisparity / std::round(kDisparity / depth);
+      seen.emplace_back(told * u / kFocal, told * v / kFocal, told);
+    }
+  const Positions smooth = denoised(seen);
+  std::set<std::pair<int, int>> filled;
+  const auto cell = [](double at) { return int(std::floor((at + 0.5) / kCell)); };
+  double before = 0, after = 0;
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    const Eigen::Vector3d& p = smooth[i];
+    filled.emplace(cell(kFocal * p.x() / p.z()), cell(kFocal * p.y() / p.z()));
+    before += std::pow(seen[i].z() - 3 - kSlope * seen[i].x(), 2);
+    after += std::pow(p.z() - 3 - kSlope * p.x(), 2);
+  }
+  EXPECT_LT(std::sqrt(after / before), 0.25);
+  int cells = 0, empty = 0;
+  for (int v = cell(-kHigh) + 2; v < cell(kHigh) - 2; ++v)
+    for (int u = cell(-kWide) + 2; u < cell(kWide) - 2; ++u, ++cells) empty += int(filled.count({u, v}) == 0);
+  ASSERT_GT(cells, 2000);
+  EXPECT_LT(double(empty) / double(cells), 0.005);
 }
 
 TEST(NoiseLaws, ASlopeInDepthsOfStepsIsSmoothedBesideAnExactFloor) {

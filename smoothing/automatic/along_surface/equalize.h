@@ -40,13 +40,6 @@ struct Equalized {
   double rms = 0, largest = 0;
 };
 
-/// Gives smoothed points back a share of where they were along the surface. Each point goes to `share` (0 to
-/// 1) of the tangential offset of `before` (n x 3, its noisy place), on the quadric through the smoothed
-/// points around it, rising by at most 0.3 of the way. With share 1 what is left of the smoothing is a move
-/// along the normal. `near` as in equalize. O(n), parallel, the same bits for any number of threads.
-void slide_back(Positions& points, const Positions& before, double share, rfs_mesh::NeighborTable near,
-                const Context& context);
-
 /// Moves `points` (n x 3, near a surface), which `noise` (local: n) had
 /// moved; `before` (n x 3): where they were then. By pushing no point moves farther along the surface than
 /// half the local distance between points or half of `noise.spacing`. `near`: n x 24 or more (up to

@@ -1,4 +1,4 @@
-#include "smoothing/automatic/equalize.h"
+#include "smoothing/automatic/along_surface/equalize.h"
 
 #include <cmath>
 
@@ -218,27 +218,6 @@ TEST(Equalize, IsTheSameForAnyNumberOfThreadsAndTurnsWithTheCloud) {
   spread(turned, 1, 1, four);
   for (std::size_t i = 0; i < points.size(); ++i)  // moves are in single precision
     EXPECT_LT((turned[i] - turn * points[i]).norm(), 1e-6);
-}
-
-TEST(SlideBack, LeavesAMoveAlongTheNormalAndStaysOnTheSurface) {
-  const Positions clean = clouds::sample(*clouds::make_sphere(), 3000, 1);
-  const double spacing = clouds::mean_spacing(clean);
-  Positions before = clean;
-  clouds::add_noise(before, 0.4 * spacing, 2);
-  for (const double share : {1.0, 0.5}) {
-    Positions points = clean;
-    smoothing::slide_back(points, before, share, near(points), {});
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      EXPECT_NEAR(points[i].norm(), 1, 0.05 * spacing);
-      const Eigen::Vector3d n = clean[i], wanted = clean[i] + share * (before[i] - clean[i]);
-      const Eigen::Vector3d off = points[i] - wanted;
-      EXPECT_LT((off - n * n.dot(off)).norm(), 0.1 * spacing);
-    }
-  }
-  Positions points = clean;
-  smoothing::slide_back(points, clean, 1, near(points), {});
-  for (std::size_t i = 0; i < points.size(); ++i)
-    EXPECT_EQ(points[i], clean[i]) << "not moved, nothing to undo";
 }
 
 TEST(Equalize, TinyCloudsStay) {
