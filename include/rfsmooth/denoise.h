@@ -78,7 +78,7 @@ struct DenoiseReport {
   std::optional<double> noise_left;
   std::optional<NotSmoothed> not_smoothed;  ///< why nothing was; none: there was something to smooth
   double equalized_rms = 0;  ///< how far points went along the surface to lie evenly in the first step, root
-                             ///< mean square, world units; 0 for flows that do not even them out
+                             ///< mean square, world units; 0 if they were not evened out
   double equalized_largest = 0;  ///< the farthest
   double guide_strength = 0;     ///< of the automatic smoother's guide, dimensionless; 0 for flows
   double tail_times = 1;  ///< noise of the noisiest points (heavy tails) over that of the others; 1: no tails

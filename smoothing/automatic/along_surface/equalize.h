@@ -40,12 +40,10 @@ struct Equalized {
   double rms = 0, largest = 0;
 };
 
-/// Moves `points` (n x 3, near a surface), which `noise` (local: n) had
-/// moved; `before` (n x 3): where they were then. By pushing no point moves farther along the surface than
-/// half the local distance between points or half of `noise.spacing`. `near`: n x 24 or more (up to
-/// 256), neighbours of every point where it was about as near to them as now, say on the guide: the 24
-/// nearest are picked among those (clouds of 24 points or fewer stay as they are). O(n), parallel, the same
-/// bits for any number of threads. \throw std::invalid_argument if there are fewer.
+/// Moves `points` (n x 3, near a surface), which `noise` (local: n) had moved; `before` (n x 3): where they
+/// were then. By pushing no point moves farther along the surface than half the local distance between points
+/// or half of `noise.spacing`. `near` as in NearestRows (tangent_frames.h). Clouds of 24 points or fewer stay
+/// as they are. O(n), parallel, the same bits for any number of threads.
 Equalized equalize(Positions& points, const Positions& before, const rfs_mesh::NoiseField& noise,
                    rfs_mesh::NeighborTable near, const Context& context);
 

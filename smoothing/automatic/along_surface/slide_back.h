@@ -20,8 +20,8 @@
 namespace rfsmooth::smoothing {
 
 /// Moves `points` (n x 3, smoothed) along their surface to the feet of `before` (n x 3, where they were).
-/// Those that were not moved stay, as do all of a cloud of 24 points or fewer. `near` as in NearestRows.
-/// O(n log n), parallel, the same bits for any number of threads.
+/// Those that were not moved stay, as do all of a cloud of 24 points or fewer. `near` as in NearestRows
+/// (tangent_frames.h). O(n log n), parallel, the same bits for any number of threads.
 void slide_back(Positions& points, const Positions& before, rfs_mesh::NeighborTable near,
                 const Context& context);
 

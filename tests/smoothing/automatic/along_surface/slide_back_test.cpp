@@ -32,7 +32,7 @@ TEST(SlideBack, LeavesAMoveAlongTheNormalAndStaysOnTheSurface) {
 }
 
 TEST(SlideBack, FindsTheFootHoweverFarThePointsWentAlong) {
-  // Crowded together by a third of the radius, as far as twelve spacings, and back onto a sphere.
+  // They crowd together and pass each other, as far as four spacings.
   const Positions before = clouds::sample(*clouds::make_sphere(), 3000, 1);
   const double spacing = clouds::mean_spacing(before);
   Positions points = before;
