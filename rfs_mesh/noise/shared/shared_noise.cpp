@@ -22,6 +22,7 @@ constexpr double kGrowthAcrossEdges = 2;  // 2^p of shape
 constexpr std::size_t kSlowInARow = 2;    // the least that is a row
 // The same of ground, whose roughness has no scale of its own: 2^H, H from 0.5 on (Mandelbrot 1982).
 constexpr double kLeastGrowthOfGround = 1.414;
+constexpr int kRounds = 40;  // in which sigma and k agree
 
 /// What calm places show, by the number of neighbours, ascending.
 struct Calm {
@@ -85,6 +86,24 @@ double without_shape(const Calm& calm, std::size_t i, double growth) {
   return (growth * calm.seen[i] - calm.seen[i + 1]) / (growth - 1);
 }
 
+/// Sets sigma and k. \param sill what the at-th m, and twice as many, see of sigma^2. \param disks whether
+/// that is what they see of noise that the points of a disk share: then it is brought to all of it
+void agree(const Calm& calm, std::size_t at, double sill, bool disks, SharedNoise& found) {
+  const double m = calm.m[at];
+  const double most = disks ? points_by_growth(m, calm.seen[at + 1] / calm.seen[at]) : calm.m.back();
+  double of_all = 1;  // the share that is seen; it falls as k rises, and k rises as it falls
+  for (int round = 0; round < kRounds; ++round) {
+    std::vector<double> left;
+    for (std::size_t i = 0; i <= at; ++i) left.push_back(std::min(1.0, of_all * calm.seen[i] / sill));
+    found.points = std::min(most, points_sharing(calm.m, left));
+    if (!disks) break;
+    of_all =
+        (kGrowthOfSmoothShape * left_by_quadric(found.points, m) - left_by_quadric(found.points, 2 * m)) /
+        (kGrowthOfSmoothShape - 1);
+  }
+  found.sigma = std::sqrt(sill / of_all);
+}
+
 }  // namespace
 
 SharedNoise find_shared_noise(Places& places, const NoiseStart& start, const DepthSteps* steps,
@@ -134,11 +153,10 @@ SharedNoise find_shared_noise(Places& places, const NoiseStart& start, const Dep
     make_sure(i, without_shape(calm, i, kGrowthOfSmoothShape));
   }
   if (!(std::max(surely, calm.steps) > kSameNoise * start.sigma * start.sigma)) return found;
-  found.sigma = std::sqrt(sill);
   found.m = std::size_t(calm.m[at]);
-  std::vector<double> left;
-  for (std::size_t i = 0; i <= at; ++i) left.push_back(std::min(1.0, calm.seen[i] / sill));
-  found.points = points_sharing(calm.m, left);
+  // A terrace is no disk: what neighbourhoods leave of it is not known, unless points' own noise blurs it.
+  const bool disks = sill > calm.steps && (!terraces || start.sigma * start.sigma > calm.steps);
+  agree(calm, at, sill, disks, found);
   return found;
 }
 

@@ -36,7 +36,13 @@
 ///
 /// at the m that sees half of sigma^2: g is what a quadric through m points leaves of noise that is the mean
 /// of independent noise over the k points around each place, computed for a disk of points and the weights of
-/// scatter.h.
+/// scatter.h. S itself sees less than all of such noise,
+///
+///     S_3(m) = sigma^2 (2^3 g(k / m) - g(k / 2 m)) / (2^3 - 1),
+///
+/// far less where shape leaves only narrow m: sigma and k are those that agree with it, k at most that of
+/// noise which grows from m to 2 m as fast as is seen. Of terraces g is not known: there this is done only if
+/// what points err by on their own is more than steps round by, and blurs them.
 ///
 /// For what smooths, a cloud with such noise is one of n / k points with noise of their own, each seen k
 /// times.

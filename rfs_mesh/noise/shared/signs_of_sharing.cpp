@@ -20,6 +20,7 @@ constexpr double kTogether = 0.4;       // above that of points on their own: tw
 // Patches of m points follow noise of their own so that m / (m + kFollows) of 1 is left of `together`: 0.43,
 // 0.58, 0.75, 0.82, 0.91 for 32, 64, ... 512 on a plane.
 constexpr double kFollows = 45;
+constexpr double kFastest = 0.25;         // k / m at which g(k / 2 m) / g(k / m) is greatest
 constexpr std::size_t kDiskPoints = 300;  // of the disk on which g is computed
 
 /// Share of the area that two disks of radius r have in common at a distance d.
@@ -62,7 +63,18 @@ std::array<double, kShares + 1> taken_shares() {
   return taken;
 }
 
-/// g(k / m).
+/// The greatest k from `fewest` to `most` that is below; all are up to it.
+template <class Below>
+double greatest_below(double fewest, double most, const Below& below) {
+  for (int round = 0; round < 40; ++round) {
+    const double middle = std::sqrt(fewest * most);
+    (below(middle) ? fewest : most) = middle;
+  }
+  return fewest;
+}
+
+}  // namespace
+
 double left_by_quadric(double points, double m) {
   static const std::array<double, kShares + 1> taken = taken_shares();
   const double least = std::pow(0.5, double(kShares)), own = std::min(0.9, taken[0] / least / m);
@@ -79,8 +91,6 @@ double left_by_quadric(double points, double m) {
   }
   return std::max(1e-3, (1 - q) / (1 - own));
 }
-
-}  // namespace
 
 bool err_together(double together, double m) {
   return together > m / (m + kFollows) + kTogether;
@@ -103,12 +113,12 @@ double points_sharing(const std::vector<double>& m, const std::vector<double>& l
     at = m[i] * std::pow(m[i + 1] / m[i], part);
     seen = std::min(kHalf, left[i + 1]);
   }
-  double fewest = 1, most = m.back();
-  for (int round = 0; round < 40; ++round) {
-    const double middle = std::sqrt(fewest * most);
-    (left_by_quadric(middle, at) > seen ? fewest : most) = middle;
-  }
-  return fewest;
+  return greatest_below(1, m.back(), [&](double k) { return left_by_quadric(k, at) > seen; });
+}
+
+double points_by_growth(double m, double growth) {
+  return greatest_below(1, kFastest * m,
+                        [&](double k) { return left_by_quadric(k, 2 * m) < growth * left_by_quadric(k, m); });
 }
 
 }  // namespace rfsmooth::rfs_mesh

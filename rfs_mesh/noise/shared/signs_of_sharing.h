@@ -23,10 +23,17 @@ double flatness_beyond(double flatness, double own);
 /// Scatter::lean_in_common
 bool leans_as_relief(double lean);
 
+/// g(k / m) of shared_noise.h: of noise that k points share, what a quadric through m leaves of the variance.
+double left_by_quadric(double points, double m);
+
 /// k, the points that share the noise, by the neighbourhood that sees half of its variance, or by the
 /// narrowest if that sees more: what follows such noise is what k is asked for. \param m points of the
 /// neighbourhoods, ascending, at least one. \param left what a quadric leaves of the noise there, over its
-/// variance, ascending to 1: g(k / m) of shared_noise.h. At least 1, at most the last m.
+/// variance, ascending, at most 1: g(k / m). At least 1, at most the last m.
 double points_sharing(const std::vector<double>& m, const std::vector<double>& left);
+
+/// The k of noise whose variance about a quadric grows so from m to 2 m points: by more noise grows faster,
+/// up to m / 4, which it is at most.
+double points_by_growth(double m, double growth);
 
 }  // namespace rfsmooth::rfs_mesh
