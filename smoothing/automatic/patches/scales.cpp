@@ -177,7 +177,7 @@ class Ladder {
       scale.worse[i] = precision.empty() || precision[i] > 0 ? risk - risk_[i] : 0;
       risk_[i] = risk;
     });
-    if (double(members) >= double(kOwnMean) * noise_.shared) {
+    if (members >= kOwnMean) {
       scale.mean = patches.mean(patches.mean(scale.worse, context_), context_);
       if (!precision.empty()) {
         const std::vector<float> around = patches.mean(patches.mean(precision, context_), context_);

@@ -32,6 +32,16 @@ TEST_P(NoiseOfSensors, AtMostHalfIsLeftOfASmallScan) {
   EXPECT_LT(rms_off_room(sensor, points), 0.5 * before);
 }
 
+// Cameras that match windows: every error is that of some twenty pixels, and only patches of many blotches
+// can say which patches are too wide.
+TEST(NoiseOfSensors, BlotchesOfAStereoCameraAreSmoothed) {
+  const clouds::Sensor& sensor = *clouds::find_sensor("stereo");
+  Positions points = clouds::look(sensor, 11).measured;
+  const double before = rms_off_room(sensor, points);
+  ASSERT_TRUE(rfsmooth::denoise(points.front().data(), points.size(), {}, {}));
+  EXPECT_LT(rms_off_room(sensor, points) / before, 0.4);
+}
+
 // Small round things with few rings on them, most of whose points have no face.
 TEST(NoiseOfSensors, ABallAndAPillarKeepTheirForm) {
   const clouds::Sight sight = clouds::look(clouds::scaled(*clouds::find_sensor("rings16"), 0.3), 31);
