@@ -22,7 +22,6 @@ constexpr double kGrowthAcrossEdges = 2;  // 2^p of shape
 constexpr std::size_t kSlowInARow = 2;    // the least that is a row
 // The same of ground, whose roughness has no scale of its own: 2^H, H from 0.5 on (Mandelbrot 1982).
 constexpr double kLeastGrowthOfGround = 1.414;
-constexpr int kRounds = 40;  // in which sigma and k agree
 
 /// What calm places show, by the number of neighbours, ascending.
 struct Calm {
@@ -86,22 +85,29 @@ double without_shape(const Calm& calm, std::size_t i, double growth) {
   return (growth * calm.seen[i] - calm.seen[i + 1]) / (growth - 1);
 }
 
+/// k of what is seen up to the at-th m if that is so much of sigma^2, `sill`.
+double points_of(const Calm& calm, std::size_t at, double sill) {
+  std::vector<double> left;
+  for (std::size_t i = 0; i <= at; ++i) left.push_back(std::min(1.0, calm.seen[i] / sill));
+  return points_sharing(calm.m, left);
+}
+
 /// Sets sigma and k. \param sill what the at-th m, and twice as many, see of sigma^2. \param disks whether
 /// that is what they see of noise that the points of a disk share: then it is brought to all of it
 void agree(const Calm& calm, std::size_t at, double sill, bool disks, SharedNoise& found) {
-  const double m = calm.m[at];
-  const double most = disks ? points_by_growth(m, calm.seen[at + 1] / calm.seen[at]) : calm.m.back();
-  double of_all = 1;  // the share that is seen; it falls as k rises, and k rises as it falls
-  for (int round = 0; round < kRounds; ++round) {
-    std::vector<double> left;
-    for (std::size_t i = 0; i <= at; ++i) left.push_back(std::min(1.0, of_all * calm.seen[i] / sill));
-    found.points = std::min(most, points_sharing(calm.m, left));
-    if (!disks) break;
-    of_all =
-        (kGrowthOfSmoothShape * left_by_quadric(found.points, m) - left_by_quadric(found.points, 2 * m)) /
-        (kGrowthOfSmoothShape - 1);
+  if (disks) {
+    const double m = calm.m[at], growth = kGrowthOfSmoothShape;
+    const auto all = [&](double k) {
+      return sill * (growth - 1) / (growth * left_by_quadric(k, m) - left_by_quadric(k, 2 * m));
+    };
+    // The more share it, the less of it is seen, and the less is seen, the more share it.
+    found.points = greatest_below(points_by_growth(m, calm.seen[at + 1] / calm.seen[at]),
+                                  [&](double k) { return points_of(calm, at, all(k)) > k; });
+    found.sigma = std::sqrt(all(found.points));
+  } else {
+    found.points = points_of(calm, at, sill);
+    found.sigma = std::sqrt(sill);
   }
-  found.sigma = std::sqrt(sill / of_all);
 }
 
 }  // namespace

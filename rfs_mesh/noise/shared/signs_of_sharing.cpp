@@ -63,16 +63,6 @@ std::array<double, kShares + 1> taken_shares() {
   return taken;
 }
 
-/// The greatest k from `fewest` to `most` that is below; all are up to it.
-template <class Below>
-double greatest_below(double fewest, double most, const Below& below) {
-  for (int round = 0; round < 40; ++round) {
-    const double middle = std::sqrt(fewest * most);
-    (below(middle) ? fewest : most) = middle;
-  }
-  return fewest;
-}
-
 }  // namespace
 
 double left_by_quadric(double points, double m) {
@@ -113,11 +103,11 @@ double points_sharing(const std::vector<double>& m, const std::vector<double>& l
     at = m[i] * std::pow(m[i + 1] / m[i], part);
     seen = std::min(kHalf, left[i + 1]);
   }
-  return greatest_below(1, m.back(), [&](double k) { return left_by_quadric(k, at) > seen; });
+  return greatest_below(m.back(), [&](double k) { return left_by_quadric(k, at) > seen; });
 }
 
 double points_by_growth(double m, double growth) {
-  return greatest_below(1, kFastest * m,
+  return greatest_below(kFastest * m,
                         [&](double k) { return left_by_quadric(k, 2 * m) < growth * left_by_quadric(k, m); });
 }
 

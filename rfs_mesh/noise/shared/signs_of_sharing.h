@@ -2,6 +2,7 @@
 /// a cloud (shared_noise.h) as for the places around a site (sites/shared_around.h). Thread safe.
 #pragma once
 
+#include <cmath>
 #include <vector>
 
 namespace rfsmooth::rfs_mesh {
@@ -22,6 +23,17 @@ double flatness_beyond(double flatness, double own);
 /// Whether residuals lean as those of stones do, round above and in clefts below. \param lean median of
 /// Scatter::lean_in_common
 bool leans_as_relief(double lean);
+
+/// The greatest k from 1 to `most` that is below; all are up to it.
+template <class Below>
+double greatest_below(double most, const Below& below) {
+  double fewest = 1;
+  for (int round = 0; round < 40; ++round) {
+    const double middle = std::sqrt(fewest * most);
+    (below(middle) ? fewest : most) = middle;
+  }
+  return fewest;
+}
 
 /// g(k / m) of shared_noise.h: of noise that k points share, what a quadric through m leaves of the variance.
 double left_by_quadric(double points, double m);
