@@ -177,7 +177,7 @@ class Ladder {
       scale.worse[i] = precision.empty() || precision[i] > 0 ? risk - risk_[i] : 0;
       risk_[i] = risk;
     });
-    if (members >= kOwnMean) {
+    if (double(members) >= own_mean()) {
       scale.mean = patches.mean(patches.mean(scale.worse, context_), context_);
       if (!precision.empty()) {
         const std::vector<float> around = patches.mean(patches.mean(precision, context_), context_);
@@ -185,6 +185,13 @@ class Ladder {
       }
     }
     return scale;
+  }
+
+  /// Members of a patch that is judged by its own mean: so many that err each by itself, unless near means
+  /// have fewer of these than a ring.
+  double own_mean() const {
+    const double most = double(kOwnMean);
+    return most < double(rfs_mesh::kRing) * noise_.shared ? most : most * noise_.shared;
   }
 
   /// How patches of about m points are made here: seeds thinned until at most kMostOverlap lie over a point.
