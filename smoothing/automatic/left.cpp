@@ -8,7 +8,6 @@
 #include "base/parallel.h"
 #include "base/quantile.h"
 #include "rfs_mesh/levels.h"
-#include "smoothing/automatic/patches/patches.h"
 
 namespace rfsmooth::smoothing {
 
@@ -61,15 +60,15 @@ class ToldByResiduals {
     Eigen::Vector4d sums = Eigen::Vector4d::Zero();  // of weights, their squares, e^2 / sigma^2, 1 - own
     const auto add = [&](std::size_t i, double weight) {
       const double e = (field.height(i) - double(height[i])) / noise.local[i];
-      sums += weight * Eigen::Vector4d(1, weight, std::min(e * e, kMostSquare),
-                                       1 - double(own_of_all(own[i], float(noise.shared_by(i)))));
+      sums += weight * Eigen::Vector4d(1, weight, std::min(e * e, kMostSquare), 1 - double(own[i]));
     };
     add(at, 1);
     for (const Index j : field.neighbors()[at])
       add(j, double(same_sheet(field.local()[at].normal.dot(field.local()[j].normal))));
     if (!(2 * sums[3] > sums[0])) return {};  // most of the data stayed, and tell nothing
-    // The median of chi-square over its degrees of freedom, by Wilson and Hilferty 1931.
-    const double freedom = sums[0] * sums[0] / sums[1];
+    // The median of chi-square over its degrees of freedom, by Wilson and Hilferty 1931; neighbours that
+    // share their noise are one.
+    const double freedom = std::max(1.0, sums[0] * sums[0] / sums[1] / noise.shared_by(at));
     return {noise.local[at], sums[2] / sums[3] / std::pow(1 - 2 / (9 * freedom), 3)};
   }
 
@@ -92,8 +91,7 @@ double noise_left(const HeightField& field, const std::vector<float>& height, co
   // The points that count, their variance, their risk, and their noise.
   const Eigen::Vector4d sums =
       sum_over(context, field.size(), Eigen::Vector4d(0, 0, 0, 0), [&](std::size_t i) {
-        const double e = field.height(i) - double(height[i]),
-                     share = double(own_of_all(own[i], float(noise.shared_by(i)))),
+        const double e = field.height(i) - double(height[i]), share = double(own[i]),
                      measured = noise.local[i] * noise.local[i], square = told.at(noise.local[i]) * measured;
         if (!(std::abs(e) <= noise.reach(i))) return Eigen::Vector4d(0, 0, 0, 0);
         return Eigen::Vector4d(1, share * square, e * e + (2 * share - 1) * square, measured);

@@ -11,8 +11,8 @@
 namespace rfsmooth::smoothing {
 
 /// Root mean square error of the smoothed heights, world units. \param height n: as smoothed. \param own n:
-/// each point's share of its own height in it (patches.h). O(n), parallel, the same bits for any number of
-/// threads.
+/// the share of each point's noise that stays in it (MixedScales). O(n), parallel, the same bits for any
+/// number of threads.
 double noise_left(const HeightField& field, const std::vector<float>& height, const std::vector<float>& own,
                   const rfs_mesh::NoiseField& noise, const Context& context);
 

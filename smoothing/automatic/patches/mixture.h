@@ -23,9 +23,9 @@ class Mixture {
   /// \param first n: the first candidate, the data or what stands for them: all its own, with evidence 0.
   explicit Mixture(std::vector<float> first);
 
-  /// A further candidate, of at most 15. \param height, own n: as in Prediction. \param gain n: its evidence
-  /// over the candidate before it, nats; NaN: no prediction here (the evidence stays for the next). \throw
-  /// std::length_error.
+  /// A further candidate, of at most 15. \param height n, own n: what it says, and of that the share that is
+  /// the point's own noise. \param gain n: its evidence over the candidate before it, nats; NaN: no
+  /// prediction here (the evidence stays for the next). \throw std::length_error.
   void add(std::vector<float> height, std::vector<float> own, std::vector<float> gain,
            const Context& context);
 

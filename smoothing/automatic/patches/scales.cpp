@@ -168,12 +168,13 @@ class Ladder {
                 std::vector<float>(field_.size()),
                 {},
                 patches.with_several_sheets()};
-    const Prediction& prediction = scale.prediction;
+    Prediction& prediction = scale.prediction;
     for_each_index(context_, field_.size(), [&](std::size_t i) {
+      float& own = prediction.own[i];
+      own = own_of_all(own, float(noise_.shared_by(i)));
       const float off = (field_.local()[i].height - prediction.height[i]) / float(sigma[i]),
                   e = std::clamp(off, -kFarthest, kFarthest);
-      const float of_all = own_of_all(prediction.own[i], float(noise_.shared_by(i)));
-      const float risk = prediction.covered[i] != 0 ? e * e + 2 * of_all - 1 : risk_[i];
+      const float risk = prediction.covered[i] != 0 ? e * e + 2 * own - 1 : risk_[i];
       scale.worse[i] = precision.empty() || precision[i] > 0 ? risk - risk_[i] : 0;
       risk_[i] = risk;
     });

@@ -15,10 +15,11 @@ namespace rfsmooth::smoothing {
 
 /// The heights that all scales together give, and what single scales say.
 struct MixedScales {
-  std::vector<float> height, own;  ///< n: of the mixture, as in Prediction
-  std::vector<float> wide;         ///< n: of the scale that looks for tails
-  std::vector<ScalesSay> told;     ///< n, or empty without the learned step
-  std::vector<Index> several;      ///< places where the scale that looks for walls sees several sheets
+  std::vector<float> height;    ///< n: of the mixture, as in Prediction
+  std::vector<float> own;       ///< n: share of the point's noise that stays in it: own_of_all of patches.h
+  std::vector<float> wide;      ///< n: of the scale that looks for tails
+  std::vector<ScalesSay> told;  ///< n, or empty without the learned step
+  std::vector<Index> several;   ///< places where the scale that looks for walls sees several sheets
   std::size_t members_seeing = 0;  ///< of that scale
 };
 
