@@ -80,9 +80,9 @@ bool hold_slab(const Calm& calm, std::size_t i) {
   return std::sqrt(calm.seen[i]) < kFlatSlab * calm.radius[i];
 }
 
-/// What is left of the i-th variance without the part that grows with m as shape does.
-double without_shape(const Calm& calm, std::size_t i, double growth) {
-  return (growth * calm.seen[i] - calm.seen[i + 1]) / (growth - 1);
+/// What is left of a variance at m without the part that grows so with m, by that at 2 m.
+double without_shape(double at_m, double at_2m, double growth) {
+  return (growth * at_m - at_2m) / (growth - 1);
 }
 
 /// k of what is seen up to the at-th m if that is so much of sigma^2, `sill`.
@@ -92,22 +92,17 @@ double points_of(const Calm& calm, std::size_t at, double sill) {
   return points_sharing(calm.m, left);
 }
 
-/// Sets sigma and k. \param sill what the at-th m, and twice as many, see of sigma^2. \param disks whether
-/// that is what they see of noise that the points of a disk share: then it is brought to all of it
-void agree(const Calm& calm, std::size_t at, double sill, bool disks, SharedNoise& found) {
-  if (disks) {
-    const double m = calm.m[at], growth = kGrowthOfSmoothShape;
-    const auto all = [&](double k) {
-      return sill * (growth - 1) / (growth * left_by_quadric(k, m) - left_by_quadric(k, 2 * m));
-    };
-    // The more share it, the less of it is seen, and the less is seen, the more share it.
-    found.points = greatest_below(points_by_growth(m, calm.seen[at + 1] / calm.seen[at]),
-                                  [&](double k) { return points_of(calm, at, all(k)) > k; });
-    found.sigma = std::sqrt(all(found.points));
-  } else {
-    found.points = points_of(calm, at, sill);
-    found.sigma = std::sqrt(sill);
-  }
+/// Brings sigma and k to all of the noise, if the points of a disk share it. \param sill what the at-th m,
+/// and twice as many, see of sigma^2
+void agree(const Calm& calm, std::size_t at, double sill, SharedNoise& found) {
+  const double m = calm.m[at];
+  const auto all = [&](double k) {
+    return sill / without_shape(left_by_quadric(k, m), left_by_quadric(k, 2 * m), kGrowthOfSmoothShape);
+  };
+  // The more share it, the less of it is seen, and the less is seen, the more share it.
+  found.points = greatest_below(points_by_growth(m, calm.seen[at + 1] / calm.seen[at]),
+                                [&](double k) { return points_of(calm, at, all(k)) > k; });
+  found.sigma = std::sqrt(all(found.points));
 }
 
 }  // namespace
@@ -155,14 +150,14 @@ SharedNoise find_shared_noise(Places& places, const NoiseStart& start, const Dep
     if (!terraces && leans_as_relief(calm.lean[i + 1])) continue;
     if (!terraces && !err_together(calm.together[i + 1], calm.m[i + 1])) continue;
     if (terraces || err_together(calm.together[i], calm.m[i]))
-      surely = std::max(surely, without_shape(calm, i, kLeastGrowthOfShape));
-    make_sure(i, without_shape(calm, i, kGrowthOfSmoothShape));
+      surely = std::max(surely, without_shape(calm.seen[i], calm.seen[i + 1], kLeastGrowthOfShape));
+    make_sure(i, without_shape(calm.seen[i], calm.seen[i + 1], kGrowthOfSmoothShape));
   }
   if (!(std::max(surely, calm.steps) > kSameNoise * start.sigma * start.sigma)) return found;
-  found.m = std::size_t(calm.m[at]);
+  found = {std::sqrt(sill), points_of(calm, at, sill), std::size_t(calm.m[at])};
   // A terrace is no disk: what neighbourhoods leave of it is not known, unless points' own noise blurs it.
-  const bool disks = sill > calm.steps && (!terraces || start.sigma * start.sigma > calm.steps);
-  agree(calm, at, sill, disks, found);
+  if (sill > calm.steps && (!terraces || start.sigma * start.sigma > calm.steps))
+    agree(calm, at, sill, found);
   return found;
 }
 

@@ -61,7 +61,7 @@ void in_own_units(const std::vector<float>& precision, const std::vector<float>&
 /// What the patches of one scale say.
 struct Scale {
   std::size_t members;
-  Prediction prediction;
+  Prediction prediction;       ///< its `own` of all who share the noise (own_of_all)
   std::vector<float> worse;    ///< n: the risk's difference to the scale before
   std::vector<float> mean;     ///< n: of that, as the patches see it; empty if they are narrow
   std::vector<Index> several;  ///< places that see more than one sheet
@@ -178,7 +178,7 @@ class Ladder {
       scale.worse[i] = precision.empty() || precision[i] > 0 ? risk - risk_[i] : 0;
       risk_[i] = risk;
     });
-    if (double(members) >= own_mean()) {
+    if (averages(members)) {
       scale.mean = patches.mean(patches.mean(scale.worse, context_), context_);
       if (!precision.empty()) {
         const std::vector<float> around = patches.mean(patches.mean(precision, context_), context_);
@@ -188,11 +188,12 @@ class Ladder {
     return scale;
   }
 
-  /// Members of a patch that is judged by its own mean: so many that err each by itself, unless near means
-  /// have fewer of these than a ring.
-  double own_mean() const {
-    const double most = double(kOwnMean);
-    return most < double(rfs_mesh::kRing) * noise_.shared ? most : most * noise_.shared;
+  /// Whether a patch of so many averages the risk, of which `shared` members are one that errs by itself; but
+  /// near neighbours are about kOwnMean, and of fewer such than a ring no mean is taken.
+  bool averages(std::size_t members) const {
+    const double fewest = double(kOwnMean), shared = noise_.shared;
+    const bool near_tells = fewest >= double(rfs_mesh::kRing) * shared;
+    return double(members) >= (near_tells ? fewest * shared : fewest);
   }
 
   /// How patches of about m points are made here: seeds thinned until at most kMostOverlap lie over a point.
