@@ -302,11 +302,7 @@ Searched search(rfs_mesh::WorkingCloud& cloud, int neighbours, const DenoiseOpti
   {
     const Stopwatch watch(report.seconds, "neighbours");
     context.report("neighbours", 0);
-    near = index->nearest(neighbours, context);
-    if (pipeline::join_twins(near, cloud, context)) {
-      index.emplace(cloud.points, context);
-      near = index->nearest(neighbours, context);
-    }
+    near = pipeline::nearest_joined(index, cloud, neighbours, context);
   }
   if (options.outliers == Outliers::smooth) return found;
   context.report("noise", 0);

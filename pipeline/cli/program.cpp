@@ -80,13 +80,13 @@ int run(int argc, const char* const* argv, const std::vector<Command>& commands)
   if (parsed.command == nullptr) {
     if (typed.version) return print(std::string("rfsmooth ") + kVersion + "\n");
     if (typed.short_help || typed.long_help) return print(overview(commands, typed.long_help));
-    fmt::print(stderr, "{}", overview(commands, false));
+    to_stderr(overview(commands, false));
     return exit_code(ErrorCode::usage);
   }
   const Command& command = *parsed.command;
   if (typed.short_help || typed.long_help) return print(help_of(command, typed.long_help));
   const int code = command.run(with_config(command, typed));
-  if (code == exit_code(ErrorCode::usage)) fmt::print(stderr, "{}", help_line(argc, argv, commands));
+  if (code == exit_code(ErrorCode::usage)) to_stderr(help_line(argc, argv, commands));
   return code;
 }
 
@@ -100,7 +100,7 @@ int run_program(int argc, const char* const* argv, const std::vector<Command>& c
   } catch (const Failure& failure) {
     code = exit_code(failure.error.code);
     Console({}).error(with_dashes(failure.error.message));
-    if (failure.error.code == ErrorCode::usage) fmt::print(stderr, "{}", help_line(argc, argv, commands));
+    if (failure.error.code == ErrorCode::usage) to_stderr(help_line(argc, argv, commands));
   } catch (const std::bad_alloc&) {
     code = exit_code(ErrorCode::out_of_memory);
     Console({}).error("not enough memory");

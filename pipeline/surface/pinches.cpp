@@ -17,7 +17,7 @@ class Parting {
   /// The surface with its corners renamed, vertices from n on being copies of `copied`.
   std::vector<Face> renamed(std::vector<Index>& copied) {
     std::vector<Face> faces;
-    // Twice is enough but for edges that depend on each other; what is left then is rare and stays as it is.
+    // Two rounds are enough but for edges that depend on each other; what three leave is rare, and stays.
     for (int round = 0; round < 3; ++round) {
       faces = rename(copied);
       if (!turn_crowded(faces, copied)) break;

@@ -15,10 +15,11 @@
 
 namespace rfsmooth::pipeline {
 
-/// Copies vertices until every edge has at most two faces, which agree, and every vertex one fan. The copies
-/// come after the other vertices. Faces keep their order and orientation; faces that run along an edge in the
-/// same direction come apart there. Returns the number of copies; the adjacency is rebuilt if there are any.
-/// O(m log m), one thread, deterministic.
+/// Copies vertices until every edge has at most two faces, which agree, and every vertex one fan (three
+/// rounds; edges that depend on each other may be left, rarely). The copies come after the other vertices.
+/// Faces keep their order and orientation; faces that run along an edge in the same direction come apart
+/// there. Returns the number of copies; the adjacency is rebuilt if there are any. O(m log m), one thread,
+/// deterministic.
 std::size_t part_pinches(Mesh& mesh, const Context& context);
 
 }  // namespace rfsmooth::pipeline

@@ -252,5 +252,22 @@ TEST_F(Awkward, FullStandardOutputIsAnError) {
   EXPECT_EQ(ran.code, 5);
 }
 
+TEST_F(Awkward, WhatCannotBeSaidFailsNothing) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
+  put("in.ply", noisy_plane(4).bytes());
+  RunSetup setup;
+  setup.folder = at("");
+  const auto code = [&](const std::string& rest) {
+    return run_program("sh", {"-c", std::string("exec ") + RFSMOOTH_COMMAND + " " + rest}, setup).code;
+  };
+  ASSERT_EQ(code("denoise in.ply out.ply"), 0);
+  EXPECT_EQ(code("denoise -v in.ply full.ply 2> /dev/full"), 0);
+  EXPECT_EQ(code("denoise -v in.ply closed.ply 2>&-"), 0);
+  EXPECT_EQ(take("full.ply"), take("out.ply"));
+  EXPECT_EQ(take("closed.ply"), take("out.ply"));
+  EXPECT_EQ(code("denoise missing.ply x.ply 2> /dev/full"), 3);
+  EXPECT_EQ(code("bogus 2> /dev/full"), 2);
+}
+
 }  // namespace
 }  // namespace rfsmooth::test

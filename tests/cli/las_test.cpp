@@ -2,6 +2,7 @@
 #include <cmath>
 #include <random>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -154,6 +155,21 @@ TEST_F(LasCommand, RemovesMarksAndAddsFieldsAsInOtherFormats) {
   EXPECT_EQ(pipeline::io::field_values(cloud, *outlier)[300], 1);
   EXPECT_EQ(pipeline::io::field_values(cloud, *outlier)[301], 0);
   EXPECT_GT(std::abs(pipeline::io::field_values(cloud, *up)[420]), 0.9);
+}
+
+TEST_F(LasCommand, NoTwoFieldsGetOneName) {
+  std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 30\nproperty double x\nproperty double y\nproperty double z\n"
+      "property float intensity_\nproperty float intensity\nend_header\n";
+  for (int i = 0; i < 30; ++i) ply += fmt::format("{} {} 0 {} {}\n", i % 6, i / 6, i + 0.25, i + 0.5);
+  put("in.ply", ply);
+  ASSERT_EQ(run({"denoise", "--iterations", "0", "in.ply", "out.las"}).code, 0);
+  const auto cloud = read(at("out.las"));
+  const auto first = pipeline::io::find_field(cloud, "intensity_"),
+             second = pipeline::io::find_field(cloud, "intensity__");
+  ASSERT_TRUE(first && second);
+  EXPECT_EQ(pipeline::io::field_values(cloud, *first)[7], 7.25);
+  EXPECT_EQ(pipeline::io::field_values(cloud, *second)[7], 7.5);
 }
 
 TEST_F(LasCommand, ManyFilesGoIntoAFolder) {

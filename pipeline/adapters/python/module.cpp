@@ -102,7 +102,7 @@ std::string compare(const Points& points, const std::optional<Points>& normals_o
   ordered_json figures;
   released(progress, threads, {{"compare", 1}}, [&](const Context& context, cli::Console&) {
     const CompareReport report = value_or_throw(rfsmooth::compare(cloud, known, {signed_normals}, context));
-    figures = cli::figures_of(report);
+    figures = cli::figures_of(report, cli::summed_up(report.deviation));
     std::copy(report.deviation.begin(), report.deviation.end(), deviation.data());
   });
   return text_of(figures);

@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <iterator>
 #include <memory>
+#include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -12,6 +14,7 @@
 #include "pipeline/cli/files/memory.h"
 #include "pipeline/io/mesh_file.h"
 #include "pipeline/row_order.h"
+#include "pipeline/twins.h"
 #include "rfs_mesh/connect/connect.h"
 
 namespace rfsmooth::cli {
@@ -98,11 +101,14 @@ std::string connect_cloud(const MeshCommandOptions& options, pipeline::io::Cloud
   const auto& [job, context, console, stages, entry] = task;
   need_memory(job.input, rfsmooth::denoise_memory(cloud.size()));
   const std::vector<double> xyz = pipeline::io::positions(cloud, context);
-  const rfs_mesh::WorkingCloud working =
+  rfs_mesh::WorkingCloud working =
       value_or_fail(rfs_mesh::make_working_cloud(xyz.data(), cloud.size(), context), job.input);
   Connection connection;
   in_arena(context, [&] {
-    connection = value_or_throw(rfs_mesh::connect(working.points, options.mesh.connect,
+    const ConnectOptions& connect = options.mesh.connect;
+    std::optional<rfs_mesh::SpatialIndex> index(std::in_place, working.points, task.context);
+    auto near = pipeline::nearest_joined(index, working, connect.neighbours, task.context);
+    connection = value_or_throw(rfs_mesh::connect(std::move(*index), std::move(near), connect,
                                                   wanted_for(options.mesh.stage), task.context));
   });
   stages.insert(stages.end(), connection.seconds.begin(), connection.seconds.end());
@@ -147,7 +153,7 @@ Command mesh_command() {
   auto options = std::make_shared<MeshCommandOptions>();
   Command command;
   command.name = "mesh";
-  command.summary = "write the mesh that denoise works on, or the graphs it is made from";
+  command.summary = "write the mesh that denoise makes of the points, or the graphs it is made from";
   command.usage = {"[options] IN OUT", "[options] IN... -o FOLDER"};
   command.description =
       "Connects the points of a cloud and writes a PLY: edges for the Euclidean minimum spanning tree (emst) "
@@ -155,7 +161,8 @@ Command mesh_command() {
       "are kept as edges). The graph has all edges of the tree; its property kind is 0 for those, 1 for the "
       "added ones, and 2 for edges of the tree that are no neighbourhood (bridges). In noise both stand on "
       "the points' shadows on the surface. Only the stages up to that one are run. Points that are not "
-      "finite are left out, coincident ones become one vertex.\n\n"
+      "finite are left out, coincident ones become one vertex, as do twins where a tenth of the points have "
+      "one; outliers, which denoise leaves out, stay in.\n\n"
       "Edges are lines in MeshLab, in Open3D (read_line_set) and for rfsmooth render; CloudCompare reads no "
       "edges from any PLY and shows the points only. Faces open everywhere.";
   collect(options->mesh, command.options);

@@ -1,6 +1,7 @@
 /// rfsmooth report: a cloud before and after, as a page to look at.
 #include <algorithm>
 #include <memory>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -14,6 +15,7 @@
 #include "pipeline/cli/own_files.h"
 #include "pipeline/outliers.h"
 #include "pipeline/page/page.h"
+#include "pipeline/twins.h"
 #include "rfs_mesh/fit/local_surface.h"
 #include "rfs_mesh/points.h"
 
@@ -59,11 +61,13 @@ struct Measured {
 };
 
 Measured measure_cloud(const std::vector<double>& xyz, bool outliers, const Context& context) {
-  const auto cloud = value_or_throw(rfs_mesh::make_working_cloud(xyz.data(), xyz.size() / 3, context));
+  auto cloud = value_or_throw(rfs_mesh::make_working_cloud(xyz.data(), xyz.size() / 3, context));
   Measured measured;
   in_arena(context, [&] {
-    const rfs_mesh::SpatialIndex index(cloud.points, context);
-    const rfs_mesh::NeighborTable near = index.nearest(16, context);
+    std::optional<rfs_mesh::SpatialIndex> searched(std::in_place, cloud.points, context);
+    const rfs_mesh::NeighborTable near =
+        pipeline::nearest_joined(searched, cloud, ConnectOptions().neighbours, context);
+    const rfs_mesh::SpatialIndex& index = *searched;
     if (cloud.points.size() > 1) measured.spacing = rfs_mesh::mean_spacing(cloud.points, near, context);
     Statistics whole;
     whole.box = cloud.box;

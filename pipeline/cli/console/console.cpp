@@ -22,6 +22,11 @@ bool stdout_reader_is_gone() {
   return poll(&out, 1, 0) > 0 && (out.revents & (POLLERR | POLLHUP)) != 0;
 }
 
+void to_stderr(const std::string& text) {
+  std::fputs(text.c_str(), stderr);
+  std::fflush(stderr);
+}
+
 Console::Console(const TalkOptions& options, std::function<void(LogLevel, const std::string&)> listener)
     : listener_(std::move(listener)), quiet_(options.quiet), verbose_(options.verbose && !options.quiet) {
   const bool terminal = isatty(STDERR_FILENO) == 1;
@@ -38,10 +43,9 @@ Console::~Console() {
 
 void Console::print(const char* colour, const char* label, const std::string& line) {
   clear_bar();
-  if (colour_ && *label != '\0')
-    fmt::print(stderr, "rfsmooth: {}{}\x1b[0m{}\n", colour, label, line);
-  else
-    fmt::print(stderr, "rfsmooth: {}{}\n", label, line);
+  const bool coloured = colour_ && *label != '\0';
+  to_stderr(coloured ? fmt::format("rfsmooth: {}{}\x1b[0m{}\n", colour, label, line)
+                     : fmt::format("rfsmooth: {}{}\n", label, line));
 }
 
 void Console::say(const std::string& line) {
@@ -96,15 +100,13 @@ void Console::draw(std::string_view stage, double fraction) {
       line += fmt::format("  {:.3g} points/s", double(points_) * progress_.in_stage() / elapsed);
     line += fmt::format("  {:.0f} s left", progress_.seconds_left());
   }
-  fmt::print(stderr, "\r\x1b[K{}", line);
-  std::fflush(stderr);
+  to_stderr("\r\x1b[K" + line);
   drawn_ = true;
 }
 
 void Console::clear_bar() {
   if (!drawn_) return;
-  fmt::print(stderr, "\r\x1b[K");
-  std::fflush(stderr);
+  to_stderr("\r\x1b[K");
   drawn_ = false;
 }
 

@@ -32,6 +32,9 @@ struct TalkOptions {
 /// Whether standard output is a pipe that nobody reads any more.
 bool stdout_reader_is_gone();
 
+/// Writes to standard error. What cannot be written there is lost: no work fails for it.
+void to_stderr(const std::string& text);
+
 /// The command's messages. One thread at a time.
 class Console {
  public:

@@ -6,6 +6,7 @@
 
 #include "pipeline/cli/own_files.h"
 #include "pipeline/io/io.h"
+#include "rfs_mesh/noise/noise_search.h"
 
 namespace rfsmooth::cli {
 
@@ -35,9 +36,8 @@ nlohmann::ordered_json json_of(const std::vector<StageTime>& stages) {
 }
 
 std::string in_words(const NoiseSummary& noise) {
-  constexpr double kLouder = 1.1;  // the noise field says nothing of less (rfs_mesh/noise/noise.h)
   std::string words;
-  if (noise.loudest > kLouder * noise.typical)
+  if (noise.loudest > rfs_mesh::kSameNoise * noise.typical)
     words += fmt::format(", {:.3g} in the loudest tenth", noise.loudest);
   if (noise.shared >= 2) words += fmt::format(", shared by {:.0f} neighbours", noise.shared);
   if (noise.on_lines) words += ", points along lines";

@@ -108,8 +108,7 @@ void plan_tiles(TilesOptions& options, const std::vector<std::string>& arguments
   NormalsFields& normals = options.planned.normals;
   check(normals);
   if (const auto how = normals_in_tiles(normals, inputs, context); how && how->viewpoint)
-    normals.viewpoint =
-        fmt::format("{},{},{}", (*how->viewpoint)[0], (*how->viewpoint)[1], (*how->viewpoint)[2]);
+    normals.viewpoint = to_text(*how->viewpoint);
   std::vector<CommandOption> bound;
   collect(options.planned, bound);
   const Job job = pipeline::tiles::plan_job(

@@ -43,6 +43,14 @@ TEST_F(Tiles, DenoiseTakesTilesWhereTheMemoryIsLess) {
   const Ran wrong = run({"denoise", "--memory", "much", "in.ply", "x.ply"});
   EXPECT_EQ(wrong.code, 2);
   EXPECT_THAT(wrong.err, HasSubstr("'much'"));
+  for (const std::vector<std::string>& nonsense :
+       {std::vector<std::string>{"--viewpoint", "here"}, {"--mark-outliers", "--outliers", "smooth"}}) {
+    std::vector<std::string> arguments = {"denoise", "--memory", kLittle, "in.ply", "x.ply"};
+    arguments.insert(arguments.end(), nonsense.begin(), nonsense.end());
+    const Ran refused = run(arguments);
+    EXPECT_EQ(refused.code, 2) << refused.err;
+    EXPECT_THAT(refused.err, Not(HasSubstr("in tiles of"))) << "refused before any work";
+  }
   for (const std::vector<std::string>& of_all :
        {std::vector<std::string>{"--html", "x.html"}, {"--report", "x.json"}}) {
     std::vector<std::string> arguments = {"denoise", "--memory", kLittle, "in.ply", "x.ply"};

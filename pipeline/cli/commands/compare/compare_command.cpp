@@ -111,7 +111,7 @@ int run_compare(const CompareCommandOptions& options, const Invocation& typed) {
       fmt::format("{} against {}", typed.arguments[0], typed.arguments[1]));
   const Deviation deviation = summed_up(report.deviation);
   ordered_json json = {{"cloud", typed.arguments[0]}, {"truth", typed.arguments[1]}};
-  json.update(figures_of(report));
+  json.update(figures_of(report, deviation));
   if (options.json)
     fmt::print("{}\n", json.dump(2, ' ', false, ordered_json::error_handler_t::replace));
   else

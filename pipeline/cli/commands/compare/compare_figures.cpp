@@ -20,8 +20,7 @@ struct ToJson {
 
 }  // namespace
 
-ordered_json figures_of(const CompareReport& report) {
-  const Deviation deviation = summed_up(report.deviation);
+ordered_json figures_of(const CompareReport& report, const Deviation& deviation) {
   ordered_json own, unit;
   Measures::describe(report.own_units, ToJson{own});
   const Measures scaled = rfsmooth::on_unit_sphere(report.own_units, report.radius);

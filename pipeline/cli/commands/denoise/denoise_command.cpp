@@ -102,6 +102,7 @@ Command denoise_command() {
   command.on_cloud.files_beside = [options] { return files_beside(*options); };
   command.run = [options, beside, on_cloud = command.on_cloud,
                  known = command.options](const Invocation& typed) {
+    check_denoise(*options);  // before any tile
     if (const auto tiled = denoise_in_tiles(*options, typed)) return *tiled;
     beside->command = command_line("denoise", typed, known);
     return run_cloud_jobs("denoise", options->job, typed, on_cloud);

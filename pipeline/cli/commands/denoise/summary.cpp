@@ -32,7 +32,8 @@ std::string why_not(const DenoiseReport& done) {
       return "too few points to smooth";
     case NotSmoothed::too_little_noise: {
       const double with_shape = done.noise > 0 ? done.noise : done.measured.typical;
-      if (rfs_mesh::stays(with_shape, done.spacing)) return "too little to smooth";  // exact, or nearly
+      constexpr double kExact = 0.002;  // spacings
+      if (with_shape < kExact * done.spacing) return "too little to smooth";
       return fmt::format(
           "{}too little to smooth (--strength 2 does it all the same)",
           done.noise > 0 ? "" : fmt::format("{:.3g} with what looks like shape, ", with_shape));

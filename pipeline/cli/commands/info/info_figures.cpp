@@ -64,10 +64,10 @@ ordered_json measure(const pipeline::io::Cloud& cloud, const Context& context) {
   if (points.size() < 2) return json;
   in_arena(context, [&] {
     std::optional<rfs_mesh::SpatialIndex> searched(std::in_place, points, context);
-    if (pipeline::join_twins(searched->nearest(int(rfs_mesh::kRing), context), working.value(), context))
-      searched.emplace(points, context);
+    const rfs_mesh::NeighborTable near =
+        pipeline::nearest_joined(searched, working.value(), int(rfs_mesh::kRing), context);
     const rfs_mesh::SpatialIndex& index = *searched;
-    json["spacing"] = rfs_mesh::mean_spacing(points, index.nearest(1, context), context);
+    json["spacing"] = rfs_mesh::mean_spacing(points, near, context);
     json["spacing_field"] = tenths(rfs_mesh::measure_spacing(index, context));
     rfs_mesh::NoiseField noise = noise_of_surface(index, working.value().box, context);
     json["noise"] = noise.sigma;

@@ -164,9 +164,12 @@ std::vector<Field> new_fields(const std::vector<Field>& from, const Sorted& sort
   const std::vector<Field> standard = fields;
   for (const std::size_t f : sorted.extra) {
     Field field{from[f].name, from[f].type};
-    const auto same = [&](const Field& other) { return other.name == field.name; };
-    if (std::any_of(standard.begin(), standard.end(), same))
-      field.name = field.name.substr(0, kLongestName - 1) + '_';
+    const auto taken = [&](const std::vector<Field>& by) {
+      return std::any_of(by.begin(), by.end(), [&](const Field& other) { return other.name == field.name; });
+    };
+    if (taken(standard))
+      for (std::size_t more = 1; taken(fields) || taken(from); ++more)
+        field.name = from[f].name.substr(0, kLongestName - more) + std::string(more, '_');
     fields.push_back(std::move(field));
   }
   return fields;
