@@ -9,6 +9,7 @@
 #include <rfsmooth/mesh.h>
 #include <rfsmooth/statistics.h>
 
+#include "rfs_mesh/levels.h"
 #include "rfs_mesh/points.h"
 
 namespace rfsmooth {
@@ -101,9 +102,9 @@ void check_noise(const NoiseModel& noise, Wrong& wrong) {
   wrong.expect(!(noise.sigma > 0) || (noise.spacing > 0 && !noise.sites.empty()),
                "noise: a sigma above 0, but no site or no spacing above 0");
   wrong.expect(is_within(noise.shape, 0, 1), "noise: shape is no share");
-  wrong.expect(noise.neighbours < kNone && is_number_of_points(noise.across.value_or(1)) &&
-                   is_within(noise.shared, 1, kNone),
-               "noise: what points share it, reach across or fit it is no number of points");
+  wrong.expect(
+      noise.piece >= rfs_mesh::kNarrowestPatch && noise.piece < kNone && is_within(noise.shared, 1, kNone),
+      "noise: what points share it or are a piece of the surface is no number of points");
   check_sites(noise, wrong);
 }
 

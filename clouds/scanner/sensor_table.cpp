@@ -47,6 +47,7 @@ Sensor kinect(std::string_view name, std::string_view says, int columns, int row
   s.growth = 0.0019;
   s.disparity_step = 1.0 / 8;
   s.shared = shared;
+  s.levels = {0.3, 1};  // steps are more than the noise at 0.3
   return s;
 }
 

@@ -36,14 +36,13 @@ struct NoiseModel {
   /// What points keep from each other: the distance to their nearest of 99 of 100 of these, or the size of
   /// the voxels that the cloud was thinned in; a length.
   double apart = 0;
-  std::size_t neighbours = 0;  ///< of the fits that it was measured by
-  /// Points that say as much as one, since they share the noise: 1, each its own, or more.
-  double shared = 1;
-  /// Set where the nearest points lie along a line, as on the rings of a spinning laser: how many neighbours
-  /// reach across to other lines and are a piece of the surface. At least 1.
-  std::optional<std::size_t> across;
-  double step = 0;       ///< typical distance between depths that come in steps, a length; 0: none
-  bool on_grid = false;  ///< whether the points are on a grid of that step, as voxels' centres are
+  double shared = 1;  ///< points that share their noise: 1, each has its own, or more
+  /// Nearest points that are a piece of the surface: more than 16 where fewer are on a line or on few lines,
+  /// as on the rings of a spinning laser. At least 16.
+  std::size_t piece = 16;
+  bool on_lines = false;  ///< whether fewer are on one line; there is another at least
+  double step = 0;        ///< typical distance between depths that come in steps, a length; 0: none
+  bool on_grid = false;   ///< whether the points are on a grid of that step, as voxels' centres are
   /// Places, around the middle of the box, coordinates within 1e100; one where noise and density are even.
   std::vector<Eigen::Vector3d> sites;
   std::vector<double> at_sites;  ///< sigma there, one for each site; lengths

@@ -2,7 +2,7 @@
 ///
 /// A fit and what scatters about it cannot tell one sheet with much noise from several with little, or from
 /// features as small as the noise: all fill the same slab. What tells them apart is whether a surface through
-/// some of the points foretells where others are. An eighth of the points is held out; through the rest go
+/// some of the points foretells where others are. A fifth of the points is held out; through the rest go
 /// quadrics that neighbours share (local_surface.h), of m points each, and every point of the rest has a
 /// shadow q_j on them with a normal n_j. A held out point x is then found with the density
 ///

@@ -179,10 +179,12 @@ NoiseStart find_start(const SpatialIndex& index, const DepthSteps* steps, double
   NoiseStart start = search_noise(places, steps, rounding);
   start.apart = noise.apart;
   // Terraces of depths in steps look like lines, too; there the noise is shared.
-  if (start.on_lines && steps == nullptr)
-    noise.across = start.narrowest;
-  else
-    noise.shared = double(start.narrowest) / double(kNarrowestPatch);
+  if (steps != nullptr && !steps->on_shells()) {
+    noise.shared = double(start.piece) / double(kNarrowestPatch);
+  } else {
+    noise.piece = start.piece;
+    noise.on_lines = start.on_lines;
+  }
   if (!(start.least > 0)) return start;
   const SharedNoise shared = find_shared_noise(places, start, steps, context);
   if (shared.points > 1) {
@@ -201,7 +203,6 @@ void measure(const SpatialIndex& index, const DepthSteps* steps, double rounding
   // What is on a grid may be exact, as stairs are: it makes sure of no noise.
   const NoiseStart start = find_start(index, noise.on_grid ? nullptr : steps, rounding, noise, context);
   if (!(start.least > 0)) return;
-  noise.neighbours = start.m;
   NoiseSites sites = listen(index, listening_places(index.points(), start.m), start, steps, context);
   // Where windows let a second sheet in nearly everywhere, the calmer fifth, too, hears more than it shows
   // without one or than kernels read; where they do at most places, the figure is more than kernels read.
@@ -216,7 +217,7 @@ void measure(const SpatialIndex& index, const DepthSteps* steps, double rounding
   if (!(noise.sigma > 0)) return;
   // Where there are several sheets at most places, windows let them in. Noise of a part of the cloud or that
   // points do not have of their own is not foretold by a surface; steps and lines are not read in kernels.
-  if (start.in_kernels && !noise.on_grid && !(noise.shared > 1) && is_even(sites)) {
+  if (start.in_kernels && !noise.on_grid && points_as_one(noise) == 1 && is_even(sites)) {
     const std::optional<double> most = held_out_bound(index, noise.sigma, context);
     if (most && noise.sigma > kSameNoise * *most) bound(*most);
   }

@@ -55,6 +55,13 @@ inline bool is_of_steps(const NoiseModel& noise) {
   return rounding_noise(noise.step) > noise.sigma;
 }
 
+/// How many points say as much as one: as many as share the noise, or, where 16 points are on few lines, as
+/// many times 16 as are a piece of the surface.
+inline double points_as_one(const NoiseModel& noise) {
+  const double on_few = noise.on_lines ? 1 : double(noise.piece) / double(kNarrowestPatch);
+  return std::max(noise.shared, on_few);
+}
+
 /// The noise of a cloud, at every point.
 struct NoiseField : NoiseModel {
   std::vector<double> local;          ///< n: sigma near each point, world units
@@ -63,9 +70,11 @@ struct NoiseField : NoiseModel {
   std::vector<double> local_told;     ///< n: told_at_sites near each point, 0 to 1; empty: 0 everywhere
 
   /// Whether neighbours share it, here or there.
-  bool is_shared() const { return shared > 1 || !local_shared.empty(); }
-  /// How many points say as much as one, near point i.
-  double shared_by(std::size_t i) const { return local_shared.empty() ? shared : local_shared[i]; }
+  bool is_shared() const { return points_as_one(*this) > 1 || !local_shared.empty(); }
+  /// points_as_one near point i.
+  double as_one_near(std::size_t i) const {
+    return local_shared.empty() ? points_as_one(*this) : std::max(points_as_one(*this), local_shared[i]);
+  }
   /// How far the noise may have carried point i, world units: what is farther off is a stray.
   double reach(std::size_t i) const { return kStray * std::max(local[i], sigma); }
   /// n: that of each point, of so many times the noise.

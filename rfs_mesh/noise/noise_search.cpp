@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/parallel.h"
 #include "rfs_mesh/fit/flattest_slab.h"
 #include "rfs_mesh/levels.h"
 #include "rfs_mesh/noise/narrow_kernel.h"
@@ -101,7 +102,7 @@ void find_surface(Places& places, std::vector<Scatter> all, bool terraces, Noise
     for (const Scatter& s : all) breadths.push_back(s.breadth);
     return quantile(breadths, 0.5);
   };
-  std::size_t& m = start.narrowest;
+  std::size_t m = start.piece;
   bool lines = breadth() < kLine;
   while (2 * m <= widest_scatter(places.index()) &&
          (breadth() < kSurface || !(terraces || same_planes(places, all, m)))) {
@@ -112,8 +113,9 @@ void find_surface(Places& places, std::vector<Scatter> all, bool terraces, Noise
     if (m == 2 * kNarrowestPatch) lines = lines && breadth() * breadth() < kLine * kSurface;
   }
   if (breadth() < kSurface) return;  // a lone line has no other to reach across to
+  start.piece = m;
   start.on_lines = lines;
-  if (!terraces && !start.on_lines) start.m = m;
+  if (!terraces && !lines) start.m = m;
 }
 
 /// Ever wider windows, up to the bound: sets sigma to the first that is as wide as what it shows, and m to
@@ -163,12 +165,25 @@ std::size_t widest_scatter(const SpatialIndex& index) {
   return std::clamp(index.points().size() / kShareOfCloud, kNarrowestPatch, kWidestFit);
 }
 
-double variance_of_steps(const DepthSteps& steps, const Places& places, const std::vector<Scatter>& all) {
+std::vector<double> rounding_at(const Places& places, const std::vector<Scatter>& all,
+                                const DepthSteps& steps) {
+  std::vector<double> rounding(all.size());
+  for_each_index(
+      places.context(), all.size(),
+      [&](std::size_t i) { rounding[i] = steps.sigma(places.at()[i], all[i].normal); }, 64);
+  return rounding;
+}
+
+double variance_of_steps(const std::vector<double>& rounding, const std::vector<Scatter>& all) {
   const std::vector<double> area = areas(all);
   std::vector<Weighed> variances;
-  for (std::size_t i = 0; i < places.size(); ++i)
-    variances.push_back({std::pow(steps.sigma(places.at()[i], all[i].normal), 2), area[i]});
+  for (std::size_t i = 0; i < all.size(); ++i) variances.push_back({rounding[i] * rounding[i], area[i]});
   return quantile(variances, kCalmPlaces);
+}
+
+bool are_two_depths(double variance, double rounding) {
+  constexpr double kTwoDepths = 3;  // (1 / 2)^2 of a step over (1 / sqrt(12))^2
+  return variance <= kTwoDepths * kSameNoise * kSameNoise * rounding * rounding;
 }
 
 double scatter_reach(double sigma, double narrow) {
@@ -202,11 +217,12 @@ NoiseStart search_noise(Places& places, const DepthSteps* steps, double rounding
   start.sigma = std::sqrt(mean_variance(all, kCalmPlaces, kCalmDeviate));
   // Of coordinates that are rounded a narrower window holds those alone that are rounded alike.
   const double rounded = kSameNoise * rounding / kScatterWindow,
-               of_steps = steps == nullptr ? 0 : std::sqrt(variance_of_steps(*steps, places, all)),
+               of_steps =
+                   steps == nullptr ? 0 : std::sqrt(variance_of_steps(rounding_at(places, all, *steps), all)),
                sure = std::min(start.sigma, std::max(rounded, of_steps));
   start.most = kSameNoise * bound(places, start.m);
   // Lines are no sheets, and a window narrow enough finds some that are exact. Nor are steps normal noise.
-  const bool surface = start.narrowest == kNarrowestPatch;
+  const bool surface = start.piece == kNarrowestPatch;
   const std::optional<NoiseInKernels> read =
       surface && !start.on_lines && steps == nullptr
           ? noise_in_kernels(places.index(), start.most, places.context())

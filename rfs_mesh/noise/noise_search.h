@@ -39,11 +39,11 @@ struct NoiseStart {
   double apart = 0;                 ///< NoiseModel::apart
   std::size_t m = kNarrowestPatch;  ///< points of a neighbourhood; along lines it follows them
   double shape_grows = 2;           ///< variance that is shape, from m to 2 m points: at least so many times
-  std::size_t narrowest = kNarrowestPatch;  ///< least m that is a piece of surface and not of a line
+  std::size_t piece = kNarrowestPatch;  ///< least m that is a piece of surface and not of a line
   /// Whether noise of about a spacing or more fills the nearest neighbours: its slab is wider than they are.
   bool fills_nearest() const { return m >= kNeighbourhood; }
   bool in_kernels = false;  ///< whether the bound was read in kernels (narrow_kernel.h)
-  bool on_lines = false;    ///< whether twice kNarrowestPatch points lie along a line, and `narrowest` do not
+  bool on_lines = false;    ///< whether twice kNarrowestPatch points lie along a line, and `piece` do not
 };
 
 /// A fit takes at most one of so many points of the cloud.
@@ -55,8 +55,16 @@ std::size_t widest_scatter(const SpatialIndex& index);
 /// The median distance to the m-th nearest point. \param at places, at least one. O(m) after the index.
 double median_radius(const SpatialIndex& index, const Positions& at, std::size_t m);
 
-/// Variance that steps make sure of at calm places. \param all fits at the places.
-double variance_of_steps(const DepthSteps& steps, const Places& places, const std::vector<Scatter>& all);
+/// By place: what depths in steps add by their rounding along the normal of its fit, world units.
+std::vector<double> rounding_at(const Places& places, const std::vector<Scatter>& all,
+                                const DepthSteps& steps);
+
+/// Variance that steps make sure of at calm places. \param rounding of rounding_at
+double variance_of_steps(const std::vector<double>& rounding, const std::vector<Scatter>& all);
+
+/// Whether points scatter no more than those at two depths that follow each other: by half a step, where
+/// rounding adds 1 / sqrt(12) of it. Nothing that is nearer to each other than a step is two sheets.
+bool are_two_depths(double variance, double rounding);
 
 /// How far the ball of a fit must reach for noise sigma: to a patch of 2 sigma with all of the window above
 /// and below it. \param narrow radius of the ball of the least m.

@@ -57,14 +57,14 @@ std::unique_ptr<HeightField> raise_field(const Positions& points, const Adjacenc
   Positions guide = fair(points, rings, report.guide_strength, whole.reductions, context);
   Landed landed = land_stranded(points, rings, noise.reaches(1, context), guide, context);
   report.stranded = landed.stranded;
-  return std::make_unique<HeightField>(std::move(guide), std::move(landed.tree), landed.near, points,
-                                       noise.across, context);
+  return std::make_unique<HeightField>(std::move(guide), std::move(landed.tree), landed.near, points, noise,
+                                       context);
 }
 
 /// c of the guide's fairing.
 double strength_of_guide(const rfs_mesh::NoiseField& noise) {
   const double share = noise.sigma / noise.spacing;
-  return kGuide * share * share * std::max(1.0, share * share) * noise.shared;
+  return kGuide * share * share * std::max(1.0, share * share) * points_as_one(noise);
 }
 
 /// Points as heights over their guide, and what all scales together make of these.
@@ -81,7 +81,7 @@ Mixed mix_scales(const AutomaticTask& task, AutomaticReport& report, Statistics&
                  const Context& context) {
   Mesh& mesh = task.mesh;
   std::optional<Adjacency> lines;
-  if (task.noise.across) lines = along_lines(mesh.positions, context);
+  if (task.noise.on_lines) lines = along_lines(mesh.positions, context);
   const Adjacency& rings = lines ? *lines : mesh.one_ring;
   Mixed mixed;
   const auto smooth = [&](const Positions& points, const rfs_mesh::NoiseField& noise, std::size_t pass) {
@@ -144,7 +144,7 @@ AutomaticResult automatic_smoothing(const AutomaticTask& task, AutomaticReport& 
   const std::vector<float> one_sheet = task.learned ? heights.height : std::vector<float>();
   // A k-th of the evidence never was enough for walls, across lines there is none, and noise that fills
   // voxels evenly looks like two sheets.
-  const bool own_noise = !(noise.shared > 1) && !noise.across && !noise.on_grid;
+  const bool own_noise = points_as_one(noise) == 1 && !noise.on_lines && !noise.on_grid;
   HiddenSheets hidden;
   if (own_noise && untamed > rfs_mesh::detail(noise.spacing))
     hidden = split_hidden_sheets(

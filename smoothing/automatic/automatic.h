@@ -34,9 +34,9 @@
 /// prediction that has the share `own` of the point's height k own / (1 + (k - 1) own) is the point's and its
 /// neighbours' noise. What such points have of their own beside it is noise for sure: in place of the data
 /// the patches of 16 points are the first candidate, so that where every wide patch is worse the points are
-/// left calm.
+/// left calm. Of points on few lines (NoiseModel::piece) the same is done, but no wider patches are tried.
 ///
-/// Where the nearest points lie along lines (NoiseModel::across), as on the rings of a spinning laser, the
+/// Where the nearest points lie along lines (NoiseModel::on_lines), as on the rings of a spinning laser, the
 /// guide is faired along them, over the nearest of each point in place of the mesh. Normals are those of
 /// the thinned guide, narrow patches are parabolas along the line, points move along their normals only, and
 /// neither walls nor tails are looked for.

@@ -95,7 +95,7 @@ class AutomaticFlow : public Flow {
 
 NoiseSummary summary_of(const rfs_mesh::NoiseField& noise) {
   NoiseSummary summary{noise.sigma, noise.sigma,   noise.shared,
-                       noise.step,  noise.on_grid, noise.across.has_value()};
+                       noise.step,  noise.on_grid, noise.piece > rfs_mesh::kNarrowestPatch};
   if (noise.local.empty()) return summary;
   std::vector<double> local = noise.local;
   summary.loudest = quantile(local, 0.9);
@@ -128,7 +128,7 @@ std::optional<AutomaticReport> smooth_automatically(Mesh& mesh, const AutomaticO
   const Positions before = std::move(smooth.points);
   rfs_mesh::NeighborTable near = smooth.near.first(NearRows::kMost, context);
   smooth.near = {};
-  if (!noise.across) {  // along lines only the normals are known
+  if (!noise.on_lines) {  // along lines only the normals are known
     if (options.equalize && !noise.is_shared()) {
       const Equalized moved = equalize(mesh.positions, before, noise, std::move(near), context);
       report.equalized = moved.rms;

@@ -68,7 +68,7 @@ class ToldByResiduals {
     if (!(2 * sums[3] > sums[0])) return {};  // most of the data stayed, and tell nothing
     // The median of chi-square over its degrees of freedom, by Wilson and Hilferty 1931; neighbours that
     // share their noise are one.
-    const double freedom = std::max(1.0, sums[0] * sums[0] / sums[1] / noise.shared_by(at));
+    const double freedom = std::max(1.0, sums[0] * sums[0] / sums[1] / noise.as_one_near(at));
     return {noise.local[at], sums[2] / sums[3] / std::pow(1 - 2 / (9 * freedom), 3)};
   }
 

@@ -129,7 +129,7 @@ std::vector<Index> find_stranded(const Adjacency& rings, const Positions& guide,
       distance[i][r] = float((guide[near[i][r == 0 ? kTenth : near[i].size() - 1]] - guide[i]).norm());
   });
   for_each_index(context, n, [&](std::size_t i) {
-    // Above so many times the lower quartile: that many are below this.
+    // More than kThin times the lower quartile: more than a quarter of the neighbours are below the kThin-th.
     const Distances usual = {distance[i][0] / kThin, distance[i][1] / kThin};
     std::array<std::size_t, 2> below = {};
     for (const Index j : near[i])

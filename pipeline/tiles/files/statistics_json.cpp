@@ -20,11 +20,10 @@ NoiseScale scale_of(const ordered_json& json) {
 }
 
 ordered_json json_of_noise(const NoiseModel& noise) {
-  ordered_json json = {
-      {"sigma", noise.sigma},     {"shape", noise.shape},           {"spacing", noise.spacing},
-      {"apart", noise.apart},     {"neighbours", noise.neighbours}, {"shared_by", noise.shared},
-      {"depth_step", noise.step}, {"on_grid", noise.on_grid},       {"at_sites", noise.at_sites}};
-  if (noise.across) json["across"] = *noise.across;
+  ordered_json json = {{"sigma", noise.sigma},       {"shape", noise.shape},      {"spacing", noise.spacing},
+                       {"apart", noise.apart},       {"shared_by", noise.shared}, {"piece", noise.piece},
+                       {"on_lines", noise.on_lines}, {"depth_step", noise.step},  {"on_grid", noise.on_grid},
+                       {"at_sites", noise.at_sites}};
   if (!noise.spacing_at_sites.empty()) json["spacing_at_sites"] = noise.spacing_at_sites;
   if (!noise.told_at_sites.empty()) json["told_at_sites"] = noise.told_at_sites;
   if (!noise.shared_at_sites.empty()) json["shared_at_sites"] = noise.shared_at_sites;
@@ -39,11 +38,11 @@ NoiseModel noise_of(const ordered_json& json) {
   noise.shape = json.at("shape");
   noise.spacing = json.at("spacing");
   noise.apart = json.at("apart");
-  noise.neighbours = json.at("neighbours");
   noise.shared = json.at("shared_by");
   noise.step = json.at("depth_step");
   noise.on_grid = json.at("on_grid");
-  if (json.contains("across")) noise.across = json.at("across").get<std::size_t>();
+  noise.piece = json.at("piece");
+  noise.on_lines = json.at("on_lines");
   noise.at_sites = json.at("at_sites").get<std::vector<double>>();
   if (json.contains("spacing_at_sites"))
     noise.spacing_at_sites = json.at("spacing_at_sites").get<std::vector<double>>();

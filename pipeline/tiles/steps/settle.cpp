@@ -52,7 +52,7 @@ Sample sample_of(const Job& job, const Context& context) {
 std::size_t widest_patch(const DenoiseOptions& options, const Statistics& found) {
   std::size_t widest = std::size_t(options.connect.neighbours);
   if (found.scale) widest = std::max(widest, found.scale->neighbours);
-  if (found.noise && found.noise->across) widest = std::max(widest, *found.noise->across);
+  if (found.noise) widest = std::max(widest, found.noise->piece);
   for (const auto& pass : found.passes)
     for (const auto& scale : pass.scales) widest = std::max(widest, scale.members);
   return widest;

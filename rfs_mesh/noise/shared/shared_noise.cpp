@@ -31,26 +31,32 @@ struct Calm {
   std::vector<double> together;
   /// Medians, since that of a few rocks on a sea floor is large.
   std::vector<double> flatness, lean;
-  std::vector<double> radius;  ///< mean, of their balls
-  double steps = 0;            ///< variance that depths in steps make sure of
+  std::vector<double> radius;    ///< mean, of their balls
+  std::vector<char> two_depths;  ///< are_two_depths, of most of them
+  double steps = 0;              ///< variance that depths in steps make sure of
 };
 
-/// Enters what the fits of at most this variance show of how points err.
-void enter(const std::vector<Scatter>& all, double variance, Calm& calm) {
-  double together = 0, radius = 0, count = 0;
+/// Enters what the fits of at most this variance show of how points err. \param rounding of each, by depths
+/// in steps
+void enter(const std::vector<Scatter>& all, const std::vector<double>& rounding, double variance,
+           Calm& calm) {
+  double together = 0, radius = 0, count = 0, two_depths = 0;
   std::vector<double> flatness, lean;
-  for (const Scatter& s : all) {
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const Scatter& s = all[i];
     if (!says(s) || s.variance > variance) continue;
     together += s.together;
     flatness.push_back(s.flatness);
     lean.push_back(s.lean_in_common);
     radius += s.radius;
+    two_depths += double(are_two_depths(s.variance, rounding[i]));
     ++count;
   }
   calm.together.push_back(count > 0 ? together / count : 0);
   calm.flatness.push_back(median(flatness));
   calm.lean.push_back(median(lean));
   calm.radius.push_back(count > 0 ? radius / count : 0);
+  calm.two_depths.push_back(char(2 * two_depths > count));
 }
 
 Calm look(Places& places, const NoiseStart& start, const DepthSteps* steps, const Context& context) {
@@ -58,7 +64,7 @@ Calm look(Places& places, const NoiseStart& start, const DepthSteps* steps, cons
   const SpatialIndex& index = places.index();
   // Half of what fits take at most: else parts of the cloud are shape.
   const std::size_t last = std::min(widest_scatter(index), index.points().size() / (2 * kShareOfCloud));
-  for (std::size_t m = std::max(start.m, start.narrowest); m <= last; m *= 2) {
+  for (std::size_t m = std::max(start.m, start.piece); m <= last; m *= 2) {
     Places fewer(index, sample(places.at(), kPointsLooked / m), 0, context);
     Places& some = fewer.size() < places.size() ? fewer : places;
     const std::vector<Scatter> all = some.fits(m);
@@ -67,8 +73,10 @@ Calm look(Places& places, const NoiseStart& start, const DepthSteps* steps, cons
     if (variances.empty()) continue;
     const double variance = quantile(variances, kCalmPlaces);
     if (!(variance > start.least * start.least)) continue;
-    if (calm.m.empty() && steps != nullptr) calm.steps = variance_of_steps(*steps, some, all);
-    enter(all, kSameNoise * kSameNoise * variance, calm);
+    const std::vector<double> rounding =
+        steps != nullptr ? rounding_at(some, all, *steps) : std::vector<double>(all.size(), 0);
+    if (calm.m.empty()) calm.steps = variance_of_steps(rounding, all);
+    enter(all, rounding, kSameNoise * kSameNoise * variance, calm);
     calm.m.push_back(double(m));
     calm.seen.push_back(variance);
   }
@@ -146,7 +154,7 @@ SharedNoise find_shared_noise(Places& places, const NoiseStart& start, const Dep
     const double flatness =
         terraces ? calm.flatness[i + 1]
                  : flatness_beyond(calm.flatness[i + 1], start.sigma * start.sigma / calm.seen[i + 1]);
-    if (flatness < kFlatnessOfSheets) continue;
+    if (flatness < kFlatnessOfSheets && calm.two_depths[i + 1] == 0) continue;
     if (!terraces && leans_as_relief(calm.lean[i + 1])) continue;
     if (!terraces && !err_together(calm.together[i + 1], calm.m[i + 1])) continue;
     if (terraces || err_together(calm.together[i], calm.m[i]))

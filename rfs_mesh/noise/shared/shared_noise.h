@@ -26,7 +26,8 @@
 /// that counted ends the search (off terraces only once some noise is sure). Neighbourhoods whose residuals
 /// (off terraces: beyond the noise that points have of their own) are flatter than kFlatnessOfSheets
 /// (two_sheets.h) are of two sheets or of waves in rows (a sine has 1.5, threads and ripples measured under
-/// noise 1.6 to 2.1, noise that points share 2.9 and more), and tell nothing. Nor do those that lean off
+/// noise 1.6 to 2.1, noise that points share 2.9 and more), and tell nothing; but not those at two depths
+/// that follow each other, between which noise carries the points of one wall. Nor do those that lean off
 /// terraces (Scatter::lean_in_common): noise is as often above as below, stones are round above and end in
 /// clefts. Those that do not hold a slab as thick as they scatter (kFlatSlab) tell nothing while they are
 /// narrow, and wider ones than some that do are the last, too: leaves and twigs fill them. k is the number

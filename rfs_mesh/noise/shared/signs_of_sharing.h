@@ -24,7 +24,7 @@ double flatness_beyond(double flatness, double own);
 /// Scatter::lean_in_common
 bool leans_as_relief(double lean);
 
-/// The greatest k from 1 to `most` that is below; all are up to it.
+/// The greatest k from 1 to `most` of which `below` is true: it is up to some k, and of none beyond.
 template <class Below>
 double greatest_below(double most, const Below& below) {
   double fewest = 1;

@@ -53,7 +53,7 @@ struct NoiseSites {
   std::vector<char> speaks;    ///< whether sigma is of this place; else it is what came nearest to it
   std::vector<double> volume;  ///< scatter of points that fill a ball around it as leaves do, world units,
                                ///< which was not believed; 0: there was none
-  std::vector<char> full;      ///< whether the site's own fit fills its window, which is its neighbours'
+  std::vector<char> full;      ///< whether the site's own fit fills a window as wide as its group has noise
   std::vector<double> most;    ///< what is seen without windows around it, world units; infinite: not known
   std::vector<double> floor;   ///< least noise, of steps, shared noise or layers, or of each of two sheets
                                ///< where no fit within windows says a thing; world units; 0: none

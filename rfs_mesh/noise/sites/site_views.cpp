@@ -19,9 +19,6 @@ constexpr std::size_t kFarther = 8, kPlateauTo = kFarther * kNeighbourhood,
                       kWidestView = kFarther * kPlateauTo;
 // Scatter::middle above which noise so flat is that of no two sheets: nearly that of an even distribution.
 constexpr double kMiddleOfSheets = 0.25;
-// Points at two depths that follow each other scatter by half a step, and rounding by 1 / sqrt(12) of it; of
-// their variances 3.
-constexpr double kTwoDepths = 3;
 // Coefficients of a quadric.
 constexpr double kOfQuadric = 6;
 
@@ -41,16 +38,6 @@ double plateau(double few, double many, double radius) {
                        std::clamp((kNeverStops - growth) / (kNeverStops - kStops), 0.0, 1.0) *
                        std::clamp((kThick - share) / (kThick - kThin), 0.0, 1.0);
   return trust * std::max(few, kSure * many);
-}
-
-/// By site: what depths in steps add by their rounding along the normal of its fit, world units.
-std::vector<double> rounding_at(const Places& places, const std::vector<Scatter>& all,
-                                const DepthSteps& steps, const Context& context) {
-  std::vector<double> rounding(all.size());
-  for_each_index(
-      context, all.size(), [&](std::size_t s) { rounding[s] = steps.sigma(places.at()[s], all[s].normal); },
-      64);
-  return rounding;
 }
 
 /// The fits of the sites nearest to one, and what they say together.
@@ -154,8 +141,7 @@ struct Sites {
     };
     const auto exceeds_rounding = [&](std::size_t k) {
       const double depths = on_grid() ? 2 : 1;  // with no empty voxel between them there is one sheet
-      const double rounding = depths * rounding_around(s, open[k]);
-      return seen[k].variance() > kTwoDepths * rounding * rounding;
+      return !are_two_depths(seen[k].variance(), depths * rounding_around(s, open[k]));
     };
     std::size_t flattest = 0;
     double flatness = kFlatnessOfSheets;
@@ -269,7 +255,7 @@ std::vector<SiteView> look_without_windows(Places& places, const SiteGroups& gro
   for (; open.empty() || (points <= kPlateauTo && n >= 2 * points); points *= 2)
     open.emplace_back(points, places.fits(points));
   if (steps != nullptr)
-    for (OpenFits& fits : open) fits.rounding = rounding_at(places, fits.all, *steps, context);
+    for (OpenFits& fits : open) fits.rounding = rounding_at(places, fits.all, *steps);
   const bool deep = start.fills_nearest();
   const std::vector<Scatter>& few = open.front().all;
   const std::vector<Scatter> wide = deep ? places.fits(start.m) : std::vector<Scatter>();

@@ -15,12 +15,12 @@
 
 namespace rfsmooth::rfs_mesh {
 
-/// The size of these voxels, world units: what the coordinates along two of the axes repeat with more clearly
-/// than with any other from half of that to the eighth point, but more than that to the nearest, to twice
-/// that, in the mean of 48 places. A surface across two voxels has points in both: two layers, nearer to each
-/// other than the voxels are large, are one surface. Nothing where there are none; where points are on a
-/// grid, and no nearer to each other than that (find_grid); where one of each voxel was kept at random; and
-/// where the cloud was turned afterwards. O(log n). \param nearest median distance to the nearest point.
+/// The size of these voxels, world units: the period, from half to twice the distance to the eighth nearest
+/// and above that to the nearest, at which the spectra of the coordinates peak along two axes at once, in the
+/// mean of 48 places. A surface across two voxels has points in both: two layers, nearer to each other than
+/// the voxels are large, are one surface. Nothing where there are none; where points are on a grid, and no
+/// nearer to each other than that (find_grid); where one of each voxel was kept at random; and where the
+/// cloud was turned afterwards. O(log n). \param nearest median distance to the nearest point.
 std::optional<double> voxel_size(const SpatialIndex& index, double nearest, const Context& context);
 
 }  // namespace rfsmooth::rfs_mesh

@@ -28,8 +28,8 @@ constexpr double kGain = 0.4;         // step / (sigma/d)^2, in R f
 constexpr double kStep = 0.3;         // the longest
 constexpr int kSteps = 6;
 constexpr double kMostMove = 0.5 * (1 - 1e-6);  // of the local distance; single precision rounds
-constexpr double kShare = 0.75;  // of the tangential offset that is given back at little noise; the rims of
-constexpr double kShareUpTo = 1.6;  // open sheets want it up to this many sigma per spacing
+constexpr double kShare = 0.75;                 // of the tangential offset that is given back at little noise
+constexpr double kShareUpTo = 1.6;  // sigma per spacing: up to so much the rims of open sheets want it back
 constexpr double kWidestGap = 2.4;  // radians between neighbours' directions: wider means a rim
 
 /// Whether there is a neighbour in each of the six sectors of 60 degrees: nearly always.

@@ -93,7 +93,7 @@ TangentFrame tangent_frame(const Positions& points, const NearestRows& rows, std
     around.u[k] = d.dot(f.t);
     around.v[k] = d.dot(f.b);
     around.height[k] = d.dot(f.n);
-    around.weight[k] = alike ? 1.1F - d.squaredNorm() : 0;
+    around.weight[k] = alike ? float(rfs_mesh::kBeyond) - d.squaredNorm() : 0;
   }
   // The quadric goes through the point: without the constant term.
   QuadricSums sums;

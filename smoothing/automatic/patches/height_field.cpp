@@ -17,14 +17,15 @@ constexpr float kByteUnit = 255, kByteRounded = 0.5F;
 }  // namespace
 
 HeightField::HeightField(Positions guide, rfs_mesh::KdTree tree, const rfs_mesh::NeighborTable& near,
-                         const Positions& data, std::optional<std::size_t> across, const Context& context)
+                         const Positions& data, const NoiseModel& noise, const Context& context)
     : guide_(std::move(guide)),
       index_(std::in_place, guide_, std::move(tree), context),
-      on_lines_(across.has_value()) {
+      on_lines_(noise.on_lines) {
   if (near.size() != size() || data.size() != size())
     throw std::invalid_argument("HeightField: guide, neighbours and data are not of the same points");
-  const std::vector<Eigen::Vector3f> normals =
-      across ? normals_across_lines(guide_, near, *across, context) : surface_normals(guide_, near, context);
+  const std::vector<Eigen::Vector3f> normals = on_lines_
+                                                   ? normals_across_lines(guide_, near, noise.piece, context)
+                                                   : surface_normals(guide_, near, context);
   near_ = NearRows(near, context);
   local_.resize(size());
   for_each_index(context, size(), [&](std::size_t i) { local_[i].normal = normals[i]; });

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include <rfsmooth/context.h>
+#include <rfsmooth/statistics.h>
 
 #include "base/raw_array.h"
 #include "rfs_mesh/levels.h"
@@ -38,11 +39,11 @@ class HeightField {
   /// \param tree of the guide points, here or at places near these.
   /// \param near n x kNear (n - 1 where that is less): the nearest of every guide point.
   /// \param data n x 3, the noisy points of the same indices.
-  /// \param across as in normals_across_lines, where points lie along lines.
+  /// \param noise whether points lie along lines, and how many are a piece of the surface.
   /// \throw std::invalid_argument if the three differ in n.
   /// O(n log n), parallel, the same bits for any number of threads.
   HeightField(Positions guide, rfs_mesh::KdTree tree, const rfs_mesh::NeighborTable& near,
-              const Positions& data, std::optional<std::size_t> across, const Context& context);
+              const Positions& data, const NoiseModel& noise, const Context& context);
   HeightField(const HeightField&) = delete;
   HeightField& operator=(const HeightField&) = delete;
 

@@ -21,8 +21,9 @@ using rfs_mesh::kNarrowestPatch;
 // Chosen on the development shapes (tests/bench/quality) at 10,000 and 50,000 points, noise of 1 to 3 %.
 constexpr std::size_t kMostOverlap = 14;  // patches over a point; a thinning leaves 0.4 of them
 constexpr double kNarrowest = 52.6;  // m_0 = kNarrowest (sigma/h)^2 if that is more: a radius of 4.5 sigma
-constexpr double kWidest = 1600;     // the widest patches, unless those that look for walls are wider
-constexpr int kSeeing = 2;           // index of the scale that looks for walls: of 4 m_0 points, 9 sigma
+constexpr double kWidest =
+    1600;                   // the widest patches where each has its own noise, or those that look for walls
+constexpr int kSeeing = 2;  // index of the scale that looks for walls: of 4 m_0 points, 9 sigma
 
 // A subset with a point in so many has a ring of its own among the nearest of every point.
 constexpr std::size_t kDense = HeightField::kNear / rfs_mesh::kRing;
@@ -128,10 +129,12 @@ class Ladder {
 
   /// Once.
   Rungs climb() {
-    const double share = noise_.sigma / noise_.spacing;
-    const double narrowest = std::max(double(kNarrowestPatch) * noise_.shared, kNarrowest * share * share);
-    const double widest = std::max(kWidest, std::ldexp(narrowest, kSeeing));
-    if (noise_.shared > 1) stand_in();
+    const double share = noise_.sigma / noise_.spacing, as_one = points_as_one(noise_);
+    const double narrowest = std::max(double(kNarrowestPatch) * as_one, kNarrowest * share * share);
+    // Variance, as k / m, and what shape adds, as m^3, balance at m as k^(1/4).
+    const double widest =
+        std::max(kWidest * std::sqrt(std::sqrt(noise_.shared)), std::ldexp(narrowest, kSeeing));
+    if (as_one > 1) stand_in();
     std::vector<Statistics::Scale>& how = whole_.scales;
     const bool known = !how.empty();
     const double count = known ? double(how.size()) : 1 + std::log2(widest / narrowest);
@@ -171,7 +174,7 @@ class Ladder {
     Prediction& prediction = scale.prediction;
     for_each_index(context_, field_.size(), [&](std::size_t i) {
       float& own = prediction.own[i];
-      own = own_of_all(own, float(noise_.shared_by(i)));
+      own = own_of_all(own, float(noise_.as_one_near(i)));
       const float off = (field_.local()[i].height - prediction.height[i]) / float(sigma[i]),
                   e = std::clamp(off, -kFarthest, kFarthest);
       const float risk = prediction.covered[i] != 0 ? e * e + 2 * own - 1 : risk_[i];
@@ -188,12 +191,12 @@ class Ladder {
     return scale;
   }
 
-  /// Whether a patch of so many averages the risk, of which `shared` members are one that errs by itself; but
+  /// Whether a patch of so many averages the risk, of which `as_one` members are one that errs by itself; but
   /// near neighbours are about kOwnMean, and of fewer such than a ring no mean is taken.
   bool averages(std::size_t members) const {
-    const double fewest = double(kOwnMean), shared = noise_.shared;
-    const bool near_tells = fewest >= double(rfs_mesh::kRing) * shared;
-    return double(members) >= (near_tells ? fewest * shared : fewest);
+    const double fewest = double(kOwnMean), as_one = points_as_one(noise_);
+    const bool near_tells = fewest >= double(rfs_mesh::kRing) * as_one;
+    return double(members) >= (near_tells ? fewest * as_one : fewest);
   }
 
   /// How patches of about m points are made here: seeds thinned until at most kMostOverlap lie over a point.
@@ -257,7 +260,7 @@ void mix(const HeightField& field, Rungs rungs, const rfs_mesh::NoiseField& nois
       const float against = scale.mean.empty() ? kNearEvidence * near
                                                : kPatchEvidence * float(scale.members) * scale.mean[i] +
                                                      kNearEvidence * std::max(0.0F, near - kTolerated);
-      gain[i] = scale.prediction.covered[i] != 0 ? -against / float(noise.shared_by(i))
+      gain[i] = scale.prediction.covered[i] != 0 ? -against / float(noise.as_one_near(i))
                                                  : std::numeric_limits<float>::quiet_NaN();
     });
     mixture.add(std::move(scale.prediction.height), std::move(scale.prediction.own), std::move(gain),

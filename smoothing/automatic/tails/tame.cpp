@@ -101,7 +101,7 @@ Tails tame(const HeightField& field, const MixedScales& pass, const Mesh& mesh,
            const rfs_mesh::NoiseField& noise, std::optional<Statistics::Tails>& whole, Positions& data,
            const Context& context) {
   // Terraces stand out as tails do, and so does what lines of points pass over.
-  if (is_of_steps(noise) || noise.across) return {};
+  if (is_of_steps(noise) || noise.on_lines) return {};
   constexpr float kMostItsOwn = 0.8F;
   constexpr double kByChance = 1.6;  // far points together: tails have 0.7 to 1.1 in ten thousand points
   constexpr double kGroups = 5;      // the same, off wide patches, too: of shape, or noise that points share
@@ -117,17 +117,12 @@ Tails tame(const HeightField& field, const MixedScales& pass, const Mesh& mesh,
     // Where the mixture had to be narrow, a wide patch says little.
     least[i] = std::min(std::abs(relative[i]), std::abs(without) / sigma);
   });
+  const double together = whole ? whole->together : far_together(field, least, context);
+  const bool groups = !whole && std::max(together, far_together(field, relative, context)) > kGroups;
+  if (!groups && together > kByChance) relate_to_neighbours(field, relative, least, context);
   if (!whole) {
-    const double together = far_together(field, least, context);
-    if (std::max(together, far_together(field, relative, context)) > kGroups)
-      whole = Statistics::Tails();
-    else {
-      if (together > kByChance) relate_to_neighbours(field, relative, least, context);
-      whole = find_tails(relative, least);
-    }
+    whole = groups ? Statistics::Tails() : find_tails(relative, least);
     whole->together = together;
-  } else if (whole->together > kByChance) {
-    relate_to_neighbours(field, relative, least, context);
   }
   const Tails tails(*whole);
   if (!(tails.share > 0)) return tails;
@@ -141,7 +136,7 @@ Tails tame(const HeightField& field, const MixedScales& pass, const Mesh& mesh,
 }
 
 rfs_mesh::NoiseField tamed(rfs_mesh::NoiseField noise, const Tails& tails) {
-  if (noise.shared > 1) return noise;  // what points share is not of their tails
+  if (points_as_one(noise) > 1) return noise;  // what points share is not of their tails
   noise.sigma *= tails.noise();
   for (double& local : noise.local) local *= tails.noise();
   return noise;

@@ -17,8 +17,8 @@ Statistics full() {
   all.noise->sigma = 1.0 / 9;
   all.noise->shape = 0.2;
   all.noise->spacing = 1.0 / 7;
-  all.noise->neighbours = 40;
-  all.noise->across = 128;
+  all.noise->piece = 128;
+  all.noise->on_lines = true;
   all.noise->shared = 3.7;
   all.noise->step = 1.0 / 30;
   all.noise->apart = 0.05;
@@ -44,7 +44,8 @@ TEST(StatisticsJson, IsTheSameWhenReadAgain) {
   const Statistics again = statistics_of(nlohmann::ordered_json::parse(json.dump()));
   EXPECT_EQ(json_of(again), json);
   ASSERT_TRUE(again.noise);
-  EXPECT_EQ(again.noise->across, full().noise->across);
+  EXPECT_EQ(again.noise->piece, 128u);
+  EXPECT_TRUE(again.noise->on_lines);
   EXPECT_EQ(again.noise->shared, full().noise->shared);
   EXPECT_EQ(again.noise->apart, 0.05);
   EXPECT_TRUE(again.noise->on_grid);
@@ -58,9 +59,7 @@ TEST(StatisticsJson, IsTheSameWhenReadAgain) {
 
 TEST(StatisticsJson, WhatIsNotThereStaysOut) {
   Statistics some = full();
-  some.noise->across.reset();
   some.noise->spacing_at_sites.clear();
-  EXPECT_FALSE(statistics_of(json_of(some)).noise->across);
   EXPECT_TRUE(statistics_of(json_of(some)).noise->spacing_at_sites.empty());
   EXPECT_FALSE(statistics_of(json_of(Statistics())).noise);
 }

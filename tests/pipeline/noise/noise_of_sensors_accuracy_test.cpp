@@ -46,6 +46,18 @@ TEST(NoiseOfSensors, BlotchesOfAStereoCameraAreSmoothed) {
   EXPECT_GT(*report.value().noise_left / after, 0.7);
 }
 
+// A wall that lies between two depths which the camera knows, so that little noise carries its points from
+// one to the other: no two walls, and no noise of a part of a step.
+TEST(NoiseOfSensors, AWallAtTwoDepthsOfAKinectIsOne) {
+  for (const double times : {0.1, 0.3}) {
+    const clouds::Sensor sensor = clouds::scaled(*clouds::find_sensor("kinect"), times);
+    Positions points = clouds::look(sensor, 11).measured;
+    const double before = rms_off_room(sensor, points);
+    ASSERT_TRUE(rfsmooth::denoise(points.front().data(), points.size(), {}, {}));
+    EXPECT_LT(rms_off_room(sensor, points), 0.25 * before) << times;
+  }
+}
+
 // Small round things with few rings on them, most of whose points have no face.
 TEST(NoiseOfSensors, ABallAndAPillarKeepTheirForm) {
   const clouds::Sight sight = clouds::look(clouds::scaled(*clouds::find_sensor("rings16"), 0.3), 31);

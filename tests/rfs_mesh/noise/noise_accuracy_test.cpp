@@ -390,8 +390,8 @@ TEST(Noise, OfRingsIsThatAcrossThem) {
       for (double x = 0; x < 2; x += kStep) points.emplace_back(x, y, 0.1 * x * x + sigma * normal(engine));
     const NoiseField noise = measured(points);
     EXPECT_NEAR(noise.sigma, sigma, 0.2 * sigma + 1e-6);
-    ASSERT_TRUE(noise.across);
-    EXPECT_GE(*noise.across, 64u) << "20 steps to the next ring on either side";
+    EXPECT_TRUE(noise.on_lines);
+    EXPECT_GE(noise.piece, 64u) << "20 steps to the next ring on either side";
     EXPECT_EQ(noise.shared, 1);
   }
 }

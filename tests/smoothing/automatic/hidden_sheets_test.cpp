@@ -47,7 +47,7 @@ struct Sheet {
           data.back().z() = truth.back() + (right ? louder : 1) * noise(random);
       }
     field = std::make_unique<HeightField>(guide, rfs_mesh::KdTree(guide, {}), support::near_on(guide), data,
-                                          std::nullopt, Context{});
+                                          NoiseModel(), Context{});
     field->ready_for_means({});
     height.assign(guide.size(), 0);
     own.assign(guide.size(), 0.01F);

@@ -37,7 +37,7 @@ struct Halves {
       }
     noise.sigma = stated_left;
     field = std::make_unique<HeightField>(guide, rfs_mesh::KdTree(guide, {}), support::near_on(guide), data,
-                                          std::nullopt, Context{});
+                                          NoiseModel(), Context{});
     for (std::size_t i = 0; i < guide.size(); ++i) height.push_back(float(error[i] * field->normal(i).z()));
   }
 

@@ -72,7 +72,8 @@ void PatchFit::gather(Index seed, double sigma) {
   near_.find(field_.guide()[seed]);
   const Eigen::Vector3d axis = axis_at(seed);
   // A little beyond the farthest point, so that it counts.
-  const float square = std::max(1.1F * near_.farthest(), std::numeric_limits<float>::min());
+  const float square =
+      std::max(float(rfs_mesh::kBeyond) * near_.farthest(), std::numeric_limits<float>::min());
   const PatchAxes flat = field_.on_lines() ? along_line(near_, axis, square) : patch_axes(axis);
   float shrink = 1 / std::sqrt(square);  // from the lengths of `near_` to radii
   radius_ = near_.unit() / double(shrink);

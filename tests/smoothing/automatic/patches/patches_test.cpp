@@ -132,8 +132,8 @@ TEST(Patches, OnLinesDoNotFollowNoiseThatMovesPointsAcrossThem) {
       data.emplace_back(i, 20 * line + 0.5 * off, off);
     }
   const std::vector<double> sigma(guide.size(), 1);
-  const auto left = [&](std::optional<std::size_t> across) {
-    const HeightField field(guide, rfs_mesh::KdTree(guide, {}), support::near_on(guide), data, across, {});
+  const auto left = [&](const NoiseModel& model) {
+    const HeightField field(guide, rfs_mesh::KdTree(guide, {}), support::near_on(guide), data, model, {});
     PatchMembers memory;
     const Prediction p = Patches(field, 24, seeds_of(guide), sigma, memory, {}).take_prediction();
     double square = 0;
@@ -143,8 +143,11 @@ TEST(Patches, OnLinesDoNotFollowNoiseThatMovesPointsAcrossThem) {
     }
     return square;
   };
-  EXPECT_LT(left(128), 0.25);
-  EXPECT_LT(left(128), 0.5 * left({}));
+  NoiseModel on_lines;
+  on_lines.piece = 128;
+  on_lines.on_lines = true;
+  EXPECT_LT(left(on_lines), 0.25);
+  EXPECT_LT(left(on_lines), 0.5 * left({}));
 }
 
 /// Heights of a flat field: white noise of one, and as much as `moved` says, along z.
