@@ -21,7 +21,7 @@ std::vector<Eigen::Vector3f> surface_normals(const Positions& points, const rfs_
 
 /// n: where the nearest points lie along a line, which has no normal of its own. The guide is thinned until
 /// its points are as far apart along the lines as the lines are, and each point has the mean of the normals
-/// nearest to it. \param across points that reach across to other lines (NoiseModel::across).
+/// nearest to it. \param across points that reach across to other lines (NoiseModel::piece).
 /// O(n log n), parallel, deterministic.
 std::vector<Eigen::Vector3f> normals_across_lines(const Positions& guide, const rfs_mesh::NeighborTable& near,
                                                   std::size_t across, const Context& context);
