@@ -35,9 +35,11 @@
 ///
 ///     s^2(m) = sigma^2 g(k / m)
 ///
-/// at the m that sees half of sigma^2: g is what a quadric through m points leaves of noise that is the mean
-/// of independent noise over the k points around each place, computed for a disk of points and the weights of
-/// scatter.h. S itself sees less than all of such noise,
+/// at the m that sees half of sigma^2, or at a wider one if it says more: of noise that points share beside
+/// their own, wide patches follow as much as of noise that the mean of both shares. g is what a quadric
+/// through m points leaves of noise that is the mean of independent noise over the k points around each
+/// place, computed for a disk of points and the weights of scatter.h. S itself sees less than all of such
+/// noise,
 ///
 ///     S_3(m) = sigma^2 (2^3 g(k / m) - g(k / 2 m)) / (2^3 - 1),
 ///

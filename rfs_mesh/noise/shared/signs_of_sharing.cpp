@@ -97,13 +97,19 @@ bool leans_as_relief(double lean) {
 
 double points_sharing(const std::vector<double>& m, const std::vector<double>& left) {
   constexpr double kHalf = 0.5;
-  double at = m.front(), seen = left.front();
-  for (std::size_t i = 0; i + 1 < left.size() && left[i] < kHalf; ++i) {
-    const double part = std::min(1.0, (kHalf - left[i]) / std::max(1e-9, left[i + 1] - left[i]));
-    at = m[i] * std::pow(m[i + 1] / m[i], part);
-    seen = std::min(kHalf, left[i + 1]);
+  const auto points_of = [&](double at, double seen) {
+    return greatest_below(m.back(), [&](double k) { return left_by_quadric(k, at) > seen; });
+  };
+  std::size_t i = 0;
+  while (i + 1 < left.size() && left[i] < kHalf) ++i;
+  double points = 0;
+  if (i > 0) {  // the m that sees half is between two
+    const double part = std::min(1.0, (kHalf - left[i - 1]) / std::max(1e-9, left[i] - left[i - 1]));
+    points = points_of(m[i - 1] * std::pow(m[i] / m[i - 1], part), std::min(kHalf, left[i]));
   }
-  return greatest_below(m.back(), [&](double k) { return left_by_quadric(k, at) > seen; });
+  for (; i < left.size(); ++i)
+    if (points == 0 || left[i] > kHalf) points = std::max(points, points_of(m[i], left[i]));
+  return points;
 }
 
 double points_by_growth(double m, double growth) {

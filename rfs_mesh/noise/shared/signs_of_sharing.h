@@ -38,10 +38,12 @@ double greatest_below(double most, const Below& below) {
 /// g(k / m) of shared_noise.h: of noise that k points share, what a quadric through m leaves of the variance.
 double left_by_quadric(double points, double m);
 
-/// k, the points that share the noise, by the neighbourhood that sees half of its variance, or by the
-/// narrowest if that sees more: what follows such noise is what k is asked for. \param m points of the
+/// k, the points that share the noise: the greatest that is told by the neighbourhood that sees half of its
+/// variance, or by a wider one. Of noise that is a sum of parts, narrow patches see the part that fewest
+/// share; wide ones follow it as noise that their mean k share. If the narrowest sees more than half, only it
+/// and wider ones are there: what follows such noise is what k is asked for. \param m points of the
 /// neighbourhoods, ascending, at least one. \param left what a quadric leaves of the noise there, over its
-/// variance, ascending, at most 1: g(k / m). At least 1, at most the last m.
+/// variance, at most 1: g(k / m). At least 1, at most the last m.
 double points_sharing(const std::vector<double>& m, const std::vector<double>& left);
 
 /// The k of noise whose variance about a quadric grows so from m to 2 m points: by more noise grows faster,
