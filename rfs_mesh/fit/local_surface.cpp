@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/chi_square.h"
 #include "base/parallel.h"
 #include "base/quantile.h"
 #include "rfs_mesh/fit/flattest_slab.h"
@@ -84,10 +85,9 @@ double mean_spacing(const std::vector<double>& nearest, const Context& context) 
 
 namespace {
 
-/// The lower quartile of the root of a chi-square variable over its degrees of freedom (Wilson & Hilferty).
+/// The lower quartile of the square root of a chi-square variable over its degrees of freedom.
 double quartile_of_deviation(double freedom) {
-  const double v = 2 / (9 * freedom);
-  return std::pow(std::max(0.1, 1 - v - 0.6745 * std::sqrt(v)), 1.5);
+  return std::pow(root_of_chi_square(freedom, -0.6745), 1.5);
 }
 
 /// The flat places' residual and the median radius of neighbourhoods of m.

@@ -17,8 +17,8 @@ namespace {
 
 /// What a kernel holds, but for the point that it stands on.
 struct Kernel {
-  Scatter across;   ///< variance of the members across the sheet
-  double lean = 0;  ///< how far their mean is from the point, world units
+  Scatter across;     ///< variance of the members across the sheet
+  double offset = 0;  ///< how far their mean is from the point, world units
 };
 
 Kernel look_around(const SpatialIndex& index, const Eigen::Vector3d& at, double width,
@@ -39,7 +39,7 @@ Kernel look_around(const SpatialIndex& index, const Eigen::Vector3d& at, double 
   Kernel seen;
   const double members = squares > 0 ? weights * weights / squares : 0;
   // A plane has three coefficients. Of members whose weights fall off like these it takes two (simulated, 6
-  // members and more); the third makes up for the choice of kernels by their lean, which favours calm ones.
+  // members and more); the third makes up for the choice of kernels by their offset, which favours calm ones.
   constexpr double kOfPlane = 3;
   if (!(members > kOfPlane + 1)) return seen;
   mean /= weights;
@@ -47,7 +47,7 @@ Kernel look_around(const SpatialIndex& index, const Eigen::Vector3d& at, double 
   seen.across.variance = std::max(0.0, symmetric_eigen(spread).values[0]) * members / (members - kOfPlane);
   // Of a normal distribution that a kernel as wide cuts off, a variance scatters as that of twice as many.
   seen.across.freedom = 2 * (members - kOfPlane);
-  seen.lean = mean.norm();
+  seen.offset = mean.norm();
   return seen;
 }
 
@@ -55,7 +55,7 @@ Kernel look_around(const SpatialIndex& index, const Eigen::Vector3d& at, double 
 double outermost_variance(std::vector<Kernel> kernels) {
   const auto outer = kernels.end() - std::ptrdiff_t(std::ceil(kLeastPart * double(kernels.size())));
   std::nth_element(kernels.begin(), outer, kernels.end(),
-                   [](const Kernel& a, const Kernel& b) { return a.lean < b.lean; });
+                   [](const Kernel& a, const Kernel& b) { return a.offset < b.offset; });
   std::vector<Scatter> all;
   for (auto k = outer; k != kernels.end(); ++k) all.push_back(k->across);
   constexpr double kMedianDeviate = 0;

@@ -130,10 +130,10 @@ bool is_even(const NoiseSites& sites) {
 /// NoiseModel::spacing_at_sites, also where all are `spacing`.
 std::vector<double> spacing_around(const NoiseSites& sites, double spacing) {
   double mean = 0;
-  for (const double reach : sites.reach) mean += reach / double(sites.reach.size());
-  std::vector<double> around(sites.reach.size(), spacing);
+  for (const double r : sites.per_root) mean += r / double(sites.per_root.size());
+  std::vector<double> around(sites.per_root.size(), spacing);
   for (std::size_t s = 0; s < around.size(); ++s)
-    if (denser(sites.reach[s], mean)) around[s] = spacing * sites.reach[s] / mean;
+    if (denser(sites.per_root[s], mean)) around[s] = spacing * sites.per_root[s] / mean;
   return around;
 }
 

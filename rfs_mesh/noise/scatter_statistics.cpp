@@ -4,13 +4,14 @@
 #include <cmath>
 #include <utility>
 
+#include "base/chi_square.h"
+
 namespace rfsmooth::rfs_mesh {
 
 namespace {
 
 double chi_square(double freedom, double deviate) {
-  const double v = 2 / (9 * freedom);
-  return std::pow(std::max(0.1, 1 - v + deviate * std::sqrt(v)), 3);
+  return std::pow(root_of_chi_square(freedom, deviate), 3);
 }
 
 /// How much balls of these squared radii count.

@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 
+#include "base/chi_square.h"
 #include "base/parallel.h"
 #include "base/quantile.h"
 #include "rfs_mesh/levels.h"
@@ -66,10 +67,9 @@ class ToldByResiduals {
     for (const Index j : field.neighbors()[at])
       add(j, double(same_sheet(field.local()[at].normal.dot(field.local()[j].normal))));
     if (!(2 * sums[3] > sums[0])) return {};  // most of the data stayed, and tell nothing
-    // The median of chi-square over its degrees of freedom, by Wilson and Hilferty 1931; neighbours that
-    // share their noise are one.
+    // The median of chi-square over its degrees of freedom; neighbours that share their noise are one.
     const double freedom = std::max(1.0, sums[0] * sums[0] / sums[1] / noise.as_one_near(at));
-    return {noise.local[at], sums[2] / sums[3] / std::pow(1 - 2 / (9 * freedom), 3)};
+    return {noise.local[at], sums[2] / sums[3] / std::pow(root_of_chi_square(freedom, 0), 3)};
   }
 
   /// Not the mean: where patches do not follow the shape, residuals tell too much; at least half of the

@@ -71,7 +71,7 @@ class Listener {
     const std::vector<char> renewed = renew_fits(1);
     std::vector<char> opened(group_.size(), 0);
     const std::vector<Said> said = what_they_say(fits_, kTypicalDeviate);
-    const double typical_reach = size_where_sparse(reaches(fits_));
+    const double typical_reach = size_where_sparse(per_root(fits_));
     for_each_index(
         context_, group_.size(),
         [&](std::size_t s) {
@@ -132,7 +132,7 @@ class Listener {
 
   /// By site: the radius of its ball over the root of m, so that balls of more points do not count as more
   /// surface. \param all fits to m points
-  std::vector<double> reaches(const std::vector<Scatter>& all) const {
+  std::vector<double> per_root(const std::vector<Scatter>& all) const {
     std::vector<double> of;
     for (std::size_t s = 0; s < all.size(); ++s) of.push_back(all[s].radius / std::sqrt(double(m[s])));
     return of;
@@ -288,9 +288,9 @@ NoiseSites listen(const SpatialIndex& index, Positions at, const NoiseStart& sta
   sites.fits = listener.hear(1, false);
   for (std::size_t s = 0; s < windows.size(); ++s)
     sites.full.push_back(char(sites.fits[s].within > kFilled * windows[s] * windows[s]));
-  const std::vector<double> reaches = listener.reaches(sites.fits);
-  sites.area = areas(reaches);
-  sites.reach = listener.medians_around(reaches);
+  const std::vector<double> per_root = listener.per_root(sites.fits);
+  sites.area = areas(per_root);
+  sites.per_root = listener.medians_around(per_root);
   sites.sigma = listener.sigma;
   sites.speaks = listener.speaks;
   sites.floor = listener.floor;

@@ -47,20 +47,20 @@ namespace rfsmooth::rfs_mesh {
 struct NoiseSites {
   bool in_steps = false;  ///< whether depths come in steps
   Positions at;
-  std::vector<double> sigma;   ///< world units
-  std::vector<double> shape;   ///< part of s^2(m) taken off as shape, 0 to 0.6
-  std::vector<double> area;    ///< of the surface around it, over that where points are sparse: 0 to 1
-  std::vector<char> speaks;    ///< whether sigma is of this place; else it is what came nearest to it
-  std::vector<double> volume;  ///< scatter of points that fill a ball around it as leaves do, world units,
-                               ///< which was not believed; 0: there was none
-  std::vector<char> full;      ///< whether the site's own fit fills a window as wide as its group has noise
-  std::vector<double> most;    ///< what is seen without windows around it, world units; infinite: not known
-  std::vector<double> floor;   ///< least noise, of steps, shared noise or layers, or of each of two sheets
-                               ///< where no fit within windows says a thing; world units; 0: none
-  std::vector<char> told;      ///< whether the scatter around it stops growing, and is no detail
-  std::vector<double> shared;  ///< points that share the noise around it; 1: none
-  std::vector<double> reach;   ///< radius of balls around it over the root of their points, world units
-  std::vector<Scatter> fits;   ///< to the m nearest of the site by itself, more where it is far louder
+  std::vector<double> sigma;     ///< world units
+  std::vector<double> shape;     ///< part of s^2(m) taken off as shape, 0 to 0.6
+  std::vector<double> area;      ///< of the surface around it, over that where points are sparse: 0 to 1
+  std::vector<char> speaks;      ///< whether sigma is of this place; else it is what came nearest to it
+  std::vector<double> volume;    ///< scatter of points that fill a ball around it as leaves do, world units,
+                                 ///< which was not believed; 0: there was none
+  std::vector<char> full;        ///< whether the site's own fit fills a window as wide as its group has noise
+  std::vector<double> most;      ///< what is seen without windows around it, world units; infinite: not known
+  std::vector<double> floor;     ///< least noise, of steps, shared noise or layers, or of each of two sheets
+                                 ///< where no fit within windows says a thing; world units; 0: none
+  std::vector<char> told;        ///< whether the scatter around it stops growing, and is no detail
+  std::vector<double> shared;    ///< points that share the noise around it; 1: none
+  std::vector<double> per_root;  ///< radius of balls around it over the root of their points, world units
+  std::vector<Scatter> fits;     ///< to the m nearest of the site by itself, more where it is far louder
 };
 
 /// Whether points are so close that it is no second sheet beside theirs that makes them so: more than twice

@@ -43,6 +43,20 @@ std::vector<Index> asked_for(const std::vector<ScalesSay>& scales, const rfs_mes
   return points;
 }
 
+/// Calls visit(k, features of points[k]) for all k.
+template <class Visit>
+void look_at(const std::vector<Index>& points, const Features& features, const Context& context,
+             Visit&& visit) {
+  for_blocks(context, points.size(), kBlockOfSites, [&](std::size_t begin, std::size_t end) {
+    Surroundings near = features.start();
+    Features::Row row;
+    for (std::size_t k = begin; k < end; ++k) {
+      features.fill(points[k], row, near);
+      visit(k, row);
+    }
+  });
+}
+
 }  // namespace
 
 LearnedSites learned_sites(HeightField& field, const Positions& data, const Smoothed& smoothed,
@@ -56,15 +70,12 @@ LearnedSites learned_sites(HeightField& field, const Positions& data, const Smoo
   sites.normal.resize(n);
   sites.scale.resize(n);
   const Features features(field, data, smoothed, noise, context);
-  for_blocks(context, n, kBlockOfSites, [&](std::size_t begin, std::size_t end) {
-    Surroundings near = features.start();
-    for (std::size_t k = begin; k < end; ++k) {
-      const std::size_t i = sites.point[k];
-      features.fill(i, sites.features[k], near);
-      sites.place[k] = smoothed.place[i];
-      sites.normal[k] = field.normal(i);
-      sites.scale[k] = features.scale(i);
-    }
+  look_at(sites.point, features, context, [&](std::size_t k, const Features::Row& row) {
+    const std::size_t i = sites.point[k];
+    sites.features[k] = row;
+    sites.place[k] = smoothed.place[i];
+    sites.normal[k] = field.normal(i);
+    sites.scale[k] = features.scale(i);
   });
   return sites;
 }
@@ -77,16 +88,11 @@ void take_learned_step(HeightField& field, const Positions& data, const Smoothed
   const Features features(field, data, smoothed, noise, context);
   const Network network;
   Positions there(points.size());  // neighbours are seen where they were
-  for_blocks(context, points.size(), kBlockOfSites, [&](std::size_t begin, std::size_t end) {
-    Surroundings near = features.start();
-    Features::Row row;
-    for (std::size_t k = begin; k < end; ++k) {
-      const std::size_t i = points[k];
-      features.fill(i, row, near);
-      const float part = faded_in(contradiction(smoothed.scales[i])),
-                  offset = features.scale(i) * part * worth_taking(network.offset(row));
-      there[k] = smoothed.place[i] + double(offset) * field.normal(i);
-    }
+  look_at(points, features, context, [&](std::size_t k, const Features::Row& row) {
+    const std::size_t i = points[k];
+    const float part = faded_in(contradiction(smoothed.scales[i])),
+                offset = features.scale(i) * part * worth_taking(network.offset(row));
+    there[k] = smoothed.place[i] + double(offset) * field.normal(i);
   });
   for_each_index(context, points.size(), [&](std::size_t k) {
     if (may_go(points[k], there[k])) place[points[k]] = there[k];

@@ -93,15 +93,15 @@ TEST(Noise, ShapeThatGrowsWithTheNeighbourhoodIsTakenOff) {
 }
 
 TEST(Noise, OnlyPointsOnSeveralLinesLieAlongLines) {
-  EXPECT_EQ(measured(noisy_plane([](double) { return 0.002; })).piece, kNarrowestPatch);
-  EXPECT_EQ(measured(noisy_sphere([](const auto&) { return 0.01; }, true)).piece, kNarrowestPatch);
+  EXPECT_EQ(measured(noisy_plane([](double) { return 0.002; })).piece, rfs_mesh::kNarrowestPatch);
+  EXPECT_EQ(measured(noisy_sphere([](const auto&) { return 0.01; }, true)).piece, rfs_mesh::kNarrowestPatch);
   std::mt19937_64 engine(4);
   std::normal_distribution<double> normal(0, 0.002);
   Positions line;
   for (double x = 0; x < 20; x += 0.005) line.emplace_back(x, normal(engine), normal(engine));
   const NoiseField alone = measured(line);
   EXPECT_FALSE(alone.on_lines) << "there is no other";
-  EXPECT_EQ(alone.piece, kNarrowestPatch);
+  EXPECT_EQ(alone.piece, rfs_mesh::kNarrowestPatch);
   EXPECT_EQ(alone.shared, 1) << "each has its own noise";
 }
 
