@@ -1,6 +1,7 @@
 #include "smoothing/automatic/automatic.h"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -11,7 +12,6 @@
 #include "rfs_mesh/levels.h"
 #include "smoothing/automatic/hidden_sheets.h"
 #include "smoothing/automatic/learned/last_step.h"
-#include "smoothing/automatic/left.h"
 #include "smoothing/automatic/patches/height_field.h"
 #include "smoothing/automatic/patches/scales.h"
 #include "smoothing/automatic/stranded.h"
@@ -177,13 +177,7 @@ AutomaticResult automatic_smoothing(const AutomaticTask& task, AutomaticReport& 
       take_learned_step(field, data, smoothed, noise, may_go, smooth, context);
   }
   // What is left is left of the cloud's own noise, whatever it was smoothed as.
-  std::optional<rfs_mesh::NoiseField> own;
-  if (task.strength != 1) {
-    own = noise;
-    own->sigma /= task.strength;
-    for (double& sigma : own->local) sigma /= task.strength;
-  }
-  report.left = noise_left(field, heights.height, heights.own, own ? *own : noise, context);
+  report.left = std::sqrt(heights.left.own / (task.strength * task.strength) + heights.left.apart);
   return {std::move(smooth), field.release_neighbors()};
 }
 

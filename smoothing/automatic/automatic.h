@@ -23,11 +23,8 @@
 ///    fitted together (thin_walls.h). Neither is tried where points share their noise: blotches look like
 ///    sheets. Where patches contradict each other, a learned step goes on from there towards the surface
 ///    (learned/last_step.h).
-/// 5. What is left: the mean risk of the mixture, but at least the variance that the data's own weight passes
-///    on, sum sigma^2 df/dz. Both with a sigma that the residuals tell where the surface is smooth, of all
-///    places that are as loud as each other: beside what little is left there, a few percent in sigma would
-///    be much. Points farther than 5 sigma from the result stay where they are and do not count: strays are
-///    no noise.
+/// 5. What is left is told by the scales (Left of mixture.h): an average of twice as many points has half of
+///    the variance left, whoever shares the noise, and two such differ by about as much.
 ///
 /// Noise that k neighbours share (rfs_mesh/noise/shared/shared_noise.h) is that of n / k points, each seen k
 /// times: scales begin at 16 k points or more, c is k times as large, evidence counts a k-th, and of a

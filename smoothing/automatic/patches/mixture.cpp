@@ -19,6 +19,10 @@ namespace {
 constexpr int kMostCandidates = 1 + int(Statistics::Pass::kMostScales);
 constexpr int kMixtureRounds = 3;  // of expectation maximisation: a fourth changes the third digit
 
+// Of the variance that a scale leaves, what it differs by from the one before. It follows from how patches
+// average: 0.5 to 0.68 were measured of white noise of 0.3 to 2 spacings on spheres and tori.
+constexpr double kApart = 0.6;
+
 using CandidateWeights = Eigen::Array<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMostCandidates, 1>;
 
 }  // namespace
@@ -39,8 +43,9 @@ void Mixture::add(std::vector<float> height, std::vector<float> own, std::vector
   candidates_.push_back({std::move(height), std::move(own), std::move(gain)});
 }
 
-void Mixture::average(std::vector<float>& height, std::vector<float>& own, std::vector<double>& found,
-                      const std::vector<float>& say, const Context& context) {
+Left Mixture::average(std::vector<float>& height, std::vector<float>& own, std::vector<double>& found,
+                      const std::vector<float>& say, const std::vector<double>& sigma,
+                      const Context& context) {
   const std::size_t n = evidence_.size(), count = candidates_.size();
   const auto rows = Eigen::Index(count);
   // From here on e^(evidence - the largest): the exponential is the dear part.
@@ -68,16 +73,28 @@ void Mixture::average(std::vector<float>& height, std::vector<float>& own, std::
   found.assign(shares.data(), shares.data() + rows);
   height.resize(n);
   own.resize(n);
-  for_each_index(context, n, [&](std::size_t i) {
+  const Eigen::Array2d left = sum_over(context, n, Eigen::Array2d(0, 0), [&](std::size_t i) {
     const CandidateWeights w = weights(i, shares);
+    const double variance = sigma[i] * sigma[i];
     double mixed = 0, mixed_own = 0;
+    Eigen::Array2d off(0, 0);
     for (std::size_t s = 0; s < count; ++s) {
-      mixed += w[Eigen::Index(s)] * double(candidates_[s].height[i]);
-      mixed_own += w[Eigen::Index(s)] * double(candidates_[s].own[i]);
+      const Candidate& c = candidates_[s];
+      const double weight = w[Eigen::Index(s)];
+      mixed += weight * double(c.height[i]);
+      mixed_own += weight * double(c.own[i]);
+      if (s < 2 || !(candidates_[s - 1].evidence[i] > 0)) {
+        off[0] += weight * double(c.own[i]) * variance;
+      } else {
+        const double apart = double(c.height[i]) - double(candidates_[s - 1].height[i]);
+        off[1] += weight * std::min(apart * apart / kApart, variance);
+      }
     }
     height[i] = float(mixed);
     own[i] = float(mixed_own);
+    return off;
   });
+  return {left[0] / double(n), left[1] / double(n)};
 }
 
 }  // namespace rfsmooth::smoothing

@@ -17,6 +17,17 @@
 
 namespace rfsmooth::smoothing {
 
+/// Mean square error of averaged heights, at most the noise of every point, world units squared.
+///
+/// A prediction that averages twice as many points keeps half of the variance, whoever shares the noise, and
+/// differs from the one before by somewhat less than that; shape that it does not follow comes to it. So two
+/// scales tell what the wider one has left. Only of the data and of the narrowest patches, before which there
+/// is none, the noise says it.
+struct Left {
+  double own = 0;    ///< of the data and the narrowest patches: own times the variance of the noise
+  double apart = 0;  ///< of all wider ones: told by what they differ by from the one before
+};
+
 /// Candidate heights, mixed by their evidence.
 class Mixture {
  public:
@@ -32,8 +43,9 @@ class Mixture {
   /// Replaces `height` and `own` (n) by the averages; the mixture is used up. O(n) times the number of
   /// candidates; parallel, the same bits for any number of threads. \param shares pi_s, taken if there is one
   /// for each candidate, else found and entered. \param say n: how much each point counts for the shares.
-  void average(std::vector<float>& height, std::vector<float>& own, std::vector<double>& shares,
-               const std::vector<float>& say, const Context& context);
+  /// \param sigma n: the noise, world units. \return what the averages are off by.
+  Left average(std::vector<float>& height, std::vector<float>& own, std::vector<double>& shares,
+               const std::vector<float>& say, const std::vector<double>& sigma, const Context& context);
 
  private:
   struct Candidate {

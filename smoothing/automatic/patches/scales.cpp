@@ -271,7 +271,7 @@ void mix(const HeightField& field, Rungs rungs, const rfs_mesh::NoiseField& nois
   // A point counts by its variance, up to that of the figure: it has that much to lose.
   for_each_index(context, precision.size(),
                  [&](std::size_t i) { say[i] = precision[i] > 0 ? std::min(1.0F, 1 / precision[i]) : 0; });
-  mixture.average(mixed.height, mixed.own, shares, say, context);
+  mixed.left = mixture.average(mixed.height, mixed.own, shares, say, noise.local, context);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "rfs_mesh/noise/noise.h"
 #include "smoothing/automatic/learned/features.h"
 #include "smoothing/automatic/patches/height_field.h"
+#include "smoothing/automatic/patches/mixture.h"
 
 namespace rfsmooth::smoothing {
 
@@ -17,6 +18,7 @@ namespace rfsmooth::smoothing {
 struct MixedScales {
   std::vector<float> height;    ///< n: of the mixture, as in Prediction
   std::vector<float> own;       ///< n: share of the point's noise that stays in it: own_of_all of patches.h
+  Left left;                    ///< what they are off by
   std::vector<float> wide;      ///< n: of the scale that looks for tails
   std::vector<ScalesSay> told;  ///< n, or empty without the learned step
   std::vector<Index> several;   ///< places where the scale that looks for walls sees several sheets

@@ -42,8 +42,8 @@ TEST(NoiseOfSensors, BlotchesOfAStereoCameraAreSmoothed) {
   ASSERT_TRUE(report);
   const double after = rms_off_room(sensor, points);
   EXPECT_LT(after / before, 0.4);
-  EXPECT_LT(*report.value().noise_left / after, 1.8);  // it was 2.1
-  EXPECT_GT(*report.value().noise_left / after, 0.7);
+  EXPECT_LT(*report.value().noise_left / after, 4.0 / 3);
+  EXPECT_GT(*report.value().noise_left / after, 2.0 / 3);
 }
 
 // A wall that lies between two depths which the camera knows, so that little noise carries its points from
