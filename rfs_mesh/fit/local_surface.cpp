@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/chi_square.h"
 #include "base/parallel.h"
 #include "base/quantile.h"
+#include "rfs_mesh/chi_square.h"
 #include "rfs_mesh/fit/flattest_slab.h"
 #include "rfs_mesh/fit/quadric.h"
 #include "rfs_mesh/levels.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "base/chi_square.h"
+#include "rfs_mesh/chi_square.h"
 
 namespace rfsmooth::rfs_mesh {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace rfsmooth {
+namespace rfsmooth::rfs_mesh {
 
 /// What the cube root of a chi-square variable over its degrees of freedom is below as often as a standard
 /// normal variable is below `deviate`; 0: its median. At least 0.1. Source: Wilson and Hilferty 1931. \param
@@ -14,4 +14,4 @@ inline double root_of_chi_square(double freedom, double deviate) {
   return std::max(0.1, 1 - v + deviate * std::sqrt(v));
 }
 
-}  // namespace rfsmooth
+}  // namespace rfsmooth::rfs_mesh
