@@ -75,7 +75,7 @@ Calm look(Places& places, const NoiseStart& start, const DepthSteps* steps, cons
     if (!(variance > start.least * start.least)) continue;
     const std::vector<double> rounding =
         steps != nullptr ? rounding_at(some, all, *steps) : std::vector<double>(all.size(), 0);
-    if (calm.m.empty()) calm.steps = variance_of_steps(rounding, all);
+    if (calm.m.empty() && steps != nullptr) calm.steps = variance_of_steps(rounding, all);
     enter(all, rounding, kSameNoise * kSameNoise * variance, calm);
     calm.m.push_back(double(m));
     calm.seen.push_back(variance);

@@ -21,9 +21,8 @@ using rfs_mesh::kNarrowestPatch;
 // Chosen on the development shapes (tests/bench/quality) at 10,000 and 50,000 points, noise of 1 to 3 %.
 constexpr std::size_t kMostOverlap = 14;  // patches over a point; a thinning leaves 0.4 of them
 constexpr double kNarrowest = 52.6;  // m_0 = kNarrowest (sigma/h)^2 if that is more: a radius of 4.5 sigma
-constexpr double kWidest =
-    1600;                   // the widest patches where each has its own noise, or those that look for walls
-constexpr int kSeeing = 2;  // index of the scale that looks for walls: of 4 m_0 points, 9 sigma
+constexpr double kWidest = 1600;     // the widest patches of points' own noise; those for walls may be wider
+constexpr int kSeeing = 2;           // index of the scale that looks for walls: of 4 m_0 points, 9 sigma
 
 // A subset with a point in so many has a ring of its own among the nearest of every point.
 constexpr std::size_t kDense = HeightField::kNear / rfs_mesh::kRing;

@@ -47,6 +47,7 @@ std::optional<int> denoise_in_tiles(const DenoiseCommandOptions& options, const 
   const Context context = console.context({{"tiles", 1}}, options.job.run.threads);
   const auto memory = memory_of_tiles(options, job, context);
   if (!memory) return std::nullopt;
+  check_denoise(options);
   need_own_target(job, options.job.files.output);
   const pipeline::tiles::Within how = pipeline::tiles::plan_within(*memory, options.normals.normals);
   console.say(fmt::format("{}: too large for {:.3g} GB: smoothed in tiles of {} points", job.input,
@@ -102,7 +103,6 @@ Command denoise_command() {
   command.on_cloud.files_beside = [options] { return files_beside(*options); };
   command.run = [options, beside, on_cloud = command.on_cloud,
                  known = command.options](const Invocation& typed) {
-    check_denoise(*options);  // before any tile
     if (const auto tiled = denoise_in_tiles(*options, typed)) return *tiled;
     beside->command = command_line("denoise", typed, known);
     return run_cloud_jobs("denoise", options->job, typed, on_cloud);
