@@ -45,4 +45,14 @@ class Stopwatch {
   Clock::time_point start_;
 };
 
+/// Adds times to the entries of the same stages, which it creates if need be.
+inline void add_times(const std::vector<StageTime>& more, std::vector<StageTime>& stages) {
+  for (const StageTime& stage : more) {
+    std::size_t entry = 0;
+    while (entry < stages.size() && stages[entry].name != stage.name) ++entry;
+    if (entry == stages.size()) stages.push_back({stage.name, 0});
+    stages[entry].seconds += stage.seconds;
+  }
+}
+
 }  // namespace rfsmooth

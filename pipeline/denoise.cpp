@@ -13,9 +13,8 @@
 #include "base/quantile.h"
 #include "base/stopwatch.h"
 #include "pipeline/denoise_lean.h"
-#include "pipeline/measure_points.h"
 #include "pipeline/outliers.h"
-#include "pipeline/twins.h"
+#include "pipeline/prepare.h"
 #include "pipeline/units/units.h"
 #include "rfs_mesh/connect/connect.h"
 #include "rfs_mesh/connect/edge_swap.h"
@@ -200,28 +199,6 @@ std::vector<double> working_strengths(const std::vector<double>& strength,
   return working;
 }
 
-/// Takes the outliers out of the working cloud: like rows that are not finite they stay and influence
-/// nothing.
-void set_aside(const std::vector<char>& outlier, rfs_mesh::WorkingCloud& cloud, DenoiseReport& report) {
-  std::vector<Index> renumbered(outlier.size(), kNone);
-  Index next = 0;
-  for (std::size_t p = 0; p < outlier.size(); ++p) {
-    if (outlier[p] != 0) continue;
-    renumbered[p] = next;
-    cloud.points[next] = cloud.points[p];
-    ++next;
-  }
-  cloud.points.resize(next);
-  report.outlier.assign(cloud.of_input.size(), 0);
-  for (std::size_t i = 0; i < cloud.of_input.size(); ++i) {
-    Index& p = cloud.of_input[i];
-    if (p == kNone) continue;
-    report.outlier[i] = outlier[p];
-    report.outliers += std::size_t(outlier[p]);
-    p = renumbered[p];
-  }
-}
-
 /// Outliers that the tails of the noise explain are none: such points stood alone among calm ones, and are
 /// put onto the smoothed surface. `now`: the smoothed points; those landed are added. \param strength as
 /// least_strengths
@@ -264,14 +241,12 @@ void refuse_noise_beyond(const Statistics::Box& box, double spacing, const Denoi
 }
 
 /// The points to work on.
-rfs_mesh::WorkingCloud prepare(const double* xyz, std::size_t n, const DenoiseOptions& options,
-                               const Context& context, DenoiseReport& report) {
+rfs_mesh::WorkingCloud working_cloud(const double* xyz, std::size_t n, const DenoiseOptions& options,
+                                     const Context& context, DenoiseReport& report) {
   const Stopwatch watch(report.seconds, "prepare");
   context.report("prepare", 0);
-  Statistics& whole = report.statistics;
-  auto cloud =
-      value_or_throw(rfs_mesh::make_working_cloud(xyz, n, context, whole.box ? &*whole.box : nullptr));
-  whole.box = cloud.box;
+  const auto& box = report.statistics.box;
+  auto cloud = value_or_throw(rfs_mesh::make_working_cloud(xyz, n, context, box ? &*box : nullptr));
   report.finite = cloud.finite();
   report.distinct = cloud.points.size();
   if (options.flow.modifiers.preserve == Preserve::height_field) {  // measured from the caller's own z = 0
@@ -280,42 +255,6 @@ rfs_mesh::WorkingCloud prepare(const double* xyz, std::size_t n, const DenoiseOp
   }
   std::vector<Index>().swap(cloud.multiplicity);  // nobody asks
   return cloud;
-}
-
-/// Who is near whom in a working cloud.
-struct Searched {
-  std::optional<rfs_mesh::SpatialIndex> index;
-  rfs_mesh::NeighborTable near;
-};
-
-/// Finds the neighbours, the noise, and the outliers, which are set aside.
-Searched search(rfs_mesh::WorkingCloud& cloud, int neighbours, const DenoiseOptions& options,
-                const Context& context, DenoiseReport& report) {
-  Statistics& whole = report.statistics;
-  Searched found;
-  auto& [index, near] = found;
-  {
-    const Stopwatch watch(report.seconds, "index");
-    context.report("index", 0);
-    index.emplace(cloud.points, context);
-  }
-  {
-    const Stopwatch watch(report.seconds, "neighbours");
-    context.report("neighbours", 0);
-    near = pipeline::nearest_joined(index, cloud, neighbours, context);
-  }
-  if (options.outliers == Outliers::smooth) return found;
-  context.report("noise", 0);
-  Stopwatch watch(report.seconds, "noise");
-  find_noise(*index, near, whole, context);
-  watch.next("outliers");
-  const std::vector<char> outlier = find_outliers(*index, near, whole, context);
-  if (std::find(outlier.begin(), outlier.end(), 1) != outlier.end()) {
-    set_aside(outlier, cloud, report);
-    index.emplace(cloud.points, context);
-    near = rfs_mesh::nearest_left(near, outlier, *index, context);
-  }
-  return found;
 }
 
 /// Whether the mesh's faces are read while it is smoothed: the automatic smoother asks for neighbours only.
@@ -337,22 +276,18 @@ Connection connected(rfs_mesh::WorkingCloud& cloud, const DenoiseOptions& option
   wanted.loose_edges = false;
   wanted.surfaces = false;
   wanted.fill_holes = reads_faces(options);
-  Searched found = search(cloud, options.connect.neighbours, options, context, report);
-  if (!whole.points) whole.points = found.index->points().size();
-  return value_or_throw(rfs_mesh::connect(std::move(*found.index), std::move(found.near), options.connect,
-                                          wanted, context, &whole));
+  Prepared prepared =
+      prepare(cloud, options.connect.neighbours, options.outliers, whole, report.seconds, context);
+  report.outlier = std::move(prepared.outlier);
+  report.outliers = std::size_t(std::count(report.outlier.begin(), report.outlier.end(), 1));
+  if (!whole.points) whole.points = cloud.points.size();
+  return value_or_throw(rfs_mesh::connect(std::move(*prepared.index), std::move(prepared.near),
+                                          options.connect, wanted, context, &whole));
 }
 
 /// What the connection says of the cloud. Of the rest only the mesh is needed while smoothing.
 Mesh told_of(Connection connection, DenoiseReport& report) {
-  for (const StageTime& stage : connection.seconds) {
-    const auto same = std::find_if(report.seconds.begin(), report.seconds.end(),
-                                   [&](const StageTime& known) { return known.name == stage.name; });
-    if (same == report.seconds.end())
-      report.seconds.push_back(stage);
-    else
-      same->seconds += stage.seconds;
-  }
+  add_times(connection.seconds, report.seconds);
   report.spacing = connection.noise.spacing;
   report.noise = connection.noise.sigma;
   report.sdg_edges = connection.sdg.size();
@@ -369,7 +304,7 @@ DenoiseReport run(Rows rows, const DenoiseOptions& options, const Context& conte
   report.points = rows.size();
   report.effective = options;
   if (options.statistics) report.statistics = *options.statistics;
-  rfs_mesh::WorkingCloud cloud = prepare(rows.xyz(), rows.size(), options, context, report);
+  rfs_mesh::WorkingCloud cloud = working_cloud(rows.xyz(), rows.size(), options, context, report);
   rows.give_up();
   const std::vector<double> strength = least_strengths(strengths, cloud);
   refuse_noise_beyond(cloud.box, 0, options);
@@ -461,23 +396,6 @@ Result<DenoiseReport> pipeline::denoise_lean(std::vector<double>& xyz,
                                              const DenoiseOptions& options, const Context& context,
                                              const std::vector<double>& strength) {
   return denoise_rows({xyz, again}, options, context, strength);
-}
-
-Statistics pipeline::measure_points(std::vector<double> xyz, const DenoiseOptions& options,
-                                    const Context& context) {
-  DenoiseReport report;
-  in_arena(context, [&] {
-    const double unit = working_unit(xyz.data(), xyz.size() / 3, context);
-    for (double& x : xyz) x *= unit;
-    if (options.statistics) report.statistics = *options.statistics;
-    change_units(report.statistics, unit);
-    rfs_mesh::WorkingCloud cloud = prepare(xyz.data(), xyz.size() / 3, options, context, report);
-    std::vector<double>().swap(xyz);
-    const Searched found = search(cloud, int(rfs_mesh::kRing), options, context, report);
-    rfs_mesh::measure_cloud(*found.index, found.near, report.statistics, context);
-    change_units(report.statistics, 1 / unit);
-  });
-  return report.statistics;
 }
 
 std::size_t denoise_memory(std::size_t n) {

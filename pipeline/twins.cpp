@@ -48,13 +48,4 @@ bool join_twins(const rfs_mesh::NeighborTable& near, rfs_mesh::WorkingCloud& clo
   return true;
 }
 
-rfs_mesh::NeighborTable nearest_joined(std::optional<rfs_mesh::SpatialIndex>& index,
-                                       rfs_mesh::WorkingCloud& cloud, int neighbours,
-                                       const Context& context) {
-  rfs_mesh::NeighborTable near = index->nearest(neighbours, context);
-  if (!join_twins(near, cloud, context)) return near;
-  index.emplace(cloud.points, context);
-  return index->nearest(neighbours, context);
-}
-
 }  // namespace rfsmooth::pipeline

@@ -5,8 +5,6 @@
 /// surfaces, graphs and noise are measured, would be that of rounding. Thread safe: no state is kept.
 #pragma once
 
-#include <optional>
-
 #include <rfsmooth/context.h>
 
 #include "rfs_mesh/points.h"
@@ -20,10 +18,5 @@ namespace rfsmooth::pipeline {
 /// again. \param near the nearest of every point, ascending; of fewer than eight, none is a twin. O(n),
 /// deterministic.
 bool join_twins(const rfs_mesh::NeighborTable& near, rfs_mesh::WorkingCloud& cloud, const Context& context);
-
-/// The `neighbours` nearest of every point, twins joined. \param index of the cloud's points; made anew if
-/// there were any. O(n log n), parallel, deterministic.
-rfs_mesh::NeighborTable nearest_joined(std::optional<rfs_mesh::SpatialIndex>& index,
-                                       rfs_mesh::WorkingCloud& cloud, int neighbours, const Context& context);
 
 }  // namespace rfsmooth::pipeline

@@ -6,18 +6,14 @@
 #include <fmt/format.h>
 
 #include "base/fail.h"
-#include "base/parallel.h"
 #include "pipeline/cli/commands/command.h"
 #include "pipeline/cli/console/console.h"
 #include "pipeline/cli/files/cloud_files.h"
 #include "pipeline/cli/options/text_values.h"
 #include "pipeline/cli/other_program.h"
 #include "pipeline/cli/own_files.h"
-#include "pipeline/outliers.h"
 #include "pipeline/page/page.h"
-#include "pipeline/twins.h"
-#include "rfs_mesh/fit/local_surface.h"
-#include "rfs_mesh/points.h"
+#include "pipeline/prepare.h"
 
 namespace rfsmooth::cli {
 
@@ -54,34 +50,6 @@ std::size_t read_points(const std::string& text) {
   return std::size_t(*count);
 }
 
-/// What is known of a cloud beside its coordinates.
-struct Measured {
-  double spacing = 0, noise = 0;
-  std::vector<char> outlier;  ///< n flags; empty if they were not asked for
-};
-
-Measured measure_cloud(const std::vector<double>& xyz, bool outliers, const Context& context) {
-  auto cloud = value_or_throw(rfs_mesh::make_working_cloud(xyz.data(), xyz.size() / 3, context));
-  Measured measured;
-  in_arena(context, [&] {
-    std::optional<rfs_mesh::SpatialIndex> searched(std::in_place, cloud.points, context);
-    const rfs_mesh::NeighborTable near =
-        pipeline::nearest_joined(searched, cloud, ConnectOptions().neighbours, context);
-    const rfs_mesh::SpatialIndex& index = *searched;
-    if (cloud.points.size() > 1) measured.spacing = rfs_mesh::mean_spacing(cloud.points, near, context);
-    Statistics whole;
-    whole.box = cloud.box;
-    pipeline::find_noise(index, near, whole, context);
-    measured.noise = whole.noise->sigma;
-    if (!outliers) return;
-    const std::vector<char> found = pipeline::find_outliers(index, near, whole, context);
-    measured.outlier.assign(xyz.size() / 3, 0);
-    for (std::size_t row = 0; row < measured.outlier.size(); ++row)
-      if (const Index p = cloud.of_input[row]; p != kNone) measured.outlier[row] = found[p];
-  });
-  return measured;
-}
-
 /// The flags that `denoise --outliers mark` leaves; empty if there are none.
 std::vector<char> marked_outliers(const pipeline::io::Cloud& cloud, const Context& context) {
   const auto field = pipeline::io::find_field(cloud, "outlier");
@@ -98,12 +66,13 @@ pipeline::PageContents contents_of(const pipeline::io::Cloud& before, const pipe
   pipeline::PageContents contents = pipeline::page_before(typed.arguments[0], before, context);
   contents.after = pipeline::page_side(typed.arguments[1], after, context);
   contents.outlier = marked_outliers(after, context);
-  const Measured measured = measure_cloud(contents.before.xyz, contents.outlier.empty(), context);
+  const pipeline::Measured measured =
+      pipeline::measure_points(contents.before.xyz, Outliers::keep, {}, context);
   if (contents.outlier.empty()) contents.outlier = measured.outlier;
   contents.figures = {
       {"outliers", fmt::format("{}", std::count(contents.outlier.begin(), contents.outlier.end(), 1))},
-      {"spacing before", fmt::format("{:.4g}", measured.spacing)},
-      {"noise before", fmt::format("{:.3g}", measured.noise)}};
+      {"spacing before", fmt::format("{:.4g}", *measured.statistics.spacing)},
+      {"noise before", fmt::format("{:.3g}", measured.statistics.noise->sigma)}};
   return contents;
 }
 

@@ -10,7 +10,7 @@
 #include "base/fail.h"
 #include "base/parallel.h"
 #include "pipeline/io/io.h"
-#include "pipeline/measure_points.h"
+#include "pipeline/prepare.h"
 #include "pipeline/tiles/allowed.h"
 #include "pipeline/tiles/files/records.h"
 #include "pipeline/tiles/files/statistics_json.h"
@@ -79,7 +79,9 @@ Settled settle_sample(const Job& job, Sample sample, const DenoiseOptions& optio
   DenoiseOptions how = options;
   how.statistics.emplace();
   how.statistics->box = job.box;
-  if (!sample.measured.empty()) how.statistics = measure_points(std::move(sample.measured), how, context);
+  if (!sample.measured.empty())
+    how.statistics =
+        measure_points(std::move(sample.measured), how.outliers, *how.statistics, context).statistics;
   const std::size_t n = sample.smoothed.size() / 3;
   if (n < job.in_tiles()) how.statistics->points = std::size_t(job.in_tiles());
   std::vector<double> smooth = sample.smoothed;

@@ -36,6 +36,15 @@ io::Cloud plane_with_strays() {
   return cloud;
 }
 
+/// The same, merged with a copy of itself that was moved a little, and with rows where nothing was seen.
+io::Cloud merged_plane_with_strays() {
+  std::vector<double> xyz = io::positions(plane_with_strays());
+  const std::size_t n = xyz.size();
+  for (std::size_t k = 0; k < n; ++k) xyz.push_back(xyz[k] + 1e-4);
+  xyz.insert(xyz.begin() + 30, 12, std::nan(""));
+  return io::make_cloud(xyz.data(), xyz.size() / 3, io::Scalar::float32);
+}
+
 class OutliersOption : public InFolder {
  protected:
   void write(const io::Cloud& cloud, const std::string& name) const {
@@ -245,15 +254,37 @@ TEST_F(OutliersOption, SmoothLooksForNone) {
   EXPECT_THAT(ran.err, HasSubstr("--mark-outliers"));
 }
 
-TEST_F(OutliersOption, EveryCommandSaysTheSameNoise) {
-  clean({});
+TEST_F(OutliersOption, EveryCommandSaysTheSameSpacingAndNoise) {
+  write(merged_plane_with_strays(), "in.ply");
+  ASSERT_EQ(run({"denoise", "in.ply", "out.ply", "--report", "report.json"}).code, 0);
+  const auto denoised = report();
+  const std::size_t strays = std::size(kStrays);
+  ASSERT_EQ(denoised["counts"]["outliers"], 2 * strays);
+  ASSERT_EQ(denoised["counts"]["finite"], 2 * kSide * kSide);
+  const double spacing = denoised["spacing"], noise = denoised["noise"];
+  EXPECT_GT(spacing, 0.1) << "twins are one";
+  EXPECT_GT(noise, 0);
+
   const auto info = nlohmann::json::parse(run({"info", "--json", "in.ply"}).out);
-  EXPECT_GT(info["noise"], 0);
-  EXPECT_EQ(info["noise"], report()["noise"]);
-  EXPECT_EQ(info["noise_measured"], report()["noise_measured"]);
+  EXPECT_EQ(info["spacing"], spacing);
+  EXPECT_EQ(info["noise"], noise);
+  EXPECT_EQ(info["noise_measured"], denoised["noise_measured"]);
+
+  for (const char* stage : {"emst-points", "emst", "sdg", "rfs"}) {
+    ASSERT_EQ(
+        run({"mesh", "in.ply", "mesh.ply", "--force", "--stage", stage, "--report", "report.json"}).code, 0);
+    const auto mesh = report();
+    EXPECT_EQ(mesh["spacing"], spacing) << stage;
+    EXPECT_EQ(mesh["noise"], noise) << stage;
+    EXPECT_EQ(mesh["counts"]["outliers"], 2 * strays) << stage;
+    EXPECT_EQ(mesh["counts"]["vertices"], kSide * kSide - strays) << stage;
+  }
+
   ASSERT_EQ(run({"report", "in.ply", "out.ply", "-o", "page.html"}).code, 0);
   EXPECT_THAT(take("page.html"),
-              HasSubstr(fmt::format("<th>noise before</th><td>{:.3g}</td>", info["noise"].get<double>())));
+              ::testing::AllOf(HasSubstr(fmt::format("<th>spacing before</th><td>{:.4g}</td>", spacing)),
+                               HasSubstr(fmt::format("<th>noise before</th><td>{:.3g}</td>", noise)),
+                               HasSubstr(fmt::format("<th>outliers</th><td>{}</td>", 2 * strays))));
 }
 
 TEST_F(OutliersOption, StraysDoNotPullTheOthers) {

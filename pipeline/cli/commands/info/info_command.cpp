@@ -121,6 +121,7 @@ Command info_command() {
   command.description =
       "Prints format, fields with their types, points (finite, distinct), whether they are "
       "organised, extent, spacing and noise. - stands for standard input.\n\n"
+      "Spacing and noise are measured as denoise does: outliers have no part in them, and twins are one. "
       "The noise is that of the typical place. Where there is more to say, it follows: 'S in the loudest "
       "tenth' is the noise that a tenth of the points exceed. 'shared by N neighbours': neighbours err "
       "together, as in the blotches of depth cameras, and N of them tell no more than one; smoothing takes "
