@@ -54,20 +54,17 @@ Prepared prepare(rfs_mesh::WorkingCloud& cloud, int neighbours, Outliers outlier
     index.emplace(cloud.points, context);
     near = index->nearest(neighbours, context);
   }
+  if (outliers == Outliers::smooth) return prepared;
   watch.next("noise");
   context.report("noise", 0);
-  if (outliers != Outliers::smooth) {
-    find_noise(*index, near, whole, context);
-    watch.next("outliers");
-    const std::vector<char> found = find_outliers(*index, near, whole, context);
-    if (std::find(found.begin(), found.end(), 1) != found.end()) {
-      outlier = set_aside(found, cloud);
-      index.emplace(cloud.points, context);
-      near = rfs_mesh::nearest_left(near, found, *index, context);
-    }
-    watch.next("noise");
+  find_noise(*index, near, whole, context);
+  watch.next("outliers");
+  const std::vector<char> found = find_outliers(*index, near, whole, context);
+  if (std::find(found.begin(), found.end(), 1) != found.end()) {
+    outlier = set_aside(found, cloud);
+    index.emplace(cloud.points, context);
+    near = rfs_mesh::nearest_left(near, found, *index, context);
   }
-  rfs_mesh::measure_cloud(*index, near, whole, context);
   return prepared;
 }
 
@@ -87,7 +84,9 @@ Measured measure_points(std::vector<double> xyz, Outliers outliers, Statistics k
     measured.finite = cloud.finite();
     measured.distinct = cloud.points.size();
     std::vector<StageTime> seconds;  // nobody asks
-    measured.outlier = prepare(cloud, int(rfs_mesh::kRing), outliers, whole, seconds, context).outlier;
+    Prepared prepared = prepare(cloud, int(rfs_mesh::kRing), outliers, whole, seconds, context);
+    rfs_mesh::measure_cloud(*prepared.index, prepared.near, whole, context);
+    measured.outlier = std::move(prepared.outlier);
     measured.points = std::move(cloud.points);
     for (Eigen::Vector3d& p : measured.points) p /= unit;
     change_units(whole, 1 / unit);

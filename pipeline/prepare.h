@@ -28,10 +28,10 @@ struct Prepared {
 };
 
 /// Joins twins, sets outliers aside (unless they are to be smoothed like all others) and finds the
-/// `neighbours` nearest of the points that are left. What `whole` has not of the box, the reach, the noise,
-/// the spacing and the scale is measured and entered. \param cloud as made of its rows; must outlive what is
-/// returned and not move. \param seconds the times of the stages are added to it. O(n log n), about 200 bytes
-/// a point, parallel, deterministic. Thread safe for different clouds.
+/// `neighbours` nearest of the points that are left. What `whole` has not of the box, and of the reach and
+/// the noise where outliers are looked for, is measured and entered. \param cloud as made of its rows; must
+/// outlive what is returned and not move. \param seconds the times of the stages are added to it. O(n log n),
+/// about 200 bytes a point, parallel, deterministic. Thread safe for different clouds.
 Prepared prepare(rfs_mesh::WorkingCloud& cloud, int neighbours, Outliers outliers, Statistics& whole,
                  std::vector<StageTime>& seconds, const Context& context);
 

@@ -13,6 +13,7 @@
 #include "pipeline/cli/files/cloud_jobs.h"
 #include "pipeline/cli/files/memory.h"
 #include "pipeline/io/mesh_file.h"
+#include "pipeline/outliers.h"
 #include "pipeline/prepare.h"
 #include "pipeline/row_order.h"
 #include "rfs_mesh/connect/connect.h"
@@ -105,18 +106,21 @@ std::string connect_cloud(const MeshCommandOptions& options, pipeline::io::Cloud
       value_or_fail(rfs_mesh::make_working_cloud(xyz.data(), cloud.size(), context), job.input);
   Connection connection;
   Statistics whole;
-  std::vector<char> outlier;
   in_arena(context, [&] {
     const ConnectOptions& connect = options.mesh.connect;
-    auto prepared =
-        pipeline::prepare(working, connect.neighbours, Outliers::keep, whole, task.stages, task.context);
-    outlier = std::move(prepared.outlier);
+    // All points are vertices, strays, too; the noise that tells their neighbourhoods is that of the others.
+    pipeline::Prepared prepared =
+        pipeline::prepare(working, connect.neighbours, Outliers::smooth, whole, task.stages, task.context);
+    if (options.mesh.stage != "emst-points") {
+      const Stopwatch watch(stages, "noise");
+      pipeline::find_noise(*prepared.index, prepared.near, whole, task.context);
+    }
     connection =
         value_or_throw(rfs_mesh::connect(std::move(*prepared.index), std::move(prepared.near), connect,
                                          wanted_for(options.mesh.stage), task.context, &whole));
   });
   add_times(connection.seconds, stages);
-  warn_if_coarse(cloud, xyz, *whole.spacing, job.input, console);
+  warn_if_coarse(cloud, xyz, connection.noise.spacing, job.input, console);
 
   const pipeline::RowOrder order = pipeline::row_order(working);
   Positions points;  // at the file's own coordinates
@@ -133,15 +137,12 @@ std::string connect_cloud(const MeshCommandOptions& options, pipeline::io::Cloud
   if (encoding != pipeline::io::Encoding::binary_compressed) cloud.encoding = encoding;  // PLY has none
 
   entry["options"] = effective_options(options.mesh, options.job.files);
-  const auto outliers = std::count(outlier.begin(), outlier.end(), 1);
-  entry["counts"] = {{"points", xyz.size() / 3}, {"vertices", points.size()}, {"outliers", outliers}};
+  entry["counts"] = {{"points", xyz.size() / 3}, {"vertices", points.size()}};
   entry["counts"].update(counts_of(connection, stage));
-  entry["spacing"] = *whole.spacing;
-  entry["noise"] = whole.noise->sigma;
-  return fmt::format(
-      "{}: {}, {}, {}{}", stage, counted(points.size(), "vertex", "vertices"), counted(edges.size(), "edge"),
-      counted(faces.size(), "face"),
-      outliers > 0 ? fmt::format("; {} left out", counted(std::size_t(outliers), "outlier")) : "");
+  entry["spacing"] = connection.noise.spacing;
+  if (stage != "emst-points") entry["noise"] = connection.noise.sigma;
+  return fmt::format("{}: {}, {}, {}", stage, counted(points.size(), "vertex", "vertices"),
+                     counted(edges.size(), "edge"), counted(faces.size(), "face"));
 }
 
 /// What is reported until the stage that was asked for is made.
@@ -167,9 +168,9 @@ Command mesh_command() {
       "and the surface description graph (sdg), faces for the RFS-mesh (rfs; edges of points without a face "
       "are kept as edges). The graph has all edges of the tree; its property kind is 0 for those, 1 for the "
       "added ones, and 2 for edges of the tree that are no neighbourhood (bridges). In noise both stand on "
-      "the points' shadows on the surface. Only the stages up to that one are run. The vertices "
-      "are the points that denoise works on: those that are not finite and outliers are left out, coincident "
-      "ones become one vertex, as do twins where a tenth of the points have one.\n\n"
+      "the points' shadows on the surface. Only the stages up to that one are run. Points that are not "
+      "finite are left out, coincident ones become one vertex, as do twins where a tenth of the points have "
+      "one; outliers, which denoise leaves out, stay in.\n\n"
       "Edges are lines in MeshLab, in Open3D (read_line_set) and for rfsmooth render; CloudCompare reads no "
       "edges from any PLY and shows the points only. Faces open everywhere.";
   collect(options->mesh, command.options);

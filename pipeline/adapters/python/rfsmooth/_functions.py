@@ -126,9 +126,8 @@ def denoise_structured(array, *, threads=0, progress=None, config=None, **option
 
 @takes_options("mesh")
 def mesh(points, *, threads=0, progress=None, config=None, **options):
-    """The rough mesh that `denoise` works on, or the graphs it is made from. Returns a Mesh, whose vertices are the points that
-    `denoise` works on, in the order in which they first come, and the report: rows that are not finite and outliers are left out,
-    and rows at one place, or twins, are one vertex.
+    """The rough mesh that `denoise` works on, or the graphs it is made from. Returns a Mesh, whose vertices are the distinct
+    finite points in the order in which they first come, outliers among them, and the report.
     """
     given = _arrays.as_points(points)
     cloud = _arrays.cloud_of_points(given)
