@@ -7,7 +7,6 @@
 #include "rfs_mesh/levels.h"
 #include "rfs_mesh/noise/shared/signs_of_sharing.h"
 #include "rfs_mesh/sample.h"
-#include "rfs_mesh/sheets/two_sheets.h"
 
 namespace rfsmooth::rfs_mesh {
 
@@ -25,36 +24,28 @@ constexpr double kLeastGrowthOfGround = 1.414;
 
 /// What calm places show, by the number of neighbours, ascending.
 struct Calm {
-  std::vector<double> m, seen;  ///< points, variance about a quadric
-  /// Means of that of Scatter: 1, less what patches follow of it, of noise that points have of their own, up
-  /// to kRing where they share it.
-  std::vector<double> together;
-  /// Medians, since that of a few rocks on a sea floor is large.
-  std::vector<double> flatness, lean;
-  std::vector<double> radius;    ///< mean, of their balls
-  std::vector<char> two_depths;  ///< are_two_depths, of most of them
-  double steps = 0;              ///< variance that depths in steps make sure of
+  std::vector<double> m, seen;        ///< points, variance about a quadric
+  std::vector<SignsOfSharing> signs;  ///< of their fits
+  std::vector<double> radius;         ///< mean, of their balls
+  std::vector<char> two_depths;       ///< are_two_depths, of most of them
+  double steps = 0;                   ///< variance that depths in steps make sure of
 };
 
 /// Enters what the fits of at most this variance show of how points err. \param rounding of each, by depths
 /// in steps
 void enter(const std::vector<Scatter>& all, const std::vector<double>& rounding, double variance,
            Calm& calm) {
-  double together = 0, radius = 0, count = 0, two_depths = 0;
-  std::vector<double> flatness, lean;
+  std::vector<const Scatter*> of_calm;
+  double radius = 0, two_depths = 0;
   for (std::size_t i = 0; i < all.size(); ++i) {
     const Scatter& s = all[i];
     if (!says(s) || s.variance > variance) continue;
-    together += s.together;
-    flatness.push_back(s.flatness);
-    lean.push_back(s.lean_in_common);
+    of_calm.push_back(&s);
     radius += s.radius;
     two_depths += double(are_two_depths(s.variance, rounding[i]));
-    ++count;
   }
-  calm.together.push_back(count > 0 ? together / count : 0);
-  calm.flatness.push_back(median(flatness));
-  calm.lean.push_back(median(lean));
+  const auto count = double(of_calm.size());
+  calm.signs.push_back(signs_of(of_calm));
   calm.radius.push_back(count > 0 ? radius / count : 0);
   calm.two_depths.push_back(char(2 * two_depths > count));
 }
@@ -150,14 +141,12 @@ SharedNoise find_shared_noise(Places& places, const NoiseStart& start, const Dep
     const bool stops = !fast || (slow >= kSlowInARow && (wide || growth < kLeastGrowthOfGround));
     wide = terraces ? wide || slow > 0 : slow > 0 && stops;
     if (!wide) continue;
+    const SignsOfSharing &here = calm.signs[i], &next = calm.signs[i + 1];
     // Within terraces no noise is normal.
-    const double flatness =
-        terraces ? calm.flatness[i + 1]
-                 : flatness_beyond(calm.flatness[i + 1], start.sigma * start.sigma / calm.seen[i + 1]);
-    if (flatness < kFlatnessOfSheets && calm.two_depths[i + 1] == 0) continue;
-    if (!terraces && leans_as_relief(calm.lean[i + 1])) continue;
-    if (!terraces && !err_together(calm.together[i + 1], calm.m[i + 1])) continue;
-    if (terraces || err_together(calm.together[i], calm.m[i]))
+    const double own = terraces ? 0 : start.sigma * start.sigma / calm.seen[i + 1];
+    if (next.of_two_sheets(own) && calm.two_depths[i + 1] == 0) continue;
+    if (!terraces && (next.of_relief() || !next.err_together(calm.m[i + 1]))) continue;
+    if (terraces || here.err_together(calm.m[i]))
       surely = std::max(surely, without_shape(calm.seen[i], calm.seen[i + 1], kLeastGrowthOfShape));
     make_sure(i, without_shape(calm.seen[i], calm.seen[i + 1], kGrowthOfSmoothShape));
   }

@@ -6,8 +6,9 @@
 
 #include <Eigen/Cholesky>
 
-#include "rfs_mesh/fit/scatter.h"
+#include "base/quantile.h"
 #include "rfs_mesh/levels.h"
+#include "rfs_mesh/sheets/two_sheets.h"
 
 namespace rfsmooth::rfs_mesh {
 
@@ -22,6 +23,14 @@ constexpr double kTogether = 0.4;       // above that of points on their own: tw
 constexpr double kFollows = 45;
 constexpr double kFastest = 0.25;         // k / m at which g(k / 2 m) / g(k / m) is greatest
 constexpr std::size_t kDiskPoints = 300;  // of the disk on which g is computed
+
+/// How flat residuals are beyond the noise that points have of their own, `own` of the variance. That is
+/// normal and adds nothing to the fourth cumulant, so what is left of the variance has all of it. Half of the
+/// variance is taken at least: the flatness of next to nothing is chance. \param flatness Scatter::flatness
+double flatness_beyond(double flatness, double own) {
+  const double left = std::max(0.5, 1 - own);
+  return kNormalFlatness + (flatness - kNormalFlatness) / (left * left);
+}
 
 /// Share of the area that two disks of radius r have in common at a distance d.
 double overlap(double d, double r) {
@@ -82,17 +91,31 @@ double left_by_quadric(double points, double m) {
   return std::max(1e-3, (1 - q) / (1 - own));
 }
 
-bool err_together(double together, double m) {
+bool SignsOfSharing::err_together(double m) const {
   return together > m / (m + kFollows) + kTogether;
 }
 
-double flatness_beyond(double flatness, double own) {
-  const double left = std::max(0.5, 1 - own);
-  return kNormalFlatness + (flatness - kNormalFlatness) / (left * left);
+bool SignsOfSharing::of_two_sheets(double own) const {
+  return flatness_beyond(flatness, own) < kFlatnessOfSheets;
 }
 
-bool leans_as_relief(double lean) {
+bool SignsOfSharing::of_relief() const {
   return lean > kLeanOfRelief;
+}
+
+SignsOfSharing signs_of(const std::vector<const Scatter*>& fits) {
+  SignsOfSharing signs;
+  if (fits.empty()) return signs;
+  std::vector<double> flatness, lean;
+  for (const Scatter* const fit : fits) {
+    signs.together += fit->together;
+    flatness.push_back(fit->flatness);
+    lean.push_back(fit->lean_in_common);
+  }
+  signs.together /= double(fits.size());
+  signs.flatness = median(flatness);
+  signs.lean = median(lean);
+  return signs;
 }
 
 double points_sharing(const std::vector<double>& m, const std::vector<double>& left) {

@@ -5,24 +5,33 @@
 #include <cmath>
 #include <vector>
 
+#include "rfs_mesh/fit/scatter.h"
+
 namespace rfsmooth::rfs_mesh {
 
 /// Of the variance about a quadric, from m points to 2 m: shape that it does not follow grows at least so.
 constexpr double kLeastGrowthOfShape = 2.38;
 
-/// Whether nearest points lie off patches of m points the same way. \param together mean of
-/// Scatter::together: above that of points on their own, which is what patches do not follow of it,
-/// m / (m + 45).
-bool err_together(double together, double m);
+/// How the residuals of some fits lie, taken together.
+struct SignsOfSharing {
+  /// Mean of Scatter::together: 1, less what patches follow of it, of noise that points have of their own, up
+  /// to kRing where they share it.
+  double together = 0;
+  /// Medians of Scatter::flatness and lean_in_common, since that of a few rocks on a sea floor is large.
+  double flatness = 0, lean = 0;
 
-/// How flat residuals are beyond the noise that points have of their own, `own` of the variance. That is
-/// normal and adds nothing to the fourth cumulant, so what is left of the variance has all of it. Half of the
-/// variance is taken at least: the flatness of next to nothing is chance. \param flatness Scatter::flatness
-double flatness_beyond(double flatness, double own);
+  /// Whether nearest points lie off patches of m points the same way: `together` is above that of points on
+  /// their own, which is what patches do not follow of it, m / (m + 45).
+  bool err_together(double m) const;
+  /// Whether they are as flat as those of two sheets, beyond the noise that points have of their own, `own`
+  /// of the variance.
+  bool of_two_sheets(double own) const;
+  /// Whether they lean as those of stones do, round above and in clefts below.
+  bool of_relief() const;
+};
 
-/// Whether residuals lean as those of stones do, round above and in clefts below. \param lean median of
-/// Scatter::lean_in_common
-bool leans_as_relief(double lean);
+/// Of fits that say something; zeros if there are none.
+SignsOfSharing signs_of(const std::vector<const Scatter*>& fits);
 
 /// The greatest k from 1 to `most` of which `below` is true: it is up to some k, and of none beyond.
 template <class Below>

@@ -7,54 +7,50 @@
 #include "base/quantile.h"
 #include "rfs_mesh/levels.h"
 #include "rfs_mesh/noise/shared/signs_of_sharing.h"
-#include "rfs_mesh/sheets/two_sheets.h"
 
 namespace rfsmooth::rfs_mesh {
 
 namespace {
 
-/// What the fits around a site show to so many points.
-struct ShownTogether {
-  ShownTogether(const std::vector<Neighbor>& group, const OpenFits& open) : points(double(open.points)) {
-    std::vector<double> variance, radii, of_sheets, leans;
+/// What the fits around a site show of sharing, to so many points.
+struct SharingShown {
+  SharingShown(const std::vector<Neighbor>& group, const OpenFits& open) : points(double(open.points)) {
+    std::vector<const Scatter*> saying;
+    std::vector<double> variance, radii;
     for (const Neighbor& q : group) {
       const Scatter& fit = open.all[q.index];
       if (!says(fit)) continue;
+      saying.push_back(&fit);
       variance.push_back(fit.variance);
       radii.push_back(fit.radius);
-      of_sheets.push_back(fit.flatness);
-      leans.push_back(fit.lean_in_common);
-      together += fit.together;
     }
-    if (variance.empty()) return;
-    together /= double(variance.size());
+    if (saying.empty()) return;
     scatter = std::sqrt(quantile(variance, kTypical));
     radius = median(radii);
-    flatness = median(of_sheets);
-    lean = median(leans);
+    signs = signs_of(saying);
   }
 
   bool holds_slab() const { return scatter < kFlatSlab * radius; }
   /// \param own variance that points have of their own, or more
   bool of_one_smooth_sheet(double own) const {
-    return flatness_beyond(flatness, own / (scatter * scatter)) >= kFlatnessOfSheets &&
-           !leans_as_relief(lean);
+    return !signs.of_two_sheets(own / (scatter * scatter)) && !signs.of_relief();
   }
 
   double points;
   double scatter = 0;  ///< world units; 0: no fit says a thing
-  double radius = 0, flatness = 0, lean = 0, together = 0;
+  double radius = 0;   ///< the median of their balls', world units
+  SignsOfSharing signs;
 };
 
-/// The first scale from which the scatter has stopped growing, and is of noise that neighbours share, if it
-/// never grew as shape does before; or how many there are. \param shown the narrowest holds the slab
-std::size_t stops_at(const std::vector<ShownTogether>& shown) {
+/// The first of these from which the scatter has stopped growing, and is of noise that neighbours share, if
+/// it never grew as shape does before; or how many there are. \param shown the narrowest holds the slab
+std::size_t stops_at(const std::vector<SharingShown>& shown) {
   const double narrow = shown.front().scatter;
   for (std::size_t i = 0; i + 2 < shown.size(); ++i) {
-    const ShownTogether &here = shown[i], &next = shown[i + 1];
+    const SharingShown &here = shown[i], &next = shown[i + 1];
     if (here.holds_slab() && next.of_one_smooth_sheet(narrow * narrow) &&
         next.scatter > kGrowthOfNoise * narrow && shown[i + 2].scatter <= kGrowthOfNoise * here.scatter &&
-        err_together(here.together, here.points))
+        here.signs.err_together(here.points))
       return i;
     if (next.scatter * next.scatter > kLeastGrowthOfShape * here.scatter * here.scatter) break;
   }
@@ -68,9 +64,9 @@ struct SharedAround {
 };
 
 SharedAround look_around(const std::vector<Neighbor>& group, const std::vector<OpenFits>& open) {
-  std::vector<ShownTogether> shown;
+  std::vector<SharingShown> shown;
   for (const OpenFits& fits : open) {
-    const ShownTogether next(group, fits);
+    const SharingShown next(group, fits);
     // Narrower balls are inside of the slab, and see the less of the noise the narrower they are.
     if (!shown.empty() || (next.scatter > 0 && next.holds_slab())) shown.push_back(next);
   }
