@@ -15,7 +15,7 @@
 #include "smoothing/automatic/patches/height_field.h"
 #include "smoothing/automatic/patches/scales.h"
 #include "smoothing/automatic/stranded.h"
-#include "smoothing/automatic/tails/rings_at_rest.h"
+#include "smoothing/automatic/rows/rings_at_rest.h"
 #include "smoothing/automatic/tails/tame.h"
 #include "smoothing/automatic/thin_walls.h"
 #include "smoothing/integrators/solver.h"

@@ -56,7 +56,7 @@
 #include "rfs_mesh/noise/noise.h"
 #include "rfs_mesh/search/neighbors.h"
 #include "smoothing/automatic/learned/last_step.h"
-#include "smoothing/automatic/patches/near_rows.h"
+#include "smoothing/automatic/rows/near_rows.h"
 
 namespace rfsmooth::smoothing {
 

@@ -20,7 +20,7 @@
 #include "base/raw_array.h"
 #include "rfs_mesh/levels.h"
 #include "rfs_mesh/search/neighbors.h"
-#include "smoothing/automatic/patches/near_rows.h"
+#include "smoothing/automatic/rows/near_rows.h"
 
 namespace rfsmooth::smoothing {
 

@@ -1,4 +1,4 @@
-#include "smoothing/automatic/patches/near_rows.h"
+#include "smoothing/automatic/rows/near_rows.h"
 
 #include <algorithm>
 #include <random>

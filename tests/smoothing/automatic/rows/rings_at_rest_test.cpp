@@ -1,4 +1,4 @@
-#include "smoothing/automatic/tails/rings_at_rest.h"
+#include "smoothing/automatic/rows/rings_at_rest.h"
 
 #include <random>
 
