@@ -5,7 +5,7 @@
 #include "base/parallel.h"
 #include "pipeline/row_order.h"
 #include "rfs_mesh/levels.h"
-#include "rfs_mesh/noise/noise.h"
+#include "rfs_mesh/noise/noise_levels.h"
 
 namespace rfsmooth::pipeline {
 

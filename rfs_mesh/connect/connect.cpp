@@ -18,7 +18,7 @@
 #include "rfs_mesh/fit/local_surface.h"
 #include "rfs_mesh/levels.h"
 #include "rfs_mesh/noise/noise.h"
-#include "rfs_mesh/noise/scatter_statistics.h"
+#include "rfs_mesh/noise/noise_levels.h"
 #include "rfs_mesh/search/neighbors.h"
 #include "rfs_mesh/small_holes.h"
 

@@ -9,6 +9,7 @@
 #include "base/quantile.h"
 #include "rfs_mesh/fit/local_surface.h"
 #include "rfs_mesh/levels.h"
+#include "rfs_mesh/noise/noise_levels.h"
 #include "rfs_mesh/noise/noise_search.h"
 #include "rfs_mesh/sample.h"
 

@@ -8,7 +8,8 @@
 #include "base/linear/symmetric_eigen.h"
 #include "base/parallel.h"
 #include "rfs_mesh/levels.h"
-#include "rfs_mesh/noise/noise_search.h"
+#include "rfs_mesh/noise/noise_levels.h"
+#include "rfs_mesh/noise/scatter_statistics.h"
 #include "rfs_mesh/sample.h"
 
 namespace rfsmooth::rfs_mesh {

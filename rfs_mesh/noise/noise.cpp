@@ -10,6 +10,7 @@
 #include "rfs_mesh/levels.h"
 #include "rfs_mesh/noise/held_out.h"
 #include "rfs_mesh/noise/noise_field.h"
+#include "rfs_mesh/noise/noise_levels.h"
 #include "rfs_mesh/noise/shared/shared_noise.h"
 #include "rfs_mesh/noise/steps/rounding.h"
 #include "rfs_mesh/noise/steps/voxels.h"

@@ -31,16 +31,6 @@
 
 namespace rfsmooth::rfs_mesh {
 
-/// Spacings: noise below this cannot be told from detail. Where points are more than twice as dense as on
-/// the mean their own spacing counts: there they show more. In a cloud that has more noise elsewhere, any is
-/// told where eight times the neighbours show no more scatter, or hardly: detail would.
-inline constexpr double kNoNoise = 0.05;
-
-/// What may be detail on a surface that is anything but smooth.
-constexpr double detail(double spacing) {
-  return 2 * kNoNoise * spacing;
-}
-
 /// Least noise of a place, as a part of the figure. Points with less than twice that are not moved. Not zero,
 /// because other values are divided by it.
 inline constexpr double kStays = 1e-3;

@@ -8,6 +8,7 @@
 
 #include "base/parallel.h"
 #include "rfs_mesh/levels.h"
+#include "rfs_mesh/noise/noise_levels.h"
 
 namespace rfsmooth::rfs_mesh {
 

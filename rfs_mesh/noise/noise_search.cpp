@@ -9,6 +9,7 @@
 #include "rfs_mesh/fit/flattest_slab.h"
 #include "rfs_mesh/levels.h"
 #include "rfs_mesh/noise/narrow_kernel.h"
+#include "rfs_mesh/noise/noise_levels.h"
 #include "rfs_mesh/sample.h"
 
 namespace rfsmooth::rfs_mesh {

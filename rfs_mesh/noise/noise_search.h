@@ -16,9 +16,6 @@
 
 namespace rfsmooth::rfs_mesh {
 
-/// Times: by so much one noise differs from itself, told by other places or by more neighbours.
-constexpr double kSameNoise = 1.1;
-
 /// Times: a window that is so near to what it shows is as wide as that.
 constexpr double kSettled = 1.03;
 
@@ -27,9 +24,6 @@ constexpr double kCalmPlaces = 0.25, kCalmDeviate = -0.674;
 
 /// The same where places are believed against most others.
 constexpr double kCalmFifth = 0.2, kCalmFifthDeviate = -0.84;
-
-/// Of what scatters without a window: the narrowest window that is tried.
-constexpr double kNarrowestWindow = 0.125;
 
 /// Where the search for the noise begins.
 struct NoiseStart {

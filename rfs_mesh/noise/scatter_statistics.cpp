@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "rfs_mesh/chi_square.h"
+#include "rfs_mesh/noise/noise_levels.h"
 
 namespace rfsmooth::rfs_mesh {
 

@@ -14,12 +14,6 @@
 
 namespace rfsmooth::rfs_mesh {
 
-/// Times: a deviation so much above another is not of the same noise.
-constexpr double kLouder = 2;
-
-/// Times: so much calmer sites say nothing of a place, and a cloud with such a tenth is not evenly noisy.
-constexpr double kMuchLouder = 3;
-
 /// A value and how much it counts.
 struct Weighed {
   double value, weight;

@@ -7,7 +7,7 @@
 #include "base/quantile.h"
 #include "rfs_mesh/levels.h"
 #include "rfs_mesh/noise/noise.h"
-#include "rfs_mesh/noise/scatter_statistics.h"
+#include "rfs_mesh/noise/noise_levels.h"
 #include "smoothing/automatic/along_surface/equalize.h"
 #include "smoothing/automatic/along_surface/slide_back.h"
 #include "smoothing/automatic/patches/height_field.h"

@@ -33,7 +33,7 @@
 /// believed only if they take at least a twentieth of the cloud. Uniform noise looks like two sheets
 /// everywhere, so they are not believed if they take more than three quarters of it, unless the noise is
 /// known to have tails. Nor are they looked for in noise of less than a tenth of a spacing (detail() of
-/// noise.h): what it hides are layers of scans that do not quite meet, or a rough surface.
+/// noise_levels.h): what it hides are layers of scans that do not quite meet, or a rough surface.
 #pragma once
 
 #include <optional>

@@ -6,7 +6,7 @@
 
 #include "pipeline/cli/own_files.h"
 #include "pipeline/io/io.h"
-#include "rfs_mesh/noise/noise_search.h"
+#include "rfs_mesh/noise/noise_levels.h"
 
 namespace rfsmooth::cli {
 

@@ -5,6 +5,7 @@
 
 #include "base/quantile.h"
 #include "rfs_mesh/levels.h"
+#include "rfs_mesh/noise/noise_levels.h"
 #include "rfs_mesh/noise/shared/signs_of_sharing.h"
 #include "rfs_mesh/sample.h"
 

@@ -6,6 +6,7 @@
 
 #include "base/parallel.h"
 #include "rfs_mesh/levels.h"
+#include "rfs_mesh/noise/noise_levels.h"
 #include "rfs_mesh/noise/sites/site_views.h"
 
 namespace rfsmooth::rfs_mesh {

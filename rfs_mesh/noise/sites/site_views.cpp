@@ -6,6 +6,7 @@
 
 #include "base/parallel.h"
 #include "rfs_mesh/levels.h"
+#include "rfs_mesh/noise/noise_levels.h"
 #include "rfs_mesh/noise/sites/open_fits.h"
 #include "rfs_mesh/noise/sites/shared_around.h"
 #include "rfs_mesh/sheets/two_sheets.h"

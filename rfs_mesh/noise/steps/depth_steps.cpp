@@ -6,9 +6,9 @@
 #include <iterator>
 #include <utility>
 
+#include "base/quantile.h"
 #include "rfs_mesh/levels.h"
-#include "rfs_mesh/noise/noise.h"
-#include "rfs_mesh/noise/scatter_statistics.h"
+#include "rfs_mesh/noise/noise_levels.h"
 #include "rfs_mesh/noise/steps/rounding.h"
 #include "rfs_mesh/noise/steps/scanner_places.h"
 #include "rfs_mesh/noise/steps/step_directions.h"

@@ -10,8 +10,9 @@
 #include <Eigen/Geometry>
 
 #include "base/parallel.h"
+#include "base/quantile.h"
 #include "rfs_mesh/levels.h"
-#include "rfs_mesh/noise/scatter_statistics.h"
+#include "rfs_mesh/noise/noise_levels.h"
 #include "rfs_mesh/sample.h"
 
 namespace rfsmooth::rfs_mesh {

@@ -7,7 +7,7 @@
 
 #include "base/quantile.h"
 #include "rfs_mesh/levels.h"
-#include "rfs_mesh/noise/scatter_statistics.h"
+#include "rfs_mesh/noise/noise_levels.h"
 
 namespace rfsmooth::smoothing {
 

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "rfs_mesh/noise/noise_levels.h"
 #include "tests/support/shapes.h"
 
 namespace rfsmooth::rfs_mesh {
