@@ -10,7 +10,7 @@
 #include "rfs_mesh/noise/noise_levels.h"
 #include "smoothing/automatic/along_surface/equalize.h"
 #include "smoothing/automatic/along_surface/slide_back.h"
-#include "smoothing/automatic/patches/height_field.h"
+#include "smoothing/automatic/guide/height_field.h"
 
 namespace rfsmooth::smoothing {
 

@@ -41,7 +41,7 @@
 
 #include <rfsmooth/statistics.h>
 
-#include "smoothing/automatic/patches/height_field.h"
+#include "smoothing/automatic/guide/height_field.h"
 
 namespace rfsmooth::smoothing {
 

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "rfs_mesh/noise/noise.h"
-#include "smoothing/automatic/patches/height_field.h"
+#include "smoothing/automatic/guide/height_field.h"
 
 namespace rfsmooth::smoothing {
 

@@ -1,8 +1,8 @@
-/// The neighbours that a height field asks for (smoothing/automatic/patches/height_field.h).
+/// The neighbours that a height field asks for (smoothing/automatic/guide/height_field.h).
 #pragma once
 
 #include "rfs_mesh/search/neighbors.h"
-#include "smoothing/automatic/patches/height_field.h"
+#include "smoothing/automatic/guide/height_field.h"
 
 namespace rfsmooth::support {
 

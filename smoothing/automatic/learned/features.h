@@ -29,8 +29,8 @@
 
 #include "rfs_mesh/noise/noise.h"
 #include "rfs_mesh/search/neighbors.h"
+#include "smoothing/automatic/guide/height_field.h"
 #include "smoothing/automatic/learned/seen.h"
-#include "smoothing/automatic/patches/height_field.h"
 
 namespace rfsmooth::smoothing {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "rfs_mesh/search/neighbors.h"
-#include "smoothing/automatic/patches/height_field.h"
+#include "smoothing/automatic/guide/height_field.h"
 
 namespace rfsmooth::smoothing {
 

@@ -7,7 +7,7 @@
 #include "base/parallel.h"
 #include "rfs_mesh/search/thinning.h"
 #include "smoothing/automatic/patches/fit/patch_fit.h"
-#include "smoothing/automatic/patches/weighted_sum.h"
+#include "smoothing/automatic/rows/weighted_sum.h"
 
 namespace rfsmooth::smoothing {
 

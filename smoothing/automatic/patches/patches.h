@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "smoothing/automatic/patches/height_field.h"
+#include "smoothing/automatic/guide/height_field.h"
 #include "smoothing/automatic/patches/patch_members.h"
 
 namespace rfsmooth::smoothing {

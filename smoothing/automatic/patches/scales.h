@@ -8,8 +8,8 @@
 #include <rfsmooth/statistics.h>
 
 #include "rfs_mesh/noise/noise.h"
+#include "smoothing/automatic/guide/height_field.h"
 #include "smoothing/automatic/learned/features.h"
-#include "smoothing/automatic/patches/height_field.h"
 #include "smoothing/automatic/patches/mixture.h"
 
 namespace rfsmooth::smoothing {

@@ -9,7 +9,7 @@
 
 #include "base/parallel.h"
 #include "rfs_mesh/levels.h"
-#include "smoothing/automatic/stranded.h"
+#include "smoothing/automatic/guide/stranded.h"
 
 namespace rfsmooth::smoothing {
 

@@ -9,7 +9,7 @@
 #include <rfsmooth/statistics.h>
 
 #include "rfs_mesh/noise/noise.h"
-#include "smoothing/automatic/patches/height_field.h"
+#include "smoothing/automatic/guide/height_field.h"
 #include "smoothing/automatic/patches/scales.h"
 #include "smoothing/automatic/tails/tails.h"
 

@@ -20,7 +20,7 @@
 #include <Eigen/Core>
 
 #include "rfs_mesh/search/wide_neighbors.h"
-#include "smoothing/automatic/patches/height_field.h"
+#include "smoothing/automatic/guide/height_field.h"
 #include "smoothing/automatic/patches/patch_members.h"
 
 namespace rfsmooth::smoothing {

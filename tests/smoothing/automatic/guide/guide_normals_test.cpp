@@ -1,4 +1,4 @@
-#include "smoothing/automatic/patches/guide_normals.h"
+#include "smoothing/automatic/guide/guide_normals.h"
 
 #include <cmath>
 

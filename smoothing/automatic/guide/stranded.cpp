@@ -1,4 +1,4 @@
-#include "smoothing/automatic/stranded.h"
+#include "smoothing/automatic/guide/stranded.h"
 
 #include <algorithm>
 #include <array>
@@ -11,7 +11,7 @@
 #include "rfs_mesh/fit/principal_axes.h"
 #include "rfs_mesh/levels.h"
 #include "rfs_mesh/search/neighbors.h"
-#include "smoothing/automatic/patches/height_field.h"
+#include "smoothing/automatic/guide/height_field.h"
 
 namespace rfsmooth::smoothing {
 

@@ -1,4 +1,4 @@
-#include "smoothing/automatic/patches/weighted_sum.h"
+#include "smoothing/automatic/rows/weighted_sum.h"
 
 #include <cstdint>
 #include <vector>

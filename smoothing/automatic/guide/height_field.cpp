@@ -1,12 +1,12 @@
-#include "smoothing/automatic/patches/height_field.h"
+#include "smoothing/automatic/guide/height_field.h"
 
 #include <algorithm>
 #include <stdexcept>
 #include <utility>
 
 #include "base/parallel.h"
-#include "smoothing/automatic/patches/guide_normals.h"
-#include "smoothing/automatic/patches/weighted_sum.h"
+#include "smoothing/automatic/guide/guide_normals.h"
+#include "smoothing/automatic/rows/weighted_sum.h"
 
 namespace rfsmooth::smoothing {
 

@@ -1,4 +1,4 @@
-#include "smoothing/automatic/stranded.h"
+#include "smoothing/automatic/guide/stranded.h"
 
 #include <algorithm>
 #include <cmath>
