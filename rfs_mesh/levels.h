@@ -36,6 +36,9 @@ constexpr double kStray = 5;
 /// that it keeps a little.
 constexpr double kBeyond = 1.1;
 
+/// The same of its square, half as far beyond: where the farthest of a few neighbours shall count for less.
+constexpr double kJustBeyond = (1 + kBeyond) / 2;
+
 /// The most sigma over radius of a ball of neighbours that holds the slab of noisy points, and is not inside
 /// of it: a radius of 5.5 sigma.
 constexpr double kFlatSlab = 0.18;

@@ -17,7 +17,8 @@ constexpr double detail(double spacing) {
 /// Times: by so much one noise differs from itself, told by other places or by more neighbours.
 constexpr double kSameNoise = 1.1;
 
-/// Times: a deviation so much above another is not of the same noise.
+/// Times: what is so much above the usual stands out of it: a deviation is of other noise, a peak of a
+/// spectrum is none by chance.
 constexpr double kLouder = 2;
 
 /// Times: so much calmer sites say nothing of a place, and a cloud with such a tenth is not evenly noisy.

@@ -30,7 +30,7 @@ bool on_other_sheet(const Positions& points, const Positions& normals, std::size
   const Eigen::Vector3d& normal = normals[i];
   const TangentPlane plane(normal);
   double square = 0;
-  for (const Index j : row) square = std::max(square, 1.05 * (points[j] - points[i]).squaredNorm());
+  for (const Index j : row) square = std::max(square, kJustBeyond * (points[j] - points[i]).squaredNorm());
   if (!(square > 0)) return false;
   const double in_radii = 1 / std::sqrt(square);
   LabelledSheets sheets;

@@ -20,6 +20,9 @@ namespace {
 
 constexpr std::size_t kFewestSteps = 4;  // fewer are the sides of a box
 constexpr double kSame = 1e-3;  // of a distance between neighbours, some thousand of which make up the cloud
+// Coordinates are whole numbers of what they are rounded to: steps are two of these or more, one is that of
+// decimals.
+constexpr double kRoundingsOfStep = 2;
 
 /// Whether every depth is a step, or only those that more points share than would by chance.
 enum class Steps { of_all, of_part };
@@ -248,7 +251,7 @@ std::optional<DepthSteps> find_depth_steps(const SpatialIndex& index, double rou
   planes = with_steps(planes, some, Steps::of_all);
   // Steps of less are those of decimals, or cannot be told from detail. Decimals no finer than points are
   // from each other put them on a grid.
-  const double decimals = rounding < (1 - kSame) * nearest ? (1 - kSame) * kLouder * rounding : 0,
+  const double decimals = rounding < (1 - kSame) * nearest ? (1 - kSame) * kRoundingsOfStep * rounding : 0,
                least = std::max(decimals, kNoNoise * nearest / rounding_noise(1));
   if (!planes.empty() && planes.front().typical < decimals) planes.clear();
   if (!planes.empty() && are_of_grid(some, planes, 0, least)) return {};
@@ -281,7 +284,7 @@ std::optional<DepthSteps> find_grid(std::vector<double> nearest, double rounding
   if (nearest.empty()) return {};
   const double most = quantile(nearest, 0.75), least = quantile(nearest, 0.25);
   if (!(most - least < kSame * least)) return {};
-  if (rounding > kSame * least && least > kLouder * rounding) return {};
+  if (rounding > kSame * least && least > kRoundingsOfStep * rounding) return {};
   return DepthSteps(least);
 }
 

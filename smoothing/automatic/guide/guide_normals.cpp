@@ -73,7 +73,7 @@ std::vector<Eigen::Vector3f> normals_across_lines(const Positions& guide, const 
     std::vector<rfs_mesh::Neighbor> found;
     for (std::size_t i = begin; i < end; ++i) {
       index.nearest(guide[i], int(std::min(kRing, at.size())), found);
-      const double square = 1.05 * found.back().squared_distance;
+      const double square = rfs_mesh::kJustBeyond * found.back().squared_distance;
       const Eigen::Vector3f& nearest = known[found.front().index];
       Eigen::Vector3f sum = Eigen::Vector3f::Zero();
       for (const rfs_mesh::Neighbor& q : found) {

@@ -47,7 +47,7 @@ void HeightField::ready_for_means(const Context& context) {
   for_each_index(context, size(), [&](std::size_t i) {
     const auto row = near_[i];
     if (row.size() == 0) return;
-    const double square = 1.05 * (guide_[row[row.size() - 1]] - guide_[i]).squaredNorm();
+    const double square = rfs_mesh::kJustBeyond * (guide_[row[row.size() - 1]] - guide_[i]).squaredNorm();
     for (std::size_t k = 0; k < row.size(); ++k) {
       const double away = square > 0 ? (guide_[row[k]] - guide_[i]).squaredNorm() / square : 0;
       const bool same = same_sheet(local_[i].normal.dot(local_[row[k]].normal)) > 0;

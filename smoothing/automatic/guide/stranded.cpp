@@ -144,7 +144,7 @@ std::vector<Index> find_stranded(const Adjacency& rings, const Positions& guide,
 
 /// p projected onto the plane through the points `near` of some place, ascending.
 Eigen::Vector3d project(const Positions& guide, const std::vector<Neighbor>& near, const Eigen::Vector3d& p) {
-  const double square = 1.05 * near.back().squared_distance;
+  const double square = rfs_mesh::kJustBeyond * near.back().squared_distance;
   const auto weight = [square](const Neighbor& q) {
     return square > 0 ? 1 - q.squared_distance / square : 1;
   };
