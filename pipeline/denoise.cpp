@@ -97,7 +97,7 @@ void alternate(Mesh& mesh, const Constraints& constraints, const DenoiseOptions&
         found = smooth_automatically(
             mesh, *automatic, context,
             last && !options.flow.trace ? smoothing::Connectivity::used_up : smoothing::Connectivity::kept,
-            nullptr, step == 0 ? &whole : nullptr);
+            step == 0 ? &whole : nullptr);
     }
     if (step == 0) first = found;
     tracer.add(mesh, context);

@@ -172,8 +172,8 @@ AutomaticResult automatic_smoothing(const AutomaticTask& task, AutomaticReport& 
       const Eigen::Vector3d& from = mesh.positions[i];
       return smooth[i] != from && allowed(i, there - from);  // strays stay
     };
-    if (task.sites != nullptr)
-      *task.sites = learned_sites(field, data, smoothed, noise, context);
+    if (task.for_training != nullptr)
+      *task.for_training = learned_input(field, data, smoothed, noise, context);
     else
       take_learned_step(field, data, smoothed, noise, may_go, smooth, context);
   }

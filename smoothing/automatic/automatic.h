@@ -65,9 +65,11 @@ struct AutomaticTask {
   Mesh& mesh;                         ///< of at least HeightField::kNear points; they stay where they are
   const rfs_mesh::NoiseField& noise;  ///< along the normal, of positive sigma; local: n, positive
   bool learned = true;                ///< whether the learned step is taken
-  bool keep_rings = true;         ///< false: the mesh is left without its one-rings, as soon as they are read
-  LearnedSites* sites = nullptr;  ///< out, with `learned`: what the step would be given; it is not taken
-  double strength = 1;            ///< how many times that of the cloud `noise` is; positive
+  bool keep_rings = true;  ///< false: the mesh is left without its one-rings, as soon as they are read
+  double strength = 1;     ///< how many times that of the cloud `noise` is; positive
+  /// Of no use but to train the learned step (tests/bench/train): if it is there, and `learned`, it gets what
+  /// the step would be given, and the step is not taken.
+  LearnedInput* for_training = nullptr;
 };
 
 /// What the automatic flow measured and chose.

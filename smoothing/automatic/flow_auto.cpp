@@ -79,8 +79,7 @@ class AutomaticFlow : public Flow {
       : options_(options), report_(report), statistics_(statistics) {}
 
   void step(Mesh& mesh, const Context& context) override {
-    const auto report =
-        smooth_automatically(mesh, options_, context, Connectivity::kept, nullptr, statistics_);
+    const auto report = smooth_automatically(mesh, options_, context, Connectivity::kept, statistics_);
     statistics_ = nullptr;  // what a step leaves is another cloud
     if (report_ != nullptr) *report_ = report;
   }
@@ -106,7 +105,7 @@ NoiseSummary summary_of(const rfs_mesh::NoiseField& noise) {
 
 std::optional<AutomaticReport> smooth_automatically(Mesh& mesh, const AutomaticOptions& options,
                                                     const Context& context, Connectivity connectivity,
-                                                    LearnedSites* sites, Statistics* statistics) {
+                                                    Statistics* statistics, LearnedInput* for_training) {
   if (connectivity == Connectivity::used_up) std::vector<Face>().swap(mesh.faces);
   if (mesh.positions.size() < 2) return {};
   Statistics own, &whole = statistics != nullptr ? *statistics : own;
@@ -122,8 +121,8 @@ std::optional<AutomaticReport> smooth_automatically(Mesh& mesh, const AutomaticO
   report.not_smoothed = why_not(mesh.positions.size(), options.strength, noise.sigma);
   if (report.not_smoothed) return report;
   AutomaticResult smooth = automatic_smoothing(
-      {mesh, noise, options.learned, connectivity == Connectivity::kept, sites, options.strength}, report,
-      whole, context);
+      {mesh, noise, options.learned, connectivity == Connectivity::kept, options.strength, for_training},
+      report, whole, context);
   mesh.positions.swap(smooth.points);
   const Positions before = std::move(smooth.points);
   rfs_mesh::NeighborTable near = smooth.near.first(NearRows::kMost, context);

@@ -25,13 +25,13 @@ enum class Connectivity { kept, used_up };
 
 /// One step: moves mesh.positions. What was measured and chosen; nothing for fewer than two points, which
 /// stay. `options.iterations` is the caller's loop. `statistics`: what is there is taken, the rest entered.
-/// `sites`: see automatic.h. O(n log n), about 350 bytes a point. Parallel, the same bits for any number of
-/// threads. Thread safe on distinct meshes.
+/// O(n log n), about 350 bytes a point. Parallel, the same bits for any number of threads. Thread safe on
+/// distinct meshes.
 std::optional<AutomaticReport> smooth_automatically(Mesh& mesh, const AutomaticOptions& options,
                                                     const Context& context,
                                                     Connectivity connectivity = Connectivity::kept,
-                                                    LearnedSites* sites = nullptr,
-                                                    Statistics* statistics = nullptr);
+                                                    Statistics* statistics = nullptr,
+                                                    LearnedInput* for_training = nullptr);
 
 /// The same as the steps of a flow, for modifiers and constraints to go around. Each step writes `report`,
 /// which must outlive the flow.

@@ -11,7 +11,7 @@ namespace rfsmooth::smoothing {
 namespace {
 
 constexpr double kLeastNoise = 0.2;  // spacings: with less noise patches of 16 points are as wide as walls
-constexpr std::size_t kBlockOfSites = 256;
+constexpr std::size_t kBlockOfPoints = 256;
 
 /// By how much a patch of 6 to 13 sigma in radius (wider where the noise is below half a spacing) is worse in
 /// the mean, over its own width, than the one of half as many points, in sigma^2. Where none is, nothing is
@@ -47,7 +47,7 @@ std::vector<Index> asked_for(const std::vector<ScalesSay>& scales, const rfs_mes
 template <class Visit>
 void look_at(const std::vector<Index>& points, const Features& features, const Context& context,
              Visit&& visit) {
-  for_blocks(context, points.size(), kBlockOfSites, [&](std::size_t begin, std::size_t end) {
+  for_blocks(context, points.size(), kBlockOfPoints, [&](std::size_t begin, std::size_t end) {
     Surroundings near = features.start();
     Features::Row row;
     for (std::size_t k = begin; k < end; ++k) {
@@ -59,25 +59,25 @@ void look_at(const std::vector<Index>& points, const Features& features, const C
 
 }  // namespace
 
-LearnedSites learned_sites(HeightField& field, const Positions& data, const Smoothed& smoothed,
+LearnedInput learned_input(HeightField& field, const Positions& data, const Smoothed& smoothed,
                            const rfs_mesh::NoiseField& noise, const Context& context) {
-  LearnedSites sites;
-  sites.point = asked_for(smoothed.scales, noise);
-  const std::size_t n = sites.point.size();
-  if (n == 0) return sites;
-  sites.features.resize(n);
-  sites.place.resize(n);
-  sites.normal.resize(n);
-  sites.scale.resize(n);
+  LearnedInput input;
+  input.point = asked_for(smoothed.scales, noise);
+  const std::size_t n = input.point.size();
+  if (n == 0) return input;
+  input.features.resize(n);
+  input.place.resize(n);
+  input.normal.resize(n);
+  input.scale.resize(n);
   const Features features(field, data, smoothed, noise, context);
-  look_at(sites.point, features, context, [&](std::size_t k, const Features::Row& row) {
-    const std::size_t i = sites.point[k];
-    sites.features[k] = row;
-    sites.place[k] = smoothed.place[i];
-    sites.normal[k] = field.normal(i);
-    sites.scale[k] = features.scale(i);
+  look_at(input.point, features, context, [&](std::size_t k, const Features::Row& row) {
+    const std::size_t i = input.point[k];
+    input.features[k] = row;
+    input.place[k] = smoothed.place[i];
+    input.normal[k] = field.normal(i);
+    input.scale[k] = features.scale(i);
   });
-  return sites;
+  return input;
 }
 
 void take_learned_step(HeightField& field, const Positions& data, const Smoothed& smoothed,

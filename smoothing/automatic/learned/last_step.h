@@ -23,8 +23,8 @@
 
 namespace rfsmooth::smoothing {
 
-/// What the step was given, for training.
-struct LearnedSites {
+/// What the step is given, by point that it is asked for: to train it on (tests/bench/train).
+struct LearnedInput {
   std::vector<Index> point;
   std::vector<Features::Row> features;
   Positions place, normal;   ///< P and n
@@ -40,8 +40,8 @@ void take_learned_step(HeightField& field, const Positions& data, const Smoothed
                        const rfs_mesh::NoiseField& noise, const MayGo& may_go, Positions& place,
                        const Context& context);
 
-/// What the step would be given, for training. As long as that takes.
-LearnedSites learned_sites(HeightField& field, const Positions& data, const Smoothed& smoothed,
+/// What the step would be given. Takes as long as all of the step.
+LearnedInput learned_input(HeightField& field, const Positions& data, const Smoothed& smoothed,
                            const rfs_mesh::NoiseField& noise, const Context& context);
 
 }  // namespace rfsmooth::smoothing

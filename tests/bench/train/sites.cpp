@@ -27,7 +27,7 @@ namespace {
 
 using namespace rfsmooth;
 using namespace rfsmooth::bench;
-using smoothing::LearnedSites;
+using smoothing::LearnedInput;
 
 constexpr int kTargets = 33;
 constexpr double kReach = 4;  // s
@@ -100,7 +100,7 @@ Cloud make_cloud(const TrainingShape& shape, std::uint64_t number, Recipe recipe
   return cloud;
 }
 
-LearnedSites sites_of(const Cloud& cloud, const Recipe& recipe, const Context& context) {
+LearnedInput input_of(const Cloud& cloud, const Recipe& recipe, const Context& context) {
   auto working = value_or_throw(
       rfs_mesh::make_working_cloud(cloud.measured.data()->data(), cloud.measured.size(), context));
   for (auto& p : working.points) p += working.origin;
@@ -109,17 +109,17 @@ LearnedSites sites_of(const Cloud& cloud, const Recipe& recipe, const Context& c
   Mesh mesh = value_or_throw(rfs_mesh::connect(working.points, {}, wanted, context)).mesh;
   AutomaticOptions options;
   if (recipe.disturbed) options.noise = Length{*recipe.disturbed * cloud.sigma, false};
-  LearnedSites sites;
-  smooth_automatically(mesh, options, context, smoothing::Connectivity::used_up, &sites);
-  return sites;
+  LearnedInput input;
+  smooth_automatically(mesh, options, context, smoothing::Connectivity::used_up, nullptr, &input);
+  return input;
 }
 
-/// A share of the sites, with their targets.
-void write(std::uint64_t number, const Cloud& cloud, const LearnedSites& sites, std::size_t wanted,
+/// A share of the points, with their targets.
+void write(std::uint64_t number, const Cloud& cloud, const LearnedInput& input, std::size_t wanted,
            const Context& context, std::ofstream& out) {
   using smoothing::Features;
   constexpr std::size_t kRow = 1 + Features::kEven + Features::kOdd + kTargets;
-  const std::size_t n = sites.point.size(), count = std::min(wanted, n);
+  const std::size_t n = input.point.size(), count = std::min(wanted, n);
   if (count == 0) return;
   const ClosestTree surface(cloud.truth->mesh);
   std::vector<float> rows(count * kRow);
@@ -129,12 +129,12 @@ void write(std::uint64_t number, const Cloud& cloud, const LearnedSites& sites, 
         const std::size_t i = k * n / count;
         float* to = rows.data() + k * kRow;
         *to++ = float(number);
-        to = std::copy(sites.features[i].even.begin(), sites.features[i].even.end(), to);
-        to = std::copy(sites.features[i].odd.begin(), sites.features[i].odd.end(), to);
-        const double s = sites.scale[i];
+        to = std::copy(input.features[i].even.begin(), input.features[i].even.end(), to);
+        to = std::copy(input.features[i].odd.begin(), input.features[i].odd.end(), to);
+        const double s = input.scale[i];
         for (int t = 0; t < kTargets; ++t) {
           const double height = kReach * (2.0 * t / (kTargets - 1) - 1) * s;
-          *to++ = float(surface.nearest(sites.place[i] + height * sites.normal[i]).squared / (s * s));
+          *to++ = float(surface.nearest(input.place[i] + height * input.normal[i]).squared / (s * s));
         }
       },
       16);
@@ -173,7 +173,7 @@ int run(int argc, char** argv) {
       recipe.share = share;
     }
     const Cloud cloud = make_cloud(made, number, recipe);
-    in_arena(context, [&] { write(number, cloud, sites_of(cloud, recipe, context), wanted, context, out); });
+    in_arena(context, [&] { write(number, cloud, input_of(cloud, recipe, context), wanted, context, out); });
     if (number % 10 == 9) std::fprintf(stderr, "%llu\n", static_cast<unsigned long long>(number + 1));
   }
   return out ? 0 : 1;

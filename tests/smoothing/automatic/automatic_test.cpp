@@ -120,7 +120,7 @@ TEST(Automatic, ALoudPartOfACloudThatIsMostlyDetailIsSmoothed) {
     for (const Eigen::Vector3d& p : clean.positions)
       whole.noise->at_sites.push_back((p.z() < 0.3 ? 0.08 : loud) * h);
     Mesh mesh = noisy;
-    smooth_automatically(mesh, {}, {}, Connectivity::kept, nullptr, &whole);
+    smooth_automatically(mesh, {}, {}, Connectivity::kept, &whole);
     return mesh.positions;
   };
   EXPECT_LT(support::rms_off_unit_sphere(moved(0.5)), 0.5 * support::rms_off_unit_sphere(noisy.positions));

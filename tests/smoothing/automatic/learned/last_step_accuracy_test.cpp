@@ -60,7 +60,7 @@ TEST(LearnedStep, GoesOnFromHiddenWallsThatWereParted) {
     options.noise = Length{kSigma, false};
     options.learned = learned;
     Statistics settled;
-    smooth_automatically(smooth, options, {}, Connectivity::kept, nullptr, &settled);
+    smooth_automatically(smooth, options, {}, Connectivity::kept, &settled);
     EXPECT_GT(settled.sheets->evidence, 2);
     double sum = 0;
     for (const auto& p : smooth.positions) sum += std::pow(part->signed_distance(p), 2);

@@ -27,7 +27,7 @@ inline Positions smoothed(Mesh mesh, bool learned, double sigma = kSigma, const 
   options.learned = learned;
   Statistics settled;
   settled.sheets = Statistics::Sheets{0, 1};  // no hidden walls: the step is all there is
-  smoothing::smooth_automatically(mesh, options, context, smoothing::Connectivity::kept, nullptr, &settled);
+  smoothing::smooth_automatically(mesh, options, context, smoothing::Connectivity::kept, &settled);
   return mesh.positions;
 }
 
