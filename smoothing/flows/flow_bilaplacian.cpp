@@ -33,7 +33,7 @@ class BilaplacianSpeed : public Speed {
 }  // namespace
 
 std::unique_ptr<Flow> BilaplacianOptions::start(const Mesh&, const Constraints&, const Context&) const {
-  return make_explicit(std::make_unique<BilaplacianSpeed>(), lambda, Update::simultaneous);
+  return make_explicit(std::make_unique<BilaplacianSpeed>(), lambda);
 }
 
 }  // namespace rfsmooth

@@ -8,7 +8,7 @@ using namespace smoothing;
 
 std::unique_ptr<Flow> CurvatureOptions::start(const Mesh&, const Constraints&, const Context&) const {
   const OperatorKind kind = normalised ? OperatorKind::curvature_normalised : OperatorKind::curvature;
-  return make_explicit(make_operator_speed(kind, lambda, scheme), lambda, Update::simultaneous);
+  return make_explicit(make_operator_speed(kind, lambda, scheme), lambda);
 }
 
 }  // namespace rfsmooth

@@ -209,8 +209,8 @@ class DirectionalSpeed : public Speed {
 std::unique_ptr<Flow> DirectionalOptions::start(const Mesh& mesh, const Constraints&,
                                                 const Context& context) const {
   const Eigen::Vector3d unit = direction ? direction->normalized() : Eigen::Vector3d(Eigen::Vector3d::Zero());
-  return make_explicit(std::make_unique<DirectionalSpeed>(mesh, power, unit, scheme, lambda, context), lambda,
-                       Update::simultaneous);
+  return make_explicit(std::make_unique<DirectionalSpeed>(mesh, power, unit, scheme, lambda, context),
+                       lambda);
 }
 
 }  // namespace rfsmooth

@@ -18,9 +18,9 @@ namespace {
 using Eigen::Vector3d;
 
 /// F = alpha a + (1 - alpha) T q - q with the anchor a = q or o, from U(q) = T q - q.
-class AnchoredSpeed : public Speed {
+class AnchoredSpeed : public VertexSpeed {
  public:
-  AnchoredSpeed(std::unique_ptr<Speed> umbrella, double alpha, Positions original)
+  AnchoredSpeed(std::unique_ptr<VertexSpeed> umbrella, double alpha, Positions original)
       : umbrella_(std::move(umbrella)), alpha_(alpha), original_(std::move(original)) {}
 
   void evaluate(const Mesh& mesh, Positions& speed, const Context& context) override {
@@ -29,7 +29,7 @@ class AnchoredSpeed : public Speed {
                    [&](std::size_t i) { speed[i] = anchored(mesh, Index(i), speed[i]); });
   }
 
-  Vector3d at(const Mesh& mesh, Index i) override { return anchored(mesh, i, umbrella_->at(mesh, i)); }
+  Vector3d at(const Mesh& mesh, Index i) const override { return anchored(mesh, i, umbrella_->at(mesh, i)); }
 
  private:
   Vector3d anchored(const Mesh& mesh, Index i, const Vector3d& umbrella) const {
@@ -37,7 +37,7 @@ class AnchoredSpeed : public Speed {
     return original_.empty() ? free : Vector3d(free + alpha_ * (original_[i] - mesh.positions[i]));
   }
 
-  std::unique_ptr<Speed> umbrella_;
+  std::unique_ptr<VertexSpeed> umbrella_;
   double alpha_;
   Positions original_;  ///< empty: the anchor is the centre
 };

@@ -121,7 +121,7 @@ class LocalDirectionalSpeed : public Speed {
 }  // namespace
 
 std::unique_ptr<Flow> LocalDirectionalOptions::start(const Mesh&, const Constraints&, const Context&) const {
-  return make_explicit(std::make_unique<LocalDirectionalSpeed>(*this), lambda, Update::simultaneous);
+  return make_explicit(std::make_unique<LocalDirectionalSpeed>(*this), lambda);
 }
 
 }  // namespace rfsmooth

@@ -61,7 +61,7 @@ class MedianDirectionSpeed : public Speed {
 }  // namespace
 
 std::unique_ptr<Flow> MedianDirectionOptions::start(const Mesh&, const Constraints&, const Context&) const {
-  return make_explicit(std::make_unique<MedianDirectionSpeed>(*this), lambda, Update::simultaneous);
+  return make_explicit(std::make_unique<MedianDirectionSpeed>(*this), lambda);
 }
 
 }  // namespace rfsmooth

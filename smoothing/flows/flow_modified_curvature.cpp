@@ -51,8 +51,7 @@ class ModifiedCurvatureSpeed : public Speed {
 }  // namespace
 
 std::unique_ptr<Flow> ModifiedCurvatureOptions::start(const Mesh&, const Constraints&, const Context&) const {
-  return make_explicit(std::make_unique<ModifiedCurvatureSpeed>(lambda, tangential, scheme), lambda,
-                       Update::simultaneous);
+  return make_explicit(std::make_unique<ModifiedCurvatureSpeed>(lambda, tangential, scheme), lambda);
 }
 
 }  // namespace rfsmooth

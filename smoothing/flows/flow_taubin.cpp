@@ -17,8 +17,8 @@ namespace {
 class TaubinFlow : public Flow {
  public:
   TaubinFlow(UmbrellaWeights weights, double lambda, double mu, const AllowedMoves& allowed)
-      : shrink_(make_explicit(make_umbrella_speed(weights), lambda, Update::simultaneous, allowed)),
-        inflate_(make_explicit(make_umbrella_speed(weights), -mu, Update::simultaneous, allowed)) {}
+      : shrink_(make_explicit(make_umbrella_speed(weights), lambda, allowed)),
+        inflate_(make_explicit(make_umbrella_speed(weights), -mu, allowed)) {}
 
   void step(Mesh& mesh, const Context& context) override {
     shrink_->step(mesh, context);

@@ -1,38 +1,35 @@
 #include "smoothing/integrators/explicit.h"
 
 #include <optional>
-#include <stdexcept>
+#include <utility>
 
 #include "base/parallel.h"
 
 namespace rfsmooth::smoothing {
 
-Eigen::Vector3d Speed::at(const Mesh&, Index) {
-  throw std::logic_error("this flow has no sequential update");
-}
-
 namespace {
 
-class ExplicitFlow : public Flow {
+void move_vertex(Mesh& mesh, std::size_t i, const Eigen::Vector3d& step) {
+  const Eigen::Vector3d p = mesh.positions[i] + step;
+  if (p.allFinite()) mesh.positions[i] = p;
+}
+
+/// What the constraints leave of a vertex's step.
+Eigen::Vector3d constrained(const AllowedMoves& allowed, std::size_t i, const Eigen::Vector3d& step) {
+  return allowed.strength(i) * allowed(i, step);
+}
+
+class SimultaneousFlow : public Flow {
  public:
-  ExplicitFlow(std::unique_ptr<Speed> speed, double lambda, Update update,
-               std::optional<AllowedMoves> allowed)
-      : speed_(std::move(speed)), lambda_(lambda), update_(update), allowed_(std::move(allowed)) {}
+  SimultaneousFlow(std::unique_ptr<Speed> speed, double lambda, std::optional<AllowedMoves> allowed)
+      : speed_(std::move(speed)), lambda_(lambda), allowed_(std::move(allowed)) {}
 
   void step(Mesh& mesh, const Context& context) override {
-    const auto move = [&](std::size_t i, const Eigen::Vector3d& speed) {
-      Eigen::Vector3d step = lambda_ * speed;
-      if (allowed_) step = allowed_->strength(i) * (*allowed_)(i, step);
-      const Eigen::Vector3d p = mesh.positions[i] + step;
-      if (p.allFinite()) mesh.positions[i] = p;
-    };
-    if (update_ == Update::sequential) {
-      context.check_stop();
-      for (Index i = 0; i < mesh.positions.size(); ++i) move(i, speed_->at(mesh, i));
-      return;
-    }
     speed_->evaluate(mesh, buffer_, context);
-    for_each_index(context, buffer_.size(), [&](std::size_t i) { move(i, buffer_[i]); });
+    for_each_index(context, buffer_.size(), [&](std::size_t i) {
+      const Eigen::Vector3d step = lambda_ * buffer_[i];
+      move_vertex(mesh, i, allowed_ ? constrained(*allowed_, i, step) : step);
+    });
   }
 
   void connectivity_changed(const Mesh& mesh, const Context& context) override {
@@ -43,20 +40,46 @@ class ExplicitFlow : public Flow {
  private:
   std::unique_ptr<Speed> speed_;
   double lambda_;
-  Update update_;
   std::optional<AllowedMoves> allowed_;  ///< empty: constraints are for whoever wraps the flow
   Positions buffer_;
 };
 
+class SequentialFlow : public Flow {
+ public:
+  SequentialFlow(std::unique_ptr<VertexSpeed> speed, double lambda, AllowedMoves allowed)
+      : speed_(std::move(speed)), lambda_(lambda), allowed_(std::move(allowed)) {}
+
+  void step(Mesh& mesh, const Context& context) override {
+    context.check_stop();
+    for (Index i = 0; i < mesh.positions.size(); ++i)
+      move_vertex(mesh, i, constrained(allowed_, i, lambda_ * speed_->at(mesh, i)));
+  }
+
+  void connectivity_changed(const Mesh& mesh, const Context& context) override {
+    speed_->connectivity_changed(mesh, context);
+  }
+  bool applies_constraints() const override { return true; }
+
+ private:
+  std::unique_ptr<VertexSpeed> speed_;
+  double lambda_;
+  AllowedMoves allowed_;
+};
+
 }  // namespace
 
-std::unique_ptr<Flow> make_explicit(std::unique_ptr<Speed> speed, double lambda, Update update) {
-  return std::make_unique<ExplicitFlow>(std::move(speed), lambda, update, std::nullopt);
+std::unique_ptr<Flow> make_explicit(std::unique_ptr<Speed> speed, double lambda) {
+  return std::make_unique<SimultaneousFlow>(std::move(speed), lambda, std::nullopt);
 }
 
-std::unique_ptr<Flow> make_explicit(std::unique_ptr<Speed> speed, double lambda, Update update,
+std::unique_ptr<Flow> make_explicit(std::unique_ptr<Speed> speed, double lambda, AllowedMoves allowed) {
+  return std::make_unique<SimultaneousFlow>(std::move(speed), lambda, std::move(allowed));
+}
+
+std::unique_ptr<Flow> make_explicit(std::unique_ptr<VertexSpeed> speed, double lambda, Update update,
                                     AllowedMoves allowed) {
-  return std::make_unique<ExplicitFlow>(std::move(speed), lambda, update, std::move(allowed));
+  if (update == Update::simultaneous) return make_explicit(std::move(speed), lambda, std::move(allowed));
+  return std::make_unique<SequentialFlow>(std::move(speed), lambda, std::move(allowed));
 }
 
 }  // namespace rfsmooth::smoothing

@@ -21,19 +21,24 @@ class Speed {
   /// speed[i] = F(q_i), q = mesh.positions.
   virtual void evaluate(const Mesh& mesh, Positions& speed, const Context& context) = 0;
 
-  /// F(q_i) of one vertex, for the sequential update. \throw std::logic_error if this speed has none.
-  virtual Eigen::Vector3d at(const Mesh& mesh, Index i);
-
   virtual void connectivity_changed(const Mesh&, const Context&) {}
 };
 
-/// A flow that adds lambda F. A vertex whose new position would not be finite stays.
-std::unique_ptr<Flow> make_explicit(std::unique_ptr<Speed> speed, double lambda, Update update);
+/// A speed that can be asked at one vertex alone, too, as sequential updates do.
+class VertexSpeed : public Speed {
+ public:
+  /// F(q_i).
+  virtual Eigen::Vector3d at(const Mesh& mesh, Index i) const = 0;
+};
+
+/// A flow that adds lambda F, simultaneously. A vertex whose new position would not be finite stays.
+std::unique_ptr<Flow> make_explicit(std::unique_ptr<Speed> speed, double lambda);
 
 /// The same with every move constrained at once. For flows of several part steps and for sequential ones,
 /// where others see a vertex before the step is over. A fixed vertex never moves (Vollmer 2, V_fix), and a
 /// vertex's strength scales lambda (Desbrun 2.7).
-std::unique_ptr<Flow> make_explicit(std::unique_ptr<Speed> speed, double lambda, Update update,
+std::unique_ptr<Flow> make_explicit(std::unique_ptr<Speed> speed, double lambda, AllowedMoves allowed);
+std::unique_ptr<Flow> make_explicit(std::unique_ptr<VertexSpeed> speed, double lambda, Update update,
                                     AllowedMoves allowed);
 
 }  // namespace rfsmooth::smoothing

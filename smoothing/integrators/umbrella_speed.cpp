@@ -9,14 +9,14 @@ using Eigen::Vector3d;
 namespace {
 
 template <UmbrellaWeights kWeights>
-class UmbrellaSpeed : public Speed {
+class UmbrellaSpeed : public VertexSpeed {
  public:
   void evaluate(const Mesh& mesh, Positions& speed, const Context& context) override {
     speed.resize(mesh.positions.size());
     for_each_index(context, speed.size(), [&](std::size_t i) { speed[i] = of(mesh, Index(i)); });
   }
 
-  Vector3d at(const Mesh& mesh, Index i) override { return of(mesh, i); }
+  Vector3d at(const Mesh& mesh, Index i) const override { return of(mesh, i); }
 
  private:
   static Vector3d of(const Mesh& mesh, Index i) {
@@ -43,7 +43,7 @@ class UmbrellaSpeed : public Speed {
 
 }  // namespace
 
-std::unique_ptr<Speed> make_umbrella_speed(UmbrellaWeights weights) {
+std::unique_ptr<VertexSpeed> make_umbrella_speed(UmbrellaWeights weights) {
   if (weights == UmbrellaWeights::inverse_distance)
     return std::make_unique<UmbrellaSpeed<UmbrellaWeights::inverse_distance>>();
   return std::make_unique<UmbrellaSpeed<UmbrellaWeights::equal>>();

@@ -17,6 +17,6 @@ namespace rfsmooth::smoothing {
 /// Weights are taken from the current positions at every step. Vertices without neighbours stay. Neighbours
 /// at the vertex itself have no finite U1: they are left out there, so that they do not hold the vertex where
 /// it is, and a vertex that has no others stays. U0 counts them like all others.
-std::unique_ptr<Speed> make_umbrella_speed(UmbrellaWeights weights);
+std::unique_ptr<VertexSpeed> make_umbrella_speed(UmbrellaWeights weights);
 
 }  // namespace rfsmooth::smoothing

@@ -85,7 +85,7 @@ struct AlongCurve {
   /// Flows without an umbrella: -h^2 L x with L the scale-dependent operator.
   std::unique_ptr<Flow> by_speed(double lambda) const {
     return make_explicit(make_operator_speed(OperatorKind::scale_dependent, lambda, Scheme::safe), lambda,
-                         Update::simultaneous, AllowedMoves(constraints, curve.positions.size()));
+                         AllowedMoves(constraints, curve.positions.size()));
   }
 };
 
