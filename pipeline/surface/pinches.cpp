@@ -10,6 +10,8 @@ namespace rfsmooth::pipeline {
 
 namespace {
 
+/// A surface as it comes apart. Corners of faces that stay together around a vertex are one fan; which faces
+/// stay together, edges of several faces say, and each fan but the first of a vertex gets a name of its own.
 class Parting {
  public:
   explicit Parting(const Mesh& mesh) : mesh_(mesh), sides_(rfs_mesh::edge_faces(mesh.faces)) {}
@@ -26,6 +28,7 @@ class Parting {
   }
 
  private:
+  /// One round: the faces with a vertex for every fan. \param copied filled anew
   std::vector<Face> rename(std::vector<Index>& copied) const {
     const std::size_t n = mesh_.positions.size();
     DisjointSets<Index> fans(3 * mesh_.faces.size());
