@@ -428,6 +428,24 @@ TEST(LasConversion, OfPcdUnpacksColoursAndKeepsViewpointAndGrid) {
   EXPECT_EQ(back.height, 2u);
 }
 
+TEST(LasConversion, CommentsComeBackWholeHoweverManyRecordsTheyFill) {
+  std::string comments, longest;
+  for (int i = 0; i < 4000; ++i) comments += "# line " + std::to_string(i) + " of many that fill records\n";
+  for (int i = 0; i < 40000; ++i) longest += "\u00e4";  // two bytes each: 65,535 end within one
+  const Cloud many = las_cloud(comments + "1 2 3\n4 5 6\n"),
+              one = las_cloud("# " + longest + "\n1 2 3\n4 5 6\n");
+  const auto back = [](const Cloud& cloud) {
+    return las_cloud(las_text(las_cloud(las_text(cloud, Format::las)), Format::ply)).notes;
+  };
+  const std::vector<Note> lines = back(many), parts = back(one);
+  ASSERT_EQ(lines.size(), 4000u);
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    ASSERT_EQ(lines[i].line, "comment line " + std::to_string(i) + " of many that fill records");
+  ASSERT_EQ(parts.size(), 2u);
+  EXPECT_EQ(parts[0].line.substr(8) + parts[1].line.substr(8), longest);
+  EXPECT_EQ(parts[0].line.size() % 2, 0u);  // no half of a character
+}
+
 TEST(LasConversion, PointsThatAreNotFiniteAreNamedAndLeftOut) {
   const Cloud cloud = las_cloud("1 2 3 7\nnan 5 6 8\n4 5 6 9\n");
   EXPECT_THAT(las_text(cloud, Format::las), HasSubstr("1 point not finite"));

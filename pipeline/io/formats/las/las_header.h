@@ -14,11 +14,11 @@
 namespace rfsmooth::pipeline::io::las {
 
 /// Bytes from the start of the file.
-inline constexpr std::size_t kEncodingAt = 6, kMajorAt = 24, kMinorAt = 25, kHeaderSizeAt = 94,
-                             kPointsAt = 96, kRecordsAt = 100, kPointFormatAt = 104, kRowSizeAt = 105,
-                             kLegacyCountAt = 107, kLegacyReturnsAt = 111, kScaleAt = 131, kOffsetAt = 155,
-                             kBoxAt = 179, kWaveformsAt = 227, kExtendedAt = 235, kExtendedCountAt = 243,
-                             kCountAt = 247, kReturnsAt = 255;
+inline constexpr std::size_t kEncodingAt = 6, kMajorAt = 24, kMinorAt = 25, kSystemAt = 26, kSoftwareAt = 58,
+                             kHeaderSizeAt = 94, kPointsAt = 96, kRecordsAt = 100, kPointFormatAt = 104,
+                             kRowSizeAt = 105, kLegacyCountAt = 107, kLegacyReturnsAt = 111, kScaleAt = 131,
+                             kOffsetAt = 155, kBoxAt = 179, kWaveformsAt = 227, kExtendedAt = 235,
+                             kExtendedCountAt = 243, kCountAt = 247, kReturnsAt = 255;
 
 /// Bytes in front of what a VLR holds, and an extended one (EVLR, behind the points).
 inline constexpr std::size_t kRecordHeader = 54, kExtendedHeader = 60;

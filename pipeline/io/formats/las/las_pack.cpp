@@ -18,27 +18,33 @@ namespace {
 
 constexpr double kDegreesPerStep = 0.006;
 
+// Those from low to high.
+struct WholeNumbers {
+  double low, high;
+};
+constexpr WholeNumbers kOf8Bits = {0, 255}, kOf16Bits = {0, 65535}, kOf16BitsSigned = {-32768, 32767};
+
 // A place of a point of formats 6 to 8 for a plain field of that name, and what it can hold.
 struct Place {
   std::string_view name;
-  std::string_view field;  // stored
-  double low, high;        // whole numbers; of gps_time: anything
+  std::string_view field;               // stored
+  std::optional<WholeNumbers> numbers;  // none: any number, whole or not
   int shift = 0, bits = 0;
   double times = 1;
 };
 
 std::vector<Place> places() {
-  std::vector<Place> out = {{"intensity", "intensity", 0, 65535},
-                            {"classification", "classification", 0, 255},
-                            {"user_data", "user_data", 0, 255},
-                            {"point_source_id", "point_source_id", 0, 65535},
-                            {"scan_angle", "scan_angle", -32768, 32767, 0, 0, 1 / kDegreesPerStep},
-                            {"scan_angle_rank", "scan_angle", -32768, 32767, 0, 0, 1 / kDegreesPerStep},
-                            {"gps_time", "gps_time", 0, 0},
-                            {"nir", "nir", 0, 65535}};
+  std::vector<Place> out = {{"intensity", "intensity", kOf16Bits},
+                            {"classification", "classification", kOf8Bits},
+                            {"user_data", "user_data", kOf8Bits},
+                            {"point_source_id", "point_source_id", kOf16Bits},
+                            {"scan_angle", "scan_angle", kOf16BitsSigned, 0, 0, 1 / kDegreesPerStep},
+                            {"scan_angle_rank", "scan_angle", kOf16BitsSigned, 0, 0, 1 / kDegreesPerStep},
+                            {"gps_time", "gps_time", std::nullopt},
+                            {"nir", "nir", kOf16Bits}};
   for (const Part& p : kNewParts)
-    out.push_back({p.name, p.of, 0, double((1 << p.bits) - 1), p.shift, p.bits});
-  for (const std::string_view c : kColours) out.push_back({c, c, 0, 65535});
+    out.push_back({p.name, p.of, WholeNumbers{0, double((1 << p.bits) - 1)}, p.shift, p.bits});
+  for (const std::string_view c : kColours) out.push_back({c, c, kOf16Bits});
   return out;
 }
 
@@ -48,9 +54,9 @@ struct Taken {
   std::vector<double> values;
 };
 
-bool are_whole(const std::vector<double>& values, double low, double high) {
+bool are_all(const std::vector<double>& values, const WholeNumbers& of) {
   return std::all_of(values.begin(), values.end(),
-                     [&](double v) { return v >= low && v <= high && v == std::nearbyint(v); });
+                     [&](double v) { return v >= of.low && v <= of.high && v == std::nearbyint(v); });
 }
 
 // The name of a place that a field's name stands for: a colour's in any case, or the field's own.
@@ -71,13 +77,13 @@ std::optional<Taken> place_of(const Cloud& plain, std::size_t f, const std::vect
     });
     if (used) return std::nullopt;
     Taken taken{place, field_values(plain, f, context)};
-    if (place.low == place.high) return is_float(field.type) ? std::optional(taken) : std::nullopt;
+    if (!place.numbers) return is_float(field.type) ? std::optional(taken) : std::nullopt;
     if (place.times != 1) {
       for (double& v : taken.values) v = std::nearbyint(v * place.times);
-    } else if (is_colour(place.name) && field.type != Scalar::uint16 && are_whole(taken.values, 0, 255)) {
+    } else if (is_colour(place.name) && field.type != Scalar::uint16 && are_all(taken.values, kOf8Bits)) {
       for (double& v : taken.values) v *= 256;  // as the specification asks of colours of 8 bits
     }
-    return are_whole(taken.values, place.low, place.high) ? std::optional(taken) : std::nullopt;
+    return are_all(taken.values, *place.numbers) ? std::optional(taken) : std::nullopt;
   }
   return std::nullopt;
 }
@@ -86,7 +92,7 @@ std::optional<Taken> place_of(const Cloud& plain, std::size_t f, const std::vect
 void take_packed(const Cloud& plain, std::size_t f, const Context& context, std::vector<Taken>& taken) {
   const std::vector<std::uint32_t> packed = packed_colors(plain, f, context);
   for (std::size_t c = 0; c < 3; ++c) {
-    Taken colour{{kColours[c], kColours[c], 0, 65535}, {}};
+    Taken colour{{kColours[c], kColours[c], kOf16Bits}, {}};
     for (const std::uint32_t bits : packed) colour.values.push_back(256.0 * (bits >> (16 - 8 * c) & 255));
     taken.push_back(std::move(colour));
   }
@@ -99,8 +105,8 @@ std::string new_header(int point_format) {
   put_number<std::uint16_t>(head, kEncodingAt, 16);  // formats 6 to 10: a coordinate system, if any, is WKT
   put_number<std::uint8_t>(head, kMajorAt, 1);
   put_number<std::uint8_t>(head, kMinorAt, 4);
-  head.replace(kMinorAt + 1, 5, "OTHER");
-  head.replace(kMinorAt + 33, 8, "rfsmooth");
+  head.replace(kSystemAt, 5, "OTHER");
+  head.replace(kSoftwareAt, 8, "rfsmooth");
   put_number(head, kHeaderSizeAt, std::uint16_t(head.size()));
   put_number(head, kPointsAt, std::uint32_t(head.size()));
   put_number(head, kPointFormatAt, std::uint8_t(point_format));
@@ -217,6 +223,18 @@ void fill_rows(Table& points, const Table& from, const std::vector<double>& xyz,
   });
 }
 
+// How much of a text a record of at most `most` bytes takes: whole lines, or whole characters (UTF-8) of a
+// line that is longer. More than 0.
+std::size_t part_for_record(std::string_view text, std::size_t most) {
+  if (text.size() <= most) return text.size();
+  if (const std::size_t end = text.rfind('\n', most - 1); end != std::string_view::npos) return end + 1;
+  constexpr std::size_t kLongestCharacter = 4;
+  const auto continues = [&](std::size_t at) { return (std::uint8_t(text[at]) & 0xC0) == 0x80; };
+  std::size_t part = most;
+  while (part + kLongestCharacter > most + 1 && continues(part)) --part;
+  return continues(part) ? most : part;  // no UTF-8
+}
+
 // Comments, one a line, as records of text.
 void append_texts(std::string& head, const std::vector<Note>& notes) {
   constexpr std::string_view kComment = "comment ";
@@ -224,8 +242,11 @@ void append_texts(std::string& head, const std::vector<Note>& notes) {
   std::string text;
   for (const Note& note : notes)
     text += (note.line.rfind(kComment, 0) == 0 ? note.line.substr(kComment.size()) : note.line) + '\n';
-  for (std::size_t at = 0; at < text.size(); at += kMost)
-    append_record(head, kSpecification, kTextRecord, std::string_view(text).substr(at, kMost));
+  for (std::string_view rest = text; !rest.empty();) {
+    const std::size_t part = part_for_record(rest, kMost);
+    append_record(head, kSpecification, kTextRecord, rest.substr(0, part));
+    rest.remove_prefix(part);
+  }
 }
 
 }  // namespace
