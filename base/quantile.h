@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <vector>
 
@@ -23,6 +24,15 @@ double quantile(Iterator first, Iterator last, double share) {
 /// The same of `values`.
 inline double quantile(std::vector<double>& values, double share) {
   return quantile(values.begin(), values.end(), share);
+}
+
+/// The same of `value(item)`, a member or what a function makes of each item.
+template <class Items, class Value>
+double quantile_of(const Items& items, double share, const Value& value) {
+  std::vector<double> values;
+  values.reserve(items.size());
+  for (const auto& item : items) values.push_back(std::invoke(value, item));
+  return quantile(values, share);
 }
 
 /// The median of [first, last): of an even number of values the upper of the two in the middle, of none 0.

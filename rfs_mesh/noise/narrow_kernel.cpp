@@ -7,6 +7,7 @@
 
 #include "base/linear/symmetric_eigen.h"
 #include "base/parallel.h"
+#include "base/quantile.h"
 #include "rfs_mesh/levels.h"
 #include "rfs_mesh/noise/noise_levels.h"
 #include "rfs_mesh/noise/scatter_statistics.h"
@@ -78,9 +79,7 @@ std::optional<Reading> read_in(const SpatialIndex& index, const Positions& at, d
     std::vector<Neighbor> near;
     for (std::size_t s = begin; s < end; ++s) all[s] = look_around(index, at[s], width, near);
   });
-  std::vector<double> freedom;
-  for (const Kernel& k : all) freedom.push_back(k.across.freedom);
-  const double typical = quantile(freedom, 0.5);
+  const double typical = quantile_of(all, 0.5, [](const Kernel& k) { return k.across.freedom; });
   if (typical < double(kRing)) return {};
   all.erase(std::remove_if(all.begin(), all.end(), [](const Kernel& k) { return !says(k.across); }),
             all.end());

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "base/quantile.h"
 #include "rfs_mesh/fit/flattest_slab.h"
 #include "rfs_mesh/levels.h"
 #include "rfs_mesh/noise/narrow_kernel.h"
@@ -48,10 +49,8 @@ double bound(Places& places, std::size_t narrowest) {
   const auto see = [&](std::size_t m) {
     const std::vector<Scatter> all = places.fits(m);
     std::vector<Weighed> seen = comparable(all, areas(all), kCalmFifthDeviate);
-    std::vector<double> radii;
-    for (const Scatter& s : all) radii.push_back(s.radius);
     if (seen.empty()) return NoiseScale();
-    return NoiseScale{std::sqrt(quantile(seen, kCalmFifth)), m, quantile(radii, 0.5)};
+    return NoiseScale{std::sqrt(quantile(seen, kCalmFifth)), m, quantile_of(all, 0.5, &Scatter::radius)};
   };
   return flattest_slab(std::max(narrowest, kNeighbourhood), places.index().points().size(), see).sigma;
 }
@@ -98,11 +97,7 @@ bool same_planes(Places& places, const std::vector<Scatter>& all, std::size_t m)
 /// Terraces only tell how far points share their rounding: there the search starts from few.
 /// `all`: the fits at the narrowest m, without windows.
 void find_surface(Places& places, std::vector<Scatter> all, bool terraces, NoiseStart& start) {
-  const auto breadth = [&] {
-    std::vector<double> breadths;
-    for (const Scatter& s : all) breadths.push_back(s.breadth);
-    return quantile(breadths, 0.5);
-  };
+  const auto breadth = [&] { return quantile_of(all, 0.5, &Scatter::breadth); };
   std::size_t m = start.piece;
   bool lines = breadth() < kLine;
   while (2 * m <= widest_scatter(places.index()) &&

@@ -59,6 +59,15 @@ TEST(Median, IsOfTheGivenPartOnly) {
   EXPECT_EQ(values[4], -100);
 }
 
+TEST(Quantile, OfMembersIsThatOfTheirValues) {
+  struct Item {
+    double size;
+  };
+  const std::vector<Item> items = {{4}, {1}, {3}, {2}, {5}};
+  EXPECT_EQ(rfsmooth::quantile_of(items, 0.25, &Item::size), 2);
+  EXPECT_EQ(rfsmooth::quantile_of(items, 0, [](const Item& item) { return -item.size; }), -5);
+}
+
 TEST(Median, OfTwoIsTheUpperAndOfNoneZero) {
   std::vector<double> two = {5, 2}, none;
   EXPECT_EQ(median(two), 5);

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "base/quantile.h"
 #include "rfs_mesh/levels.h"
 #include "rfs_mesh/noise/noise_levels.h"
 #include "rfs_mesh/noise/sites/site_views.h"
@@ -142,19 +143,15 @@ class Listener {
   /// The medians of these over the sites around each: points at random are denser here and there.
   std::vector<double> medians_around(const std::vector<double>& of_sites) const {
     std::vector<double> medians;
-    for (std::size_t s = 0; s < of_sites.size(); ++s) {
-      std::vector<double> near = around(group_[s], of_sites);
-      medians.push_back(quantile(near, 0.5));
-    }
+    for (const std::vector<Neighbor>& group : group_)
+      medians.push_back(quantile_of(group, 0.5, [&](const Neighbor& q) { return of_sites[q.index]; }));
     return medians;
   }
 
  private:
   /// The median radius of the balls around a site, world units.
   double radius_around(std::size_t s) const {
-    std::vector<double> radii;
-    for (const Neighbor& q : group_[s]) radii.push_back(fits_[q.index].radius);
-    return quantile(radii, 0.5);
+    return quantile_of(group_[s], 0.5, [&](const Neighbor& q) { return fits_[q.index].radius; });
   }
 
   /// Fits `times` m points where these, the window or the place are others than before. Returns where.

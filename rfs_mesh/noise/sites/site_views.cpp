@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "base/quantile.h"
 #include "rfs_mesh/levels.h"
 #include "rfs_mesh/noise/noise_levels.h"
 #include "rfs_mesh/noise/sites/open_fits.h"
@@ -69,11 +70,7 @@ struct Around {
            flatness > kFlatnessOfSheets && flatness < 2 * kNormalFlatness - kFlatnessOfSheets;
   }
   /// The median of their balls', world units.
-  double radius() const {
-    std::vector<double> squares;
-    for (const Said& fit : said) squares.push_back(fit.square);
-    return std::sqrt(quantile(squares, 0.5));
-  }
+  double radius() const { return std::sqrt(quantile_of(said, 0.5, &Said::square)); }
 
   std::vector<Said> said;
   std::size_t points;
@@ -84,13 +81,9 @@ struct Around {
 /// What nearly all of the dozen nearest show, where their balls hold the slab.
 double bound(const std::vector<Neighbor>& group, const std::vector<Scatter>& open) {
   constexpr double kNearlyAll = 0.75;
-  std::vector<double> radius, variance;
-  for (const Scatter& fit : around(group, open, kSmallestGroup)) {
-    radius.push_back(fit.radius);
-    variance.push_back(fit.variance);
-  }
-  const double seen = std::sqrt(quantile(variance, kNearlyAll));
-  return seen < kFlatSlab * quantile(radius, 0.5) ? seen : SiteView::kNone;
+  const std::vector<Scatter> near = around(group, open, kSmallestGroup);
+  const double seen = std::sqrt(quantile_of(near, kNearlyAll, &Scatter::variance));
+  return seen < kFlatSlab * quantile_of(near, 0.5, &Scatter::radius) ? seen : SiteView::kNone;
 }
 
 /// What each of two sheets shows by itself, of fits that hold both; world units.
@@ -126,8 +119,7 @@ struct Sites {
   /// What depths in steps add around there by their rounding, world units.
   double rounding_around(std::size_t s, const OpenFits& fits) const {
     if (steps == nullptr) return 0;
-    std::vector<double> of_sites = around(groups[s], fits.rounding);
-    return quantile(of_sites, 0.5);
+    return quantile_of(groups[s], 0.5, [&](const Neighbor& q) { return fits.rounding[q.index]; });
   }
 
   /// Sets `sheet`, and `middle` to Scatter::middle, where two sheets are seen, farther apart than two depths
@@ -165,18 +157,16 @@ struct Sites {
 
   /// What the fits around there typically scatter by, world units.
   double scatter_around(std::size_t s, const OpenFits& fits) const {
-    std::vector<double> variances;
-    for (const Neighbor& q : groups[s]) variances.push_back(fits.all[q.index].variance);
-    return std::sqrt(quantile(variances, kTypical));
+    return std::sqrt(
+        quantile_of(groups[s], kTypical, [&](const Neighbor& q) { return fits.all[q.index].variance; }));
   }
 
   /// Raises `floor`, sets `told`. What two sheets scatter does not grow, either.
   void find_floor(std::size_t s, const OpenFits& few, const OpenFits& many, SiteView& view) const {
-    std::vector<double> radius;
-    for (const Neighbor& q : groups[s]) radius.push_back(few.all[q.index].radius);
+    const double radius =
+        quantile_of(groups[s], 0.5, [&](const Neighbor& q) { return few.all[q.index].radius; });
     const double less = scatter_around(s, few), seen = scatter_around(s, many);
-    if (view.sheet == SiteView::kNone)
-      view.floor = std::max(view.floor, plateau(less, seen, quantile(radius, 0.5)));
+    if (view.sheet == SiteView::kNone) view.floor = std::max(view.floor, plateau(less, seen, radius));
     view.told = seen < kStops * less;
   }
 
