@@ -245,16 +245,16 @@ void find_noise(const rfs_mesh::SpatialIndex& index, const rfs_mesh::NeighborTab
                 const Context& context) {
   if (whole.noise) return;
   const Positions& points = index.points();
-  std::vector<char> apart;
+  std::vector<char> outlying;
   if (points.size() >= kRegion)
-    apart = Search(index, nearest_few(index, near, context), 0, whole.reach, context).run();
-  if (std::find(apart.begin(), apart.end(), 1) == apart.end()) {
+    outlying = Search(index, nearest_few(index, near, context), 0, whole.reach, context).run();
+  if (std::find(outlying.begin(), outlying.end(), 1) == outlying.end()) {
     rfs_mesh::known_noise(index, whole, context);
     return;
   }
   Positions left;
-  for (std::size_t i = 0; i < apart.size(); ++i)
-    if (apart[i] == 0) left.push_back(points[i]);
+  for (std::size_t i = 0; i < outlying.size(); ++i)
+    if (outlying[i] == 0) left.push_back(points[i]);
   rfs_mesh::known_noise(rfs_mesh::SpatialIndex(left, context), whole, context);
 }
 

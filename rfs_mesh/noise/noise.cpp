@@ -243,9 +243,9 @@ void measure(const SpatialIndex& index, const DepthSteps* steps, double rounding
 
 }  // namespace
 
-std::vector<double> NoiseField::reaches(double times, const Context& context) const {
+std::vector<double> NoiseField::strays_beyond(double times, const Context& context) const {
   std::vector<double> of(local.size());
-  for_each_index(context, of.size(), [&](std::size_t i) { of[i] = times * reach(i); });
+  for_each_index(context, of.size(), [&](std::size_t i) { of[i] = times * stray_beyond(i); });
   return of;
 }
 

@@ -65,10 +65,10 @@ struct NoiseField : NoiseModel {
   double as_one_near(std::size_t i) const {
     return local_shared.empty() ? points_as_one(*this) : std::max(points_as_one(*this), local_shared[i]);
   }
-  /// How far the noise may have carried point i, world units: what is farther off is a stray.
-  double reach(std::size_t i) const { return kStray * std::max(local[i], sigma); }
+  /// How far off point i is a stray, world units: farther than noise may have carried it.
+  double stray_beyond(std::size_t i) const { return kStray * std::max(local[i], sigma); }
   /// n: that of each point, of so many times the noise.
-  std::vector<double> reaches(double times, const Context& context) const;
+  std::vector<double> strays_beyond(double times, const Context& context) const;
 };
 
 /// O(log n) after the index. Parallel, deterministic. Zero for fewer than 25 points.

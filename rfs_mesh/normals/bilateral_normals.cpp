@@ -33,8 +33,8 @@ struct Oriented {
   Eigen::Vector3f normal;
 };
 
-/// |n -+ m|^2: the squared angle, for small ones.
-float apart(const Eigen::Vector3f& n, const Eigen::Vector3f& m) {
+/// |n -+ m|^2, which is that for small ones.
+float squared_angle(const Eigen::Vector3f& n, const Eigen::Vector3f& m) {
   return std::min((n - m).squaredNorm(), (n + m).squaredNorm());
 }
 
@@ -61,7 +61,7 @@ std::vector<double> limits(const Positions& points, const NeighborTable& near,
 float tolerance_at(const Oriented& here, Adjacency::Row row, const std::vector<Oriented>& all, double most) {
   std::array<float, kJudged> squares{};
   const std::size_t count = std::min(kJudged, row.size());
-  for (std::size_t k = 0; k < count; ++k) squares[k] = apart(here.normal, all[row[k]].normal);
+  for (std::size_t k = 0; k < count; ++k) squares[k] = squared_angle(here.normal, all[row[k]].normal);
   const auto middle = squares.begin() + std::ptrdiff_t(kMiddle * count / kJudged);
   std::nth_element(squares.begin(), middle, squares.begin() + std::ptrdiff_t(count));
   return float(std::min(std::max(kCalmest, kTolerance * std::sqrt(double(*middle))), most));

@@ -56,7 +56,7 @@ std::unique_ptr<HeightField> raise_field(const Positions& points, const Adjacenc
                                          const rfs_mesh::NoiseField& noise, AutomaticReport& report,
                                          Statistics::Pass& whole, const Context& context) {
   Positions guide = fair(points, rings, report.guide_strength, whole.reductions, context);
-  Landed landed = land_stranded(points, rings, noise.reaches(1, context), guide, context);
+  Landed landed = land_stranded(points, rings, noise.strays_beyond(1, context), guide, context);
   report.stranded = landed.stranded;
   return std::make_unique<HeightField>(std::move(guide), std::move(landed.tree), landed.near, points, noise,
                                        context);
@@ -152,7 +152,7 @@ AutomaticResult automatic_smoothing(const AutomaticTask& task, AutomaticReport& 
         field, residuals_of(field, heights.height, mesh.positions, noise, untamed, mixed.tails, context),
         heights.height, heights.own, of_whole, whole.sheets, context);
   const auto allowed = [&](std::size_t i, const Eigen::Vector3d& move) {
-    return move.allFinite() && move.norm() <= farther * task.noise.reach(i);
+    return move.allFinite() && move.norm() <= farther * task.noise.stray_beyond(i);
   };
   Positions smooth(n);
   for_each_index(context, n, [&](std::size_t i) {
@@ -178,7 +178,7 @@ AutomaticResult automatic_smoothing(const AutomaticTask& task, AutomaticReport& 
       take_learned_step(field, data, smoothed, noise, may_go, smooth, context);
   }
   // What is left is left of the cloud's own noise, whatever it was smoothed as.
-  report.left = std::sqrt(heights.left.own / (task.strength * task.strength) + heights.left.apart);
+  report.left = std::sqrt(heights.left.own / (task.strength * task.strength) + heights.left.wider);
   return {std::move(smooth), field.release_neighbors()};
 }
 

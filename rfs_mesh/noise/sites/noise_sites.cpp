@@ -73,7 +73,7 @@ class Listener {
     const std::vector<char> renewed = renew_fits(1);
     std::vector<char> opened(group_.size(), 0);
     const std::vector<Said> said = what_they_say(fits_, kTypicalDeviate);
-    const double typical_reach = size_where_sparse(per_root(fits_));
+    const double where_sparse = size_where_sparse(per_root(fits_));
     for_each_index(
         context_, group_.size(),
         [&](std::size_t s) {
@@ -89,10 +89,10 @@ class Listener {
             if (views[s].sheet == SiteView::kNone) open_window(s, empty ? kEven : quantile(full, 0.5));
             opened[s] = char(sigma[s] > window_[s]);
           }
-          const double reach = radius_around(s);
+          const double radius = radius_around(s);
           if (sigma[s] > (all_seen(s) ? kSameNoise : kLouder) * start_ ||
-              denser(reach / std::sqrt(double(m[s])), typical_reach))
-            opened[s] = char(widen(s, reach) || opened[s] != 0);
+              denser(radius / std::sqrt(double(m[s])), where_sparse))
+            opened[s] = char(widen(s, radius) || opened[s] != 0);
         },
         64);
     places_.move_to_feet(fits_);

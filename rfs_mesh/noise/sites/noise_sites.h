@@ -64,9 +64,9 @@ struct NoiseSites {
 };
 
 /// Whether points are so close that it is no second sheet beside theirs that makes them so: more than twice
-/// as dense as typical ones. \param reach of NoiseSites
-inline bool denser(double reach, double typical) {
-  return 2 * reach * reach < typical * typical;
+/// as dense as typical ones. \param per_root of NoiseSites, here and of typical ones
+inline bool denser(double per_root, double typical) {
+  return 2 * per_root * per_root < typical * typical;
 }
 
 /// \param at the sites. \param start sigma and m to start from, `least` > 0. O(log n). Parallel,

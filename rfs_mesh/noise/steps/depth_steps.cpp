@@ -191,20 +191,20 @@ bool are_of_grid(const Positions& some, std::vector<Terraces>& all, std::size_t 
 /// that cannot be told from detail, as each ring of a laser has it that tells millimetres; or the faces of an
 /// exact part, of which fewer than kFewestSteps have points beside those of another.
 bool are_none(const Terraces& terraces, const SpatialIndex& index) {
-  std::vector<double> apart;
+  std::vector<double> nearest;
   std::vector<bool> beside(terraces.depths.size(), false);
   std::vector<Neighbor> near;
   for (const Eigen::Vector3d& p : sample(index.points(), kPlacesOfCloud)) {
     const auto at = terraces.step_of(p);
     if (!at) continue;
     index.nearest(p, int(kNarrowestPatch), near);
-    apart.push_back(std::sqrt(near[1].squared_distance));
+    nearest.push_back(std::sqrt(near[1].squared_distance));
     for (const Neighbor& q : near)
       if (const auto next = terraces.step_of(index.points()[q.index]); next && next != at) beside[*at] = true;
   }
-  if (apart.empty() || std::size_t(std::count(beside.begin(), beside.end(), true)) < kFewestSteps)
+  if (nearest.empty() || std::size_t(std::count(beside.begin(), beside.end(), true)) < kFewestSteps)
     return true;
-  const double spacing = quantile(apart, 0.5);
+  const double spacing = quantile(nearest, 0.5);
   return terraces.same > spacing || rounding_noise(terraces.typical) < kNoNoise * spacing ||
          are_lines(terraces, index);
 }

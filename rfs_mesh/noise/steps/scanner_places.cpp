@@ -130,9 +130,9 @@ Eigen::Vector3d measured_place(std::vector<Halfway> pairs, const Eigen::Vector3d
   Positions points;
   for (auto pair = pairs.begin(); pair != others; ++pair)
     for (const double end : {-0.5, 0.5}) points.push_back(pair->middle + end * pair->across);
-  std::vector<double> apart;
-  for (auto pair = others; pair != pairs.end(); ++pair) apart.push_back(pair->differs(at));
-  const double step = apart.empty() ? 0 : quantile(apart, kLeastPart);
+  std::vector<double> differences;
+  for (auto pair = others; pair != pairs.end(); ++pair) differences.push_back(pair->differs(at));
+  const double step = differences.empty() ? 0 : quantile(differences, kLeastPart);
   return refined_place(points, at, std::max(same, step / 4));
 }
 

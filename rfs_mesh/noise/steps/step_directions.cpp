@@ -116,9 +116,10 @@ Positions step_directions(const SpatialIndex& index, double same) {
     if (planes.empty()) break;
     const auto others = std::partition(pairs.begin(), pairs.end(),
                                        [&](const Pair& pair) { return is_level(pair.offset, rough, same); });
-    std::vector<double> apart;
-    for (auto pair = others; pair != pairs.end(); ++pair) apart.push_back(std::abs(rough.dot(pair->offset)));
-    const double step = apart.empty() ? 0 : quantile(apart, kLeastPart);
+    std::vector<double> offsets;
+    for (auto pair = others; pair != pairs.end(); ++pair)
+      offsets.push_back(std::abs(rough.dot(pair->offset)));
+    const double step = offsets.empty() ? 0 : quantile(offsets, kLeastPart);
     directions.push_back(direction_of({pairs.begin(), others}, std::max(same, step / 4)));
     pairs.erase(pairs.begin(), others);
   }

@@ -167,9 +167,10 @@ std::vector<Index> land(const Positions& points, const std::vector<Index>& stran
       const std::vector<Neighbor>& found =
           surface.nearest_of(from, guide, near[from], kNeighbourhood, search);
       const Eigen::Vector3d at = project(guide, found, p);
-      double reach = 0;
-      for (const Neighbor& q : found) reach = std::max(reach, rfs_mesh::squared_distance(guide[q.index], at));
-      landed[k] = project(guide, surface.nearest(at, kNeighbourhood, search, reach), p);
+      double squared = 0;  // to the farthest
+      for (const Neighbor& q : found)
+        squared = std::max(squared, rfs_mesh::squared_distance(guide[q.index], at));
+      landed[k] = project(guide, surface.nearest(at, kNeighbourhood, search, squared), p);
     }
   });
   std::vector<Index> moved;

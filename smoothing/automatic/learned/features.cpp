@@ -82,7 +82,7 @@ Features::Features(HeightField& field, const Positions& data, const Smoothed& sm
     : field_(field), smoothed_(smoothed), noise_(noise) {
   constexpr int kTimes = 4;
   const auto residual = [&](std::size_t i) {
-    return std::clamp((field.local()[i].height - height(i)) / scale(i), -kFarResidual, kFarResidual);
+    return std::clamp((field.local()[i].height - height(i)) / unit(i), -kFarResidual, kFarResidual);
   };
   pooled_.resize(field.size());
   for_each_index(context, field.size(), [&](std::size_t i) {
@@ -106,12 +106,12 @@ Features::Features(HeightField& field, const Positions& data, const Smoothed& sm
 
 float Features::candidate(std::size_t i, float off) const {
   if (std::isnan(off)) return 0;
-  return std::clamp((field_.local()[i].height - height(i)) / scale(i) + off, -kFarCandidate, kFarCandidate);
+  return std::clamp((field_.local()[i].height - height(i)) / unit(i) + off, -kFarCandidate, kFarCandidate);
 }
 
 void Features::fill(std::size_t i, Row& row, Surroundings& near) const {
   Writer to(row);
-  const float s = scale(i);
+  const float s = unit(i);
   for (const ScaleSays& says : smoothed_.scales[i]) {
     to.odd(candidate(i, float(says.off)));
     to.even(float(says.own));
@@ -119,7 +119,7 @@ void Features::fill(std::size_t i, Row& row, Surroundings& near) const {
     to.even(std::clamp(float(says.wide), -kFarEvidence, kFarEvidence));
   }
   to.odd(packed_[i].residual);
-  to.odd(candidate(i, (smoothed_.mixed[i] - field_.local()[i].height) / scale(i)));
+  to.odd(candidate(i, (smoothed_.mixed[i] - field_.local()[i].height) / unit(i)));
   to.even(smoothed_.own[i]);
   to.odd(pooled_[i][0]);
   to.odd(pooled_[i][2]);

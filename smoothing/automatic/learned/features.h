@@ -35,7 +35,7 @@
 namespace rfsmooth::smoothing {
 
 /// s, world units.
-inline float learned_scale(const rfs_mesh::NoiseField& noise, std::size_t i) {
+inline float learned_unit(const rfs_mesh::NoiseField& noise, std::size_t i) {
   return float(std::min(noise.local[i], noise.sigma));
 }
 
@@ -84,7 +84,7 @@ class Features {
            const rfs_mesh::NoiseField& noise, const Context& context);
 
   /// s, world units.
-  float scale(std::size_t i) const { return learned_scale(noise_, i); }
+  float unit(std::size_t i) const { return learned_unit(noise_, i); }
 
   /// For a thread that goes from point to point.
   Surroundings start() const { return {field_, packed_}; }

@@ -68,14 +68,14 @@ LearnedInput learned_input(HeightField& field, const Positions& data, const Smoo
   input.features.resize(n);
   input.place.resize(n);
   input.normal.resize(n);
-  input.scale.resize(n);
+  input.unit.resize(n);
   const Features features(field, data, smoothed, noise, context);
   look_at(input.point, features, context, [&](std::size_t k, const Features::Row& row) {
     const std::size_t i = input.point[k];
     input.features[k] = row;
     input.place[k] = smoothed.place[i];
     input.normal[k] = field.normal(i);
-    input.scale[k] = features.scale(i);
+    input.unit[k] = features.unit(i);
   });
   return input;
 }
@@ -91,7 +91,7 @@ void take_learned_step(HeightField& field, const Positions& data, const Smoothed
   look_at(points, features, context, [&](std::size_t k, const Features::Row& row) {
     const std::size_t i = points[k];
     const float part = faded_in(contradiction(smoothed.scales[i])),
-                offset = features.scale(i) * part * worth_taking(network.offset(row));
+                offset = features.unit(i) * part * worth_taking(network.offset(row));
     there[k] = smoothed.place[i] + double(offset) * field.normal(i);
   });
   for_each_index(context, points.size(), [&](std::size_t k) {

@@ -27,8 +27,8 @@ namespace rfsmooth::smoothing {
 struct LearnedInput {
   std::vector<Index> point;
   std::vector<Features::Row> features;
-  Positions place, normal;   ///< P and n
-  std::vector<float> scale;  ///< s, world units
+  Positions place, normal;  ///< P and n
+  std::vector<float> unit;  ///< s, world units
 };
 
 /// Whether point i may go to `there`.

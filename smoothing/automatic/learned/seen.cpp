@@ -116,7 +116,7 @@ void see(const Surroundings& around, const Here& here, Seen& seen) {
   const float ox = here.shift[0], oy = here.shift[1], oz = here.shift[2], fx = here.from[0],
               fy = here.from[1], fz = here.from[2], nx = here.normal[0], ny = here.normal[1],
               nz = here.normal[2];
-  const float unit = here.unit, most = here.radius * here.radius;
+  const float per_unit = here.per_unit, most = here.radius * here.radius;
   Both bins[2 * kSide + 2] = {};  // one more: a height just below the last may be rounded up to it
   for (std::size_t first = 0; first < around.size(); first += kLanes) {
     const At g(around.guide, first), d(around.data, first), p(around.place, first), m(around.normal, first);
@@ -137,8 +137,8 @@ void see(const Surroundings& around, const Here& here, Seen& seen) {
     for (std::size_t l = 0; l < kLanes; ++l) {
       const float x = gx[l], y = gy[l], z = gz[l], there = in_ball[l];
       const float ax = x - fx, ay = y - fy, az = z - fz;
-      const float ux = unit * (ax + d.x[l]), uy = unit * (ay + d.y[l]), uz = unit * (az + d.z[l]);
-      const float vx = unit * (ax + p.x[l]), vy = unit * (ay + p.y[l]), vz = unit * (az + p.z[l]);
+      const float ux = per_unit * (ax + d.x[l]), uy = per_unit * (ay + d.y[l]), uz = per_unit * (az + d.z[l]);
+      const float vx = per_unit * (ax + p.x[l]), vy = per_unit * (ay + p.y[l]), vz = per_unit * (az + p.z[l]);
       const float up = ux * nx + uy * ny + uz * nz, square = ux * ux + uy * uy + uz * uz,
                   beside = square - up * up, away = vx * vx + vy * vy + vz * vz,
                   cosine = m.x[l] * nx + m.y[l] * ny + m.z[l] * nz,

@@ -1,6 +1,6 @@
 /// A point's surroundings as they are seen from where the smoother put it, and their sums: heights of the
 /// data in bins, moments of the data, of residuals and of the smoothed points. All lengths in s (features.h);
-/// a window of radius r weighs (1 - d^2 / r^2)^2.
+/// points in a disc or ball of radius r weigh (1 - d^2 / r^2)^2.
 ///
 /// This is what the learned step spends its time on, hence columns and lanes: loops over them compile to
 /// vector instructions, and lanes are added up in the same order on every processor.
@@ -23,7 +23,7 @@ constexpr float kBin = 0.75F;               // s
 struct Here {
   std::array<float, 3> shift, from;  ///< of the guides; from its guide to P; world units
   std::array<float, 3> normal;
-  float unit, radius;  ///< 1 / s; of the ball, world units
+  float per_unit, radius;  ///< 1 / s; of the ball, world units
 };
 
 /// Heights of points in bins, each shared by the two nearest, and the weights of all, lane by lane.

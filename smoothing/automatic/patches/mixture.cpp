@@ -21,7 +21,7 @@ constexpr int kMixtureRounds = 3;  // of expectation maximisation: a fourth chan
 
 // Of the variance that a scale leaves, what it differs by from the one before. It follows from how patches
 // average: 0.5 to 0.68 were measured of white noise of 0.3 to 2 spacings on spheres and tori.
-constexpr double kApart = 0.6;
+constexpr double kDifference = 0.6;
 
 using CandidateWeights = Eigen::Array<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMostCandidates, 1>;
 
@@ -86,8 +86,8 @@ Left Mixture::average(std::vector<float>& height, std::vector<float>& own, std::
       if (s < 2 || !(candidates_[s - 1].evidence[i] > 0)) {
         off[0] += weight * double(c.own[i]) * variance;
       } else {
-        const double apart = double(c.height[i]) - double(candidates_[s - 1].height[i]);
-        off[1] += weight * std::min(apart * apart / kApart, variance);
+        const double differs = double(c.height[i]) - double(candidates_[s - 1].height[i]);
+        off[1] += weight * std::min(differs * differs / kDifference, variance);
       }
     }
     height[i] = float(mixed);

@@ -25,7 +25,7 @@ namespace rfsmooth::smoothing {
 /// is none, the noise says it.
 struct Left {
   double own = 0;    ///< of the data and the narrowest patches: own times the variance of the noise
-  double apart = 0;  ///< of all wider ones: told by what they differ by from the one before
+  double wider = 0;  ///< of all wider ones: told by what they differ by from the one before
 };
 
 /// Candidate heights, mixed by their evidence.

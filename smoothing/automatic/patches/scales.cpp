@@ -97,7 +97,7 @@ void tell(const HeightField& field, const Scale& scale, std::size_t which, std::
       const Prediction& said = scale.prediction;
       const float near = scale.worse[i], wide = scale.mean.empty() ? near : scale.mean[i];
       if (said.covered[i] != 0)
-        told[i][t] = {Eigen::half((said.height[i] - field.local()[i].height) / learned_scale(noise, i)),
+        told[i][t] = {Eigen::half((said.height[i] - field.local()[i].height) / learned_unit(noise, i)),
                       Eigen::half(said.own[i]), Eigen::half(near), Eigen::half(wide)};
       else
         told[i][t] = {Eigen::half(std::numeric_limits<float>::quiet_NaN()), Eigen::half(1.0F),

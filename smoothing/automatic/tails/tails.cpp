@@ -20,7 +20,7 @@ constexpr double kFarthestTail = 12;
 constexpr int kTailRounds = 50;
 
 /// Standard deviation of a normal distribution with the same median of absolute values.
-double scale(const std::vector<float>& values) {
+double deviation_of(const std::vector<float>& values) {
   constexpr double kMedianOfNormal = 0.6745;
   std::vector<float> absolute;
   for (const float r : values)
@@ -116,11 +116,11 @@ double Tails::unit() const {
 
 Statistics::Tails find_tails(const std::vector<float>& residuals, const std::vector<float>& least) {
   Statistics::Tails tails;
-  const double unit = scale(residuals);
+  const double unit = deviation_of(residuals);
   if (!(unit > 0)) return tails;
   // Where many points had to follow themselves, `least` is smaller than the noise, and all of its larger
   // values would be far. The residuals tell how much noise there is, but beside shape more than that.
-  const double noise = std::max(scale(least), std::min(1.0, unit));
+  const double noise = std::max(deviation_of(least), std::min(1.0, unit));
   if (!(share_of_far(least, noise) > kLeastFar)) return tails;
   const Squares squares(residuals, unit);
   double share = 0.1, narrow = 1, wide = 9;
@@ -140,7 +140,7 @@ Statistics::Tails find_tails(const std::vector<float>& residuals, const std::vec
     wide = sums[1] / weights[1];
   }
   if (share > kMostInTails) return tails;
-  if (wide < rfs_mesh::kLouder * rfs_mesh::kLouder * narrow) return tails;  // a scale that varies a little
+  if (wide < rfs_mesh::kLouder * rfs_mesh::kLouder * narrow) return tails;  // noise that varies a little
   tails.share = share;
   tails.times = std::sqrt(wide / narrow);
   tails.narrow = std::min(1.0, std::sqrt(narrow) * unit);

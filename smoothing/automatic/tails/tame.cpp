@@ -87,7 +87,8 @@ void land_hovering(const HeightField& field, const MixedScales& pass, const Mesh
     smooth[i] = field.guide()[i] + double(pass.height[i]) * field.normal(i);
   });
   Positions landed = smooth;
-  land_stranded_only(mesh.positions, mesh.one_ring, noise.reaches(tails.times, context), landed, context);
+  land_stranded_only(mesh.positions, mesh.one_ring, noise.strays_beyond(tails.times, context), landed,
+                     context);
   for_each_index(context, smooth.size(), [&](std::size_t i) {
     if (landed[i] == smooth[i] || noise.local[i] < kCalm * noise.sigma) return;
     const Eigen::Vector3d off = mesh.positions[i] - landed[i];

@@ -131,7 +131,7 @@ void write(std::uint64_t number, const Cloud& cloud, const LearnedInput& input, 
         *to++ = float(number);
         to = std::copy(input.features[i].even.begin(), input.features[i].even.end(), to);
         to = std::copy(input.features[i].odd.begin(), input.features[i].odd.end(), to);
-        const double s = input.scale[i];
+        const double s = input.unit[i];
         for (int t = 0; t < kTargets; ++t) {
           const double height = kReach * (2.0 * t / (kTargets - 1) - 1) * s;
           *to++ = float(surface.nearest(input.place[i] + height * input.normal[i]).squared / (s * s));

@@ -54,8 +54,8 @@ TEST(Mixture, WhatIsLeftIsToldByTheScaleBeforeAndAtMostTheNoise) {
   std::vector<double> shares;
   const rfsmooth::smoothing::Left left = mixture.average(height, own, shares, Values(3, 1), {1, 0.5, 2}, {});
   EXPECT_NEAR(left.own, 0.5 * 4 / 3, 1e-6) << "of the third point, at the narrowest scale";
-  EXPECT_GT(left.apart, (0.09 + 0.25) / 3) << "more than their difference, but no more than there was";
-  EXPECT_LT(left.apart, (2 * 0.09 + 0.25) / 3 + 1e-6);
+  EXPECT_GT(left.wider, (0.09 + 0.25) / 3) << "more than their difference, but no more than there was";
+  EXPECT_LT(left.wider, (2 * 0.09 + 0.25) / 3 + 1e-6);
 }
 
 TEST(Mixture, TheRestOfTheCloudOutvotesFaintEvidence) {
