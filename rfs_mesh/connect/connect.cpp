@@ -131,7 +131,7 @@ NoiseScale scale_for(const SpatialIndex& index, const NoiseModel& noise, const C
   if (!(noise.sigma > 0)) return {};
   std::vector<double> sigma = at_sites(noise);
   const double loud = loudness(noise), calm = quantile(sigma, 0.25);
-  const bool understated = points_as_one(noise) > 1 || is_of_steps(noise) || noise.on_lines;
+  const bool understated = is_shared(noise) || is_of_steps(noise) || noise.on_lines;
   NoiseScale scale = noise_scale(index, context, loud, std::max(1.0, loud / calm), understated);
   scale.sigma = std::min(scale.sigma, loud);
   return scale;

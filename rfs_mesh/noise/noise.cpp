@@ -218,7 +218,7 @@ void measure(const SpatialIndex& index, const DepthSteps* steps, double rounding
   if (!(noise.sigma > 0)) return;
   // Where there are several sheets at most places, windows let them in. Noise of a part of the cloud or that
   // points do not have of their own is not foretold by a surface; steps and lines are not read in kernels.
-  if (start.in_kernels && !noise.on_grid && points_as_one(noise) == 1 && is_even(sites)) {
+  if (start.in_kernels && !noise.on_grid && !is_shared(noise) && is_even(sites)) {
     const std::optional<double> most = held_out_bound(index, noise.sigma, context);
     if (most && noise.sigma > kSameNoise * *most) bound(*most);
   }

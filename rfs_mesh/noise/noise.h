@@ -52,6 +52,11 @@ inline double points_as_one(const NoiseModel& noise) {
   return std::max(noise.shared, on_few);
 }
 
+/// Whether several points say only as much as one, all over the cloud.
+inline bool is_shared(const NoiseModel& noise) {
+  return points_as_one(noise) > 1;
+}
+
 /// The noise of a cloud, at every point.
 struct NoiseField : NoiseModel {
   std::vector<double> local;          ///< n: sigma near each point, world units
@@ -59,8 +64,8 @@ struct NoiseField : NoiseModel {
   std::vector<double> local_shared;   ///< n: shared_at_sites near each point; empty: `shared` everywhere
   std::vector<double> local_told;     ///< n: told_at_sites near each point, 0 to 1; empty: 0 everywhere
 
-  /// Whether neighbours share it, here or there.
-  bool is_shared() const { return points_as_one(*this) > 1 || !local_shared.empty(); }
+  /// is_shared, or at least at some places.
+  bool is_shared_somewhere() const { return is_shared(*this) || !local_shared.empty(); }
   /// points_as_one near point i.
   double as_one_near(std::size_t i) const {
     return local_shared.empty() ? points_as_one(*this) : std::max(points_as_one(*this), local_shared[i]);

@@ -145,7 +145,7 @@ AutomaticResult automatic_smoothing(const AutomaticTask& task, AutomaticReport& 
   const std::vector<float> one_sheet = task.learned ? heights.height : std::vector<float>();
   // A k-th of the evidence never was enough for walls, across lines there is none, and noise that fills
   // voxels evenly looks like two sheets.
-  const bool own_noise = points_as_one(noise) == 1 && !noise.on_lines && !noise.on_grid;
+  const bool own_noise = !is_shared(noise) && !noise.on_lines && !noise.on_grid;
   HiddenSheets hidden;
   if (own_noise && untamed > rfs_mesh::detail(noise.spacing))
     hidden = split_hidden_sheets(

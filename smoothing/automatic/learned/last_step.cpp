@@ -36,8 +36,7 @@ float worth_taking(float step) {
 /// The points that the network is asked for.
 std::vector<Index> asked_for(const std::vector<ScalesSay>& scales, const rfs_mesh::NoiseField& noise) {
   std::vector<Index> points;
-  if (points_as_one(noise) > 1 || is_of_steps(noise) || noise.sigma < kLeastNoise * noise.spacing)
-    return points;
+  if (is_shared(noise) || is_of_steps(noise) || noise.sigma < kLeastNoise * noise.spacing) return points;
   for (std::size_t i = 0; i < scales.size(); ++i)
     if (contradiction(scales[i]) > 0) points.push_back(Index(i));
   return points;

@@ -137,7 +137,7 @@ Tails tame(const HeightField& field, const MixedScales& pass, const Mesh& mesh,
 }
 
 rfs_mesh::NoiseField tamed(rfs_mesh::NoiseField noise, const Tails& tails) {
-  if (points_as_one(noise) > 1) return noise;  // what points share is not of their tails
+  if (is_shared(noise)) return noise;  // what points share is not of their tails
   noise.sigma *= tails.noise();
   for (double& local : noise.local) local *= tails.noise();
   return noise;
