@@ -37,13 +37,14 @@ struct Mean {
   double weight = 0;
 };
 
-/// Patches of one size.
+/// The walls that patches of one size see, each fitted as two sheets.
 class Walls {
  public:
   Walls(const HeightField& field, const Positions& data, const Positions& smooth,
         const rfs_mesh::NoiseField& noise, std::size_t members)
       : field_(field), data_(data), smooth_(smooth), noise_(noise), members_(members) {}
 
+  /// Adds to the means of their members what those of the patches around these seeds say that see a wall.
   void look(const std::vector<Index>& seeds, std::vector<Mean>& means, const Context& context) const {
     std::vector<std::vector<Move>> moves(seeds.size());
     for_blocks(context, seeds.size(), 16, [&](std::size_t begin, std::size_t end) {
@@ -101,6 +102,7 @@ class Walls {
     return seen;
   }
 
+  /// Where the patch around a seed sees a wall, enters how far each member is from its own sheet of it.
   void fit(Index seed, rfs_mesh::WideNeighbors& near, std::vector<rfs_mesh::SheetPoint>& points,
            std::vector<Move>& moves) const {
     near.find(field_.guide()[seed]);
@@ -147,7 +149,7 @@ void part_thin_walls(const HeightField& field, const Positions& data, const std:
   const bool known = *parted;
   std::vector<Mean> means(field.size());
   for (std::size_t wider = 1; wider <= kWidestLook; wider *= 2) {
-    std::vector<Index> sparse = seeds;
+    std::vector<Index> sparse = seeds;  // wider patches need fewer to lie over every point as often
     while (sparse.size() > 1 && sparse.size() * wider >= seeds.size())
       sparse = rfs_mesh::thin(field.guide(), sparse, context);
     const Walls walls(field, data, smooth, noise, std::min(wider * members, field.size()));

@@ -8,6 +8,44 @@
 
 namespace rfsmooth::rfs_mesh {
 
+namespace {
+
+/// Depths at whole numbers of one size from a first one.
+struct EqualSteps {
+  double first, size;
+};
+
+/// The steps that nine tenths of these depths are at. Nothing if so many are not, or if they are so near to
+/// each other that most depths would be. \param told ascending, at least two. \param same of Terraces
+std::optional<EqualSteps> equal_steps(const std::vector<double>& told, double same) {
+  std::vector<double> gaps;
+  for (std::size_t k = 1; k < told.size(); ++k) gaps.push_back(told[k] - told[k - 1]);
+  std::vector<double> sorted = gaps;
+  const double typical = quantile(sorted, 0.5);
+  if (!(typical > 8 * same)) return {};  // half of all gaps are multiples of it by chance
+  const auto single = std::min_element(gaps.begin(), gaps.end(), [&](double a, double b) {
+    return std::abs(a - typical) < std::abs(b - typical);
+  });
+  const auto from = std::size_t(single - gaps.begin());
+  EqualSteps steps = {told[from], typical};
+  // The farthest depth tells the size to most digits; those between lead to it, one after the other.
+  double farthest = 0, equal = 0;
+  const auto enter = [&](double depth) {
+    const double count = std::round((depth - steps.first) / steps.size);
+    if (count == 0 || !(std::abs(depth - steps.first - count * steps.size) <= 2 * same)) return;
+    ++equal;
+    if (std::abs(count) <= farthest) return;
+    farthest = std::abs(count);
+    steps.size = (depth - steps.first) / count;
+  };
+  for (std::size_t k = from + 1; k < told.size(); ++k) enter(told[k]);
+  for (std::size_t k = from; k-- > 0;) enter(told[k]);
+  if (!(equal > (1 - kLeastPart) * double(gaps.size()))) return {};
+  return steps;
+}
+
+}  // namespace
+
 double rounding_noise(double step) {
   return step / std::sqrt(12.0);
 }
@@ -49,30 +87,9 @@ double Terraces::sigma(const Eigen::Vector3d& at, const Eigen::Vector3d& normal)
 }
 
 bool fill_in(const Positions& some, Terraces& terraces) {
-  const std::vector<double>& told = terraces.depths;
-  std::vector<double> gaps;
-  for (std::size_t k = 1; k < told.size(); ++k) gaps.push_back(told[k] - told[k - 1]);
-  std::vector<double> sorted = gaps;
-  const double typical = quantile(sorted, 0.5);
-  if (!(typical > 8 * terraces.same)) return false;  // half of all gaps are multiples of it by chance
-  const auto single = std::min_element(gaps.begin(), gaps.end(), [&](double a, double b) {
-    return std::abs(a - typical) < std::abs(b - typical);
-  });
-  const auto from = std::size_t(single - gaps.begin());
-  const double first = told[from];
-  // The farthest depth tells the size to most digits.
-  double size = typical, farthest = 0, equal = 0;
-  const auto enter = [&](double depth) {
-    const double steps = std::round((depth - first) / size);
-    if (steps == 0 || !(std::abs(depth - first - steps * size) <= 2 * terraces.same)) return;
-    ++equal;
-    if (std::abs(steps) <= farthest) return;
-    farthest = std::abs(steps);
-    size = (depth - first) / steps;
-  };
-  for (std::size_t k = from + 1; k < told.size(); ++k) enter(told[k]);
-  for (std::size_t k = from; k-- > 0;) enter(told[k]);
-  if (!(equal > (1 - kLeastPart) * double(gaps.size()))) return false;
+  const std::optional<EqualSteps> steps = equal_steps(terraces.depths, terraces.same);
+  if (!steps) return false;
+  const auto [first, size] = *steps;
   double least = first, most = first;
   for (const Eigen::Vector3d& p : some) {
     least = std::min(least, terraces.depth(p));

@@ -19,7 +19,8 @@ namespace rfsmooth::rfs_mesh {
 
 namespace {
 
-constexpr std::size_t kVoxelPlaces = 48, kVoxelPoints = 256;  // sixteen voxels across, at each of the places
+// Points at each of the places: sixteen voxels across.
+constexpr std::size_t kVoxelPlaces = 48, kVoxelPoints = 256;
 // Sizes are looked for from the distance to the eighth point over this up to times this. It is 1.4 voxels in
 // one layer, one in two.
 constexpr double kAroundEighth = 2;
@@ -76,10 +77,10 @@ std::array<Spectrum, 3> spectra(const std::vector<Positions>& places, const Freq
   std::array<Spectrum, 3> mean;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     mean[axis].assign(asked.count, 0);
-    double along = 0;
-    for (std::size_t k = axis; k < of_place.size(); k += 3) along += double(!of_place[k].empty());
+    double lying_along = 0;  // places
+    for (std::size_t k = axis; k < of_place.size(); k += 3) lying_along += double(!of_place[k].empty());
     for (std::size_t k = axis; k < of_place.size(); k += 3)
-      for (std::size_t f = 0; f < of_place[k].size(); ++f) mean[axis][f] += of_place[k][f] / along;
+      for (std::size_t f = 0; f < of_place[k].size(); ++f) mean[axis][f] += of_place[k][f] / lying_along;
   }
   return mean;
 }
@@ -95,7 +96,8 @@ std::optional<std::size_t> peak(Spectrum of) {
   return at;
 }
 
-/// What two axes have in common as their peak. Nothing if there is none.
+/// The distance, world units, at which the coordinates along two axes repeat: their peaks are next to each
+/// other, and it belongs to the middle of these. Nothing if no two have one.
 std::optional<double> repeats_along_two(const std::array<Spectrum, 3>& along, const Frequencies& asked) {
   const std::array<std::optional<std::size_t>, 3> peaks = {peak(along[0]), peak(along[1]), peak(along[2])};
   for (const auto& [a, b] : {std::pair(0, 1), std::pair(0, 2), std::pair(1, 2)}) {

@@ -28,6 +28,7 @@ double deviation_of(const std::vector<float>& values) {
   return median(absolute.begin(), absolute.end()) / kMedianOfNormal;
 }
 
+/// Of the values that are known, those beyond what noise reaches, and no strays.
 double share_of_far(const std::vector<float>& values, double unit) {
   const auto far = std::count_if(values.begin(), values.end(), [&](float r) {
     return double(std::abs(r)) > rfs_mesh::kNoiseReach * unit && double(std::abs(r)) < kFarthestTail * unit;
@@ -55,6 +56,7 @@ struct Squares {
   }
 };
 
+/// Densities of the two parts at t, in units of the narrow one's deviation, over a common factor.
 double narrow_density(const Statistics::Tails& tails, double t) {
   return (1 - tails.share) * std::exp(-t * t / 2);
 }
