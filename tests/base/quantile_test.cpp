@@ -60,12 +60,12 @@ TEST(Median, IsOfTheGivenPartOnly) {
 }
 
 TEST(Quantile, OfMembersIsThatOfTheirValues) {
-  struct Item {
+  struct Sized {
     double size;
   };
-  const std::vector<Item> items = {{4}, {1}, {3}, {2}, {5}};
-  EXPECT_EQ(rfsmooth::quantile_of(items, 0.25, &Item::size), 2);
-  EXPECT_EQ(rfsmooth::quantile_of(items, 0, [](const Item& item) { return -item.size; }), -5);
+  const std::vector<Sized> items = {{4}, {1}, {3}, {2}, {5}};
+  EXPECT_EQ(rfsmooth::quantile_of(items, 0.25, &Sized::size), 2);
+  EXPECT_EQ(rfsmooth::quantile_of(items, 0, [](const Sized& item) { return -item.size; }), -5);
 }
 
 TEST(Median, OfTwoIsTheUpperAndOfNoneZero) {

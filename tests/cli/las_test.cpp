@@ -93,7 +93,7 @@ TEST_F(LasCommand, RoundingToACoarseScaleCostsMoreThanRefiningIt) {
     EXPECT_NEAR(std::log10(steps), std::round(std::log10(steps)), 1e-12);
     EXPECT_EQ(LasBytes::get<double>(take("kept.las"), 131), scale);
     const double left = nlohmann::json::parse(take("kept.json"))["noise_left"];
-    EXPECT_NEAR(left, rms("kept.las"), rms("kept.las") / 3) << "rounding is noise, too";
+    EXPECT_NEAR(left, rms("kept.las"), rms("kept.las") / 4) << "rounding is noise, too";
   }
 }
 

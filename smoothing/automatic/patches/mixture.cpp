@@ -20,8 +20,9 @@ constexpr int kMostCandidates = 1 + int(Statistics::Pass::kMostScales);
 constexpr int kMixtureRounds = 3;  // of expectation maximisation: a fourth changes the third digit
 
 // Of the variance that a scale leaves, what it differs by from the one before. It follows from how patches
-// average: 0.5 to 0.68 were measured of white noise of 0.3 to 2 spacings on spheres and tori.
-constexpr double kDifference = 0.6;
+// average: 0.5 to 0.68 were measured of white noise of 0.3 to 2 spacings on spheres and tori. The least of
+// these: nobody should believe that less is left than there is.
+constexpr double kDifference = 0.5;
 
 using CandidateWeights = Eigen::Array<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMostCandidates, 1>;
 
