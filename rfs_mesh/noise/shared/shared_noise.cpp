@@ -151,6 +151,8 @@ SharedNoise find_shared_noise(Places& places, const NoiseStart& start, const Dep
       surely = std::max(surely, without_shape(calm.seen[i], calm.seen[i + 1], kLeastGrowthOfShape));
     make_sure(i, without_shape(calm.seen[i], calm.seen[i + 1], kGrowthOfSmoothShape));
   }
+  // Compared as variances, for both are lower bounds: with the square of kSameNoise, noise that points share
+  // beside their own is missed on a cube.
   if (!(std::max(surely, calm.steps) > kSameNoise * start.sigma * start.sigma)) return found;
   found = {std::sqrt(sill), points_of(calm, at, sill), std::size_t(calm.m[at])};
   // A terrace is no disk: what neighbourhoods leave of it is not known, unless points' own noise blurs it.
