@@ -5,8 +5,9 @@
 
 In a copy of the sources under build/sensitivity each constant reads its factor from the environment. Then development
 clouds are denoised with one constant after the other halved and doubled. With --only, the rows of the other constants
-stay as the file has them. --print measures nothing: it counts the constants of the sources and writes the file anew, without
-the rows of those that are gone or have another value.
+stay as the file has them; with the program's option --parts, so do the cells that these parts do not fill. --print
+measures nothing: it counts the constants of the sources and writes the file anew, without the rows of those that are gone
+or have another value.
 """
 import argparse
 import concurrent.futures
@@ -44,15 +45,19 @@ wrong: thresholds, weights, numbers of neighbours, samples and rounds, whether c
 with reason. All others are listed, with the reason, at the end; what is not listed there
 (`tests/bench/sensitivity/not_tuned.txt`) counts as tuned. Options of the command and of the library are not constants: users
 set them, `--help` names them. Numbers without a name, as the exponents of a formula, are not counted."""
-COLUMNS = """| constant | value | file | origin | CD | p2s | normals | strays | time | one shape |
-|---|---|---|---|---|---|---|---|---|---|
+COLUMNS = """| constant | value | file | origin | CD | p2s | normals | strays | time | one shape | further |
+|---|---|---|---|---|---|---|---|---|---|---|
 """
+FIRST, LAST = 4, 11  # cells of figures
+UNKNOWN = "-"
 MEANING = """Each cell is the change when the constant is halved / doubled. CD, p2s: Chamfer distance and distance to the true surface
 (mean squares), mean over the clouds, in per cent. Normals: their mean angle to the true ones, a wrong side included, in per
 cent. Strays: points judged wrongly, in per cent of those planted. Time: processor time of all, in per cent, on a machine
 that did other work, too: 5 are chance. One shape: the largest share that one shape has in the change of CD, in per cent; what
-rests on one shape has 100. "fails": no end, or more than ten times as long. A row stays until its constant is measured again
-(`--only`)."""
+rests on one shape has 100. Further: the largest change of one of the clouds and commands of
+`tests/bench/sensitivity/further.cpp` (rings, steps of depth, voxels, merged scans, sensors in a room, clean clouds, surfaces), in
+per cent of its figure, and which it is; of those that a constant's code can act on. "fails": no end, or more than ten times as long. "-": not measured. A row stays until its
+constant is measured again (`--only`)."""
 
 
 def tuned_line(constant):
@@ -110,14 +115,14 @@ def build(tree):
 
 
 class Run:
-    """What the program printed: {(shape, cloud): (seconds, figures)}."""
+    """What the program printed: {(kind, shape, cloud): (seconds, figures)}."""
 
     def __init__(self, text):
         rows = [line.split() for line in text.splitlines()]
-        self.rows = {(r[0], r[1]): tuple(map(float, r[2:])) for r in rows}
+        self.rows = {tuple(r[:3]): tuple(map(float, r[3:])) for r in rows}
 
-    def of(self, *kinds):
-        return {key: row for key, row in self.rows.items() if (key[1] if key[1] in ("normals", "strays") else "laws") in kinds}
+    def of(self, kind):
+        return {key: row for key, row in self.rows.items() if key[0] == kind}
 
 
 def measure(program, options, tuning=None, limit=None):
@@ -130,39 +135,58 @@ def measure(program, options, tuning=None, limit=None):
     return Run(done.stdout) if done.returncode == 0 else None
 
 
-def changes(before, after):
-    """Of CD, p2s, normals, strays, time (see MEANING)."""
-    laws = before.of("laws")
-    ratio = [100 * sum(after.rows[key][column] / row[column] - 1 for key, row in laws.items()) / len(laws) for column in (1, 2)]
+def changed(before, after):
+    return 100 * (after / before - 1) if before else 0.0 if after == before else 100.0
 
-    def total(run, column, *kinds):
-        return sum(row[column] for row in run.of(*kinds).values())
-    normals = 100 * (total(after, 1, "normals") / total(before, 1, "normals") - 1)
-    strays = 100 * (total(after, 1, "strays") - total(before, 1, "strays")) / len(before.of("strays"))
-    every = ("laws", "normals", "strays")
-    return ratio + [normals, strays, 100 * (total(after, 0, *every) / total(before, 0, *every) - 1)]
+
+def signed(change):
+    return "0" if change == 0 else f"{change:+.2f}"
+
+
+def cells_of_laws(before, after):
+    """CD, p2s, normals, strays, time (see MEANING)."""
+    laws = before.of("laws")
+    ratio = [sum(changed(row[column], after.rows[key][column]) for key, row in laws.items()) / len(laws) for column in (1, 2)]
+
+    def total(run, kind):
+        return sum(row[1] for row in run.of(kind).values())
+    normals = changed(total(before, "normals"), total(after, "normals"))
+    strays = 100 * (total(after, "strays") - total(before, "strays")) / len(before.of("strays"))
+    seconds = changed(*(sum(row[0] for key, row in run.rows.items() if key[0] != "further") for run in (before, after)))
+    return [signed(c) for c in [*ratio, normals, strays, seconds]]
 
 
 def share_of_one_shape(before, after):
     by_shape = {}
-    for (shape, cloud), row in before.of("laws").items():
-        by_shape[shape] = by_shape.get(shape, 0) + after.rows[shape, cloud][1] / row[1] - 1
+    for (kind, shape, cloud), row in before.of("laws").items():
+        by_shape[shape] = by_shape.get(shape, 0) + after.rows[kind, shape, cloud][1] / row[1] - 1
     total = sum(abs(c) for c in by_shape.values())
     return 100 * max(abs(c) for c in by_shape.values()) / total if total > 0 else 0
 
 
-def row_of(constant, before, halved, doubled):
-    cells = [f"`{constant.name}`", constant.value, f"`{constant.path}`", constant.origin.replace("|", "/")]
-    both = [None if after is None else changes(before, after) for after in (halved, doubled)]
-    for column in range(5):
-        cells.append(" / ".join("fails" if c is None else "0" if c[column] == 0 else f"{c[column]:+.2f}" for c in both))
-    cells.append(f"{max((share_of_one_shape(before, a) for a in (halved, doubled) if a), default=0):.0f}")
-    return "| " + " | ".join(cells) + " |"
+def cell_of_further(before, after):
+    """The largest change of all, and the cloud that has it."""
+    of = {key: changed(row[1], after.rows[key][1]) for key, row in before.of("further").items()}
+    most = max(of, key=lambda key: abs(of[key]))
+    return signed(of[most]) if of[most] == 0 else f"{signed(of[most])} {most[1]} {most[2]}"
+
+
+def row_of(constant, before, halved, doubled, known):
+    """`known`: the row so far, or none."""
+    cells = known.strip("| ").split(" | ")[FIRST:LAST] if known else [UNKNOWN] * (LAST - FIRST)
+    both = [halved, doubled]
+    if before.of("laws"):
+        of_each = [["fails"] * 5 if after is None else cells_of_laws(before, after) for after in both]
+        cells[:6] = [*map(" / ".join, zip(*of_each)), f"{max((share_of_one_shape(before, a) for a in both if a), default=0):.0f}"]
+    if before.of("further"):
+        cells[6] = " / ".join("fails" if after is None else cell_of_further(before, after) for after in both)
+    told = [f"`{constant.name}`", constant.value, f"`{constant.path}`", constant.origin.replace("|", "/")]
+    return "| " + " | ".join(told + cells) + " |"
 
 
 def row_without(constant):
     why = "sizes an array" if constant.sized else "not measured"
-    return f"| `{constant.name}` | {constant.value} | `{constant.path}` | {constant.origin.replace('|', '/')} | {why} |  |  |  |  |  |"
+    return f"| `{constant.name}` | {constant.value} | `{constant.path}` | {constant.origin.replace('|', '/')} | {why} |  |  |  |  |  |  |"
 
 
 def rows_of_file():
@@ -170,15 +194,20 @@ def rows_of_file():
     found = {}
     for line in OUT.read_text().split("\n"):
         cells = [cell.strip(" `") for cell in line.strip("|").split(" | ")]
-        if line.startswith("| `") and len(cells) == 10 and cells[4][-1:].isdigit():
+        if line.startswith("| `") and len(cells) == LAST and cells[FIRST + 1]:
             found[cells[0], cells[1], cells[2]] = line
     return found
 
 
 def is_idle(row):
     """Whether no figure of the row but time changes by half a per cent."""
-    cells = row.strip("| ").split(" | ")[4:8]
-    return cells[0][-1].isdigit() and all(c != "fails" and abs(float(c)) < 0.5 for cell in cells for c in cell.split(" / "))
+    cells = row.strip("| ").split(" | ")
+    figures = [figure for k in (4, 5, 6, 7, 10) if k < len(cells) for figure in cells[k].split(" / ")]
+    return len(cells) == LAST and all(f == UNKNOWN or f[0] != "f" and abs(float(f.split()[0])) < 0.5 for f in figures)
+
+
+def measured_on():
+    return re.search(r"Measured on ([^.]*)\.", OUT.read_text())[1]
 
 
 def write(tuned, others, rows, clouds):
@@ -186,8 +215,7 @@ def write(tuned, others, rows, clouds):
     idle = sum(map(is_idle, rows))
     count = sum(c.numbers() for c in tuned)
     text = (f"# Constants\n\n{count} tuned constants. Printed by `tests/bench/sensitivity/sensitivity.py`.\n\n{RULE}\n\n"
-            f"## Tuned\n\nMeasured on {clouds}.\n{MEANING}\n\n{idle} change no figure but time by half a per cent here; some of "
-            f"them act only on clouds or\nin commands that these do not stand for (UTM, rings, steps of depth, `reconstruct`).\n\n{COLUMNS}" + "\n".join(rows) +
+            f"## Tuned\n\nMeasured on {clouds}.\n{MEANING}\n\n{idle} change no figure but time by half a per cent here; the origin of each says what it guards.\n\n{COLUMNS}" + "\n".join(rows) +
             "\n\n## Not tuned\n\n| number | why | which |\n|---|---|---|\n")
     for name, (reason, of_class) in others.items():
         by_path = {}
@@ -203,7 +231,7 @@ def main():
     parser.add_argument("--only", default="", help="regular expression on FILE:NAME")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--print", action="store_true", help="measure nothing")
-    parser.add_argument("words", nargs="*", help="options of the program: --shapes, --laws, --times, --points, --cache")
+    parser.add_argument("words", nargs="*", help="options of the program: --parts, --shapes, --laws, --times, --points, --cache")
     options = parser.parse_args()
     tuned, others = classified()
     rows = rows_of_file()
@@ -211,7 +239,7 @@ def main():
         print(f"{sum(c.numbers() for c in tuned)} tuned")
         for name, (_, of_class) in others.items():
             print(f"{sum(c.numbers() for c in of_class)} {name}")
-        write(tuned, others, rows, re.search(r"Measured on ([^.]*)\.", OUT.read_text())[1])
+        write(tuned, others, rows, measured_on())
         return
     chosen = [c for c in tuned if re.search(options.only, c.key) and not c.sized]
     tree = ROOT / "build/sensitivity"
@@ -227,11 +255,12 @@ def main():
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         runs = {(c.key, f): pool.submit(measure, program, options.words, f"{c.key}={f}", limit) for c in chosen for f in (0.5, 2)}
         for c in chosen:
-            row = row_of(c, before, *(runs[c.key, f].result() for f in (0.5, 2)))
-            print(row, flush=True)
-            rows[c.name, c.value, c.path] = row
-    shapes, clouds = (list(dict.fromkeys(key[i] for key in before.rows)) for i in (0, 1))
-    write(tuned, others, rows, f"{', '.join(shapes)}, each as {', '.join(clouds)}")
+            key = c.name, c.value, c.path
+            rows[key] = row_of(c, before, *(runs[c.key, f].result() for f in (0.5, 2)), rows.get(key))
+            print(rows[key], flush=True)
+    of_shapes = [key for key in before.rows if key[0] != "further"]
+    shapes, clouds = (", ".join(dict.fromkeys(key[i] for key in of_shapes)) for i in (1, 2))
+    write(tuned, others, rows, f"{shapes}, each as {clouds}" if of_shapes else measured_on())
 
 
 if __name__ == "__main__":
