@@ -112,7 +112,7 @@ std::string connect_cloud(const MeshCommandOptions& options, pipeline::io::Cloud
     pipeline::Prepared prepared =
         pipeline::prepare(working, connect.neighbours, Outliers::smooth, whole, task.stages, task.context);
     if (options.mesh.stage != "emst-points") {
-      const Stopwatch watch(stages, "noise");
+      const Stopwatch watch(task.stages, "noise");
       pipeline::find_noise(*prepared.index, prepared.near, whole, task.context);
     }
     connection =
