@@ -17,8 +17,7 @@ using Eigen::Vector3d;
 // Chosen on the closed development shapes at 50,000 points and 1 % noise (tests/bench/normals): more passes
 // gain at sharp edges and lose on organic shapes.
 constexpr int kPasses = 3;
-constexpr std::size_t kJudged = 16;  // neighbours that say how calm the normals are
-constexpr std::size_t kMiddle = 6;   // which of them, from the calmest
+constexpr std::size_t kMiddle = 6;  // which of kNarrowestPatch neighbours, from the calmest, says how calm
 constexpr double kTolerance = 2;
 constexpr double kOfScatter = 230;  // radians per (r / R)^2
 // Radians: bounds of what normals of one place may differ by.
@@ -59,10 +58,10 @@ std::vector<double> limits(const Positions& points, const NeighborTable& near,
 }
 
 float tolerance_at(const Oriented& here, Adjacency::Row row, const std::vector<Oriented>& all, double most) {
-  std::array<float, kJudged> squares{};
-  const std::size_t count = std::min(kJudged, row.size());
+  std::array<float, kNarrowestPatch> squares{};
+  const std::size_t count = std::min(kNarrowestPatch, row.size());
   for (std::size_t k = 0; k < count; ++k) squares[k] = squared_angle(here.normal, all[row[k]].normal);
-  const auto middle = squares.begin() + std::ptrdiff_t(kMiddle * count / kJudged);
+  const auto middle = squares.begin() + std::ptrdiff_t(kMiddle * count / kNarrowestPatch);
   std::nth_element(squares.begin(), middle, squares.begin() + std::ptrdiff_t(count));
   return float(std::min(std::max(kCalmest, kTolerance * std::sqrt(double(*middle))), most));
 }
