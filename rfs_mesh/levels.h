@@ -57,7 +57,8 @@ constexpr std::size_t kWidestFit = 4096;
 /// Of the places or of their area: less does not stand for all of them.
 constexpr double kLeastPart = 0.1;
 
-/// Points that stand for all of a cloud in a mean or a median over it, which they give to half a per cent.
+/// Points that stand for all of a cloud in a mean or a median over it, which they give to half a per cent:
+/// a bound of the work.
 constexpr std::size_t kSampleOfCloud = 50000;
 
 /// Places of a cloud at which something costly is measured for a median.

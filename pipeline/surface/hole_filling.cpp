@@ -13,6 +13,7 @@ namespace rfsmooth::pipeline {
 
 namespace {
 
+// Vertices of a rim. A filling takes memory as their square and time as their cube.
 constexpr std::size_t kLongestRim = 1000;
 constexpr double kNever = std::numeric_limits<double>::infinity();
 

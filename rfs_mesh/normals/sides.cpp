@@ -19,7 +19,7 @@ double clarity(const SideLink& link) {
 constexpr double kSurest = 0.8;  // clarity: with these the growth begins
 constexpr int kRoundsInBlocks =
     2;  // more, and regions at the block's rim grow astray: they miss half of their links
-constexpr std::size_t kBlock = 4096;  // points
+constexpr std::size_t kBlock = 4096;  // points that one thread links by itself: a bound of its work
 
 /// Regions that grow. What links points at first links the regions that they have become.
 class Growth {

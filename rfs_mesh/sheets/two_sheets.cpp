@@ -20,7 +20,7 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 using Vector9 = Eigen::Matrix<double, 9, 1>;
 using Matrix9 = Eigen::Matrix<double, 9, 9>;
 
-constexpr int kPairRounds = 12;
+constexpr int kPairRounds = 12;        // of expectation maximisation: a bound of the work
 constexpr double kRidgeOfPair = 1e-6;  // of the normal equations, beside the weights
 constexpr double kLeastWeights = 30;   // nine unknowns, and
 constexpr double kUnknowns = 9;        // of the two sheets

@@ -17,8 +17,8 @@ constexpr float kItself = 0.008F;         // a point's share in its own v: 0.006
 constexpr float kLouderPlace = 1.3F;      // v / c from which a place counts
 constexpr float kLoudest = 4;             // v: beyond, one sees two sheets
 constexpr double kMostSheetShare = 0.75;  // more is another kind of noise; rotor's walls are at most 0.62
-constexpr float kMostOwn = 0.25F;         // points that were hardly smoothed say nothing
-constexpr double kPrior = 0.15;           // standard deviation of ln c
+constexpr float kMostOwn = 0.25F;         // beyond, hardly smoothed, little of c is left: they say nothing
+constexpr double kPrior = 0.15;           // standard deviation of ln c: how wrongly the noise may be measured
 constexpr int kSheetRounds = 4;           // of as many local means in all 16, over some 500 points
 constexpr float kEmptyLane = 1e9F;        // in lanes without a point: its values count as too large
 

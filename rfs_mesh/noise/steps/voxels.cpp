@@ -19,7 +19,7 @@ namespace rfsmooth::rfs_mesh {
 
 namespace {
 
-// Points at each of the places: sixteen voxels across.
+// Points at each of the places: sixteen voxels across, a bound of the work that all clouds have.
 constexpr std::size_t kVoxelPlaces = 48, kVoxelPoints = 256;
 // Sizes are looked for from the distance to the eighth point over this up to times this. It is 1.4 voxels in
 // one layer, one in two.

@@ -14,8 +14,8 @@ namespace rfsmooth::smoothing {
 namespace {
 
 constexpr float kCovered = 0.2F * kMemberUnit;  // least weight of the best patch over a point
-// Times the seeds given, for places left uncovered: with 4, the shape rotor (tests/bench/quality) is 3 %
-// worse.
+// Times the seeds given, for places left uncovered, a bound of the work: with 4, the shape rotor
+// (tests/bench/quality) is 3 % worse.
 constexpr std::size_t kMostForMissing = 8;
 constexpr std::size_t kTogether = 64;   // patches fitted in a row: each tells the next how far to look
 constexpr std::size_t kWave = 1 << 18;  // members fitted before they are added up, ...
