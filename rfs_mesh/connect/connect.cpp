@@ -124,14 +124,15 @@ double loudness(const NoiseModel& noise) {
 }
 
 /// The scale of the quadrics: that of what the calm quarter of places shows, times how much louder the cloud
-/// is than that. It is less than what was measured where that took a second sheet for noise. But depths in
-/// steps and noise that neighbours share do not show in narrow neighbourhoods, nor any noise in lines of
-/// points: there the measure decides.
+/// is than that. It is less than what was measured where that took a second sheet for noise. But noise that
+/// neighbours share does not show in narrow neighbourhoods, nor any noise in lines of points, and where
+/// depth comes in steps a narrow quadric follows one of the layers that the noise makes: there the measure
+/// decides.
 NoiseScale scale_for(const SpatialIndex& index, const NoiseModel& noise, const Context& context) {
   if (!(noise.sigma > 0)) return {};
   std::vector<double> sigma = at_sites(noise);
   const double loud = loudness(noise), calm = quantile(sigma, 0.25);
-  const bool understated = is_shared(noise) || is_of_steps(noise) || noise.on_lines;
+  const bool understated = is_shared(noise) || noise.step > 0 || noise.on_lines;
   NoiseScale scale = noise_scale(index, context, loud, std::max(1.0, loud / calm), understated);
   scale.sigma = std::min(scale.sigma, loud);
   return scale;
