@@ -38,6 +38,8 @@ std::unique_ptr<Flow> make_explicit(std::unique_ptr<Speed> speed, double lambda)
 /// where others see a vertex before the step is over. A fixed vertex never moves (Vollmer 2, V_fix), and a
 /// vertex's strength scales lambda (Desbrun 2.7).
 std::unique_ptr<Flow> make_explicit(std::unique_ptr<Speed> speed, double lambda, AllowedMoves allowed);
+
+/// The same, simultaneously or vertex by vertex.
 std::unique_ptr<Flow> make_explicit(std::unique_ptr<VertexSpeed> speed, double lambda, Update update,
                                     AllowedMoves allowed);
 
