@@ -11,8 +11,20 @@
 
 namespace rfsmooth {
 
-/// Adds the time from its construction to its destruction to the entry of a stage, which it creates if need
-/// be. Not thread safe.
+/// The entry of a stage, which is made if there is none.
+inline std::size_t entry_of(std::string_view name, std::vector<StageTime>& stages) {
+  std::size_t entry = 0;
+  while (entry < stages.size() && stages[entry].name != name) ++entry;
+  if (entry == stages.size()) stages.push_back({std::string(name), 0});
+  return entry;
+}
+
+/// Adds times to the entries of the same stages.
+inline void add_times(const std::vector<StageTime>& more, std::vector<StageTime>& stages) {
+  for (const StageTime& stage : more) stages[entry_of(stage.name, stages)].seconds += stage.seconds;
+}
+
+/// Adds the time from its construction to its destruction to the entry of a stage. Not thread safe.
 class Stopwatch {
  public:
   /// \param stages kept by reference. It must outlive this; a copy made before the destruction lacks the last
@@ -33,9 +45,7 @@ class Stopwatch {
 
   // The entry is made here: a destructor must not allocate.
   void start(std::string_view name) {
-    entry_ = 0;
-    while (entry_ < stages_.size() && stages_[entry_].name != name) ++entry_;
-    if (entry_ == stages_.size()) stages_.push_back({std::string(name), 0});
+    entry_ = entry_of(name, stages_);
     start_ = Clock::now();
   }
   void stop() { stages_[entry_].seconds += std::chrono::duration<double>(Clock::now() - start_).count(); }
@@ -44,15 +54,5 @@ class Stopwatch {
   std::size_t entry_ = 0;
   Clock::time_point start_;
 };
-
-/// Adds times to the entries of the same stages, which it creates if need be.
-inline void add_times(const std::vector<StageTime>& more, std::vector<StageTime>& stages) {
-  for (const StageTime& stage : more) {
-    std::size_t entry = 0;
-    while (entry < stages.size() && stages[entry].name != stage.name) ++entry;
-    if (entry == stages.size()) stages.push_back({stage.name, 0});
-    stages[entry].seconds += stage.seconds;
-  }
-}
 
 }  // namespace rfsmooth

@@ -100,6 +100,8 @@ Graph graph_of(const std::string& stage, const Connection& connection) {
 std::string connect_cloud(const MeshCommandOptions& options, pipeline::io::Cloud& cloud,
                           const CloudTask& task) {
   const auto& [job, context, console, stages, entry] = task;
+  const std::string& stage = options.mesh.stage;
+  const bool needs_noise = stage != "emst-points";
   need_memory(job.input, rfsmooth::denoise_memory(cloud.size()));
   const std::vector<double> xyz = pipeline::io::positions(cloud, context);
   rfs_mesh::WorkingCloud working =
@@ -111,13 +113,12 @@ std::string connect_cloud(const MeshCommandOptions& options, pipeline::io::Cloud
     // All points are vertices, strays, too; the noise that tells their neighbourhoods is that of the others.
     pipeline::Prepared prepared =
         pipeline::prepare(working, connect.neighbours, Outliers::smooth, whole, task.stages, task.context);
-    if (options.mesh.stage != "emst-points") {
+    if (needs_noise) {
       const Stopwatch watch(task.stages, "noise");
       pipeline::find_noise(*prepared.index, prepared.near, whole, task.context);
     }
-    connection =
-        value_or_throw(rfs_mesh::connect(std::move(*prepared.index), std::move(prepared.near), connect,
-                                         wanted_for(options.mesh.stage), task.context, &whole));
+    connection = value_or_throw(rfs_mesh::connect(std::move(*prepared.index), std::move(prepared.near),
+                                                  connect, wanted_for(stage), task.context, &whole));
   });
   add_times(connection.seconds, stages);
   warn_if_coarse(cloud, xyz, connection.noise.spacing, job.input, console);
@@ -125,7 +126,6 @@ std::string connect_cloud(const MeshCommandOptions& options, pipeline::io::Cloud
   const pipeline::RowOrder order = pipeline::row_order(working);
   Positions points;  // at the file's own coordinates
   for (const std::size_t i : order.row) points.emplace_back(&xyz[3 * i]);
-  const std::string& stage = options.mesh.stage;
   Graph graph = graph_of(stage, connection);
   const auto edges = renumbered(std::move(graph.edges), order.rank);
   std::vector<Face> faces;
@@ -140,7 +140,7 @@ std::string connect_cloud(const MeshCommandOptions& options, pipeline::io::Cloud
   entry["counts"] = {{"points", xyz.size() / 3}, {"vertices", points.size()}};
   entry["counts"].update(counts_of(connection, stage));
   entry["spacing"] = connection.noise.spacing;
-  if (stage != "emst-points") entry["noise"] = connection.noise.sigma;
+  if (needs_noise) entry["noise"] = connection.noise.sigma;
   return fmt::format("{}: {}, {}, {}", stage, counted(points.size(), "vertex", "vertices"),
                      counted(edges.size(), "edge"), counted(faces.size(), "face"));
 }
