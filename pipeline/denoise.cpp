@@ -190,12 +190,12 @@ std::vector<double> least_strengths(std::vector<double> strength, const rfs_mesh
   return strength;
 }
 
-/// The strengths of the working points. \param strength as least_strengths
+/// The strengths of the working points, the least of their rows': twins are one working point.
 std::vector<double> working_strengths(const std::vector<double>& strength,
                                       const rfs_mesh::WorkingCloud& cloud, std::size_t points) {
   std::vector<double> working(strength.empty() ? 0 : points, 1);
   for (std::size_t i = 0; i < strength.size(); ++i)
-    if (const Index p = cloud.of_input[i]; p != kNone) working[p] = strength[i];
+    if (const Index p = cloud.of_input[i]; p != kNone) working[p] = std::min(working[p], strength[i]);
   return working;
 }
 
@@ -269,7 +269,7 @@ Connection connected(rfs_mesh::WorkingCloud& cloud, const DenoiseOptions& option
                      DenoiseReport& report) {
   Statistics& whole = report.statistics;
   rfs_mesh::Wanted wanted;
-  wanted.tree_of_points = false;
+  wanted.emst = wanted.tree = false;
   // As in the paper the edges of points that no face reaches go. Without neighbours such points stay under
   // flows; the automatic smoother puts them onto the surface (stranded.h). Kept, such an edge would carry a
   // stray over its whole length, and HC's push-back would throw its neighbour after it.

@@ -107,5 +107,28 @@ TEST(Twins, OfOutliersStayOrLandWithThem) {
     }
 }
 
+TEST(Twins, OfARowThatIsToStayStay) {
+  const Positions alone = noisy_sphere(0.3);
+  const std::size_t n = alone.size();
+  const Positions before = with_twins(alone, n, 1e-9);
+  for (const bool first : {true, false}) {
+    SCOPED_TRACE(first);
+    std::vector<double> strength(2 * n, 1);
+    for (std::size_t i = 0; i < n / 2; ++i) strength[first ? i : n + i] = 0;
+    Positions after = before;
+    ASSERT_TRUE(rfsmooth::denoise(after.front().data(), 2 * n, {}, {}, strength).ok());
+    std::size_t moved = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      const bool stays = after[i] == before[i] && after[n + i] == before[n + i];
+      if (i < n / 2) {
+        ASSERT_TRUE(stays) << i;
+      } else {
+        moved += stays ? 0 : 1;
+      }
+    }
+    EXPECT_GT(moved, n / 3);
+  }
+}
+
 }  // namespace
 }  // namespace rfsmooth::pipeline
