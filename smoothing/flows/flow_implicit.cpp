@@ -36,12 +36,14 @@ class ImplicitFlow : public SolvedFlow {
     Fairing system{op.rows(mesh), op, a_, {}, {}};
     double unit = 1;
     for (double& a : system.a) a *= unit *= op.unit;
-    system.data = op.mass;
-    for_each_index(context, system.data.size(), [&](std::size_t i) {
-      if (const double s = allowed_.strength(i); s > 0) system.data[i] /= s;
-    });
+    if (allowed_.has_strengths()) {
+      system.data = op.mass;
+      for_each_index(context, system.data.size(), [&](std::size_t i) {
+        if (const double s = allowed_.strength(i); s > 0) system.data[i] /= s;
+      });
+    }
     if (printed_ && !allowed_.all_free()) {  // 2.7: "fixed if we impose L(x_i) = 0"
-      system.strength.resize(system.data.size());
+      system.strength.resize(op.mass.size());
       for_each_index(context, system.strength.size(), [&](std::size_t i) {
         system.strength[i] = allowed_(i, Eigen::Vector3d::Ones()).isZero(0) ? 0 : 1;
       });

@@ -30,6 +30,9 @@ class AllowedMoves {
     return kind_.empty() ? move : projected(i, move);
   }
 
+  /// Whether any vertex has a strength of its own.
+  bool has_strengths() const { return !strength_.empty(); }
+
   /// The strength of vertex i: 1 = moves freely, 0 = stays.
   double strength(std::size_t i) const { return strength_.empty() ? 1 : strength_[i]; }
 

@@ -42,6 +42,28 @@ MatrixXd diagonal(const std::vector<double>& d) {
   return Eigen::Map<const Eigen::VectorXd>(d.data(), Eigen::Index(d.size())).asDiagonal();
 }
 
+TEST(Solver, ImplicitFairingByDefaultTakesThePolynomial) {
+  Mesh mesh = support::icosphere(4);
+  support::add_noise(mesh, 0.02, 1);
+  const ImplicitOptions options;
+  const Operator op = umbrella(mesh.one_ring, {});
+  SolverOptions how;
+  how.tolerance = options.tolerance;
+  Positions x;
+  const SolverReport report =
+      solve({mesh.one_ring, op, {0, options.dt, 0, 0}, {}, {}}, mesh.positions, x, {}, how, {});
+  ASSERT_FALSE(report.reductions.empty()) << "solved otherwise";
+  Constraints even;
+  even.strength.assign(mesh.positions.size(), 1);
+  for (const bool constrained : {false, true}) {
+    Mesh stepped = mesh;
+    const auto flow = options.start(stepped, constrained ? even : Constraints(), {});
+    flow->step(stepped, {});
+    EXPECT_EQ(stepped.positions == x, !constrained);
+    EXPECT_LT(support::rms_distance(stepped.positions, x), 1e-4);
+  }
+}
+
 TEST(Solver, EqualsADenseFactorisationForEveryTerm) {
   Mesh mesh = support::torus(12, 8, 0.4);
   support::add_noise(mesh, 0.05, 1);
