@@ -29,7 +29,7 @@ struct Sum {
   double evidence = 0;
   std::size_t louder = 0;  // points that may be of two sheets
   std::size_t points = 0;  // those of them that are no layers
-  double area = 0;         // of these points, as `layers`
+  double area = 0;         // of these points, as `squares`
   Sum& operator+=(const Sum& other) {
     evidence += other.evidence;
     louder += other.louder;
@@ -39,30 +39,42 @@ struct Sum {
   }
 };
 
-/// By point: half the distance of sheets that would be layers, squared, in squares of the unit.
-std::vector<float> squared_of_layers(const HeightField& field, const Residuals& left,
+/// By point: the square of the surface that one has, in squares of the unit.
+std::vector<float> squares_of_points(const HeightField& field, const Residuals& left,
                                      const Context& context) {
-  std::vector<float> squared(field.size());
+  std::vector<float> squares(field.size());
   for_each_index(context, field.size(), [&](std::size_t i) {
     const auto row = field.neighbors()[i];
-    const double farthest = (field.guide()[row[row.size() - 1]] - field.guide()[i]).squaredNorm(),
-                 square = rfs_mesh::square_of_point(farthest, row.size());
-    squared[i] = float(rfs_mesh::squared_nearest(square, left.apart) / (4 * left.unit * left.unit));
+    const double farthest = (field.guide()[row[row.size() - 1]] - field.guide()[i]).squaredNorm();
+    squares[i] = float(rfs_mesh::square_of_point(farthest, row.size()) / (left.unit * left.unit));
   });
-  return squared;
+  return squares;
+}
+
+/// Half the distance of sheets that would be layers, squared, in squares of the unit. \param squares of
+/// points
+float squared_of_layers(float square, const Residuals& left) {
+  return float(rfs_mesh::squared_nearest(double(square), left.apart / left.unit) / 4);
+}
+
+/// The same side by side.
+Lanes squared_of_layers(const Lanes& squares, const Residuals& left) {
+  return squares.unaryExpr([&](float square) { return squared_of_layers(square, left); });
 }
 
 /// Whether these places have more points than the others on the same area: twice as many where there are
-/// two sheets, and a part of them has. Scans that do not meet have as many everywhere. \param areas by point
-bool is_denser(const Sum& sum, const std::vector<float>& areas, const Context& context) {
-  const double all = sum_over(context, areas.size(), 0.0, [&](std::size_t i) { return double(areas[i]); });
-  const double points = double(sum.points), others = double(areas.size()) - points;
+/// two sheets, and a part of them has. Scans that do not meet have as many everywhere. \param squares of
+/// points
+bool is_denser(const Sum& sum, const std::vector<float>& squares, const Context& context) {
+  const double all =
+      sum_over(context, squares.size(), 0.0, [&](std::size_t i) { return double(squares[i]); });
+  const double points = double(sum.points), others = double(squares.size()) - points;
   return sum.area * others < (1 - rfs_mesh::kLeastPart / 2) * (all - sum.area) * points;
 }
 
 /// Over all c; `v` are the squares' local means.
 HiddenSheets best_evidence(const Residuals& left, const std::vector<float>& own, const std::vector<float>& v,
-                           const std::vector<float>& layers, double whole, const Context& context) {
+                           const std::vector<float>& squares, double whole, const Context& context) {
   const std::size_t n = v.size();
   HiddenSheets best;
   Sum at_best;
@@ -78,7 +90,8 @@ HiddenSheets best_evidence(const Residuals& left, const std::vector<float>& own,
               all.head(there) = Eigen::Map<const Eigen::ArrayXf>(values.data() + i, there);
               return all;
             };
-            const Lanes mean = lanes(v), share = lanes(own), least = lanes(layers);
+            const Lanes mean = lanes(v), share = lanes(own), square = lanes(squares),
+                        least = squared_of_layers(square, left);
             const Lanes squared = rfs_mesh::squared_apart(mean, float(c));
             const auto loud = share <= kMostOwn && mean >= kLouderPlace * float(c) && mean <= kLoudest;
             part.louder += std::size_t(loud.count());
@@ -89,7 +102,7 @@ HiddenSheets best_evidence(const Residuals& left, const std::vector<float>& own,
                         evidence = rfs_mesh::evidence_of_two(lanes(left.scores), squared, variance);
             part.evidence += double(counts.select(evidence, 0).sum());
             part.points += counted;
-            part.area += double(counts.select(least, 0).sum());
+            part.area += double(counts.select(square, 0).sum());
           }
           return part;
         },
@@ -101,7 +114,7 @@ HiddenSheets best_evidence(const Residuals& left, const std::vector<float>& own,
     at_best = sum;
   }
   const bool everywhere = double(at_best.louder) > kMostSheetShare * double(n);
-  const bool believed = everywhere ? left.with_tails : is_denser(at_best, layers, context);
+  const bool believed = everywhere ? left.with_tails : is_denser(at_best, squares, context);
   if (!believed) best.evidence = 0;
   return best;
 }
@@ -119,7 +132,7 @@ HiddenSheets split_hidden_sheets(const HeightField& field, const Residuals& left
   if (known) found = {*known};
   if (known && !found.there()) return found;
   const std::size_t n = field.size();
-  const std::vector<float> layers = squared_of_layers(field, left, context);
+  const std::vector<float> squares = squares_of_points(field, left, context);
   std::vector<float> v(n);
   const std::vector<float>& residual = left.scores;
   const auto square = [&](std::size_t i) { return residual[i] * residual[i] + 2 * own[i]; };
@@ -129,12 +142,12 @@ HiddenSheets split_hidden_sheets(const HeightField& field, const Residuals& left
   for (int round = 0; round < kSheetRounds; ++round) {
     for (int again = 0; again < kSheetRounds; ++again) v = field.local_mean(v, context);
     if (known) continue;
-    found = best_evidence(left, own, v, layers, whole, context);
+    found = best_evidence(left, own, v, squares, whole, context);
     if (!found.there()) break;
   }
   if (found.there()) {  // of the other points
     for_each_index(context, n, [&](std::size_t i) { v[i] = (v[i] - kItself * square(i)) / (1 - kItself); });
-    if (!known) found = best_evidence(left, own, v, layers, whole, context);
+    if (!known) found = best_evidence(left, own, v, squares, whole, context);
   }
   known = found;
   if (!found.there()) return found;
@@ -142,7 +155,7 @@ HiddenSheets split_hidden_sheets(const HeightField& field, const Residuals& left
   for_each_index(context, n, [&](std::size_t i) {
     const double mean = double(v[i]);
     const double squared = rfs_mesh::squared_apart(mean, c);
-    if (mean < double(kLouderPlace) * c || squared < double(layers[i])) return;
+    if (mean < double(kLouderPlace) * c || squared < double(squared_of_layers(squares[i], left))) return;
     const double d = std::sqrt(squared);
     height[i] += float(left.unit * d * rfs_mesh::sharpened_label(double(residual[i]), d, c));
   });

@@ -66,9 +66,9 @@ struct Sheet {
     return height.size() - std::size_t(std::count(height.begin(), height.end(), 0.0F));
   }
 
-  /// From a measured noise of `sigma`.
-  HiddenSheets split(double sigma, bool with_tails = false) {
-    Residuals left{std::vector<float>(height.size()), sigma, 0, with_tails};
+  /// From a measured noise of `sigma`. \param apart NoiseModel::apart
+  HiddenSheets split(double sigma, bool with_tails = false, double apart = 0) {
+    Residuals left{std::vector<float>(height.size()), sigma, apart, with_tails};
     for (std::size_t i = 0; i < height.size(); ++i)
       left.scores[i] = float(std::clamp((field->height(i) - double(height[i])) / sigma, -5.0, 5.0));
     std::optional<Statistics::Sheets> known;
@@ -90,6 +90,14 @@ TEST(HiddenSheets, PointsOfAWallThinnerThanTheNoiseGoToItsTwoSheets) {
     EXPECT_NEAR(double(sheet.moved()), kSide * kSide / 3.0, kSide * kSide / 20.0);
     EXPECT_LT(sheet.error(), 0.2 * film);
   }
+}
+
+// Thinned to a distance of 0.6 from each other: points of one sheet, which are 1 and 0.7 apart here.
+TEST(HiddenSheets, AreSeenAmongPointsThatKeepADistance) {
+  Sheet sheet(1, 1);
+  const double film = sheet.error();
+  EXPECT_TRUE(sheet.split(1, false, 0.6).there());
+  EXPECT_LT(sheet.error(), 0.2 * film);
 }
 
 TEST(HiddenSheets, LayersOfScansAreNotDenserAndAreNotTakenForThem) {
