@@ -8,6 +8,7 @@
 #include "base/fail.h"
 #include "base/parallel.h"
 #include "pipeline/normals/normals_by_part.h"
+#include "rfs_mesh/connect/connect.h"
 #include "rfs_mesh/levels.h"
 #include "rfs_mesh/normals/bilateral_normals.h"
 #include "rfs_mesh/normals/orient.h"
@@ -63,7 +64,9 @@ NormalsReport run(const double* xyz, std::size_t n, const NormalsOptions& option
     fail(ErrorCode::usage, "the viewpoint is not finite");
   const rfs_mesh::WorkingCloud cloud = value_or_throw(rfs_mesh::make_working_cloud(xyz, n, context));
   report.finite = cloud.finite();
-  const Connection connection = value_or_throw(rfsmooth::connect(cloud.points, {}, context));
+  rfs_mesh::Wanted wanted;
+  wanted.emst = false;  // bridges are of the other tree
+  const Connection connection = value_or_throw(rfs_mesh::connect(cloud.points, {}, wanted, context));
   context.report("normals", 0);
   Positions calm = cloud.points, side(calm.size());
   std::vector<double> scatter(calm.size());
@@ -78,7 +81,7 @@ NormalsReport run(const double* xyz, std::size_t n, const NormalsOptions& option
   std::optional<Eigen::Vector3d> viewpoint = options.viewpoint;
   if (viewpoint) *viewpoint -= cloud.origin;
   report.parts =
-      orient(connection.mesh, connection.emst, connection.bridges, viewpoint, side, context, &calm, part);
+      orient(connection.mesh, connection.tree, connection.bridges, viewpoint, side, context, &calm, part);
   settle(calm, index, connection.mesh, side, context);
   if (!viewpoint) rfs_mesh::turn_out_of_thin_parts(index, side, context);
   rfs_mesh::turn_to_own_sheet(cloud.points, near, side, context);

@@ -65,14 +65,15 @@ struct Measured {
 };
 
 /// The ground at the shadows of the points. Quadrics no wider than the neighbourhoods looked at are fitted a
-/// second time, on the shadows; wider ones have the better normals already.
-Ground shadow_ground(const Positions& points, std::vector<LocalSurface> surfaces, const NoiseScale& scale,
-                     const Measured& measured, const ConnectOptions& options, const Context& context) {
+/// second time, on the shadows; wider ones have the better normals already. \param tree of the points
+Ground shadow_ground(const Positions& points, KdTree tree, std::vector<LocalSurface> surfaces,
+                     const NoiseScale& scale, const Measured& measured, const ConnectOptions& options,
+                     const Context& context) {
   const int k = options.neighbours;
   Ground ground;
   ground.surfaces = std::move(surfaces);
   ground.at = shadows(ground.surfaces, context);
-  const SpatialIndex index(ground.at, context);
+  const SpatialIndex index(ground.at, std::move(tree), context);
   ground.near = index.nearest(k, context);
   ground.tree = emst_unsorted(index, ground.near, context);
   if (scale.neighbours <= std::size_t(k)) {
@@ -167,7 +168,7 @@ Measured measure(const SpatialIndex& index, const NeighborTable& near, const Con
 /// on_shadow of `c`; returns what the tests are made on.
 Ground survey(Cloud cloud, const ConnectOptions& options, const Wanted& wanted, const Context& context,
               Statistics& whole, Connection& c, Stages& stages) {
-  const SpatialIndex& index = cloud.index;
+  SpatialIndex& index = cloud.index;
   const NeighborTable& near = cloud.near;
   const Positions& points = index.points();
   const std::size_t n = points.size();
@@ -175,8 +176,10 @@ Ground survey(Cloud cloud, const ConnectOptions& options, const Wanted& wanted, 
   c.noise = measured.level;
   const NoiseScale scale = *whole.scale;
   c.on_shadow = n > 0 && scale.sigma > options.shadow_from * c.noise.spacing;
-  c.emst = stages.run("emst", 0.2, [&] {
-    return wanted.tree_of_points || !c.on_shadow ? emst(index, near, context) : std::vector<Edge>();
+  std::vector<Edge> tree;
+  stages.run("emst", 0.2, [&] {
+    if (wanted.emst) c.emst = emst(index, near, context);
+    if (!c.on_shadow) tree = wanted.emst ? c.emst : emst_unsorted(index, near, context);
   });
   auto surfaces = stages.run("local surfaces", 0.4, [&] {
     const auto least = std::min(std::size_t(options.neighbours), scale.neighbours);
@@ -184,10 +187,11 @@ Ground survey(Cloud cloud, const ConnectOptions& options, const Wanted& wanted, 
                ? shared_local_surfaces(index, near, scale, measured.field, measured.wider, least, context)
                : local_surfaces(points, near, context);
   });
-  if (!c.on_shadow) return {points, std::move(surfaces), std::move(cloud.near), c.emst, {}};
+  if (!c.on_shadow) return {points, std::move(surfaces), std::move(cloud.near), std::move(tree), {}};
   cloud.near = NeighborTable();  // neighbours among the noisy points: not needed any more
   return stages.run("shadow", 0.5, [&] {
-    return shadow_ground(points, std::move(surfaces), scale, measured, options, context);
+    return shadow_ground(points, index.release_tree(), std::move(surfaces), scale, measured, options,
+                         context);
   });
 }
 
@@ -227,7 +231,7 @@ Connection connect_all(const Positions& points, std::optional<Cloud> known, cons
   Sdg sdg = stages.run("sdg", 0.6, [&] { return make_sdg(terrain, ground.tree, options.sdg, context); });
   c.sdg = std::move(sdg.edges);
   c.bridges = std::move(sdg.bridges);
-  if (wanted.tree_of_points || wanted.up_to == ConnectUpTo::sdg) keep_tree(ground, c, context);
+  if (wanted.tree || wanted.up_to == ConnectUpTo::sdg) keep_tree(ground, c, context);
   if (wanted.up_to == ConnectUpTo::sdg) {
     c.surfaces = std::move(ground.surfaces);
     return c;

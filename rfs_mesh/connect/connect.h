@@ -16,11 +16,10 @@ void measure_cloud(const SpatialIndex& index, const NeighborTable& near, Statist
 
 /// What is wanted of a connection; what is not may stay empty.
 struct Wanted {
-  /// The last stage. Its tree is made even where `tree_of_points` is false, and that of the SDG kept.
+  /// The last stage. Its tree is made and kept even where `emst` and `tree` are false.
   ConnectUpTo up_to = ConnectUpTo::mesh;
-  /// Whether Connection::tree is wanted, and Connection::emst where the tests are made on the shadow, on a
-  /// tree of its own.
-  bool tree_of_points = true;
+  bool emst = true;  ///< whether Connection::emst is wanted; on the shadow it is a tree of its own
+  bool tree = true;  ///< whether Connection::tree is wanted
   /// Whether vertices that no face reaches keep their SDG edges (Mesh::loose_edges) and are neighbours by
   /// them.
   bool loose_edges = true;
@@ -35,8 +34,8 @@ Result<Connection> connect(const Positions& points, const ConnectOptions& option
                            const Context& context);
 
 /// The same for the points of `index`. `near`: their nearest `options.neighbours`. \throw
-/// std::invalid_argument if `near` is of another width or size. \param statistics `scale` and `spacing` are
-/// taken if they are there, else entered.
+/// std::invalid_argument if `near` is of another width or size. \param statistics `noise`, `scale` and
+/// `spacing` are taken if they are there, else entered.
 Result<Connection> connect(SpatialIndex index, NeighborTable near, const ConnectOptions& options,
                            const Wanted& wanted, const Context& context, Statistics* statistics = nullptr);
 

@@ -48,6 +48,7 @@ class Orienter {
       if (points_down(normals_[i])) normals_[i] = -normals_[i];
     });
     std::sort(bridges_.begin(), bridges_.end());
+    around_ = vertex_faces(mesh_, context_);
     areas_ = areas(calm_);
   }
 
@@ -64,9 +65,13 @@ class Orienter {
     const Regions parts = grow_regions(at_.size(), links(calm_), {}, context_);
     part_ = apply(parts, alone, {});
     const std::size_t count = parts_;
+    if (closes(parts, alone)) {
+      normals_.swap(alone);
+      return count;
+    }
     // From here on the points themselves: calmer ones may have merged the very sheets to be told apart.
     const Samples samples(at_, areas(at_));
-    if (closes(parts, alone) || !(samples.area > 0)) {
+    if (!(samples.area > 0)) {
       normals_.swap(alone);
       return count;
     }
@@ -135,11 +140,10 @@ class Orienter {
 
   /// n: a third of the faces around each point, with the points at `at`.
   std::vector<double> areas(const Positions& at) const {
-    const Adjacency around = vertex_faces(mesh_, context_);
     std::vector<double> areas(at.size());
     for_each_index(context_, at.size(), [&](std::size_t i) {
       double sum = 0;
-      for (const Index f : around[i]) sum += face_cross(at, mesh_.faces[f]).norm() / 6;
+      for (const Index f : around_[i]) sum += face_cross(at, mesh_.faces[f]).norm() / 6;
       areas[i] = sum;
     });
     return areas;
@@ -268,6 +272,7 @@ class Orienter {
   std::vector<Edge> bridges_;
   Positions& normals_;
   const Context& context_;
+  Adjacency around_;  ///< the faces of each vertex
   std::vector<double> areas_;
   std::vector<Index> part_;
   std::size_t parts_ = 0;

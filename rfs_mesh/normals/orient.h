@@ -10,7 +10,7 @@
 ///    the last two cases.
 /// 2. Along the edges of the mesh and of the EMST points grow together into regions, the surest first, by the
 ///    sum of all edges between two regions (sides.h). Bridges are not used, but a connected part of fewer
-///    than 32 points follows the bridge it hangs on. Every other part gets its side as a whole:
+///    than 24 points follows the bridge it hangs on. Every other part gets its side as a whole:
 /// 3. Without a viewpoint the side is outward, by the sign of the part's volume, sum of a_i (p_i - c) . n_i
 ///    over its points of area a_i and centroid c. A part that is nearly flat has no outward side and is
 ///    turned to +z (then +y, +x); an open sheet faces away from its centroid.

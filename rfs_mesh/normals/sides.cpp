@@ -25,22 +25,21 @@ constexpr std::size_t kBlock = 4096;  // points that one thread links by itself:
 class Growth {
  public:
   Growth(std::size_t n, std::vector<SideLink> links, const std::vector<double>& votes, const Context& context)
-      : context_(context), sides_(n), links_(std::move(links)), votes_(votes), best_(n, kNone) {}
-
-  /// As long as there are links of at least that clarity.
-  void grow(double least) {
-    do {
-      bundle();
-    } while (join(least));
+      : context_(context), sides_(n), links_(std::move(links)), votes_(votes), best_(n, kNone) {
+    bundle();
   }
 
-  /// So many rounds by the surest links. Afterwards links() are those between the regions found.
+  /// As long as there are links of at least that clarity. Afterwards links() are those between the regions.
+  void grow(double least) {
+    while (join(least)) bundle();
+  }
+
+  /// The same in so many rounds by the surest links.
   void grow_a_little(int rounds) {
     for (int round = 0; round < rounds; ++round) {
-      bundle();
       join(kSurest);
+      bundle();
     }
-    bundle();
   }
 
   /// With the lowest points of regions for ends.

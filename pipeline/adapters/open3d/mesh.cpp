@@ -30,7 +30,7 @@ std::shared_ptr<TriangleMesh> make(const PointCloud& cloud, const ConnectOptions
     connection.mesh.positions[p] =
         connection.surfaces[p].shadow;  // the noise of an edge says nothing of sides
   }
-  rfs_mesh::orient(connection.mesh, connection.emst, connection.bridges, {}, found, context);
+  rfs_mesh::orient(connection.mesh, connection.tree, connection.bridges, {}, found, context);
 
   const auto [row, rank] = pipeline::row_order(working);
   Mesh mesh;

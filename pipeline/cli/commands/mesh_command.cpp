@@ -58,7 +58,7 @@ rfs_mesh::Wanted wanted_for(const std::string& stage) {
                  : stage == "emst"      ? ConnectUpTo::tree
                  : stage == "sdg"       ? ConnectUpTo::sdg
                                         : ConnectUpTo::mesh;
-  wanted.tree_of_points = false;
+  wanted.emst = wanted.tree = false;
   return wanted;
 }
 

@@ -105,7 +105,7 @@ LearnedInput input_of(const Cloud& cloud, const Recipe& recipe, const Context& c
       rfs_mesh::make_working_cloud(cloud.measured.data()->data(), cloud.measured.size(), context));
   for (auto& p : working.points) p += working.origin;
   rfs_mesh::Wanted wanted;
-  wanted.tree_of_points = wanted.loose_edges = false;
+  wanted.emst = wanted.tree = wanted.loose_edges = false;
   Mesh mesh = value_or_throw(rfs_mesh::connect(working.points, {}, wanted, context)).mesh;
   AutomaticOptions options;
   if (recipe.disturbed) options.noise = Length{*recipe.disturbed * cloud.sigma, false};
