@@ -30,14 +30,16 @@ double local_length(const std::vector<float>& squares, const Adjacency& tree, In
   std::array<float, kMost> around;
   std::size_t count = 0;
   const auto add = [&](Index from, Index not_to) {
-    for (Index k = tree.start[from]; k < tree.start[from + 1]; ++k)
-      if (tree.items[k] != not_to && count < kMost) around[count++] = squares[k];
+    for (Index k = tree.start[from]; k < tree.start[from + 1] && count < kMost; ++k)
+      if (tree.items[k] != not_to) around[count++] = squares[k];
   };
   add(v, kNone);
   for (const Index a : tree[v]) {
     add(a, v);
-    for (const Index b : tree[a])
-      if (b != v && count < kMost) add(b, a);
+    for (const Index b : tree[a]) {
+      if (count == kMost) break;
+      if (b != v) add(b, a);
+    }
     if (count == kMost) break;
   }
   return count > 0 ? std::sqrt(double(nth_of_few(around, count, count / 2))) : 0;

@@ -70,14 +70,15 @@ class Opener {
   RFSMOOTH_AVX2 double long_edge(Index v) const {
     std::array<float, kMostCandidates> squares;
     std::size_t count = 0;
-    const auto add = [&](Index a, Index b) {
-      if (count < squares.size()) squares[count++] = float(squared(a, b));
-    };
+    const auto full = [&] { return count == squares.size(); };
+    const auto add = [&](Index a, Index b) { squares[count++] = float(squared(a, b)); };
     for (const Index a : graph_[v]) {
+      if (full()) break;
       add(v, a);
-      for (const Index b : graph_[a])
+      for (const Index b : graph_[a]) {
+        if (full()) break;
         if (b != v) add(a, b);
-      if (count == squares.size()) break;
+      }
     }
     return count > 0 ? std::sqrt(double(nth_of_few(squares, count, count * 9 / 10))) : 0;
   }

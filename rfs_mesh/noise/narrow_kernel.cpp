@@ -26,10 +26,12 @@ struct Kernel {
 Kernel look_around(const SpatialIndex& index, const Eigen::Vector3d& at, double width,
                    std::vector<Neighbor>& near) {
   index.within_unsorted(at, kNoiseReach * width, near);
+  const std::size_t stride = 1 + near.size() / kWidestFit;  // where far more are in it, a part says as much
   double weights = 0, squares = 0;
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-  for (const Neighbor& q : near) {
+  for (std::size_t k = 0; k < near.size(); k += stride) {
+    const Neighbor& q = near[k];
     if (!(q.squared_distance > 0)) continue;
     const Eigen::Vector3d d = index.points()[q.index] - at;
     const double w = std::exp(-q.squared_distance / (2 * width * width));

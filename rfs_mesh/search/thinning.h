@@ -1,9 +1,10 @@
 /// Ever sparser, evenly spread subsets of a cloud, each inside the one before.
 ///
 /// A thinning keeps a maximal independent set of the graph of the k nearest neighbours (Luby 1986, with the
-/// sum of squared distances to them as the priority, ties by index): no two kept points are neighbours, and
-/// every other one has a kept neighbour. It depends on distances alone, so it turns with the cloud and
-/// does not know the order of the points. Thread safe: no state is kept.
+/// sum of squared distances to them as the priority, ties by index, and the order mixed where it takes too
+/// many rounds): no two kept points are neighbours, and every other one has a kept neighbour. It depends on
+/// distances alone, so it turns with the cloud and does not know the order of the points. Thread safe: no
+/// state is kept.
 #pragma once
 
 #include <functional>

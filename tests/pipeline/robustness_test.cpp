@@ -132,7 +132,7 @@ const HardCloud kHardClouds[] = {
      }},
     {"many_identical",
      [] {
-       return Hard{Positions(test::kSanitized ? 5000 : 50000, Vector3d(1, 2, 3)), true};
+       return Hard{Positions(test::kSanitized ? 50000 : 500000, Vector3d(1, 2, 3)), true};
      }},
     {"collinear",
      [] {

@@ -135,8 +135,8 @@ void Features::fill(std::size_t i, Row& row, Surroundings& near) const {
        radius},
       seen);
   // A flat sheet has about one point in a square spacing; the weights over a disc of radius r sum to a third
-  // of its area.
-  const float flat = dense * dense;
+  // of its area. Of such points one in `stride` is seen.
+  const float flat = dense * dense / float(near.stride());
   write_residuals(seen.close, to);
   write_residuals(seen.wide, to);
   write_heights(seen.inner, kInner * kInner * flat, to);

@@ -89,8 +89,8 @@ class Features {
   /// For a thread that goes from point to point.
   Surroundings start() const { return {field_, packed_}; }
 
-  /// O(points within 6.5 s), fastest from point to point along a Morton curve. The last bits depend on the
-  /// points that `near` was with before.
+  /// O(points within 6.5 s, at most Surroundings::kMost), fastest from point to point along a Morton curve.
+  /// The last bits depend on the points that `near` was with before.
   void fill(std::size_t i, Row& row, Surroundings& near) const;
 
  private:

@@ -23,16 +23,20 @@ struct Packed {
 class Surroundings {
  public:
   static constexpr std::size_t kLanes = 8;
+  static constexpr std::size_t kMost = 8192;
   using Column = std::vector<float>;
 
   Surroundings(const HeightField& field, const std::vector<Packed>& packed)
       : field_(field), packed_(packed) {}
 
-  /// Takes what is within `radius` of `centre`, world units, and more.
+  /// Takes what is within `radius` of `centre`, world units, and more; at most kMost points, evenly over the
+  /// tree.
   void move_to(const Eigen::Vector3d& centre, double radius);
 
   /// A multiple of kLanes; the last ones may stand for no point and are far away.
   std::size_t size() const { return residual.size(); }
+  /// One in so many of the points within the radius is here: in dense places a part of them says as much.
+  std::size_t stride() const { return stride_; }
   /// Where the guides are counted from.
   const Eigen::Vector3d& origin() const { return centre_; }
 
@@ -44,6 +48,7 @@ class Surroundings {
   const std::vector<Packed>& packed_;
   Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();
   double reach_ = -1;
+  std::size_t stride_ = 1;
   std::vector<rfs_mesh::Neighbor> near_;
 };
 

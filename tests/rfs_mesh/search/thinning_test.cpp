@@ -29,6 +29,36 @@ TEST(Thinning, OfASubsetIsTheSameWhereverTheNearestComeFrom) {
   EXPECT_EQ(thin(points, {4}, {}), std::vector<Index>{4});
 }
 
+/// Whether no two that are kept are neighbours, and every other one has a kept neighbour.
+bool is_maximal_and_independent(const std::vector<Index>& kept, const NeighborTable& near) {
+  const std::set<Index> in(kept.begin(), kept.end());
+  std::vector<char> reached(near.size());
+  for (Index i = 0; i < near.size(); ++i)
+    for (const Index j : near[i]) {
+      if (in.count(i) == 1 && in.count(j) == 1) return false;
+      if (in.count(i) == 1) reached[j] = 1;
+      if (in.count(j) == 1) reached[i] = 1;
+    }
+  for (Index i = 0; i < near.size(); ++i)
+    if ((reached[i] != 0) == (in.count(i) == 1)) return false;
+  return true;
+}
+
+// Points at equal distances tie, and by their order one of a row would be settled in each round.
+TEST(Thinning, OfRegularPointsTakesFewRounds) {
+  constexpr int kSide = 512;
+  Positions line, grid;
+  for (int i = 0; i < kSide * kSide; ++i) {
+    line.emplace_back(i, 0, 0);
+    grid.emplace_back(i % kSide, i / kSide, 0);
+  }
+  for (const Positions& points : {line, grid}) {
+    const NeighborTable near = SpatialIndex(points, {}).nearest(3, {});
+    const std::vector<Index> kept = thin_all(points, near, {});
+    EXPECT_TRUE(is_maximal_and_independent(kept, near));
+  }
+}
+
 class ThinningBy : public testing::TestWithParam<std::size_t> {};
 
 TEST_P(ThinningBy, KeepsAnIndependentSetThatEveryPointIsNearTo) {

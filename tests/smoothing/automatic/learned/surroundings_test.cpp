@@ -19,8 +19,8 @@ constexpr double kRadius = 0.4;
 /// The points of a sphere, and what neighbours know of them.
 class SurroundingsTest : public testing::Test {
  protected:
-  SurroundingsTest()
-      : guide_(clouds::sample(*clouds::make_sphere(1), 3000, 7)),
+  explicit SurroundingsTest(std::size_t points = 3000)
+      : guide_(clouds::sample(*clouds::make_sphere(1), points, 7)),
         field_(guide_, {guide_, {}}, rfs_mesh::SpatialIndex(guide_, {}).nearest(HeightField::kNear, {}),
                guide_, {}, {}) {
     for (std::size_t i = 0; i < guide_.size(); ++i)
@@ -95,6 +95,25 @@ TEST_F(SurroundingsTest, WhatIsSeenIsTheSameFromWhereverTheyWereTaken) {
   const auto a = sums(fresh), b = sums(moved);
   for (std::size_t k = 0; k < a.size(); ++k) EXPECT_NEAR(a[k], b[k], 1e-4) << k;
   EXPECT_GT(a[1], 5);
+}
+
+class DenseSurroundings : public SurroundingsTest {
+ protected:
+  static constexpr std::size_t kTimes = 10;
+  DenseSurroundings() : SurroundingsTest(kTimes * Surroundings::kMost) {}
+};
+
+TEST_F(DenseSurroundings, HoldOneInSeveralPointsEvenly) {
+  Surroundings around(field_, packed_);
+  around.move_to(guide_[0], 2);  // all of the sphere
+  EXPECT_EQ(around.stride(), kTimes);
+  EXPECT_EQ(around.size(), Surroundings::kMost);
+  std::size_t upper = 0;
+  for (std::size_t k = 0; k < around.size(); ++k)
+    upper += around.origin().z() + double(around.guide[2][k]) > 0 ? 1 : 0;
+  EXPECT_NEAR(double(upper), 0.5 * double(around.size()), 0.02 * double(around.size()));
+  around.move_to(2 * guide_[0], 0.2);
+  EXPECT_EQ(around.stride(), 1U) << "not what an earlier place had";
 }
 
 }  // namespace
