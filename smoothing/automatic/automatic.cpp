@@ -119,6 +119,16 @@ Residuals residuals_of(const HeightField& field, const std::vector<float>& heigh
   return left;
 }
 
+/// Of the places that see several sheets those where thin walls are looked for: not around points that stay,
+/// nor where they share their noise.
+std::vector<Index> may_be_walls(std::vector<Index> places, const rfs_mesh::NoiseField& noise) {
+  const auto is_none = [&](Index i) {
+    return rfs_mesh::stays(noise.local[i], noise.sigma) || noise.as_one_near(i) > 1;
+  };
+  places.erase(std::remove_if(places.begin(), places.end(), is_none), places.end());
+  return places;
+}
+
 /// Where a point goes whose smoothed height is `height`.
 Eigen::Vector3d place_at(const HeightField& field, std::size_t i, const Eigen::Vector3d& from, float height) {
   // On lines the fairing moved guide points beside their line, too: what counts is the height alone.
@@ -160,11 +170,9 @@ AutomaticResult automatic_smoothing(const AutomaticTask& task, AutomaticReport& 
     const Eigen::Vector3d move = place_at(field, i, from, heights.height[i]) - from;
     smooth[i] = allowed(i, move) ? from + move : from;
   });
-  if (own_noise) {
-    field.ready_for_searches(context);
-    part_thin_walls(field, data, heights.several, heights.members_seeing, noise, smooth, whole.thin_walls,
-                    context);
-  }
+  if (own_noise)
+    part_thin_walls(field, data, may_be_walls(std::move(heights.several), noise), heights.members_seeing,
+                    noise, smooth, whole.thin_walls, context);
   if (task.learned) {
     const Smoothed smoothed{heights.told, heights.own, one_sheet, smooth,
                             hidden.there() ? hidden.variance : 1};

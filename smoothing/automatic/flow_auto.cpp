@@ -61,12 +61,15 @@ std::optional<NotSmoothed> why_not(std::size_t points, double strength, double s
   return {};
 }
 
-/// Takes back what a move has beyond kNoiseReach. `local`: the noise around each point times `strength`;
-/// `tail_times` of it where there are tails.
-void limit(const Positions& before, const std::vector<double>& local, double strength, double tail_times,
+/// Takes back what a move has beyond kNoiseReach, and all of it of points that stay. \param noise times
+/// `strength`; where there are tails, `tail_times` of it.
+void limit(const Positions& before, const rfs_mesh::NoiseField& noise, double strength, double tail_times,
            Positions& points, const Context& context) {
   for_each_index(context, points.size(), [&](std::size_t i) {
-    const double most = rfs_mesh::kNoiseReach * std::max(1.0, 1 / strength) * tail_times * local[i];
+    const double most =
+        rfs_mesh::stays(noise.local[i], noise.sigma)
+            ? 0
+            : rfs_mesh::kNoiseReach * std::max(1.0, 1 / strength) * tail_times * noise.local[i];
     const Eigen::Vector3d move = points[i] - before[i];
     if (const double length = move.norm(); length > most) points[i] = before[i] + most / length * move;
   });
@@ -136,7 +139,7 @@ std::optional<AutomaticReport> smooth_automatically(Mesh& mesh, const AutomaticO
       slide_back(mesh.positions, before, std::move(near), context);
     }
   }
-  limit(before, noise.local, options.strength, report.tail_times, mesh.positions, context);
+  limit(before, noise, options.strength, report.tail_times, mesh.positions, context);
   return report;
 }
 

@@ -137,7 +137,7 @@ class Walls {
 
 }  // namespace
 
-void part_thin_walls(const HeightField& field, const Positions& data, const std::vector<Index>& seeds,
+void part_thin_walls(HeightField& field, const Positions& data, const std::vector<Index>& seeds,
                      std::size_t members, const rfs_mesh::NoiseField& noise, Positions& smooth,
                      std::optional<bool>& parted, const Context& context) {
   if (data.size() != field.size() || smooth.size() != field.size() || noise.local.size() != field.size())
@@ -146,6 +146,7 @@ void part_thin_walls(const HeightField& field, const Positions& data, const std:
   const bool enough = parted ? *parted : most >= kLeastSheetShare * double(field.size());
   if (!parted) parted = false;
   if (seeds.empty() || !enough) return;
+  field.ready_for_searches(context);
   const bool known = *parted;
   std::vector<Mean> means(field.size());
   for (std::size_t wider = 1; wider <= kWidestLook; wider *= 2) {

@@ -24,7 +24,7 @@ namespace rfsmooth::smoothing {
 /// make the field too high. O(s m) for s seeds of m members, 20 bytes for each member in a wall. Parallel,
 /// the same bits for any number of threads. \param parted whether there are such walls: taken if it is there,
 /// else found and entered.
-void part_thin_walls(const HeightField& field, const Positions& data, const std::vector<Index>& seeds,
+void part_thin_walls(HeightField& field, const Positions& data, const std::vector<Index>& seeds,
                      std::size_t members, const rfs_mesh::NoiseField& noise, Positions& smooth,
                      std::optional<bool>& parted, const Context& context);
 

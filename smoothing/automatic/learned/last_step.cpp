@@ -38,7 +38,7 @@ std::vector<Index> asked_for(const std::vector<ScalesSay>& scales, const rfs_mes
   std::vector<Index> points;
   if (is_shared(noise) || is_of_steps(noise) || noise.sigma < kLeastNoise * noise.spacing) return points;
   for (std::size_t i = 0; i < scales.size(); ++i)
-    if (contradiction(scales[i]) > 0) points.push_back(Index(i));
+    if (contradiction(scales[i]) > 0 && !(noise.as_one_near(i) > 1)) points.push_back(Index(i));
   return points;
 }
 

@@ -69,7 +69,8 @@ Left Mixture::average(std::vector<float>& height, std::vector<float>& own, std::
     const CandidateWeights sum =
         sum_over(context, n, CandidateWeights(CandidateWeights::Zero(rows)),
                  [&](std::size_t i) { return CandidateWeights(double(say[i]) * weights(i, shares)); });
-    shares = sum.max(1) / votes;  // a scale that no point wants may still be right for one
+    // A scale that no point wants may still be right for one.
+    shares = sum.max(1) / std::max(1.0, votes);
   }
   found.assign(shares.data(), shares.data() + rows);
   height.resize(n);

@@ -38,10 +38,13 @@ std::vector<float> heights(const HeightField& field, const Context& context) {
   return all;
 }
 
-/// (sigma / sigma_i)^2, 0 of points that stay; empty if the noise is the same everywhere.
+/// (sigma / sigma_i)^2, 0 of points that stay; empty if it is the same everywhere and none stays.
 std::vector<float> precisions(const rfs_mesh::NoiseField& noise, const Context& context) {
   const std::vector<double>& local = noise.local;
-  if (std::all_of(local.begin(), local.end(), [&](double s) { return s == local.front(); })) return {};
+  const double first = local.front();
+  if (!rfs_mesh::stays(first, noise.sigma) &&
+      std::all_of(local.begin(), local.end(), [&](double s) { return s == first; }))
+    return {};
   std::vector<float> precision(local.size());
   for_each_index(context, local.size(), [&](std::size_t i) {
     const double share = noise.sigma / local[i];

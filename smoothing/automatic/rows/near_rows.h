@@ -32,10 +32,13 @@ class NearRows {
 
   std::size_t size() const { return size_; }
   std::size_t width() const { return width_; }
-  Row operator[](std::size_t i) const {
+  Row operator[](std::size_t i) const { return first_of(i, width_); }
+
+  /// The first k of row i, all if there are fewer.
+  Row first_of(std::size_t i, std::size_t k) const {
     Row row;
-    row.count = width_;
-    for (std::size_t k = 0; k < width_; ++k) row.items[k] = items_(i, i * width_ + k);
+    row.count = std::min(k, width_);
+    for (std::size_t j = 0; j < row.count; ++j) row.items[j] = items_(i, i * width_ + j);
     return row;
   }
 

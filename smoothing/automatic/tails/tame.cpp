@@ -103,6 +103,7 @@ Tails tame(const HeightField& field, const MixedScales& pass, const Mesh& mesh,
            const Context& context) {
   // Terraces stand out as tails do, and so does what lines of points pass over.
   if (is_of_steps(noise) || noise.on_lines) return {};
+  if (whole && !(whole->share > 0)) return Tails(*whole);
   constexpr float kMostItsOwn = 0.8F;
   constexpr double kByChance = 1.6;  // far points together: tails have 0.7 to 1.1 in ten thousand points
   constexpr double kGroups = 5;      // the same, off wide patches, too: of shape, or noise that points share

@@ -127,6 +127,33 @@ TEST(Automatic, ALoudPartOfACloudThatIsMostlyDetailIsSmoothed) {
   EXPECT_EQ(moved(0.1), noisy.positions);
 }
 
+TEST(Automatic, PointsWithoutNoiseBesideLoudOnesKeepTheirBits) {
+  const Mesh clean = support::icosphere(5);
+  const double h = spacing(clean.positions);
+  Mesh noisy = clean;
+  support::add_noise(noisy, 0.5 * h, 7);
+  const auto calm = [&](std::size_t i) { return clean.positions[i].z() < 0.3; };
+  for (std::size_t i = 0; i < noisy.positions.size(); ++i)
+    if (calm(i)) noisy.positions[i] += 0.999 * (clean.positions[i] - noisy.positions[i]);
+  Statistics whole;
+  whole.noise = NoiseModel();
+  whole.noise->spacing = h;
+  whole.noise->sigma = 0.5 * h;
+  whole.noise->sites = clean.positions;
+  for (std::size_t i = 0; i < clean.positions.size(); ++i)
+    whole.noise->at_sites.push_back((calm(i) ? rfs_mesh::kStays : 1) * 0.5 * h);
+  Mesh mesh = noisy;
+  smooth_automatically(mesh, {}, {}, Connectivity::kept, &whole);
+  std::size_t moved = 0;
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+    if (clean.positions[i].z() < 0.2) {
+      ASSERT_EQ(mesh.positions[i], noisy.positions[i]) << i;
+    }
+    moved += mesh.positions[i] == noisy.positions[i] ? 0 : 1;
+  }
+  EXPECT_GT(moved, mesh.positions.size() / 4);
+}
+
 TEST(Automatic, NoNoiseIsTheIdentity) {
   const Mesh mesh = support::icosphere(4);
   Mesh smooth = mesh;

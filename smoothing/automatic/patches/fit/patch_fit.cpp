@@ -61,9 +61,8 @@ Eigen::Vector3d PatchFit::axis_at(Index seed) const {
   const std::vector<HeightField::Local>& local = field_.local();
   const Eigen::Vector3f own = local[seed].normal;
   Eigen::Vector3f sum_of_normals = 2 * own;
-  const auto row = field_.neighbors()[seed];
-  for (std::size_t k = 0; k < std::min(row.size(), kAxis - 1); ++k)
-    if (const Eigen::Vector3f& n = local[row[k]].normal; same_sheet(n.dot(own)) > 0) sum_of_normals += n;
+  for (const Index j : field_.neighbors().first_of(seed, kAxis - 1))
+    if (const Eigen::Vector3f& n = local[j].normal; same_sheet(n.dot(own)) > 0) sum_of_normals += n;
   return sum_of_normals.cast<double>().normalized();
 }
 
