@@ -49,7 +49,8 @@ class Wings {
     count_ += std::size_t(wanted);
   }
 
-  /// Calls `visit(other end, first face, count)` for every edge with more than two faces, in ascending order.
+  /// Calls `visit(other end, first face, count)` for every edge with more than two faces, in the same order
+  /// each time.
   template <class Visit>
   void for_each_crowded(Visit&& visit) {
     if (many_) return for_each_crowded_sorted(visit);

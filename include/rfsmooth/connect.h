@@ -126,7 +126,7 @@ struct UmbrellaOptions {
   double fill = 1.4;
   int fewest = 6;         ///< a regular surface mesh has six neighbours,
   int most = 14;          ///< and twice as many lie within two rings' half way
-  double rib_angle = 30;  ///< directions nearer than this to a taken one are left out
+  double rib_angle = 30;  ///< directions nearer than this to a taken one are left out; ten are the most
   double face_angle =
       120;  ///< consecutive ribs further apart span no face: a rim, or a hole for others to close
   double quality = 0.35;  ///< Bank & Smith quality below which a face is deleted (1 = equilateral)

@@ -33,15 +33,6 @@ class NearestOthers {
 
 }  // namespace
 
-LocalSurface surface_at_centre(const Quadric& q) {
-  LocalSurface surface{q.n, q.centre};
-  if (q.radius == 0) return surface;
-  surface.normal = q.normal(0, 0);
-  surface.shadow = q.centre + (q.radius * q.c[0] * q.n.dot(surface.normal)) * surface.normal;
-  surface.residual = q.residual;
-  return surface;
-}
-
 std::vector<LocalSurface> local_surfaces(const Positions& points, const NeighborTable& near,
                                          const Context& context) {
   std::vector<LocalSurface> surfaces(points.size());
@@ -107,9 +98,8 @@ NoiseScale seen_at(const SpatialIndex& index, std::size_t m, const Context& cont
       radii[s] = row.empty() ? 0 : (points[row.back()] - points[i]).norm();
     }
   });
-  const auto quartile = residuals.begin() + std::ptrdiff_t(samples / 4);
-  std::nth_element(residuals.begin(), quartile, residuals.end());
-  return {*quartile / quartile_of_deviation(std::max(1.0, kEffective * double(m + 1) - 6)), m, median(radii)};
+  return {quantile(residuals, 0.25) / quartile_of_deviation(std::max(1.0, kEffective * double(m + 1) - 6)), m,
+          median(radii)};
 }
 
 }  // namespace

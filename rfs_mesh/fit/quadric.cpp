@@ -233,4 +233,13 @@ Quadric fit_quadric(const Positions& points, const Vector3d& p, const Index* nei
   return q;
 }
 
+LocalSurface surface_at_centre(const Quadric& q) {
+  LocalSurface surface{q.n, q.centre};
+  if (q.radius == 0) return surface;
+  surface.normal = q.normal(0, 0);
+  surface.shadow = q.centre + (q.radius * q.c[0] * q.n.dot(surface.normal)) * surface.normal;
+  surface.residual = q.residual;
+  return surface;
+}
+
 }  // namespace rfsmooth::rfs_mesh

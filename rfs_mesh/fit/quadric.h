@@ -7,7 +7,9 @@
 
 #include <Eigen/Core>
 
-#include "rfs_mesh/fit/local_surface.h"
+#include <rfsmooth/connect.h>
+
+#include "rfs_mesh/points.h"
 
 namespace rfsmooth::rfs_mesh {
 

@@ -86,7 +86,8 @@ class SharedQuadrics {
     const auto members = std::max(kFewestInGroup, std::size_t(kPointsPerSeed * double(scale.neighbours)));
     const Adjacency groups = group_around_kept(index.points(), near, members, context);
     quadrics_.resize(groups.size());
-    for_blocks(context, groups.size(), 16, [&](std::size_t begin, std::size_t end) {
+    // The first search of a fitter is the dearest: it guesses no radius.
+    for_blocks(context, groups.size(), 64, [&](std::size_t begin, std::size_t end) {
       Fitter fitter(index, scale, noise, wider, least);
       for (std::size_t g = begin; g < end; ++g) {
         for (const Index i : groups[g]) group_[i] = Index(g);

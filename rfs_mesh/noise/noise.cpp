@@ -63,8 +63,8 @@ class SitesAround {
     sites_.within_unsorted(centre, kRounding * reach, around_);
   }
 
-  /// The mean of the values at the sites nearest to one of the points.
-  double mean(const Eigen::Vector3d& p, const std::vector<double>& values) {
+  /// Finds the sites nearest to one of the points.
+  void find(const Eigen::Vector3d& p) {
     if (around_.size() > kMost) {
       sites_.nearest(p, int(kBlend), near_);
     } else {
@@ -72,6 +72,10 @@ class SitesAround {
       for (Neighbor& q : around_) q.squared_distance = squared_distance(p, sites_.points()[q.index]);
       std::partial_sort_copy(around_.begin(), around_.end(), near_.begin(), near_.end());
     }
+  }
+
+  /// The mean of the values at those.
+  double mean(const std::vector<double>& values) const {
     double sum = 0;
     for (const Neighbor& q : near_) sum += values[q.index];
     return sum / double(near_.size());
@@ -83,20 +87,36 @@ class SitesAround {
   std::vector<Neighbor> around_, near_;
 };
 
-/// To every point the mean of the values at the sites nearest to it.
-std::vector<double> blend(const SpatialIndex& sites, const std::vector<double>& values,
-                          const Positions& points, const Context& context) {
-  std::vector<double> local(points.size(), values.front());
-  if (std::all_of(values.begin(), values.end(), [&](double v) { return v == values.front(); })) return local;
+/// Whether all have the same value.
+bool is_constant(const std::vector<double>& values, double value) {
+  return std::all_of(values.begin(), values.end(), [&](double v) { return v == value; });
+}
+
+/// Values of sites, none or one of each, and where those of points go.
+struct Blended {
+  const std::vector<double>& at_sites;
+  std::vector<double>& local;
+};
+
+/// To every point the means of the values at the sites nearest to it, which are searched once for all fields.
+void blend(const SpatialIndex& sites, const std::vector<Blended>& fields, const Positions& points,
+           const Context& context) {
+  std::vector<Blended> varying;
+  for (const Blended& field : fields) {
+    if (field.at_sites.empty()) continue;
+    field.local.assign(points.size(), field.at_sites.front());
+    if (!is_constant(field.at_sites, field.at_sites.front())) varying.push_back(field);
+  }
+  if (varying.empty()) return;
   constexpr std::size_t kTogether = 64;  // along a Morton curve they lie together
   for_blocks(context, points.size(), 16 * kTogether, [&](std::size_t begin, std::size_t end) {
     SitesAround around(sites);
     for (std::size_t i = begin; i < end; ++i) {
       if ((i - begin) % kTogether == 0) around.prepare(points.data() + i, std::min(kTogether, end - i));
-      local[i] = around.mean(points[i], values);
+      around.find(points[i]);
+      for (const Blended& field : varying) field.local[i] = around.mean(field.at_sites);
     }
   });
-  return local;
 }
 
 /// All hear less by as much as `heard` is above `most`, but no less than they make sure of.
@@ -230,13 +250,10 @@ void measure(const SpatialIndex& index, const DepthSteps* steps, double rounding
   if (std::find(sites.told.begin(), sites.told.end(), 1) != sites.told.end())
     noise.told_at_sites.assign(sites.told.begin(), sites.told.end());
   for (double& shared : sites.shared) shared = std::max(shared, noise.shared);
-  const auto even = [](const std::vector<double>& values, double value) {
-    return std::all_of(values.begin(), values.end(), [&](double v) { return v == value; });
-  };
-  if (!even(sites.shared, noise.shared)) noise.shared_at_sites = std::move(sites.shared);
-  if (!even(spacing, noise.spacing)) {
+  if (!is_constant(sites.shared, noise.shared)) noise.shared_at_sites = std::move(sites.shared);
+  if (!is_constant(spacing, noise.spacing)) {
     noise.spacing_at_sites = std::move(spacing);
-  } else if (even(noise.at_sites, noise.at_sites.front()) && noise.shared_at_sites.empty()) {
+  } else if (is_constant(noise.at_sites, noise.at_sites.front()) && noise.shared_at_sites.empty()) {
     noise.sites.resize(1);
     noise.at_sites.resize(1);
     noise.told_at_sites.clear();
@@ -285,12 +302,12 @@ NoiseField spread_noise(NoiseModel model, const Positions& points, const Context
     return noise;
   }
   const SpatialIndex sites(noise.sites, context);
-  noise.local = blend(sites, noise.at_sites, points, context);
-  if (!noise.spacing_at_sites.empty())
-    noise.local_spacing = blend(sites, noise.spacing_at_sites, points, context);
-  if (!noise.shared_at_sites.empty())
-    noise.local_shared = blend(sites, noise.shared_at_sites, points, context);
-  if (!noise.told_at_sites.empty()) noise.local_told = blend(sites, noise.told_at_sites, points, context);
+  blend(sites,
+        {{noise.at_sites, noise.local},
+         {noise.spacing_at_sites, noise.local_spacing},
+         {noise.shared_at_sites, noise.local_shared},
+         {noise.told_at_sites, noise.local_told}},
+        points, context);
   return noise;
 }
 
@@ -313,7 +330,9 @@ std::vector<double> measure_spacing(const SpatialIndex& index, const Context& co
     }
   });
   const SpatialIndex sites(at, context);
-  return blend(sites, spacing, index.points(), context);
+  std::vector<double> local;
+  blend(sites, {{spacing, local}}, index.points(), context);
+  return local;
 }
 
 }  // namespace rfsmooth::rfs_mesh
