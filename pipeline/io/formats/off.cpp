@@ -176,9 +176,9 @@ std::string off_header(const Cloud& cloud) {
 void write_off(const Cloud& cloud, Sink& sink, const Context& context) {
   const std::string header = off_header(cloud);
   sink.write(header == cloud.original_canonical ? cloud.original_header : header);
-  write_text_rows(cloud.points(), sink, context);
-  if (const Table* faces = cloud.element("face")) write_text_rows(*faces, sink, context);
-  sink.write(cloud.tail);
+  std::vector<const Table*> tables = {&cloud.points()};
+  if (const Table* faces = cloud.element("face")) tables.push_back(faces);
+  write_text_body(tables, cloud.tail, sink, context);
 }
 
 }  // namespace rfsmooth::pipeline::io

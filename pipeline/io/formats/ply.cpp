@@ -69,14 +69,17 @@ Cloud read_ply(const Source& source, const Context& context) {
 void write_ply(const Cloud& cloud, Encoding encoding, Sink& sink, const Context& context) {
   const std::string header = ply_header(cloud, encoding);
   sink.write(header == cloud.original_canonical ? cloud.original_header : header);
+  const std::string_view tail = encoding == cloud.encoding ? cloud.tail : std::string_view();
+  if (encoding == Encoding::ascii) {
+    std::vector<const Table*> tables;
+    for (const Table& table : cloud.elements) tables.push_back(&table);
+    return write_text_body(tables, tail, sink, context);
+  }
   for (const Table& table : cloud.elements) {
     context.check_stop();
-    if (encoding == Encoding::ascii)
-      write_text_rows(table, sink, context);
-    else
-      write_binary_rows(table, encoding == Encoding::binary_big_endian, sink, context);
+    write_binary_rows(table, encoding == Encoding::binary_big_endian, sink, context);
   }
-  if (encoding == cloud.encoding) sink.write(cloud.tail);
+  sink.write(tail);
 }
 
 }  // namespace rfsmooth::pipeline::io

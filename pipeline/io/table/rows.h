@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string_view>
+#include <vector>
 
 #include "pipeline/io/stream/sink.h"
 #include "pipeline/io/stream/source.h"
@@ -57,5 +58,9 @@ void read_text_rows(Table& table, TextCursor& cursor, const Context& context);
 void write_binary_rows(const Table& table, bool big_endian, Sink& sink, const Context& context);
 /// Writes the rows as text; a binary table is converted on the way.
 void write_text_rows(const Table& table, Sink& sink, const Context& context);
+/// Writes tables as text, one behind the other, and then `tail`. The last line of a file may lack its line
+/// end; it gets one where something follows it.
+void write_text_body(const std::vector<const Table*>& tables, std::string_view tail, Sink& sink,
+                     const Context& context);
 
 }  // namespace rfsmooth::pipeline::io

@@ -191,4 +191,22 @@ void write_text_rows(const Table& table, Sink& sink, const Context& context) {
   sink.write({table.data.data() + from, table.data.size() - from});
 }
 
+void write_text_body(const std::vector<const Table*>& tables, std::string_view tail, Sink& sink,
+                     const Context& context) {
+  bool open = false;  // whether the last line lacks its line end
+  const auto close_line = [&] {
+    if (open) sink.write("\n");
+    open = false;
+  };
+  for (const Table* table : tables) {
+    context.check_stop();
+    if (table->count == 0 && table->interludes.empty()) continue;
+    close_line();
+    write_text_rows(*table, sink, context);
+    open = table->text && !table->data.empty() && table->data.back() != '\n';
+  }
+  if (!tail.empty()) close_line();
+  sink.write(tail);
+}
+
 }  // namespace rfsmooth::pipeline::io

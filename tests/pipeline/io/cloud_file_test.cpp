@@ -92,4 +92,43 @@ TEST(CloudFile, AFileOnDiskIsReplacedOnlyWhenAskedTo) {
   EXPECT_EQ(CloudFile::read(path).error().code, ErrorCode::input_unreadable);
 }
 
+// Text as programs write it that put line ends between lines: behind the last there is none.
+const char* const kOpenPly =
+    "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+    "element face 0\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n7 8 9";
+const char* const kOpenPcd =
+    "VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 3\nHEIGHT 1\n"
+    "VIEWPOINT 0 0 0 1 0 0 0\nPOINTS 3\nDATA ascii\n0 0 0\n1 0 0\n7 8 9";
+const char* const kOpenOff = "OFF\n3 0 0\n0 0 0\n1 0 0\n7 8 9";
+const char* const kOpenFacesFirst =
+    "ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int vertex_indices\nelement vertex 3\n"
+    "property float x\nproperty float y\nproperty float z\nend_header\n3 0 1 2\n0 0 0\n1 0 0\n7 8 9";
+
+TEST(CloudFile, ALastLineWithoutItsEndGetsOneWhereFacesFollow) {
+  const std::vector<Face> faces = {{0, 1, 2}};
+  for (const char* text : {kOpenPly, kOpenPcd, kOpenOff, kOpenFacesFirst}) {
+    const auto file = CloudFile::parse(text, "open").value();
+    EXPECT_EQ(file.serialize().value(), text);
+    CloudFile mesh = file;
+    mesh.set_faces(faces);
+    for (const Format format : {Format::ply, Format::off}) {
+      WriteOptions options;
+      options.format = format;
+      const std::string written = mesh.serialize(options).value();
+      const auto back = CloudFile::parse(written, "written");
+      ASSERT_TRUE(back.ok()) << back.error().message << "\n" << written;
+      EXPECT_EQ(back.value().positions(), file.positions()) << written;
+      EXPECT_EQ(back.value().faces().value(), faces) << written;
+    }
+  }
+}
+
+TEST(CloudFile, ALastLineWithoutItsEndMayBeTakenSeveralTimes) {
+  auto file = CloudFile::parse("0 0 0\n7 8 9", "open.xyz").value();
+  file.select(std::vector<std::size_t>(20, 1));
+  const auto back = CloudFile::parse(file.serialize().value(), "written.xyz");
+  ASSERT_TRUE(back.ok()) << back.error().message;
+  EXPECT_EQ(back.value().size(), 20U);
+}
+
 }  // namespace
