@@ -88,7 +88,7 @@ struct Job {
 
 /// How to plan.
 struct PlanOptions {
-  std::uint64_t tile_points = 5'000'000;    ///< most points of a tile, without what lies around it
+  std::uint64_t tile_points = 5'000'000;    ///< most places of a tile, about; rows at one place count once
   std::uint64_t sample_points = 1'000'000;  ///< of all tiles together, that are smoothed to be known
 };
 

@@ -162,6 +162,32 @@ TEST_F(Tiles, RowsAtOnePlaceTakeNoMemoryAndStayTogether) {
   EXPECT_LT(after, before / 10);
 }
 
+// A scan merged with copies of itself: more rows than fit, and fewer places than two tiles have.
+TEST_F(Tiles, CopiesOfAScanGoInTilesAndMoveTogether) {
+  constexpr std::size_t kCopies = 5;
+  const BinaryPly sheet = noisy_sheet(450, kWide);
+  BinaryPly merged = sheet;
+  for (std::size_t k = 1; k < kCopies; ++k)
+    merged.xyz.insert(merged.xyz.end(), sheet.xyz.begin(), sheet.xyz.end());
+  put("in.ply", merged.bytes());
+  const Ran ran = run({"denoise", "--memory", kLittle, "in.ply", "out.ply"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  EXPECT_THAT(ran.err, HasSubstr("in tiles"));
+  const std::string out = take("out.ply");
+  const auto row = [&](std::size_t i) {
+    std::array<float, 3> xyz{};
+    std::memcpy(xyz.data(), out.data() + merged.header().size() + i * BinaryPly::kRow, sizeof xyz);
+    return xyz;
+  };
+  double before = 0, after = 0;
+  for (std::size_t i = 0; i < merged.size(); ++i) {
+    ASSERT_EQ(row(i), row(i % sheet.size())) << i;
+    before += double(merged.xyz[3 * i + 2]) * double(merged.xyz[3 * i + 2]);
+    after += double(row(i)[2]) * double(row(i)[2]);
+  }
+  EXPECT_LT(after, before / 10);
+}
+
 TEST_F(Tiles, WhatCannotGoInTilesIsRefusedWhereTheMemoryIsLess) {
   put("in.ply", noisy_sheet(kTooLong, kWide).bytes());
   using pipeline::io::Encoding;
