@@ -9,6 +9,7 @@
 
 #include "base/fail.h"
 #include "base/parallel.h"
+#include "pipeline/io/formats/header_lines.h"
 
 namespace rfsmooth::pipeline::io {
 namespace {
@@ -145,6 +146,10 @@ void set_field(Cloud& cloud, const std::string& name, Scalar type, const std::ve
 
 void check_field(const Cloud& cloud, const std::string& name, Scalar type) {
   const auto present = find_field(cloud, name);
+  if (!present && (name.empty() || one_word(name) != name))
+    fail(ErrorCode::usage,
+         "{} cannot be the name of a new field: it takes one word, without blanks and control characters",
+         in_quotes(name));
   if (!present) return;
   const Field& field = cloud.points().fields[*present];
   if (!field.is_plain())

@@ -105,8 +105,9 @@ std::vector<double> field_values(const Cloud& cloud, std::size_t field, const Co
 
 /// Sets a field of the points (displacement, outlier, normals):
 ///
-/// - if there is none of that name, it is appended behind the points' last field, as `type`; every other byte
-///   stays.
+/// - if there is none of that name, which is one word, it is appended behind the points' last field, as
+/// `type`;
+///   every other byte stays.
 /// - if there is one (the first of several), its values are replaced in place, in its own type.
 ///
 /// \throw Failure (usage) if that one cannot take the values; `check_field` tells in advance.
@@ -114,7 +115,8 @@ void set_field(Cloud& cloud, const std::string& name, Scalar type, const std::ve
                const Context& context = {});
 
 /// Refuses what `set_field` cannot do: the field of that name is a list or an array, or an integer field
-/// where `type` is a float. \throw Failure (usage) naming field and type.
+/// where `type` is a float, or there is none and the name is not one word. \throw Failure (usage) naming
+/// field and type.
 void check_field(const Cloud& cloud, const std::string& name, Scalar type);
 
 /// Keeps the points `rows`, in that order. Unless these are all points in order, the result is not organised.

@@ -131,4 +131,18 @@ TEST(CloudFile, ALastLineWithoutItsEndMayBeTakenSeveralTimes) {
   EXPECT_EQ(back.value().size(), 20U);
 }
 
+TEST(CloudFile, ANewFieldHasANameOfOneWord) {
+  auto file = CloudFile::parse(kFile, "mesh.ply").value();
+  for (const char* name : {"", "dist to plane", "a\nelement face 7", "tab\there", "\x7f"}) {
+    const auto done = file.set_field(name, {0, 1, 2, 3});
+    ASSERT_FALSE(done.ok()) << name;
+    EXPECT_EQ(done.error().code, ErrorCode::usage);
+    EXPECT_NE(done.error().message.find("one word"), std::string::npos) << done.error().message;
+  }
+  EXPECT_EQ(file.serialize().value(), kFile);
+  EXPECT_TRUE(file.set_field("H\xc3\xb6he", {0, 1, 2, 3}).ok());
+  EXPECT_EQ(CloudFile::parse(file.serialize().value(), "again.ply").value().field_names().back(),
+            "H\xc3\xb6he");
+}
+
 }  // namespace
