@@ -55,7 +55,9 @@ class CloudFile {
  public:
   /// Reads a file; pipes and devices are read to their end. Errors: input_unreadable, and the message says
   /// the line or byte, what was expected and what was found; out_of_memory; cancelled. Needs memory for one
-  /// copy of the file. O(bytes), as all below.
+  /// copy of the file, and 8 bytes for each row of text or with lists; while it is read up to two copies of
+  /// several large elements of that kind, of what comes through a pipe, and of what compressed points unpack
+  /// to. O(bytes), as all below.
   static Result<CloudFile> read(const std::filesystem::path& path, const ReadOptions& options = {},
                                 const Context& context = {});
   /// Reads a buffer; error messages call it `name`. Errors: as `read`.

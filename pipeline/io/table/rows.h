@@ -16,7 +16,7 @@ struct BinaryCursor {
   const Source& source;
   std::uint64_t offset;  ///< next byte to read
   bool big_endian = false;
-  Bytes held = {};  ///< the file from `held_from` on, once an element with lists needs it
+  Bytes held = {};  ///< the file from `held_from` on, once an element with lists needs it; what is read goes
   std::uint64_t held_from = 0;
 };
 
@@ -32,7 +32,7 @@ void read_binary_rows(Table& table, BinaryCursor& cursor, const Context& context
 struct TextCursor {
   TextCursor(const Source& from, std::uint64_t offset, std::size_t lines_before, const Context& context);
   const Source& source;
-  Bytes all;           ///< the file from the first line of the body on
+  Bytes all;           ///< the file from the first line of the body on; rows that are read may be taken out
   std::size_t at = 0;  ///< next byte of `all`
   std::size_t lines;   ///< lines of the file before `at`
   std::string_view rest() const { return {all.data() + at, all.size() - at}; }

@@ -188,6 +188,22 @@ TEST_F(Tiles, CopiesOfAScanGoInTilesAndMoveTogether) {
   EXPECT_LT(after, before / 10);
 }
 
+// What is refused after reading has taken what reading takes.
+TEST_F(Tiles, TextIsInMemoryOnce) {
+  if (kSanitized) GTEST_SKIP() << "memory is looked at without sanitizers";
+  constexpr int kRows = 200'000, kColumns = 60;
+  std::string text;
+  for (int i = 0; i < kRows; ++i) {
+    text += fmt::format("{} {} 0", i / 400, i % 400);
+    for (int k = 3; k < kColumns; ++k) text += " 1.2345";
+    text += '\n';
+  }
+  put("in.xyz", text);
+  const Ran ran = run({"denoise", "--memory", kLittle, "in.xyz", "out.xyz"});
+  EXPECT_EQ(ran.code, 6) << ran.err;
+  EXPECT_LT(double(ran.peak), 1.7 * double(text.size()));
+}
+
 TEST_F(Tiles, WhatCannotGoInTilesIsRefusedWhereTheMemoryIsLess) {
   put("in.ply", noisy_sheet(kTooLong, kWide).bytes());
   using pipeline::io::Encoding;

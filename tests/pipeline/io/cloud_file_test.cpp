@@ -145,4 +145,36 @@ TEST(CloudFile, ANewFieldHasANameOfOneWord) {
             "H\xc3\xb6he");
 }
 
+/// Elements of 1 to 100 rows, of lists or not: text with comments between its rows, or bytes.
+std::string elements_of(const std::vector<int>& rows, bool text) {
+  std::string header = std::string("ply\nformat ") + (text ? "ascii" : "binary_little_endian") + " 1.0\n",
+              body;
+  for (std::size_t e = 0; e < rows.size(); ++e) {
+    header += "element " + (e == 1 ? "vertex" : "other" + std::to_string(e)) + " " + std::to_string(rows[e]) +
+              "\nproperty uchar x\nproperty uchar y\nproperty uchar z\nproperty list uchar uchar l\n";
+    for (int i = 0; i < rows[e]; ++i) {
+      if (text && i % 7 == 2) body += "# before row " + std::to_string(i) + "\n\n";
+      if (text)
+        body += std::to_string(i) + " 2 3 " + (i % 2 == 0 ? "0\n" : "2 " + std::to_string(e) + " 5\n");
+      else
+        body += std::string{char(i), 2, 3} + (i % 2 == 0 ? std::string(1, 0) : std::string{2, char(e), 5});
+    }
+  }
+  return header + "end_header\n" + body;
+}
+
+TEST(CloudFile, ElementsOfAnySizesAreReadOneBehindTheOther) {
+  for (const bool text : {true, false})
+    for (const auto& rows :
+         std::vector<std::vector<int>>{{1, 100, 1}, {100, 1, 100}, {5, 5, 5}, {0, 3, 100}}) {
+      const std::string bytes = elements_of(rows, text);
+      const auto file = CloudFile::parse(bytes, "elements.ply");
+      ASSERT_TRUE(file.ok()) << file.error().message;
+      EXPECT_EQ(file.value().serialize().value(), bytes);
+      const std::vector<double> xyz = file.value().positions();
+      ASSERT_EQ(xyz.size(), std::size_t(3 * rows[1]));
+      for (int i = 0; i < rows[1]; ++i) EXPECT_EQ(xyz[std::size_t(3 * i)], i);
+    }
+}
+
 }  // namespace
