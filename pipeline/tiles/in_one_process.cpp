@@ -137,10 +137,11 @@ SmoothedInTiles smooth_in_tiles(const TiledRun& run, const Within& how, const De
   RowFile file(run.input, context);
   done.had_normals = file.has_normals();
   if (normals) file.need_normals();  // refused before the work
-  const fs::path target(run.output);
-  const PassingFolder folder(target.parent_path() / fmt::format(".{}.tiles-{}",
-                                                                target.filename().string().substr(0, 200),
-                                                                ::getpid()));
+  const auto target = io::file_behind(run.output);
+  if (!target) fail(ErrorCode::usage, "{}: in tiles the output is a file", run.output);
+  const PassingFolder folder(target->parent_path() / fmt::format(".{}.tiles-{}",
+                                                                 target->filename().string().substr(0, 200),
+                                                                 ::getpid()));
   Job job = plan_job({run.input}, folder.path(), how.plan, nullptr, part_of(context, 0, kPlan));
   for (std::size_t t = 0; t < job.tiles.size(); ++t) measure_tile(job, t, part_of(context, kPlan, kPlan));
   settle_job(job, options, part_of(context, kPlan, kSettled));
