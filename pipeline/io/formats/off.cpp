@@ -136,6 +136,7 @@ Cloud read_off(const Source& source, const Context& context) {
   faces.ragged = true;
   read_text_rows(faces, cursor, context);
   cloud.tail = cursor.rest();
+  warn_of_tail(cloud, source, context);
   cloud.elements.push_back(std::move(points));
   cloud.elements.push_back(std::move(faces));
   find_coordinates(cloud, source, context);

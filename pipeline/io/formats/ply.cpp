@@ -1,5 +1,7 @@
 #include "pipeline/io/formats/ply.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "base/fail.h"
@@ -43,6 +45,18 @@ void find_coordinates(Cloud& cloud, const Source& source, const Context& context
   }
 }
 
+void warn_of_tail(const Cloud& cloud, const Source& source, const Context& context) {
+  std::string_view rest = cloud.tail;
+  while (cloud.encoding == Encoding::ascii && !rest.empty()) {
+    const std::string_view line = rest.substr(0, rest.find('\n'));
+    if (!is_blank_or_comment(line)) break;
+    rest.remove_prefix(std::min(line.size() + 1, rest.size()));
+  }
+  if (rest.find_first_not_of(" \t\r\n") != std::string_view::npos)
+    context.warn(fmt::format("{}: {} behind the last row that the header counts", source.name(),
+                             counted(cloud.tail.size(), "byte")));
+}
+
 Cloud read_ply(const Source& source, const Context& context) {
   HeaderLines lines(source, context);
   Cloud cloud = read_ply_header(lines);
@@ -59,9 +73,7 @@ Cloud read_ply(const Source& source, const Context& context) {
     const Bytes rest = source.read(cursor.offset, std::size_t(source.size() - cursor.offset), context);
     cloud.tail.assign(rest.data(), rest.size());
   }
-  if (cloud.tail.find_first_not_of(" \t\r\n") != std::string::npos)
-    context.warn(fmt::format("{}: {} behind the last row, of no element", source.name(),
-                             counted(cloud.tail.size(), "byte")));
+  warn_of_tail(cloud, source, context);
   cloud.width = cloud.size();
   return cloud;
 }

@@ -177,4 +177,21 @@ TEST(CloudFile, ElementsOfAnySizesAreReadOneBehindTheOther) {
     }
 }
 
+TEST(CloudFile, RowsBeyondThoseThatTheHeaderCountsAreSaid) {
+  std::vector<std::string> warnings;
+  Context context;
+  context.log = [&](LogLevel, const std::string& message) { warnings.emplace_back(message); };
+  for (const char* text : {kOpenPly, kOpenPcd, kOpenOff}) {
+    ASSERT_TRUE(CloudFile::parse(text + std::string("\n\n# the end\n"), "whole", {}, context).ok());
+    EXPECT_TRUE(warnings.empty()) << warnings.front();
+    const std::string longer = text + std::string("\n# more\n10 11 12\n");
+    const auto file = CloudFile::parse(longer, "longer", {}, context);
+    ASSERT_TRUE(file.ok()) << file.error().message;
+    EXPECT_EQ(file.value().serialize().value(), longer);
+    ASSERT_EQ(warnings.size(), 1U) << text;
+    EXPECT_NE(warnings[0].find("longer: 16 bytes behind the last row"), std::string::npos) << warnings[0];
+    warnings.clear();
+  }
+}
+
 }  // namespace
