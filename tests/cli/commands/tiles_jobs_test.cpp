@@ -137,6 +137,20 @@ TEST_F(Tiles, ACoarseScaleOfALasFileIsRefinedAsForTheWholeCloud) {
   EXPECT_THAT(other.err, HasSubstr("keeps its format"));
 }
 
+// Writers leave boxes that are wider than the points, or rounded: where nothing moves they stay.
+TEST_F(Tiles, TheBoxOfALasFileStaysWhereThePointsDo) {
+  LasBytes las;
+  for (int i = 0; i < 40; ++i)
+    for (int j = 0; j < 40; ++j) las.xyz.push_back({100 * i, 100 * j, 0});
+  std::string bytes = las.bytes();
+  const double wider = LasBytes::get<double>(bytes, 179) + 0.5;  // the largest x
+  LasBytes::put(bytes, 179, wider);
+  put("in.las", bytes);
+  EXPECT_EQ(run({"denoise", "in.las", "whole.las"}).code, 0);
+  EXPECT_TRUE(take("whole.las") == bytes);
+  EXPECT_TRUE(joined({"in.las"}, "job", "tiled.las") == bytes);
+}
+
 // Each has its scale and its box from the results of its own rows; reading those of all inputs for each of
 // them took as long as there are inputs.
 TEST_F(Tiles, ManyLasFilesAreJoinedAsOneAndInTheTimeOfOne) {
