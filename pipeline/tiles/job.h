@@ -59,6 +59,12 @@ struct Job {
   std::vector<RepeatedPlace> repeated;
   nlohmann::ordered_json options;  ///< of denoise, as the command keeps them
 
+  /// Rows of all inputs.
+  std::uint64_t rows() const {
+    std::uint64_t rows = 0;
+    for (const JobInput& input : inputs) rows += input.rows;
+    return rows;
+  }
   /// Finite rows that are in tiles.
   std::uint64_t in_tiles() const {
     std::uint64_t rows = points;

@@ -94,6 +94,13 @@ std::size_t finite_rows(const std::vector<double>& xyz, const Context& context =
 /// logged. Scaled ones (LAS) are rounded to their scale; a warning is logged for what is beyond their range.
 void set_positions(Cloud& cloud, const double* xyz, const Context& context = {});
 
+/// Whether the fields x, y, z of a row can say a place, but for rounding.
+bool can_hold(const std::array<Field, 3>& fields, const std::array<double, 3>& xyz);
+
+/// The warnings of set_positions: that whole numbers are rounded, and that so many points are `beyond` what
+/// scaled fields can say.
+void warn_of_rounding(const std::array<Field, 3>& fields, std::size_t beyond, const Context& context);
+
 /// The field of the points with that name (the first of several), or none. The names of normals and colours
 /// (nx, normal_x, red, alpha, rgb, ...) stand for those in upper case, too, where none is written so; red,
 /// green and blue for R, G and B where all three are there.

@@ -95,8 +95,9 @@ std::optional<Eigen::Vector3d> RowFile::viewpoint(const Context& context) const 
   constexpr std::size_t kLooked = 1 << 18;  // points
   io::Cloud top = header_;
   std::vector<double> xyz;
+  if (top.width > kLooked / 2) top.height = 1;  // two rows are too many: the header alone has a say
   if (top.organised() && top.width > 0) {
-    top.height = std::clamp<std::size_t>(kLooked / top.width, 2, top.height);
+    top.height = std::min(kLooked / top.width, top.height);
     const io::Bytes rows = read(0, top.width * top.height, context);
     for (std::size_t i = 0; i < top.width * top.height; ++i)
       for (const double x : get(rows, i)) xyz.push_back(x);

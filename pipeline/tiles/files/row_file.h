@@ -32,6 +32,7 @@ class RowFile {
 
   std::uint64_t rows() const { return rows_; }
   io::Format format() const { return format_; }
+  const std::array<io::Field, 3>& coordinates() const { return field_; }  ///< the fields x, y, z
 
   /// Has LAS coordinates in steps of at most `step`, as io::refine_scale, from here on. `box`: of old and new
   /// coordinates.

@@ -102,17 +102,22 @@ class Patcher {
     reversed_ = find_sides(job, context);
     normals_.emplace(job, &Job::normals, 0, context);
   }
-  /// `first`: the row of the cloud that `rows` begins with.
-  void patch(const RowFile& file, std::uint64_t first, std::uint64_t count, io::Bytes& rows) {
+  /// `first`: the row of the cloud that `rows` begins with. \return how many points the file's coordinates
+  /// cannot say.
+  std::size_t patch(const RowFile& file, std::uint64_t first, std::uint64_t count, io::Bytes& rows) {
+    std::size_t beyond = 0;
     places_.visit(first, count, [&](std::size_t row, const Record& r, std::size_t) {
-      file.put(rows, row, {r.x, r.y, r.z});
+      const std::array<double, 3> xyz = {r.x, r.y, r.z};
+      file.put(rows, row, xyz);
+      beyond += std::size_t(!io::can_hold(file.coordinates(), xyz));
       ++patched_;
     });
-    if (!normals_) return;
+    if (!normals_) return beyond;
     normals_->visit(first, count, [&](std::size_t row, const NormalRecord& r, std::size_t tile) {
       const double sign = reversed_[tile][std::size_t(r.piece)] != 0 ? -1 : 1;
       file.put_normal(rows, row, {sign * r.x, sign * r.y, sign * r.z});
     });
+    return beyond;
   }
   std::uint64_t patched() const { return patched_; }
 
@@ -176,17 +181,19 @@ io::RefinedScale prepare_las(const Job& job, OpenInput& input, bool keep_scale, 
   return scale;
 }
 
-/// The input, patched, as `output`.
+/// The input, patched, as `output`. Warns as set_positions.
 void write_joined(const Job& job, const OpenInput& input, const std::string& output, bool force,
                   Patcher& patcher, const Context& context) {
   io::AtomicFile to(output, force, context);
+  std::size_t beyond = 0;
   input.file.copy(
       to,
       [&](std::uint64_t first, std::size_t count, io::Bytes& rows) {
-        context.report("join", double(input.before + first) / double(job.points + 1));
-        patcher.patch(input.file, input.before + first, count, rows);
+        context.report("join", double(input.before + first) / double(job.rows()));
+        beyond += patcher.patch(input.file, input.before + first, count, rows);
       },
       context);
+  io::warn_of_rounding(input.file.coordinates(), beyond, context);
   to.commit(true);
 }
 

@@ -151,6 +151,22 @@ TEST_F(Tiles, TheBoxOfALasFileStaysWhereThePointsDo) {
   EXPECT_TRUE(joined({"in.las"}, "job", "tiled.las") == bytes);
 }
 
+TEST_F(Tiles, RoundingToWholeNumbersIsSaid) {
+  const RichCloud cloud = strip(0.4);
+  std::string text = "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(cloud.size()) +
+                     "\nproperty int x\nproperty int y\nproperty int z\nend_header\n";
+  for (const double v : cloud.xyz)
+    LasBytes::add(text, std::int32_t(std::isfinite(v) ? std::lround(1000 * v) : 0));
+  put("in.ply", text);
+  settled({"in.ply"}, "job", "1000000");
+  step_of_all("run", "job");
+  const Ran ran = run({"tiles", "join", "job", "out.ply"}), whole = run({"denoise", "in.ply", "whole.ply"});
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  for (const Ran* said : {&ran, &whole})
+    EXPECT_THAT(said->err, HasSubstr("whole numbers (int32): new ones are rounded"));
+  EXPECT_EQ(ran.err.find("whole numbers (int32)"), ran.err.rfind("whole numbers (int32)")) << "once";
+}
+
 // Each has its scale and its box from the results of its own rows; reading those of all inputs for each of
 // them took as long as there are inputs.
 TEST_F(Tiles, ManyLasFilesAreJoinedAsOneAndInTheTimeOfOne) {

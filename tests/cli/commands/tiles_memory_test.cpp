@@ -1,4 +1,5 @@
 /// rfsmooth denoise --memory: in tiles where the memory is less.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -125,6 +126,22 @@ TEST_F(Tiles, WhyNothingWasSmoothedIsSaidInTiles) {
   EXPECT_THAT(ran.err, HasSubstr("in tiles"));
   EXPECT_THAT(ran.err, HasSubstr("too little to smooth"));
   EXPECT_TRUE(take("out.ply") == take("in.ply"));
+}
+
+TEST_F(Tiles, ProgressStaysWithinItsRange) {
+  put("in.ply", sheet_with_normals(3000, kWide, 1));  // ten times as many rows as points, in two pieces
+  Context context;
+  std::vector<double> parts;
+  context.progress = [&](std::string_view, double part) {
+    parts.push_back(part);
+    return true;
+  };
+  pipeline::tiles::smooth_in_tiles({at("in.ply"), at("out.ply")},
+                                   pipeline::tiles::plan_within(kLittleBytes, false), {}, std::nullopt,
+                                   context);
+  ASSERT_FALSE(parts.empty());
+  EXPECT_GE(*std::min_element(parts.begin(), parts.end()), 0);
+  EXPECT_LE(*std::max_element(parts.begin(), parts.end()), 1);
 }
 
 TEST_F(Tiles, RowsThatAreNotFiniteTakeNoMemory) {
