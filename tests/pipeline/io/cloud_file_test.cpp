@@ -194,4 +194,24 @@ TEST(CloudFile, RowsBeyondThoseThatTheHeaderCountsAreSaid) {
   }
 }
 
+TEST(CloudFile, StripsOfTrianglesAreRenumberedAndStayApart) {
+  const std::string before =
+      "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\n"
+      "element tristrips 1\nproperty list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n"
+      "9 9 9\n8 0 1 2 -1 3 2 1 -1\n";
+  const std::string after =
+      before.substr(0, before.find("0 0 0\n")) + "1 1 0\n0 1 0\n1 0 0\n0 0 0\n8 3 2 1 -1 0 1 2 -1\n";
+  for (const Encoding encoding : {Encoding::ascii, Encoding::binary_little_endian}) {
+    WriteOptions as;
+    as.encoding = encoding;
+    const std::string bytes = CloudFile::parse(before, "strips.ply").value().serialize(as).value();
+    auto file = CloudFile::parse(bytes, "strips.ply").value();
+    file.select({3, 2, 1, 0});
+    as.encoding = Encoding::ascii;
+    std::string expected = after;
+    expected.replace(expected.find("vertex 5"), 8, "vertex 4");
+    EXPECT_EQ(file.serialize(as).value(), expected);
+  }
+}
+
 }  // namespace
