@@ -58,6 +58,9 @@ struct Lists {
 /// The values of `field` in every row.
 Lists gather_lists(const Table& table, std::size_t field, const Context& context);
 
+/// How many values `field` has in every row. Parallel.
+std::vector<std::size_t> list_lengths(const Table& table, std::size_t field, const Context& context);
+
 /// Sets the values of plain fields, each in its own type. A value that equals the present one (or both are
 /// NaN) keeps its bytes or its text. New text has the fewest digits that round-trip.
 void scatter(Table& table, const std::vector<std::size_t>& which, const double* values,
