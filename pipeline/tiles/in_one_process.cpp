@@ -73,8 +73,12 @@ constexpr double kLeastPoints = 50000;  // a tile with what the usual noise asks
 void split_large(Job& job, const Within& how, const Context& context) {
   for (std::size_t t = 0; t < job.tiles.size(); ++t) {
     bool cut = true;
-    while (cut && double(job.tiles[t].points) >= 2 * kFewest && points_with_halo(job, t, context) > how.most)
-      cut = split_tile(job, t, context);
+    const auto is_large = [&] {
+      const std::uint64_t points = job.tiles[t].points;
+      return double(points) >= 2 * kFewest &&
+             (points > how.most || points_with_halo(job, t, context) > how.most);
+    };
+    while (cut && is_large()) cut = split_tile(job, t, context);
     if (!cut && job.tiles[t].points > how.most)
       fail(ErrorCode::out_of_memory, "not enough memory: {} points are at one place, and tiles may have {}",
            job.tiles[t].points, how.most);

@@ -100,6 +100,19 @@ TEST_F(Tiles, AFolderOfFilesIsOneCloud) {
     }
 }
 
+// A patch has so many places, however often a scan was merged with itself.
+TEST_F(Tiles, WhatLiesAroundATileIsAsWideForCopiesOfAScan) {
+  const RichCloud once = strip(0.4);
+  RichCloud often = once;
+  for (int k = 1; k < 5; ++k) often.xyz.insert(often.xyz.end(), once.xyz.begin(), once.xyz.end());
+  const auto share = [&](const std::string& name, const RichCloud& cloud) {
+    put(name + ".ply", cloud.bytes());
+    joined({name + ".ply"}, name, name + ".out.ply");
+    return nlohmann::json::parse(run({"tiles", "status", name, "--json"}).out)["halo_share"].get<double>();
+  };
+  EXPECT_NEAR(share("often", often), share("once", once), 0.01);
+}
+
 // As denoise has it (las_test.cpp), the bytes too: one tile is the whole.
 TEST_F(Tiles, ACoarseScaleOfALasFileIsRefinedAsForTheWholeCloud) {
   constexpr double kScale = 0.2;
