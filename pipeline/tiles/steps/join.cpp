@@ -128,6 +128,7 @@ class Patcher {
   std::uint64_t patched_ = 0;
 };
 
+/// Makes a box hold a place.
 void extend(AlignedBox3d& box, const std::array<double, 3>& xyz) {
   box.extend(Vector3d(xyz[0], xyz[1], xyz[2]));
 }
