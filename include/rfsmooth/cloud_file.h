@@ -55,7 +55,9 @@ class CloudFile {
  public:
   /// Reads a file; pipes and devices are read to their end. Errors: input_unreadable, and the message says
   /// the line or byte, what was expected and what was found; out_of_memory; cancelled. Needs memory for one
-  /// copy of the file. O(bytes), as all below.
+  /// copy of the file, and 8 bytes for each row of text or with lists; while it is read up to two copies of
+  /// several large elements of that kind, of what comes through a pipe, and of what compressed points unpack
+  /// to. O(bytes), as all below.
   static Result<CloudFile> read(const std::filesystem::path& path, const ReadOptions& options = {},
                                 const Context& context = {});
   /// Reads a buffer; error messages call it `name`. Errors: as `read`.
@@ -95,7 +97,8 @@ class CloudFile {
   /// One double per point; none if there is no such field, or it is a list or an array.
   std::optional<std::vector<double>> field(std::string_view name, const Context& context = {}) const;
   /// Sets a field of the points. A field of that name keeps its place and type; else one is appended as
-  /// float32. Errors: usage if the present field cannot take the values. \throw std::invalid_argument if
+  /// float32. Errors: usage if the present field cannot take the values, or if there is none and the name is
+  /// not one word, as headers ask for. \throw std::invalid_argument if
   /// there is not one value per point.
   Result<Done> set_field(const std::string& name, const std::vector<double>& values,
                          const Context& context = {});

@@ -23,9 +23,16 @@ void refuse(const Source& source, const OtherFormat* other) {
   if (other != nullptr) source.fail("{} is not read; {}", other->name, other->advice);
 }
 
-// Refuses by name a text or unknown bytes in a file that is called as somebody else's are, or an OBJ file.
-void refuse_other_name(const Source& source, std::string_view word) {
-  refuse(source, other_format_of_extension(is_obj_word(word) ? "any.obj" : source.name()));
+// Refuses unknown bytes in a file that is called as somebody else's are.
+void refuse_other_name(const Source& source) {
+  refuse(source, other_format_of_extension(source.name()));
+}
+
+// Refuses a text that begins as an OBJ file does, or is called as somebody else's texts are. What is called
+// as files of bytes are (.dat, .bin) may be text columns all the same.
+void refuse_other_text(const Source& source, std::string_view word) {
+  const OtherFormat* const other = other_format_of_extension(is_obj_word(word) ? "any.obj" : source.name());
+  if (other != nullptr && other->text) refuse(source, other);
 }
 
 }  // namespace
@@ -51,14 +58,14 @@ Format detect_format(const Source& source, const Context& context) {
     // Words of text hold no control characters; anything else is not an XYZ file either.
     if (std::any_of(line.begin(), line.end(),
                     [](char c) { return (c >= 0 && c < ' ' && c != '\t' && c != '\r') || c == 127; })) {
-      refuse_other_name(source, word);
+      refuse_other_name(source);
       lines.fail("expected a PLY, PCD, XYZ, OFF or LAS file, found {}", in_quotes(line));
     }
     if (word.empty() || word.front() == '#') continue;
-    refuse_other_name(source, word);
+    refuse_other_text(source, word);
     return Format::xyz;
   }
-  refuse_other_name(source, "");
+  refuse_other_name(source);
   source.fail("expected points, found comments and blank lines only");
 }
 

@@ -8,7 +8,7 @@
 ///     write_cloud(cloud.value(), "out.ply", {}, context);           // by extension; complete or not at all
 ///
 /// Errors: input_unreadable, with the line or byte, what was expected and what was found; cannot_write; usage
-/// for a format that cannot carry what the cloud has. Memory: one copy of the file.
+/// for a format that cannot carry what the cloud has. Memory: as CloudFile::read.
 #pragma once
 
 #include <filesystem>

@@ -13,6 +13,7 @@ struct OtherFormat {
   const char* extensions;  ///< ".glb .gltf", lower case
   const char* magic;       ///< what such a file begins with; "" if anything
   const char* advice;      ///< how to come by a file that is read here
+  bool text = false;       ///< whether such a file is text, or may be
   const char* instead = "write .ply, .pcd, .xyz, .off or .las and convert that";  ///< of writing it
 };
 

@@ -49,6 +49,22 @@ double radius_at(const rfs_mesh::SpatialIndex& index, const Vector3d& at, std::s
 
 }  // namespace
 
+Positions distinct_places(const Positions& points) {
+  std::vector<Index> order(points.size());
+  std::iota(order.begin(), order.end(), Index(0));
+  std::sort(order.begin(), order.end(), [&](Index a, Index b) {
+    const Vector3d &p = points[a], &q = points[b];
+    return p != q ? std::lexicographical_compare(p.begin(), p.end(), q.begin(), q.end()) : a < b;
+  });
+  std::vector<char> again(points.size(), 0);
+  for (std::size_t k = 1; k < order.size(); ++k)
+    again[order[k]] = char(points[order[k]] == points[order[k - 1]]);
+  Positions once;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (again[i] == 0) once.push_back(points[i]);
+  return once;
+}
+
 double typical_radius(const Positions& points, std::size_t m, const Context& context) {
   const rfs_mesh::SpatialIndex index(points, context);
   const std::size_t places = std::min(points.size(), rfs_mesh::kPlacesOfCloud);

@@ -21,16 +21,20 @@ namespace rfsmooth::pipeline::tiles {
 /// this is 3.5 of those.
 constexpr double kHaloRadii = 3;
 
+/// Each place once, in the order of the first points there: a patch counts those, however many rows there
+/// are. O(n log n).
+Positions distinct_places(const Positions& points);
+
 /// The median distance to the m-th neighbour, of up to 1,000 points. O(m) after the index.
 double typical_radius(const Positions& points, std::size_t m, const Context& context);
 
 /// A tile's surroundings: the points that are nearer to a part of it than the part reaches.
 class Halo {
  public:
-  /// \param points the tile's own first, then others within `radius` of its box, if they are there: where
-  /// they are missing at its rim, patches seem wider than they are and the halo is the wider for it.
-  /// \param own how many are the tile's. \param m points of the widest patch. \param radii how many of its
-  /// radii a part reaches.
+  /// \param points distinct places, the tile's own first, then others within `radius` of its box, if they are
+  /// there: where they are missing at its rim, patches seem wider than they are and the halo is the wider for
+  /// it. \param own how many are the tile's. \param m points of the widest patch. \param radii how many of
+  /// its radii a part reaches.
   Halo(const Positions& points, std::size_t own, std::size_t m, double radii, const Context& context);
 
   bool holds(const Eigen::Vector3d& p) const;

@@ -45,16 +45,6 @@ class PassingFolder {
   fs::path path_;
 };
 
-/// Points at one place cannot be cut, and more of them than memory holds cannot be smoothed.
-void check_sizes(const Job& job, const PlanOptions& how) {
-  std::uint64_t most = 0;
-  for (const Tile& tile : job.tiles) most = std::max(most, tile.points);
-  constexpr std::uint64_t kUneven = 2;
-  if (most > kUneven * how.tile_points)
-    fail(ErrorCode::out_of_memory, "not enough memory: {} points are at one place, and tiles may have {}",
-         most, how.tile_points);
-}
-
 /// A context that reports its stages as the part [from, to] of the stage "tiles".
 Context part_of(const Context& context, double from, double to) {
   Context part = context;
@@ -78,12 +68,21 @@ constexpr std::uint64_t kFixed = std::uint64_t{24} << 20;
 constexpr double kFewest = 3000;        // points of a tile: fewer are not worth what lies around them
 constexpr double kLeastPoints = 50000;  // a tile with what the usual noise asks for around it
 
-/// Halves the tiles that are too many points with what lies around them, as far as that is worth it.
+/// Halves the tiles that are too many points with what lies around them, as far as that is worth it. Points
+/// at one place cannot be cut: more of them than memory holds are refused.
 void split_large(Job& job, const Within& how, const Context& context) {
-  for (std::size_t t = 0; t < job.tiles.size(); ++t)
-    while (double(job.tiles[t].points) >= 2 * kFewest && points_with_halo(job, t, context) > how.most &&
-           split_tile(job, t, context))
-      ;
+  for (std::size_t t = 0; t < job.tiles.size(); ++t) {
+    bool cut = true;
+    const auto is_large = [&] {
+      const std::uint64_t points = job.tiles[t].points;
+      return double(points) >= 2 * kFewest &&
+             (points > how.most || points_with_halo(job, t, context) > how.most);
+    };
+    while (cut && is_large()) cut = split_tile(job, t, context);
+    if (!cut && job.tiles[t].points > how.most)
+      fail(ErrorCode::out_of_memory, "not enough memory: {} points are at one place, and tiles may have {}",
+           job.tiles[t].points, how.most);
+  }
 }
 
 }  // namespace
@@ -142,12 +141,12 @@ SmoothedInTiles smooth_in_tiles(const TiledRun& run, const Within& how, const De
   RowFile file(run.input, context);
   done.had_normals = file.has_normals();
   if (normals) file.need_normals();  // refused before the work
-  const fs::path target(run.output);
-  const PassingFolder folder(target.parent_path() / fmt::format(".{}.tiles-{}",
-                                                                target.filename().string().substr(0, 200),
-                                                                ::getpid()));
+  const auto target = io::file_behind(run.output);
+  if (!target) fail(ErrorCode::usage, "{}: in tiles the output is a file", run.output);
+  const PassingFolder folder(target->parent_path() / fmt::format(".{}.tiles-{}",
+                                                                 target->filename().string().substr(0, 200),
+                                                                 ::getpid()));
   Job job = plan_job({run.input}, folder.path(), how.plan, nullptr, part_of(context, 0, kPlan));
-  check_sizes(job, how.plan);
   for (std::size_t t = 0; t < job.tiles.size(); ++t) measure_tile(job, t, part_of(context, kPlan, kPlan));
   settle_job(job, options, part_of(context, kPlan, kSettled));
   split_large(job, how, part_of(context, kSettled, kSettled));

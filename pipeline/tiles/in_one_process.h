@@ -53,10 +53,11 @@ struct SmoothedInTiles {
   bool had_normals = false;  ///< whether the input has fields of that name
 };
 
-/// Smooths a file in tiles, in a folder beside the output. Tiles that are more than how.most
-/// points with what lies around them are halved; where that does not help, less is taken around them. Reports
-/// one stage, "tiles". The folder stays after an error or a cancel of the caller's only if it cannot be
-/// removed. \throw Failure.
+/// Smooths a file in tiles, in a folder beside the output, which is a file (io::file_behind). Tiles that are
+/// more than how.most points with what lies around them are halved; where that does not help, less is taken
+/// around them, and one whose points are more and all at one place is refused (out_of_memory). Reports one
+/// stage, "tiles". The folder stays after an error or a cancel of the caller's only if it cannot be removed.
+/// \throw Failure.
 SmoothedInTiles smooth_in_tiles(const TiledRun& run, const Within& how, const DenoiseOptions& options,
                                 const std::optional<NormalsOptions>& normals, const Context& context);
 

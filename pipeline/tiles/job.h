@@ -59,6 +59,12 @@ struct Job {
   std::vector<RepeatedPlace> repeated;
   nlohmann::ordered_json options;  ///< of denoise, as the command keeps them
 
+  /// Rows of all inputs.
+  std::uint64_t rows() const {
+    std::uint64_t rows = 0;
+    for (const JobInput& input : inputs) rows += input.rows;
+    return rows;
+  }
   /// Finite rows that are in tiles.
   std::uint64_t in_tiles() const {
     std::uint64_t rows = points;
@@ -88,7 +94,7 @@ struct Job {
 
 /// How to plan.
 struct PlanOptions {
-  std::uint64_t tile_points = 5'000'000;    ///< most points of a tile, without what lies around it
+  std::uint64_t tile_points = 5'000'000;    ///< most places of a tile, about; rows at one place count once
   std::uint64_t sample_points = 1'000'000;  ///< of all tiles together, that are smoothed to be known
 };
 

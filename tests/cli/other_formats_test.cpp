@@ -37,6 +37,7 @@ TEST_F(OtherFormats, AreNamedWithWhatToDo) {
         Foreign{"a.ptx", "PTX", "convert it to PLY", "2\n2\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n"},
         Foreign{"a.ply.gz", "gzip", "unpack it", "\x1f\x8b" + binary},
         Foreign{"a.zip", "ZIP", "unpack it", "PK\x03\x04" + binary},
+        Foreign{"a.dat", "raw binary", "save it as text", binary},
         Foreign{"a.npy", "NumPy", "save it as text", "\x93NUMPY" + binary},
         Foreign{"a.png", "picture", "no points", "\x89PNG" + binary}}) {
     put(foreign.file, foreign.bytes);
@@ -51,6 +52,17 @@ TEST_F(OtherFormats, AreNamedWithWhatToDo) {
 TEST_F(OtherFormats, WhatIsReadIsReadWhateverItIsCalled) {
   put("cloud.las", noisy_plane(10).bytes());
   EXPECT_EQ(run({"denoise", "cloud.las", "out.ply"}).code, 0);
+}
+
+TEST_F(OtherFormats, TextColumnsAreReadFromFilesCalledAsRawBytes) {
+  std::string text;
+  for (int i = 0; i < 100; ++i) text += std::to_string(i / 10) + " " + std::to_string(i % 10) + " 0\n";
+  for (const std::string name : {"a.dat", "a.raw", "a.bin"}) {
+    put(name, text);
+    const Ran ran = run({"denoise", name, name + ".xyz"});
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    EXPECT_TRUE(there(name + ".xyz"));
+  }
 }
 
 TEST_F(OtherFormats, AreNotWrittenEither) {

@@ -81,6 +81,19 @@ def test_a_field_that_is_added_comes_last(sphere, tmp_path):
     assert again.dtype == wide.dtype and np.array_equal(again, wide)
 
 
+@pytest.mark.parametrize("ending", [".ply", ".pcd", ".xyz", ".csv"])
+def test_names_of_several_words_are_written_as_one(sphere, tmp_path, ending):
+    """Numpy's names may be anything, as laspy's of extra dimensions are; those of headers may not."""
+    wide = np.zeros(len(sphere), [("x", "f8"), ("y", "f8"), ("z", "f8"), ("dist to plane", "f8"), ("a\nb", "f8")])
+    for axis, name in enumerate("xyz"):
+        wide[name] = sphere[:, axis]
+    wide["dist to plane"] = np.arange(len(wide))
+    rfsmooth.write(tmp_path / ("a" + ending), wide)
+    again, _ = rfsmooth.read(tmp_path / ("a" + ending))
+    assert again.dtype.names == ("x", "y", "z", "dist_to_plane", "a_b")
+    assert np.array_equal(again["dist_to_plane"], wide["dist to plane"])
+
+
 def test_existing_files_stay_without_force(sphere, tmp_path):
     rfsmooth.write(tmp_path / "a.xyz", sphere)
     with pytest.raises(rfsmooth.Error) as caught:

@@ -115,13 +115,11 @@ std::optional<std::vector<std::size_t>> kept_of_element(const Table& element, Fo
 }
 
 std::optional<std::size_t> constant_length(const Table& table, std::size_t field, const Context& context) {
-  const Lists lists = gather_lists(table, field, context);
-  if (table.count == 0) return std::nullopt;
-  const std::uint64_t n = lists.start[1];
-  for (std::size_t i = 0; i < table.count; ++i)
-    if (lists.start[i + 1] - lists.start[i] != n) return std::nullopt;
-  if (n == 0) return std::nullopt;
-  return std::size_t(n);
+  const std::vector<std::size_t> lengths = list_lengths(table, field, context);
+  if (lengths.empty() || lengths.front() == 0) return std::nullopt;
+  const bool same =
+      std::count(lengths.begin(), lengths.end(), lengths.front()) == std::ptrdiff_t(lengths.size());
+  return same ? std::optional(lengths.front()) : std::nullopt;
 }
 
 }  // namespace rfsmooth::pipeline::io

@@ -32,12 +32,11 @@ bool float_digits_lost(const Table& table, std::size_t field, const Context& con
 
 bool has_ragged_values(const Table& table, const Context& context) {
   if (!table.ragged) return false;
-  const Lists lists = gather_lists(table, 0, context);
+  const std::vector<std::size_t> lengths = list_lengths(table, 0, context);
   for (std::size_t i = 0; i < table.count; ++i) {
     const std::string_view row = table.row(i);
     const char* p = row.data();
-    for (std::uint64_t k = 0; k <= lists.start[i + 1] - lists.start[i]; ++k)
-      next_word(p, row.data() + row.size());
+    for (std::size_t k = 0; k <= lengths[i]; ++k) next_word(p, row.data() + row.size());
     if (!next_word(p, row.data() + row.size()).empty()) return true;
   }
   return false;
@@ -114,10 +113,9 @@ void fit_types(Table& points, Format format, const Context& context) {
 // OFF's faces have no type for their counts; PLY's usual one is uchar.
 void narrow_face_counts(Table& faces, const Context& context) {
   if (!faces.text || faces.fields.empty() || !faces.fields[0].is_list()) return;
-  const Lists lists = gather_lists(faces, 0, context);
-  for (std::size_t i = 0; i < faces.count; ++i)
-    if (lists.start[i + 1] - lists.start[i] > 255) return;
-  faces.fields[0].list_count = Scalar::uint8;
+  const std::vector<std::size_t> lengths = list_lengths(faces, 0, context);
+  const bool fit = std::none_of(lengths.begin(), lengths.end(), [](std::size_t n) { return n > 255; });
+  if (fit) faces.fields[0].list_count = Scalar::uint8;
 }
 
 // The elements beside the points, as far as they go along.

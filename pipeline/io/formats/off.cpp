@@ -77,16 +77,14 @@ Counts read_header(TextCursor& cursor, Kind& kind) {
   return counts;
 }
 
-// The number of values in the first line that has any.
-std::size_t columns_ahead(const TextCursor& cursor) {
-  std::string_view rest = cursor.rest();
-  while (!rest.empty()) {
-    const std::size_t newline = rest.find('\n');
-    const std::string_view line = newline == std::string_view::npos ? rest : rest.substr(0, newline + 1);
-    rest.remove_prefix(line.size());
-    if (!is_blank_or_comment(line)) return words_of(line).size();
-  }
-  return 0;
+// The number of values in the first line that has any. The cursor stays where it is.
+std::size_t columns_ahead(TextCursor& cursor) {
+  const std::size_t at = cursor.at, lines = cursor.lines;
+  while (cursor.at < cursor.all.size() && is_blank_or_comment(peek_line(cursor))) skip_line(cursor);
+  const std::size_t columns = words_of(peek_line(cursor)).size();
+  cursor.at = at;
+  cursor.lines = lines;
+  return columns;
 }
 
 std::vector<Field> vertex_fields(const Kind& kind, std::size_t columns) {
@@ -136,6 +134,7 @@ Cloud read_off(const Source& source, const Context& context) {
   faces.ragged = true;
   read_text_rows(faces, cursor, context);
   cloud.tail = cursor.rest();
+  warn_of_tail(cloud, source, context);
   cloud.elements.push_back(std::move(points));
   cloud.elements.push_back(std::move(faces));
   find_coordinates(cloud, source, context);
@@ -176,9 +175,9 @@ std::string off_header(const Cloud& cloud) {
 void write_off(const Cloud& cloud, Sink& sink, const Context& context) {
   const std::string header = off_header(cloud);
   sink.write(header == cloud.original_canonical ? cloud.original_header : header);
-  write_text_rows(cloud.points(), sink, context);
-  if (const Table* faces = cloud.element("face")) write_text_rows(*faces, sink, context);
-  sink.write(cloud.tail);
+  std::vector<const Table*> tables = {&cloud.points()};
+  if (const Table* faces = cloud.element("face")) tables.push_back(faces);
+  write_text_body(tables, cloud.tail, sink, context);
 }
 
 }  // namespace rfsmooth::pipeline::io

@@ -133,6 +133,7 @@ Cloud read_pcd(const Source& source, const Context& context) {
     const Bytes rest = source.read(cursor.offset, std::size_t(source.size() - cursor.offset), context);
     cloud.tail.assign(rest.data(), rest.size());
   }
+  warn_of_tail(cloud, source, context);
   return cloud;
 }
 

@@ -153,7 +153,7 @@ std::string pcd_header(const Cloud& cloud, Encoding encoding) {
   const std::string& newline = cloud.newline;
   std::string fields = "FIELDS", size = "SIZE", type = "TYPE", count = "COUNT";
   for (const Field& f : cloud.points().fields) {
-    fields += " " + f.name;
+    fields += " " + one_word(f.name);
     size += fmt::format(" {}", size_of(f.type));
     type += fmt::format(" {}", type_letter(f.type));
     count += fmt::format(" {}", f.count);

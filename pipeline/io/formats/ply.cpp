@@ -1,5 +1,7 @@
 #include "pipeline/io/formats/ply.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "base/fail.h"
@@ -43,6 +45,18 @@ void find_coordinates(Cloud& cloud, const Source& source, const Context& context
   }
 }
 
+void warn_of_tail(const Cloud& cloud, const Source& source, const Context& context) {
+  std::string_view rest = cloud.tail;
+  while (cloud.encoding == Encoding::ascii && !rest.empty()) {
+    const std::string_view line = rest.substr(0, rest.find('\n'));
+    if (!is_blank_or_comment(line)) break;
+    rest.remove_prefix(std::min(line.size() + 1, rest.size()));
+  }
+  if (rest.find_first_not_of(" \t\r\n") != std::string_view::npos)
+    context.warn(fmt::format("{}: {} behind the last row that the header counts", source.name(),
+                             counted(cloud.tail.size(), "byte")));
+}
+
 Cloud read_ply(const Source& source, const Context& context) {
   HeaderLines lines(source, context);
   Cloud cloud = read_ply_header(lines);
@@ -59,9 +73,7 @@ Cloud read_ply(const Source& source, const Context& context) {
     const Bytes rest = source.read(cursor.offset, std::size_t(source.size() - cursor.offset), context);
     cloud.tail.assign(rest.data(), rest.size());
   }
-  if (cloud.tail.find_first_not_of(" \t\r\n") != std::string::npos)
-    context.warn(fmt::format("{}: {} behind the last row, of no element", source.name(),
-                             counted(cloud.tail.size(), "byte")));
+  warn_of_tail(cloud, source, context);
   cloud.width = cloud.size();
   return cloud;
 }
@@ -69,14 +81,17 @@ Cloud read_ply(const Source& source, const Context& context) {
 void write_ply(const Cloud& cloud, Encoding encoding, Sink& sink, const Context& context) {
   const std::string header = ply_header(cloud, encoding);
   sink.write(header == cloud.original_canonical ? cloud.original_header : header);
+  const std::string_view tail = encoding == cloud.encoding ? cloud.tail : std::string_view();
+  if (encoding == Encoding::ascii) {
+    std::vector<const Table*> tables;
+    for (const Table& table : cloud.elements) tables.push_back(&table);
+    return write_text_body(tables, tail, sink, context);
+  }
   for (const Table& table : cloud.elements) {
     context.check_stop();
-    if (encoding == Encoding::ascii)
-      write_text_rows(table, sink, context);
-    else
-      write_binary_rows(table, encoding == Encoding::binary_big_endian, sink, context);
+    write_binary_rows(table, encoding == Encoding::binary_big_endian, sink, context);
   }
-  if (encoding == cloud.encoding) sink.write(cloud.tail);
+  sink.write(tail);
 }
 
 }  // namespace rfsmooth::pipeline::io

@@ -29,4 +29,8 @@ void find_vertex(Cloud& cloud, const Source& source);
 /// \throw Failure through `source` if one is missing, naming the fields there are; warns of several.
 void find_coordinates(Cloud& cloud, const Source& source, const Context& context);
 
+/// Warns of what stands behind the last row that the header counts, but for blanks, and comments in text. It
+/// stays as it is.
+void warn_of_tail(const Cloud& cloud, const Source& source, const Context& context);
+
 }  // namespace rfsmooth::pipeline::io

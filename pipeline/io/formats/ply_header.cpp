@@ -143,7 +143,7 @@ std::string ply_header(const Cloud& cloud, Encoding encoding) {
       if (type.empty() && field.is_list())
         type = fmt::format("list {} {}", ply_type(*field.list_count), ply_type(field.type));
       if (type.empty()) type = ply_type(field.type);
-      out += fmt::format("property {} {}{}", type, field.name, newline);
+      out += fmt::format("property {} {}{}", type, one_word(field.name), newline);
     }
     append_notes(out, cloud, e, table.fields.size() + 1, std::size_t(-1));
   }

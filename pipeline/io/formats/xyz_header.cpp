@@ -186,7 +186,8 @@ std::string xyz_header(const Cloud& cloud) {
       first = false;
       const auto cell = std::find_if(cells.begin(), cells.end(),
                                      [&](const std::string& c) { return name_in_cell(c) == f.name; });
-      const std::string name = cell != cells.end() ? *cell : quoted ? '"' + f.name + '"' : f.name;
+      const std::string word = one_word(f.name);
+      const std::string name = cell != cells.end() ? *cell : quoted ? '"' + word + '"' : word;
       const bool parted = separator != ' ' && name.find(separator) != std::string::npos;
       out += parted && name.front() != '"' ? '"' + name + '"' : name;
       if (cell != cells.end()) cells.erase(cell);  // a name may be there several times

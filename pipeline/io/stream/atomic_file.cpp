@@ -101,6 +101,14 @@ std::optional<struct stat> check(const std::filesystem::path& shown, const std::
 
 }  // namespace
 
+std::optional<std::filesystem::path> file_behind(const std::filesystem::path& target) {
+  std::filesystem::path file = follow_links(target);
+  if (descriptor_of(file)) return std::nullopt;
+  const auto present = status_of(file);
+  if (present && !S_ISREG(present->st_mode)) return std::nullopt;
+  return file;
+}
+
 void check_target(const std::filesystem::path& target, bool replace) {
   const std::filesystem::path file = follow_links(target);
   if (const auto open = descriptor_of(file)) return check_descriptor(target, *open);

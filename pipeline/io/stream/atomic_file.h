@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include <rfsmooth/context.h>
@@ -39,6 +40,10 @@ class AtomicFile : public Sink {
   const Context& context_;
   int file_ = -1;
 };
+
+/// The file that a target is, behind its symbolic links, whether it is there or not. None: the bytes would go
+/// into a pipe, a device, or an open file (/dev/stdout). \throw Failure (cannot_write) for links in a circle.
+std::optional<std::filesystem::path> file_behind(const std::filesystem::path& target);
 
 /// Refuses in advance what the constructor would refuse; creates nothing. \throw Failure (cannot_write).
 void check_target(const std::filesystem::path& target, bool replace);

@@ -9,6 +9,7 @@
 
 #include "base/fail.h"
 #include "base/parallel.h"
+#include "pipeline/io/formats/header_lines.h"
 
 namespace rfsmooth::pipeline::io {
 namespace {
@@ -59,20 +60,12 @@ std::optional<std::size_t> colour_by_letter(const Cloud& cloud, std::string_view
   return first_field(cloud, name.substr(0, 1), same_but_for_case);
 }
 
-// Scaled whole numbers have a range and no NaN.
-void warn_of_range(const Cloud& cloud, const double* xyz, const Context& context) {
-  const auto field = [&](std::size_t axis) -> const Field& { return cloud.points().fields[cloud.xyz[axis]]; };
-  if (!field(0).is_scaled() && !field(1).is_scaled() && !field(2).is_scaled()) return;
-  const std::size_t beyond = sum_over(context, cloud.size(), std::size_t{0}, [&](std::size_t i) {
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      if (!can_hold(field(axis), xyz[3 * i + axis])) return std::size_t{1};
-    return std::size_t{0};
+// How many points are beyond the range of scaled whole numbers, which has no NaN.
+std::size_t count_beyond(const Cloud& cloud, const std::array<Field, 3>& fields, const double* xyz,
+                         const Context& context) {
+  return sum_over(context, cloud.size(), std::size_t{0}, [&](std::size_t i) {
+    return std::size_t(!can_hold(fields, {xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]}));
   });
-  if (beyond > 0)
-    context.warn(fmt::format(
-        "beyond what the file's scale and offset can say: {}, put at the end of the range, or kept "
-        "where a coordinate is not finite",
-        counted(beyond, "point")));
 }
 
 }  // namespace
@@ -110,15 +103,26 @@ std::size_t finite_rows(const std::vector<double>& xyz, const Context& context) 
                   [&](std::size_t i) { return std::size_t(finite_row(&xyz[3 * i])); });
 }
 
+bool can_hold(const std::array<Field, 3>& fields, const std::array<double, 3>& xyz) {
+  return can_hold(fields[0], xyz[0]) && can_hold(fields[1], xyz[1]) && can_hold(fields[2], xyz[2]);
+}
+
+void warn_of_rounding(const std::array<Field, 3>& fields, std::size_t beyond, const Context& context) {
+  if (beyond > 0)
+    context.warn(fmt::format(
+        "beyond what the file's scale and offset can say: {}, put at the end of the range, or kept "
+        "where a coordinate is not finite",
+        counted(beyond, "point")));
+  const auto whole = std::find_if(fields.begin(), fields.end(), [](const Field& f) { return f.is_whole(); });
+  if (whole != fields.end())
+    context.warn(fmt::format("the coordinates are whole numbers ({}): new ones are rounded to whole numbers",
+                             name_of(whole->type)));
+}
+
 void set_positions(Cloud& cloud, const double* xyz, const Context& context) {
-  warn_of_range(cloud, xyz, context);
-  for (const std::size_t f : cloud.xyz)
-    if (cloud.points().fields[f].is_whole()) {
-      context.warn("the coordinates are whole numbers (" +
-                   std::string(name_of(cloud.points().fields[f].type)) +
-                   "): new ones are rounded to whole numbers");
-      break;
-    }
+  const std::vector<Field>& fields = cloud.points().fields;
+  const std::array<Field, 3> of_xyz = {fields[cloud.xyz[0]], fields[cloud.xyz[1]], fields[cloud.xyz[2]]};
+  warn_of_rounding(of_xyz, count_beyond(cloud, of_xyz, xyz, context), context);
   scatter(cloud.points(), {cloud.xyz.begin(), cloud.xyz.end()}, xyz, context);
 }
 
@@ -145,6 +149,10 @@ void set_field(Cloud& cloud, const std::string& name, Scalar type, const std::ve
 
 void check_field(const Cloud& cloud, const std::string& name, Scalar type) {
   const auto present = find_field(cloud, name);
+  if (!present && (name.empty() || one_word(name) != name))
+    fail(ErrorCode::usage,
+         "{} cannot be the name of a new field: it takes one word, without blanks and control characters",
+         in_quotes(name));
   if (!present) return;
   const Field& field = cloud.points().fields[*present];
   if (!field.is_plain())

@@ -94,6 +94,13 @@ std::size_t finite_rows(const std::vector<double>& xyz, const Context& context =
 /// logged. Scaled ones (LAS) are rounded to their scale; a warning is logged for what is beyond their range.
 void set_positions(Cloud& cloud, const double* xyz, const Context& context = {});
 
+/// Whether the fields x, y, z of a row can say a place, but for rounding.
+bool can_hold(const std::array<Field, 3>& fields, const std::array<double, 3>& xyz);
+
+/// The warnings of set_positions: that whole numbers are rounded, and that so many points are `beyond` what
+/// scaled fields can say.
+void warn_of_rounding(const std::array<Field, 3>& fields, std::size_t beyond, const Context& context);
+
 /// The field of the points with that name (the first of several), or none. The names of normals and colours
 /// (nx, normal_x, red, alpha, rgb, ...) stand for those in upper case, too, where none is written so; red,
 /// green and blue for R, G and B where all three are there.
@@ -105,8 +112,9 @@ std::vector<double> field_values(const Cloud& cloud, std::size_t field, const Co
 
 /// Sets a field of the points (displacement, outlier, normals):
 ///
-/// - if there is none of that name, it is appended behind the points' last field, as `type`; every other byte
-///   stays.
+/// - if there is none of that name, which is one word, it is appended behind the points' last field, as
+/// `type`;
+///   every other byte stays.
 /// - if there is one (the first of several), its values are replaced in place, in its own type.
 ///
 /// \throw Failure (usage) if that one cannot take the values; `check_field` tells in advance.
@@ -114,7 +122,8 @@ void set_field(Cloud& cloud, const std::string& name, Scalar type, const std::ve
                const Context& context = {});
 
 /// Refuses what `set_field` cannot do: the field of that name is a list or an array, or an integer field
-/// where `type` is a float. \throw Failure (usage) naming field and type.
+/// where `type` is a float, or there is none and the name is not one word. \throw Failure (usage) naming
+/// field and type.
 void check_field(const Cloud& cloud, const std::string& name, Scalar type);
 
 /// Keeps the points `rows`, in that order. Unless these are all points in order, the result is not organised.

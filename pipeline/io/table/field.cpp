@@ -1,5 +1,6 @@
 #include "pipeline/io/table/field.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -27,6 +28,12 @@ T nearest_of(double value) {
 }
 
 }  // namespace
+
+std::string one_word(std::string name) {
+  const auto is_blank = [](char c) { return static_cast<unsigned char>(c) <= ' ' || c == '\x7f'; };
+  std::replace_if(name.begin(), name.end(), is_blank, '_');
+  return name;
+}
 
 std::size_t size_of(Scalar type) {
   return with_type(type, [](auto value) { return sizeof value; });

@@ -52,6 +52,9 @@ std::size_t size_of(Scalar type);       ///< bytes
 bool is_float(Scalar type);             ///< float32 or float64
 std::string_view name_of(Scalar type);  ///< "float32", "uint8", ...
 
+/// A field's name as headers have it: '_' for each blank and control character.
+std::string one_word(std::string name);
+
 /// A column of a table.
 struct Field {
   std::string name;

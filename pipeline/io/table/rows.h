@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string_view>
+#include <vector>
 
 #include "pipeline/io/stream/sink.h"
 #include "pipeline/io/stream/source.h"
@@ -15,7 +16,7 @@ struct BinaryCursor {
   const Source& source;
   std::uint64_t offset;  ///< next byte to read
   bool big_endian = false;
-  Bytes held = {};  ///< the file from `held_from` on, once an element with lists needs it
+  Bytes held = {};  ///< the file from `held_from` on, once an element with lists needs it; what is read goes
   std::uint64_t held_from = 0;
 };
 
@@ -31,7 +32,7 @@ void read_binary_rows(Table& table, BinaryCursor& cursor, const Context& context
 struct TextCursor {
   TextCursor(const Source& from, std::uint64_t offset, std::size_t lines_before, const Context& context);
   const Source& source;
-  Bytes all;           ///< the file from the first line of the body on
+  Bytes all;           ///< the file from the first line of the body on; rows that are read may be taken out
   std::size_t at = 0;  ///< next byte of `all`
   std::size_t lines;   ///< lines of the file before `at`
   std::string_view rest() const { return {all.data() + at, all.size() - at}; }
@@ -57,5 +58,9 @@ void read_text_rows(Table& table, TextCursor& cursor, const Context& context);
 void write_binary_rows(const Table& table, bool big_endian, Sink& sink, const Context& context);
 /// Writes the rows as text; a binary table is converted on the way.
 void write_text_rows(const Table& table, Sink& sink, const Context& context);
+/// Writes tables as text, one behind the other, and then `tail`. The last line of a file may lack its line
+/// end; it gets one where something follows it.
+void write_text_body(const std::vector<const Table*>& tables, std::string_view tail, Sink& sink,
+                     const Context& context);
 
 }  // namespace rfsmooth::pipeline::io

@@ -88,8 +88,11 @@ void read_lists(Table& table, BinaryCursor& cursor, const Context& context) {
     }
     table.start[i + 1] = std::uint64_t(p - first);
   }
-  table.data.assign(first, p);
-  cursor.offset += std::uint64_t(p - first);
+  const auto size = std::size_t(p - first);
+  std::size_t next = std::size_t(p - cursor.held.data());
+  table.data = take_bytes(cursor.held, next - size, size, next);
+  cursor.offset += size;
+  cursor.held_from = cursor.offset - next;
 }
 
 void swap_lists(Table& table) {

@@ -66,10 +66,6 @@ std::string problem(const Table& table, std::string_view row) {
   return fmt::format("expected {}, found more: {}", counted(seen, "value"), in_quotes(word));
 }
 
-std::size_t count_lines(const Bytes& all, std::size_t to) {
-  return std::size_t(std::count(all.begin(), all.begin() + std::ptrdiff_t(to), '\n'));
-}
-
 }  // namespace
 
 TextCursor::TextCursor(const Source& from, std::uint64_t offset, std::size_t lines_before,
@@ -136,42 +132,46 @@ void read_text_rows(Table& table, TextCursor& cursor, const Context& context) {
     cursor.source.fail("line {}: expected {} of element '{}', found {}", cursor.lines + 1,
                        counted(table.count, "line"), table.name, counted(left, "byte"));
 
-  const char* const base = cursor.all.data();
-  const char* const end = base + cursor.all.size();
-  const char* p = base + cursor.at;
-  const char* run = p;  // first byte not yet copied
+  // Blank lines and comments are taken out, and the rows moved together where they are.
+  char* const begin = cursor.all.data() + cursor.at;
+  char* const end = begin + left;
+  char* rows_end = begin;  // behind the rows moved so far
+  char* run = begin;       // first byte not yet moved
+  char* p = begin;
+  const auto move_run = [&] {
+    if (run != rows_end) std::memmove(rows_end, run, std::size_t(p - run));
+    rows_end += p - run;
+  };
   const std::size_t lines_before = cursor.lines;
-  const std::size_t first = cursor.at;
   table.start.reserve(table.count + 1);
   table.start.push_back(0);
-  table.data.reserve(left);
   std::size_t rows = 0;
   while (rows < table.count) {
     if (rows % kTextRowsPerBlock == 0) context.check_stop();
     if (p == end)
-      cursor.source.fail(
-          "line {}: expected row {} of {} of element '{}', found the end of the file",
-          lines_before + count_lines(cursor.all, cursor.all.size()) - count_lines(cursor.all, first) + 1,
-          rows + 1, table.count, table.name);
-    const char* newline = static_cast<const char*>(std::memchr(p, '\n', std::size_t(end - p)));
-    const char* next = newline == nullptr ? end : newline + 1;
+      cursor.source.fail("line {}: expected row {} of {} of element '{}', found the end of the file",
+                         cursor.lines + 1, rows + 1, table.count, table.name);
+    char* const newline = static_cast<char*>(std::memchr(p, '\n', std::size_t(end - p)));
+    char* const next = newline == nullptr ? end : newline + 1;
+    if (newline != nullptr) ++cursor.lines;
     const std::string_view line(p, std::size_t(next - p));
     if (is_blank_or_comment(line)) {
-      table.data.insert(table.data.end(), run, p);
-      run = next;
       if (!table.interludes.empty() && table.interludes.back().row == rows)
         table.interludes.back().text += line;
       else
         table.interludes.push_back({rows, std::string(line)});
+      move_run();
+      run = next;
     } else {
       ++rows;
-      table.start.push_back(table.data.size() + std::size_t(next - run));
+      table.start.push_back(std::uint64_t(rows_end - begin) + std::uint64_t(next - run));
     }
     p = next;
   }
-  table.data.insert(table.data.end(), run, p);
-  cursor.at = std::size_t(p - base);
-  cursor.lines = lines_before + std::size_t(std::count(base + first, p, '\n'));
+  move_run();
+  const std::size_t first = cursor.at;
+  cursor.at += std::size_t(p - begin);
+  table.data = take_bytes(cursor.all, first, std::size_t(rows_end - begin), cursor.at);
   check_rows(table, cursor.source, lines_before, context);
 }
 
@@ -189,6 +189,24 @@ void write_text_rows(const Table& table, Sink& sink, const Context& context) {
     from = to;
   }
   sink.write({table.data.data() + from, table.data.size() - from});
+}
+
+void write_text_body(const std::vector<const Table*>& tables, std::string_view tail, Sink& sink,
+                     const Context& context) {
+  bool open = false;  // whether the last line lacks its line end
+  const auto close_line = [&] {
+    if (open) sink.write("\n");
+    open = false;
+  };
+  for (const Table* table : tables) {
+    context.check_stop();
+    if (table->count == 0 && table->interludes.empty()) continue;
+    close_line();
+    write_text_rows(*table, sink, context);
+    open = table->text && !table->data.empty() && table->data.back() != '\n';
+  }
+  if (!tail.empty()) close_line();
+  sink.write(tail);
 }
 
 }  // namespace rfsmooth::pipeline::io

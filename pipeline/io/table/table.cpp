@@ -158,6 +158,23 @@ Lists gather_lists(const Table& table, std::size_t field, const Context& context
   return lists;
 }
 
+std::vector<std::size_t> list_lengths(const Table& table, std::size_t field, const Context& context) {
+  const Field& f = table.fields.at(field);
+  const Locator locate(table);
+  std::vector<std::size_t> lengths(table.count, f.count);
+  if (!f.is_list()) return lengths;
+  for_each_index(context, table.count, [&](std::size_t i) {
+    const std::string_view row = table.row(i);
+    if (!table.text)
+      lengths[i] = list_size(*f.list_count, locate(row.data(), field));
+    else
+      for_each_field(table, row, [&](std::size_t at, const std::vector<std::string_view>& words) {
+        if (at == field) lengths[i] = words.size() - 1;
+      });
+  });
+  return lengths;
+}
+
 void scatter(Table& table, const std::vector<std::size_t>& which, const double* values,
              const Context& context) {
   require_plain(table, which);

@@ -58,6 +58,9 @@ struct Lists {
 /// The values of `field` in every row.
 Lists gather_lists(const Table& table, std::size_t field, const Context& context);
 
+/// How many values `field` has in every row. Parallel.
+std::vector<std::size_t> list_lengths(const Table& table, std::size_t field, const Context& context);
+
 /// Sets the values of plain fields, each in its own type. A value that equals the present one (or both are
 /// NaN) keeps its bytes or its text. New text has the fewest digits that round-trip.
 void scatter(Table& table, const std::vector<std::size_t>& which, const double* values,
@@ -82,7 +85,7 @@ std::vector<std::size_t> fields_of_indices(const Table& table);
 
 /// Keeps the rows of which every value of the fields `which`, plain or lists, has a new number, and writes
 /// that in its place; all other bytes stay. `number`: the new one of each old one; kNone: it has none, as
-/// those beyond have not.
+/// those beyond have not. Values below 0 name no point and stay (PLY's tristrips have -1 between strips).
 void renumber(Table& table, const std::vector<std::size_t>& which, const std::vector<Index>& number,
               const Context& context);
 

@@ -188,11 +188,11 @@ void select(Table& table, const std::vector<std::size_t>& which) {
     start.reserve(which.size() + 1);
     start.push_back(0);
   }
-  for (const std::size_t i : which) {
-    const std::string_view row = table.row(i);
+  for (std::size_t k = 0; k < which.size(); ++k) {
+    const std::string_view row = table.row(which[k]);
     data.insert(data.end(), row.begin(), row.end());
     // The last line of a file may lack its line end; it needs one where it is no longer the last.
-    if (table.text && (row.empty() || row.back() != '\n') && data.size() < size) data.push_back('\n');
+    if (table.text && (row.empty() || row.back() != '\n') && k + 1 < which.size()) data.push_back('\n');
     if (!table.start.empty()) start.push_back(data.size());
   }
   // Comments stay in front of the first kept row that stood behind them in the file. They are ascending, so

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <optional>
 
 #include "pipeline/io/table/table.h"
 #include "pipeline/io/table/table_walk.h"
@@ -29,15 +30,17 @@ void for_each_value(const Table& table, std::string_view row, const std::vector<
   }
 }
 
-/// The new number of what is stored, if it has one and the field has room for it; else kNone.
-Index new_number(const Table& table, const Field& field, std::string_view stored,
-                 const std::vector<Index>& number) {
+/// The new number of what is stored, if it has one and the field has room for it. What is below 0 names no
+/// point and stays.
+std::optional<double> new_number(const Table& table, const Field& field, std::string_view stored,
+                                 const std::vector<Index>& number) {
   const double value = table.text ? value_of(stored) : load(field.type, stored.data());
-  if (!(value >= 0 && value < double(number.size()))) return kNone;
-  const Index wanted = number[std::size_t(value)];
+  if (value < 0) return value;
+  if (!(value < double(number.size())) || number[std::size_t(value)] == kNone) return std::nullopt;
+  const double wanted = number[std::size_t(value)];
   char room[8];
-  store(field.type, room, double(wanted));
-  return load(field.type, room) == double(wanted) ? wanted : kNone;
+  store(field.type, room, wanted);
+  return load(field.type, room) == wanted ? std::optional(wanted) : std::nullopt;
 }
 
 }  // namespace
@@ -59,7 +62,7 @@ void renumber(Table& table, const std::vector<std::size_t>& which, const std::ve
   for (std::size_t i = 0; i < table.count; ++i) {
     bool all = true;
     for_each_value(table, table.row(i), which, locate, [&](const Field& field, std::string_view stored) {
-      all = all && new_number(old, field, stored, number) != kNone;
+      all = all && new_number(old, field, stored, number).has_value();
     });
     if (all) rows.push_back(i);
   }
@@ -69,7 +72,7 @@ void renumber(Table& table, const std::vector<std::size_t>& which, const std::ve
     const char* copied = row.data();
     for_each_value(old, row, which, locate, [&](const Field& field, std::string_view stored) {
       out.append(copied, stored.data());
-      const auto wanted = double(new_number(old, field, stored, number));
+      const double wanted = new_number(old, field, stored, number).value();
       char bytes[8];
       store(field.type, bytes, wanted);
       if (!old.text)

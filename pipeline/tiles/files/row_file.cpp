@@ -95,8 +95,9 @@ std::optional<Eigen::Vector3d> RowFile::viewpoint(const Context& context) const 
   constexpr std::size_t kLooked = 1 << 18;  // points
   io::Cloud top = header_;
   std::vector<double> xyz;
+  if (top.width > kLooked / 2) top.height = 1;  // two rows are too many: the header alone has a say
   if (top.organised() && top.width > 0) {
-    top.height = std::clamp<std::size_t>(kLooked / top.width, 2, top.height);
+    top.height = std::min(kLooked / top.width, top.height);
     const io::Bytes rows = read(0, top.width * top.height, context);
     for (std::size_t i = 0; i < top.width * top.height; ++i)
       for (const double x : get(rows, i)) xyz.push_back(x);
@@ -142,12 +143,14 @@ void RowFile::put_normal(io::Bytes& rows, std::size_t i, const std::array<double
       io::store(fields[axis].field, rows.data() + i * (row_ + added_) + fields[axis].offset, normal[axis]);
 }
 
-io::RefinedScale RowFile::refine_scale(double step, const std::array<double, 3>& low,
-                                       const std::array<double, 3>& high) {
+io::RefinedScale RowFile::refine_scale(double step, const Eigen::AlignedBox3d& box) {
   io::RefinedScale done;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     io::Field& field = field_[axis];
-    const double a = (low[axis] - field.offset) / field.scale, b = (high[axis] - field.offset) / field.scale;
+    const auto stored = [&](const Eigen::Vector3d& end) {
+      return (end[Eigen::Index(axis)] - field.offset) / field.scale;
+    };
+    const double a = stored(box.min()), b = stored(box.max());
     change_[axis] = io::refine_axis(field, axis, step, std::min(a, b), std::max(a, b), done);
     if (change_[axis].power == 0) continue;
     io::las::put_number(head_, io::las::kScaleAt + 8 * axis, field.scale);
@@ -186,10 +189,10 @@ void RowFile::put(io::Bytes& rows, std::size_t i, const std::array<double, 3>& x
   }
 }
 
-void RowFile::set_box(const std::array<double, 3>& low, const std::array<double, 3>& high) {
+void RowFile::set_box(const Eigen::AlignedBox3d& box) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    io::las::put_number(head_, io::las::kBoxAt + 16 * axis, high[axis]);
-    io::las::put_number(head_, io::las::kBoxAt + 16 * axis + 8, low[axis]);
+    io::las::put_number(head_, io::las::kBoxAt + 16 * axis, box.max()[Eigen::Index(axis)]);
+    io::las::put_number(head_, io::las::kBoxAt + 16 * axis + 8, box.min()[Eigen::Index(axis)]);
   }
 }
 

@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include "pipeline/io/formats/las/las_scale.h"
 #include "pipeline/io/stream/sink.h"
@@ -32,11 +32,11 @@ class RowFile {
 
   std::uint64_t rows() const { return rows_; }
   io::Format format() const { return format_; }
+  const std::array<io::Field, 3>& coordinates() const { return field_; }  ///< the fields x, y, z
 
-  /// Has LAS coordinates in steps of at most `step`, as io::refine_scale, from here on. `low`, `high`: the
-  /// ends of old and new coordinates.
-  io::RefinedScale refine_scale(double step, const std::array<double, 3>& low,
-                                const std::array<double, 3>& high);
+  /// Has LAS coordinates in steps of at most `step`, as io::refine_scale, from here on. `box`: of old and new
+  /// coordinates.
+  io::RefinedScale refine_scale(double step, const Eigen::AlignedBox3d& box);
 
   /// The scanner's place, as far as the header and the first rows tell (pipeline/viewpoint.h).
   std::optional<Eigen::Vector3d> viewpoint(const Context& context) const;
@@ -65,8 +65,8 @@ class RowFile {
     }
   }
 
-  /// Copies the file, each piece of rows as `change(first, count, rows)` leaves it. What a header says of the
-  /// box follows. Memory: one piece.
+  /// Copies the file, each piece of rows as `change(first, count, rows)` leaves it. The box in the header of
+  /// a LAS file is what set_box made it. Memory: one piece.
   template <class Change>
   void copy(io::Sink& to, Change&& change, const Context& context) const {
     to.write(head_);
@@ -77,8 +77,8 @@ class RowFile {
     copy_tail(to, context);
   }
 
-  /// The bytes before the rows with the box [low, high] in them (LAS), for `copy`.
-  void set_box(const std::array<double, 3>& low, const std::array<double, 3>& high);
+  /// Puts the box into the header of a LAS file, for `copy`.
+  void set_box(const Eigen::AlignedBox3d& box);
 
  private:
   /// Bytes of rows [first, first + count).

@@ -4,9 +4,9 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
-#include <limits>
 #include <optional>
 
+#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include "base/fail.h"
@@ -21,6 +21,9 @@
 namespace rfsmooth::pipeline::tiles {
 
 namespace {
+
+using Eigen::AlignedBox3d;
+using Eigen::Vector3d;
 
 /// The records of all tiles, by rows, from row `from` on; repeats have those of the first row at their place.
 template <class T>
@@ -53,7 +56,7 @@ class OfAllTiles {
  private:
   /// What became of the first row at a place, and the tile that this is in.
   struct AtPlace {
-    Eigen::Vector3d at;
+    Vector3d at;
     T record;
     std::size_t tile;
   };
@@ -73,7 +76,7 @@ class OfAllTiles {
   void visit_repeats(std::uint64_t first, std::uint64_t count, Visit& visit) {
     for (const Record* r = repeats_->peek(); r != nullptr && r->row < first + count; r = repeats_->peek()) {
       repeats_->next();
-      const Eigen::Vector3d at = place(*r);
+      const Vector3d at = place(*r);
       const auto same =
           std::find_if(first_.begin(), first_.end(), [&](const AtPlace& other) { return other.at == at; });
       if (same == first_.end()) fail(ErrorCode::internal, "row {} repeats no other", r->row);
@@ -99,17 +102,22 @@ class Patcher {
     reversed_ = find_sides(job, context);
     normals_.emplace(job, &Job::normals, 0, context);
   }
-  /// `first`: the row of the cloud that `rows` begins with.
-  void patch(const RowFile& file, std::uint64_t first, std::uint64_t count, io::Bytes& rows) {
+  /// `first`: the row of the cloud that `rows` begins with. \return how many points the file's coordinates
+  /// cannot say.
+  std::size_t patch(const RowFile& file, std::uint64_t first, std::uint64_t count, io::Bytes& rows) {
+    std::size_t beyond = 0;
     places_.visit(first, count, [&](std::size_t row, const Record& r, std::size_t) {
-      file.put(rows, row, {r.x, r.y, r.z});
+      const std::array<double, 3> xyz = {r.x, r.y, r.z};
+      file.put(rows, row, xyz);
+      beyond += std::size_t(!io::can_hold(file.coordinates(), xyz));
       ++patched_;
     });
-    if (!normals_) return;
+    if (!normals_) return beyond;
     normals_->visit(first, count, [&](std::size_t row, const NormalRecord& r, std::size_t tile) {
       const double sign = reversed_[tile][std::size_t(r.piece)] != 0 ? -1 : 1;
       file.put_normal(rows, row, {sign * r.x, sign * r.y, sign * r.z});
     });
+    return beyond;
   }
   std::uint64_t patched() const { return patched_; }
 
@@ -120,20 +128,10 @@ class Patcher {
   std::uint64_t patched_ = 0;
 };
 
-/// A box of coordinates.
-struct Ends {
-  std::array<double, 3> low, high;
-  Ends() {
-    low.fill(std::numeric_limits<double>::infinity());
-    high.fill(-std::numeric_limits<double>::infinity());
-  }
-  void add(const std::array<double, 3>& xyz) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      low[axis] = std::min(low[axis], xyz[axis]);
-      high[axis] = std::max(high[axis], xyz[axis]);
-    }
-  }
-};
+/// Makes a box hold a place.
+void extend(AlignedBox3d& box, const std::array<double, 3>& xyz) {
+  box.extend(Vector3d(xyz[0], xyz[1], xyz[2]));
+}
 
 /// An input, open, and its first row's number in the cloud.
 struct OpenInput {
@@ -144,30 +142,32 @@ struct OpenInput {
 /// Refines the scale of a LAS file to `step`, unless nothing of it moved: then all of it is zeros.
 io::RefinedScale refine_moved(const Job& job, OpenInput& input, double step, const Context& context) {
   OfAllTiles<Record> places(job, &Job::done, input.before, context);
-  Ends ends;
+  AlignedBox3d box;
   bool moved = false;
   const RowFile& file = input.file;
   file.for_each_piece(context, [&](std::uint64_t first, std::size_t count, const io::Bytes& rows) {
-    for (std::size_t i = 0; i < count; ++i) ends.add(file.get(rows, i));
+    for (std::size_t i = 0; i < count; ++i) extend(box, file.get(rows, i));
     places.visit(input.before + first, count, [&](std::size_t row, const Record& r, std::size_t) {
       const std::array<double, 3> now = {r.x, r.y, r.z};
       moved = moved || now != file.get(rows, row);
-      ends.add(now);
+      extend(box, now);
     });
   });
-  return moved ? input.file.refine_scale(step, ends.low, ends.high) : io::RefinedScale();
+  return moved ? input.file.refine_scale(step, box) : io::RefinedScale();
 }
 
-/// The box of the coordinates as they will be written, for the header of a LAS file.
+/// Puts the box of the coordinates as they will be written into the header of a LAS file, unless it is the
+/// box of the present ones: then the header says of it what it did.
 void find_box(const Job& job, OpenInput& input, const Context& context) {
   Patcher patcher(job, input.before, context);
-  Ends ends;
+  AlignedBox3d before, after;
   const RowFile& file = input.file;
   file.for_each_piece(context, [&](std::uint64_t first, std::size_t count, io::Bytes& rows) {
+    for (std::size_t i = 0; i < count; ++i) extend(before, file.get(rows, i));
     patcher.patch(file, input.before + first, count, rows);
-    for (std::size_t i = 0; i < count; ++i) ends.add(file.get(rows, i));
+    for (std::size_t i = 0; i < count; ++i) extend(after, file.get(rows, i));
   });
-  if (file.rows() > 0) input.file.set_box(ends.low, ends.high);
+  if (before.min() != after.min() || before.max() != after.max()) input.file.set_box(after);
 }
 
 /// Makes the header of a LAS file ready for the new coordinates: first the scale, in steps of which the box
@@ -182,17 +182,19 @@ io::RefinedScale prepare_las(const Job& job, OpenInput& input, bool keep_scale, 
   return scale;
 }
 
-/// The input, patched, as `output`.
+/// The input, patched, as `output`. Warns as set_positions.
 void write_joined(const Job& job, const OpenInput& input, const std::string& output, bool force,
                   Patcher& patcher, const Context& context) {
   io::AtomicFile to(output, force, context);
+  std::size_t beyond = 0;
   input.file.copy(
       to,
       [&](std::uint64_t first, std::size_t count, io::Bytes& rows) {
-        context.report("join", double(input.before + first) / double(job.points + 1));
-        patcher.patch(input.file, input.before + first, count, rows);
+        context.report("join", double(input.before + first) / double(job.rows()));
+        beyond += patcher.patch(input.file, input.before + first, count, rows);
       },
       context);
+  io::warn_of_rounding(input.file.coordinates(), beyond, context);
   to.commit(true);
 }
 

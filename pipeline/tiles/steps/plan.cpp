@@ -250,8 +250,7 @@ Job plan_job(const std::vector<std::string>& inputs, const fs::path& folder, con
   for (const std::string& path : inputs) job.inputs.push_back(describe_input(path, context));
   if (fs::exists(plan_file(folder))) return same_job_there(job, how);
   make_folders(job);
-  std::uint64_t rows = 0;
-  for (const JobInput& input : job.inputs) rows += input.rows;
+  const std::uint64_t rows = job.rows();
   const std::uint64_t one_in = std::max<std::uint64_t>(1, rows / kPlanned);
   Survey survey = survey_inputs(job.inputs, rows, one_in, context);
   if (survey.points == 0) fail(ErrorCode::no_usable_points, "none of the points is finite");

@@ -71,15 +71,19 @@ Surroundings surroundings_of(const Job& job, std::size_t tile, const std::vector
                              const Settled& settled, const Context& context) {
   const AlignedBox3d box(job.tiles[tile].box.low, job.tiles[tile].box.high);
   const double most = std::pow(settled.halo / settled.radii, 2);
-  Positions points;
+  Positions points, others;
   for (const Record& r : own) points.push_back(place(r));
   for_each_around(
       job, tile, context,
       [&](const AlignedBox3d& other) { return box.squaredExteriorDistance(other) <= most; },
       [&](const Vector3d& p) { return box.squaredExteriorDistance(p) <= most; },
-      [&](const Record& r, std::size_t) { points.push_back(place(r)); });
+      [&](const Record& r, std::size_t) { others.push_back(place(r)); });
+  points = distinct_places(points);
+  const std::size_t own_places = points.size();
+  others = distinct_places(others);
+  points.insert(points.end(), others.begin(), others.end());
   std::optional<Halo> halo;
-  in_arena(context, [&] { halo.emplace(points, own.size(), settled.widest, settled.radii, context); });
+  in_arena(context, [&] { halo.emplace(points, own_places, settled.widest, settled.radii, context); });
   const std::uint64_t count = count_in(job, tile, *halo, context);
   return {std::move(*halo), count};
 }

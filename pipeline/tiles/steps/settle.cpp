@@ -87,7 +87,8 @@ Settled settle_sample(const Job& job, Sample sample, const DenoiseOptions& optio
   std::vector<double> smooth = sample.smoothed;
   Settled settled;
   settled.report = value_or_throw(denoise(smooth.data(), n, how, context));
-  in_arena(context, [&] { find_halo(options, io::points_of(sample.smoothed), context, settled); });
+  in_arena(context,
+           [&] { find_halo(options, distinct_places(io::points_of(sample.smoothed)), context, settled); });
   return settled;
 }
 

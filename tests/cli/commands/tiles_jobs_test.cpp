@@ -100,6 +100,19 @@ TEST_F(Tiles, AFolderOfFilesIsOneCloud) {
     }
 }
 
+// A patch has so many places, however often a scan was merged with itself.
+TEST_F(Tiles, WhatLiesAroundATileIsAsWideForCopiesOfAScan) {
+  const RichCloud once = strip(0.4);
+  RichCloud often = once;
+  for (int k = 1; k < 5; ++k) often.xyz.insert(often.xyz.end(), once.xyz.begin(), once.xyz.end());
+  const auto share = [&](const std::string& name, const RichCloud& cloud) {
+    put(name + ".ply", cloud.bytes());
+    joined({name + ".ply"}, name, name + ".out.ply");
+    return nlohmann::json::parse(run({"tiles", "status", name, "--json"}).out)["halo_share"].get<double>();
+  };
+  EXPECT_NEAR(share("often", often), share("once", once), 0.01);
+}
+
 // As denoise has it (las_test.cpp), the bytes too: one tile is the whole.
 TEST_F(Tiles, ACoarseScaleOfALasFileIsRefinedAsForTheWholeCloud) {
   constexpr double kScale = 0.2;
@@ -135,6 +148,36 @@ TEST_F(Tiles, ACoarseScaleOfALasFileIsRefinedAsForTheWholeCloud) {
   const Ran other = run({"tiles", "join", "job", "out.ply"});
   EXPECT_EQ(other.code, 2);
   EXPECT_THAT(other.err, HasSubstr("keeps its format"));
+}
+
+// Writers leave boxes that are wider than the points, or rounded: where nothing moves they stay.
+TEST_F(Tiles, TheBoxOfALasFileStaysWhereThePointsDo) {
+  LasBytes las;
+  for (int i = 0; i < 40; ++i)
+    for (int j = 0; j < 40; ++j) las.xyz.push_back({100 * i, 100 * j, 0});
+  std::string bytes = las.bytes();
+  const double wider = LasBytes::get<double>(bytes, 179) + 0.5;  // the largest x
+  LasBytes::put(bytes, 179, wider);
+  put("in.las", bytes);
+  EXPECT_EQ(run({"denoise", "in.las", "whole.las"}).code, 0);
+  EXPECT_TRUE(take("whole.las") == bytes);
+  EXPECT_TRUE(joined({"in.las"}, "job", "tiled.las") == bytes);
+}
+
+TEST_F(Tiles, RoundingToWholeNumbersIsSaid) {
+  const RichCloud cloud = strip(0.4);
+  std::string text = "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(cloud.size()) +
+                     "\nproperty int x\nproperty int y\nproperty int z\nend_header\n";
+  for (const double v : cloud.xyz)
+    LasBytes::add(text, std::int32_t(std::isfinite(v) ? std::lround(1000 * v) : 0));
+  put("in.ply", text);
+  settled({"in.ply"}, "job", "1000000");
+  step_of_all("run", "job");
+  const Ran ran = run({"tiles", "join", "job", "out.ply"}), whole = run({"denoise", "in.ply", "whole.ply"});
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  for (const Ran* said : {&ran, &whole})
+    EXPECT_THAT(said->err, HasSubstr("whole numbers (int32): new ones are rounded"));
+  EXPECT_EQ(ran.err.find("whole numbers (int32)"), ran.err.rfind("whole numbers (int32)")) << "once";
 }
 
 // Each has its scale and its box from the results of its own rows; reading those of all inputs for each of

@@ -1,7 +1,10 @@
 /// rfsmooth denoise --memory: in tiles where the memory is less.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
+#include <fstream>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -125,6 +128,22 @@ TEST_F(Tiles, WhyNothingWasSmoothedIsSaidInTiles) {
   EXPECT_TRUE(take("out.ply") == take("in.ply"));
 }
 
+TEST_F(Tiles, ProgressStaysWithinItsRange) {
+  put("in.ply", sheet_with_normals(3000, kWide, 1));  // ten times as many rows as points, in two pieces
+  Context context;
+  std::vector<double> parts;
+  context.progress = [&](std::string_view, double part) {
+    parts.push_back(part);
+    return true;
+  };
+  pipeline::tiles::smooth_in_tiles({at("in.ply"), at("out.ply")},
+                                   pipeline::tiles::plan_within(kLittleBytes, false), {}, std::nullopt,
+                                   context);
+  ASSERT_FALSE(parts.empty());
+  EXPECT_GE(*std::min_element(parts.begin(), parts.end()), 0);
+  EXPECT_LE(*std::max_element(parts.begin(), parts.end()), 1);
+}
+
 TEST_F(Tiles, RowsThatAreNotFiniteTakeNoMemory) {
   put("in.ply", sheet_with_normals(kTooLong, kWide, 1));  // 5,376 points
   const Ran ran = run({"denoise", "--memory", kLittle, "in.ply", "out.ply"});
@@ -160,6 +179,59 @@ TEST_F(Tiles, RowsAtOnePlaceTakeNoMemoryAndStayTogether) {
     before += i % 3 < 2 ? 0 : double(unseen.xyz[3 * i + 2]) * double(unseen.xyz[3 * i + 2]);
   }
   EXPECT_LT(after, before / 10);
+}
+
+// A scan merged with copies of itself: more rows than fit, and fewer places than two tiles have.
+TEST_F(Tiles, CopiesOfAScanGoInTilesAndMoveTogether) {
+  constexpr std::size_t kCopies = 5;
+  const BinaryPly sheet = noisy_sheet(450, kWide);
+  BinaryPly merged = sheet;
+  for (std::size_t k = 1; k < kCopies; ++k)
+    merged.xyz.insert(merged.xyz.end(), sheet.xyz.begin(), sheet.xyz.end());
+  put("in.ply", merged.bytes());
+  const Ran ran = run({"denoise", "--memory", kLittle, "in.ply", "out.ply"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  EXPECT_THAT(ran.err, HasSubstr("in tiles"));
+  const std::string out = take("out.ply");
+  const auto row = [&](std::size_t i) {
+    std::array<float, 3> xyz{};
+    std::memcpy(xyz.data(), out.data() + merged.header().size() + i * BinaryPly::kRow, sizeof xyz);
+    return xyz;
+  };
+  double before = 0, after = 0;
+  for (std::size_t i = 0; i < merged.size(); ++i) {
+    ASSERT_EQ(row(i), row(i % sheet.size())) << i;
+    before += double(merged.xyz[3 * i + 2]) * double(merged.xyz[3 * i + 2]);
+    after += double(row(i)[2]) * double(row(i)[2]);
+  }
+  EXPECT_LT(after, before / 10);
+}
+
+// What is refused after reading has taken what reading takes.
+TEST_F(Tiles, TextIsInMemoryOnce) {
+  if (kSanitized) GTEST_SKIP() << "memory is looked at without sanitizers";
+  constexpr int kRows = 200'000, kColumns = 60;
+  {
+    std::ofstream file(at("in.xyz"));  // in pieces: what this test takes counts, too
+    for (int i = 0; i < kRows; ++i) {
+      file << i / 400 << ' ' << i % 400 << " 0";
+      for (int k = 3; k < kColumns; ++k) file << " 1.2345";
+      file << '\n';
+    }
+  }
+  const Ran ran = run({"denoise", "--memory", kLittle, "in.xyz", "out.xyz"});
+  EXPECT_EQ(ran.code, 6) << ran.err;
+  EXPECT_LT(double(ran.peak), 1.7 * double(std::filesystem::file_size(at("in.xyz"))));
+}
+
+// There is no place beside them for the tiles.
+TEST_F(Tiles, PipesAndOpenFilesGetTheWholeCloud) {
+  put("in.ply", noisy_sheet(kTooLong, kWide).bytes());
+  for (const char* output : {"-", "/dev/stdout", "/dev/null"}) {
+    const Ran ran = run({"denoise", "--memory", kLittle, "in.ply", output});
+    EXPECT_EQ(ran.code, 6) << output << ": " << ran.err;
+    EXPECT_THAT(ran.err, Not(HasSubstr("in tiles of"))) << output;
+  }
 }
 
 TEST_F(Tiles, WhatCannotGoInTilesIsRefusedWhereTheMemoryIsLess) {

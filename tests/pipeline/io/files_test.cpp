@@ -11,6 +11,7 @@
 #include "pipeline/io/formats/lzf.h"
 #include "pipeline/io/io.h"
 #include "pipeline/io/mesh_file.h"
+#include "pipeline/io/stream/atomic_file.h"
 #include "tests/pipeline/io/as_text.h"
 
 using namespace rfsmooth;                // NOLINT(google-build-using-namespace)
@@ -72,6 +73,19 @@ TEST_F(Folder, ALinkIsWrittenThrough) {
   ASSERT_TRUE(write(folder_ / "link.ply", true).ok());
   fs::create_symlink("round.ply", folder_ / "round.ply");
   EXPECT_EQ(write(folder_ / "round.ply").error().code, ErrorCode::cannot_write);
+}
+
+TEST_F(Folder, AFileIsKnownBehindItsLinks) {
+  fs::create_directory(folder_ / "other");
+  fs::create_symlink("../none.ply", folder_ / "other" / "link.ply");
+  const auto behind = file_behind(folder_ / "other" / "link.ply");
+  ASSERT_TRUE(behind.has_value());
+  EXPECT_EQ(behind->lexically_normal(), folder_ / "none.ply");
+  EXPECT_EQ(file_behind(folder_ / "new.ply"), folder_ / "new.ply");
+  fs::create_symlink("/dev/stdout", folder_ / "open.ply");
+  for (const fs::path& target :
+       {fs::path("/dev/stdout"), fs::path("/dev/fd/1"), fs::path("/dev/null"), folder_ / "open.ply"})
+    EXPECT_FALSE(file_behind(target).has_value()) << target;
 }
 
 TEST_F(Folder, TargetsThatCannotBe) {

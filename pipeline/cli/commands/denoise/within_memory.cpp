@@ -9,6 +9,7 @@
 #include "base/fail.h"
 #include "pipeline/cli/files/memory.h"
 #include "pipeline/cli/options/text_values.h"
+#include "pipeline/io/stream/atomic_file.h"
 #include "pipeline/tiles/allowed.h"
 #include "pipeline/tiles/in_one_process.h"
 
@@ -111,7 +112,8 @@ void check_memory(const DenoiseCommandOptions& options, const Job& job, const st
 std::optional<std::uint64_t> memory_of_tiles(const DenoiseCommandOptions& options, const Job& job,
                                              const Context& context) {
   const auto most = memory_to_use(options);
-  if (!most || job.input == "-" || job.output == "-") return std::nullopt;
+  if (!most || job.input == "-" || job.output == "-" || !pipeline::io::file_behind(job.output))
+    return std::nullopt;
   const auto large = too_large(job.input, *most, options.normals.normals, context);
   if (!large) return std::nullopt;
   const auto possible = guarded([&] {

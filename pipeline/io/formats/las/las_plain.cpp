@@ -14,13 +14,6 @@ namespace rfsmooth::pipeline::io {
 namespace las {
 namespace {
 
-// Names of other formats are one word.
-std::string one_word(std::string name) {
-  for (char& c : name)
-    if (c <= ' ' || c == '\x7f') c = '_';
-  return name;
-}
-
 // A plain field and where its values come from in a row.
 struct Origin {
   Field field;
