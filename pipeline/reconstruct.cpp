@@ -43,7 +43,7 @@ bool on_one_line(const Positions& points) {
   });
 }
 
-/// Takes the noise out of the rows and outliers out of the cloud.
+/// Takes the noise out of the rows, and outliers, where they were looked for, out of the cloud.
 void clean(std::vector<double>& xyz, const DenoiseOptions& options, ReconstructReport& report,
            const Context& context) {
   report.denoised = value_or_throw(denoise(xyz.data(), xyz.size() / 3, options, context));

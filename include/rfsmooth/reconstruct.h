@@ -26,7 +26,8 @@ struct ReconstructOptions {
   /// Poisson invents where normals disagree.
   Length trim = {2.5, true};
   Length fill_holes = {8, true};  ///< the longest edge of a face put into a hole; 0 = none are filled
-  DenoiseOptions denoising;
+  /// Outliers are removed, or smoothed; a surface cannot keep them beside it.
+  DenoiseOptions denoising = {{}, Outliers::remove};
 
   template <class Self, class Visit>
   static void describe(Self& self, Visit&& visit) {
@@ -37,7 +38,11 @@ struct ReconstructOptions {
     visit(OptionInfo{"fill-holes", "fill holes that need no edge longer than this; 0 leaves them open",
                      "world units or x spacing", 0},
           self.fill_holes);
-    DenoiseOptions::describe(self.denoising, visit);
+    DenoiseOptions::describe(self.denoising, visit,
+                             words("outliers",
+                                   "points with no surface near: left out, or smoothed and joined to the "
+                                   "surface like all others",
+                                   {"", "", "remove", "smooth"}));
   }
 };
 

@@ -91,6 +91,35 @@ TEST(Reconstruct, NoiseIsTakenOutFirst) {
   EXPECT_LT(height(denoising, xyz), 0.5 * height(without_denoising(), xyz));
 }
 
+TEST(Reconstruct, OutliersAreLeftOutOrSmoothedAndNothingElse) {
+  std::vector<double> xyz = grid_rows(20);
+  xyz.insert(xyz.end(), {kFar + 10, 10, 30});
+  const auto points = [&](Outliers outliers) {
+    std::size_t given = 0;
+    const auto join = [&](const SurfaceInput& input, const Context&) {
+      given = input.points.size();
+      Mesh mesh;
+      mesh.positions = input.points;
+      for (Index i = 0; i + 2 < given; ++i) mesh.faces.push_back({i, i + 1, i + 2});
+      return Result<Mesh>(mesh);
+    };
+    ReconstructOptions options;
+    options.fill_holes.value = 0;
+    options.denoising.outliers = outliers;
+    const auto made = reconstruct(xyz, options, {"all", false, join}, {});
+    EXPECT_EQ(made.ok(), given > 0);
+    if (!made.ok()) {
+      EXPECT_EQ(made.error().code, ErrorCode::usage) << made.error().message;
+    }
+    return given;
+  };
+  EXPECT_EQ(ReconstructOptions().denoising.outliers, Outliers::remove);
+  EXPECT_EQ(points(Outliers::remove), 400u);
+  EXPECT_EQ(points(Outliers::smooth), 401u);
+  EXPECT_EQ(points(Outliers::keep), 0u) << "a surface has no place beside it";
+  EXPECT_EQ(points(Outliers::mark), 0u);
+}
+
 TEST(Reconstruct, ErrorsOfTheMethodAndTheCloudComeThrough) {
   const auto fails = [](const SurfaceInput&, const Context&) -> Result<Mesh> {
     return Error{ErrorCode::no_usable_points, "no surface here"};

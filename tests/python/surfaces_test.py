@@ -111,6 +111,13 @@ def test_reconstruction_by_the_program(sphere):
     with pytest.raises(rfsmooth.Error) as caught:
         rfsmooth.reconstruct(sphere, strength=11)
     assert caught.value.code == "usage"
+    with pytest.raises(rfsmooth.Error, match="trim has no effect with .*method advancing-front"):
+        rfsmooth.reconstruct(sphere, method="advancing-front", trim="3x")
+    assert report["options"]["outliers"] == "remove" and "trim" not in report["options"]
+    again, _ = rfsmooth.reconstruct(sphere, config=report)
+    assert np.array_equal(again.vertices, made.vertices) and np.array_equal(again.faces, made.faces)
+    raw, _ = rfsmooth.reconstruct(sphere, config=report, denoise=False)
+    assert error_of(raw.vertices) > error_of(made.vertices)
 
 
 def test_without_the_program_it_says_so(sphere, monkeypatch):

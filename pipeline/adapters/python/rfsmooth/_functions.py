@@ -160,8 +160,9 @@ def reconstruct(points, *, threads=0, config=None, **options):
     links the libraries that make surfaces (Open3D, CGAL); rfsmooth.Error with code "not_installed" if it is not in PATH.
     """
     cloud = _arrays.cloud_of_points(_arrays.as_points(points))
-    texts = reconstruct.table.texts(_config(reconstruct.table, config, options))
-    file, report = run_reconstruct(cloud, texts, _threads(threads))
+    table = reconstruct.table
+    earlier = {name: value for name, value in _config(table, config, {}).items() if name not in options}
+    file, report = run_reconstruct(cloud, table.texts(options), table.texts(earlier), _threads(threads))
     return Mesh(file.positions(), file.faces(), file.edges()), report
 
 
