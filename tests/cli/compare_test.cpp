@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <cstring>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -62,6 +63,41 @@ TEST_F(CompareCommand, AgainstACloudTheDistanceIsToItsNearestPoint) {
   const auto said =
       nlohmann::json::parse(run({"compare", "--json", "cloud.ply", "truth.xyz"}).out)["deviation"];
   EXPECT_NEAR(said["largest"].get<double>(), 2, 1e-12) << "the corner that is 2 above";
+}
+
+/// A unit square's corners with normals that lean by so many degrees from z.
+std::string leaning(double degrees) {
+  const double angle = degrees * std::atan(1.0) / 45;
+  std::string rows = "x y z nx ny nz\n";
+  for (const char* at : {"0 0 0", "1 0 0", "0 1 0", "1 1 0"})
+    rows += fmt::format("{} {:.17g} 0 {:.17g}\n", at, std::sin(angle), std::cos(angle));
+  return rows;
+}
+
+TEST_F(CompareCommand, NormalsAreComparedWithThoseOfACleanCloud) {
+  put("leaning.xyz", leaning(150));
+  put("upright.xyz", leaning(0));
+  const auto error = [&](std::vector<std::string> typed) {
+    typed.insert(typed.begin(), {"compare", "--json", "leaning.xyz"});
+    const Ran ran = run(typed);
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    return nlohmann::json::parse(ran.out)["own_units"]["normal_error"].get<double>();
+  };
+  EXPECT_NEAR(error({"upright.xyz"}), 30, 1e-9);
+  EXPECT_NEAR(error({"upright.xyz", "--signed-normals"}), 150, 1e-9);
+  EXPECT_NEAR(error({"truth.off"}), 30, 1e-9) << "faces look up";
+}
+
+TEST_F(CompareCommand, SidesOfNormalsThatAreNotThereAreRefused) {
+  put("leaning.xyz", leaning(10));
+  put("bare.xyz", "0 0 0\n1 0 0\n0 1 0\n");
+  const Ran truth = run({"compare", "leaning.xyz", "bare.xyz", "--signed-normals"}),
+            cloud = run({"compare", "bare.xyz", "truth.off", "--signed-normals"});
+  EXPECT_EQ(truth.code, 2);
+  EXPECT_THAT(truth.err, HasSubstr("bare.xyz: has no normals, which --signed-normals compares"));
+  EXPECT_EQ(cloud.code, 2);
+  EXPECT_THAT(cloud.err, HasSubstr("bare.xyz: has no normals"));
+  EXPECT_EQ(run({"compare", "leaning.xyz", "bare.xyz"}).code, 0);
 }
 
 TEST_F(CompareCommand, WritesTheCloudColouredFromBlueToRed) {

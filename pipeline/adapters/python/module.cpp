@@ -86,11 +86,12 @@ std::string normals(const Points& points, const Numbers<nb::shape<-1, 3>>& into,
   return text_of({{"points", done.points}, {"finite", done.finite}, {"parts", done.parts}});
 }
 
-/// Measures `points` against a true mesh, or a clean cloud where there are no `faces`; writes each point's
-/// deviation. \return the figures, as JSON.
+/// Measures `points` against a true mesh, or a clean cloud, which may have normals, where there are no
+/// `faces`; writes each point's deviation. \return the figures, as JSON.
 std::string compare(const Points& points, const std::optional<Points>& normals_of_points, const Points& truth,
-                    const std::optional<Corners>& faces, bool signed_normals, int threads,
-                    const nb::object& progress, const Numbers<nb::ndim<1>>& deviation) {
+                    const std::optional<Corners>& faces, const std::optional<Points>& normals_of_truth,
+                    bool signed_normals, int threads, const nb::object& progress,
+                    const Numbers<nb::ndim<1>>& deviation) {
   const CloudView cloud = {points.data(), points.shape(0),
                            normals_of_points ? normals_of_points->data() : nullptr};
   Truth known;
@@ -98,7 +99,8 @@ std::string compare(const Points& points, const std::optional<Points>& normals_o
     known.mesh =
         MeshView{truth.data(), truth.shape(0), reinterpret_cast<const Face*>(faces->data()), faces->shape(0)};
   else
-    known.cloud = CloudView{truth.data(), truth.shape(0), nullptr};
+    known.cloud =
+        CloudView{truth.data(), truth.shape(0), normals_of_truth ? normals_of_truth->data() : nullptr};
   ordered_json figures;
   released(progress, threads, {{"compare", 1}}, [&](const Context& context, cli::Console&) {
     const CompareReport report = value_or_throw(rfsmooth::compare(cloud, known, {signed_normals}, context));
@@ -165,8 +167,8 @@ NB_MODULE(_rfsmooth, module) {
   module.def("info", &info);
   module.def("normals", &normals, nb::arg(), nb::arg(), nb::arg().none(), nb::arg(),
              nb::arg("progress").none());
-  module.def("compare", &compare, nb::arg(), nb::arg().none(), nb::arg(), nb::arg().none(), nb::arg(),
-             nb::arg(), nb::arg("progress").none(), nb::arg());
+  module.def("compare", &compare, nb::arg(), nb::arg().none(), nb::arg(), nb::arg().none(), nb::arg().none(),
+             nb::arg(), nb::arg(), nb::arg("progress").none(), nb::arg());
   module.def("parse_command", &parse_command);
   module.def("run_command", &run_command);
 }

@@ -166,21 +166,38 @@ def reconstruct(points, *, threads=0, config=None, **options):
     return Mesh(file.positions(), file.faces(), file.edges()), report
 
 
-def compare(points, truth, faces=None, *, normals=None, signed_normals=False, threads=0, progress=None):
+def _normals_of(points, normals, name, whose):
+    """One for each of the points, or None."""
+    if normals is None:
+        return None
+    normals = _arrays.as_points(normals, name).astype(np.float64, copy=False)
+    if len(normals) != len(points):
+        raise ValueError(f"{name} must have one row for each {whose}")
+    return normals
+
+
+def compare(
+    points, truth, faces=None, *, normals=None, truth_normals=None, signed_normals=False, threads=0, progress=None
+):
     """Measures points against the truth: a mesh (its vertices and faces), or a clean cloud. Returns the distance of every
-    point and the report. normals: n x 3, of the points, whose error is then measured too; signed_normals: they claim a side.
+    point and the report. normals: n x 3, of the points, whose error is then measured too, against the faces or against
+    truth_normals, one for each clean point; signed_normals: they claim a side.
     """
     given = _arrays.as_points(points).astype(np.float64, copy=False)
     true_points = _arrays.as_points(truth, "truth").astype(np.float64, copy=False)
     corners = None if faces is None else _arrays.as_faces(faces, len(true_points))
-    if normals is not None:
-        normals = _arrays.as_points(normals, "normals").astype(np.float64, copy=False)
-        if len(normals) != len(given):
-            raise ValueError("normals must have one row for each point")
+    normals = _normals_of(given, normals, "normals", "point")
+    truth_normals = _normals_of(true_points, truth_normals, "truth_normals", "true point")
+    if truth_normals is not None and corners is not None:
+        raise ValueError("truth_normals are of a clean cloud; faces have their own")
+    if normals is not None and truth_normals is None and corners is None:
+        raise ValueError("normals need truth_normals, or faces, to be compared with")
+    if normals is None and (truth_normals is not None or signed_normals):
+        raise ValueError(f"{'signed_normals' if signed_normals else 'truth_normals'} needs normals")
     deviation = np.empty(len(given))
     with listener(progress) as listening:
         report = _rfsmooth.compare(
-            given, normals, true_points, corners, signed_normals, _threads(threads), listening, deviation
+            given, normals, true_points, corners, truth_normals, signed_normals, _threads(threads), listening, deviation
         )
     return deviation, json.loads(report)
 
