@@ -84,9 +84,13 @@ def test_python_m_rfsmooth(sphere, tmp_path):
 
 def test_outliers_are_removed_with_their_record(sphere, tmp_path):
     scan(np.vstack([[[3, 3, 3]], sphere]), tmp_path / "a.laz")
-    rfsmooth.las.denoise_file(tmp_path / "a.laz", tmp_path / "b.laz", outliers="remove")
+    report = rfsmooth.las.denoise_file(tmp_path / "a.laz", tmp_path / "b.laz", outliers="remove")
     after = laspy.read(tmp_path / "b.laz")
     assert len(after) == len(sphere) and np.array_equal(after.intensity, (np.arange(len(sphere)) + 1) % 65536)
+    assert report["options"]["outliers"] == "remove"
+    assert report["counts"]["removed"] == report["counts"]["outliers"] == 1
+    rfsmooth.las.denoise_file(tmp_path / "a.laz", tmp_path / "c.laz", config=report)
+    assert np.array_equal(laspy.read(tmp_path / "c.laz").xyz, after.xyz)
 
 
 @pytest.mark.parametrize("names", [("a.las", "b.laz"), ("a.laz", "b.las")])

@@ -40,8 +40,12 @@ def test_outliers_leave_with_their_attributes(sphere, colours):
     points = np.vstack([[[3, 3, 3]], sphere])
     legacy = o3d.geometry.PointCloud(o3d.utility.Vector3dVector(points))
     legacy.colors = o3d.utility.Vector3dVector(np.vstack([[[1, 0, 0]], colours]))
-    out, _ = rfsmooth.open3d.denoise(legacy, outliers="remove")
+    out, report = rfsmooth.open3d.denoise(legacy, outliers="remove")
     assert np.array_equal(np.asarray(out.colors), colours)
+    assert report["options"]["outliers"] == "remove"
+    assert report["counts"]["removed"] == report["counts"]["outliers"] == 1
+    again, _ = rfsmooth.open3d.denoise(legacy, config=report)
+    assert np.array_equal(np.asarray(again.points), np.asarray(out.points))
     tensor = o3d.t.geometry.PointCloud.from_legacy(legacy, o3d.core.float64)
     out, _ = rfsmooth.open3d.denoise(tensor, outliers="remove")
     assert len(out.point.positions) == len(out.point.colors) == len(sphere)

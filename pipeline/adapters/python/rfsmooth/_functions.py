@@ -92,6 +92,18 @@ def denoise(points, *, threads=0, progress=None, config=None, **options):
     return out, report
 
 
+def denoise_every_row(points, options, threads, progress):
+    """`denoise` for those who take outliers out themselves: every row comes back. Returns the points, the report, which is
+    that of outliers="remove" where that was asked for, and which rows are to stay, or None for all.
+    """
+    if options.get("outliers") != "remove":
+        return *denoise(points, threads=threads, progress=progress, **options), None
+    clean, report = denoise(points, threads=threads, progress=progress, **{**options, "outliers": "mark"})
+    report["options"]["outliers"] = "remove"
+    report["counts"]["removed"] = report["counts"]["outliers"]
+    return clean, report, ~report["fields"]["outlier"]
+
+
 @takes_options("denoise")
 def denoise_structured(array, *, threads=0, progress=None, config=None, **options):
     """`denoise` for a structured array with fields X, Y, Z or x, y, z, as PDAL and laspy give them. Returns a new array and

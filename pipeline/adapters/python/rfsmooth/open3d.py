@@ -6,23 +6,16 @@ from . import _functions
 from ._options import takes_options
 
 
-def _strays(report, options):
-    """Which points to take out, where that was asked for; else None."""
-    marks = report["fields"].get("outlier")
-    return marks if options.get("outliers") == "remove" else None
-
-
-def _legacy(cloud, xyz, report, options):
+def _legacy(cloud, xyz, report, staying):
     out = type(cloud)(cloud)
     vectors = type(cloud.points)  # open3d.utility.Vector3dVector
     out.points = vectors(xyz)
     if "normals" in report["fields"]:
         out.normals = vectors(report["fields"]["normals"])
-    strays = _strays(report, options)
-    return out if strays is None else out.select_by_index(np.flatnonzero(~strays).tolist())
+    return out if staying is None else out.select_by_index(np.flatnonzero(staying).tolist())
 
 
-def _tensor(cloud, xyz, report, options):
+def _tensor(cloud, xyz, report, staying):
     out = cloud.clone()
     positions = cloud.point.positions
     tensor = type(positions)
@@ -30,8 +23,7 @@ def _tensor(cloud, xyz, report, options):
     if "normals" in report["fields"]:
         normals = report["fields"]["normals"].astype(xyz.dtype)
         out.point.normals = tensor(np.ascontiguousarray(normals), device=positions.device)
-    strays = _strays(report, options)
-    return out if strays is None else out.select_by_mask(tensor(~strays, device=positions.device))
+    return out if staying is None else out.select_by_mask(tensor(staying, device=positions.device))
 
 
 @takes_options("denoise")
@@ -41,8 +33,7 @@ def denoise(cloud, *, threads=0, progress=None, config=None, **options):
     it has stay and describe the old positions. outliers="remove" takes points out with all their attributes.
     """
     options = _functions._config(denoise.table, config, options)
-    asked = {**options, "outliers": "mark"} if options.get("outliers") == "remove" else options
     legacy = hasattr(cloud, "points")
     points = np.asarray(cloud.points) if legacy else cloud.point.positions.cpu().numpy()
-    xyz, report = _functions.denoise(points, threads=threads, progress=progress, **asked)
-    return (_legacy if legacy else _tensor)(cloud, xyz, report, options), report
+    xyz, report, staying = _functions.denoise_every_row(points, options, threads, progress)
+    return (_legacy if legacy else _tensor)(cloud, xyz, report, staying), report
