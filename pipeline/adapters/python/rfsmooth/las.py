@@ -71,7 +71,7 @@ def _store(las, xyz, moved):
 
 
 @takes_options("denoise")
-def denoise_file(source, target, *, keep_scale=False, force=False, threads=0, progress=None, config=None, **options):
+def denoise_file(source, target, *, force=False, threads=0, progress=None, config=None, **options):
     """Reads a LAS or LAZ file, takes the noise out and writes another; returns the report, whose "scale" says whether the
     scale of coordinates was refined: it is, by a power of ten, where it is coarser than half of the noise left, since
     rounding to it would cost what smoothing gained (keep_scale: not). A COPC file is written as LAZ, without its index;
@@ -103,7 +103,7 @@ def denoise_file(source, target, *, keep_scale=False, force=False, threads=0, pr
     clean, report, staying = _functions.denoise_every_row(xyz, options, threads, progress)
     step = _rfsmooth.finest_needed(report["noise"], report["noise_left"])
     rounded = step > 0 and report["counts"]["moved"] > 0
-    report["scale"] = _rescale(las, step, keep_scale) if rounded else None
+    report["scale"] = _rescale(las, step, options.get("keep_scale", False)) if rounded else None
     if rounded and report["noise_left"] is not None:
         report["noise_left"] = math.hypot(report["noise_left"], np.abs(las.header.scales).max() / math.sqrt(12))
     _store(las, clean, np.any(clean != xyz, axis=1))
