@@ -223,8 +223,19 @@ def normals(points, *, viewpoint=None, threads=0, progress=None):
     if viewpoint is not None:
         viewpoint = [float(v) for v in viewpoint]
     with listener(progress) as listening:
-        report = _rfsmooth.normals(given, made, viewpoint, _threads(threads), listening)
+        report = _rfsmooth.normals(given, made, viewpoint, None, _threads(threads), listening)
     return made, json.loads(report)
+
+
+def normals_anew(points, before, threads, progress):
+    """Unit normals of points that have moved, on the side that those before were on; points that are not finite keep
+    theirs.
+    """
+    given, old = (_arrays.as_points(array).astype(np.float64, copy=False) for array in (points, before))
+    made = np.empty_like(given)
+    with listener(progress) as listening:
+        _rfsmooth.normals(given, made, None, old, _threads(threads), listening)
+    return np.where(np.isfinite(given).all(axis=1, keepdims=True), made, old)
 
 
 def info(points):
