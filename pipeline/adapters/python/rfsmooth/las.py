@@ -83,7 +83,7 @@ def denoise_file(source, target, *, force=False, threads=0, progress=None, confi
         raise Error("cannot_write", f"{target}: exists (--force replaces it)")
     laspy = _laspy(source)
     options = _functions._config(denoise_file.table, config, options)
-    for name in ("normals", "write_displacement", "mark_outliers"):
+    for name in ("normals", "write_displacement"):
         if options.get(name):
             raise Error("usage", f"{source}: LAS has no field for --{name.replace('_', '-')}")
     if options.get("outliers") == "mark":
