@@ -133,6 +133,37 @@ TEST_F(CompareCommand, APcdHasItsColoursAsPclHasThem) {
   EXPECT_EQ(bits, 255u << 16);
 }
 
+TEST_F(CompareCommand, WhereNearlyAllIsExactTheRestIsRed) {
+  std::string rows = "0 0 1\n";
+  for (int i = 1; i < 100; ++i) rows += fmt::format("0.{:02} 0 0\n", i);
+  put("exact.xyz", rows);
+  const Ran ran = run({"compare", "exact.xyz", "truth.off", "-o", "seen.ply"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  const auto red = field("seen.ply", "red"), blue = field("seen.ply", "blue");
+  EXPECT_EQ(red[0], 255) << "the one that is off";
+  EXPECT_EQ(blue[0], 0);
+  EXPECT_EQ(red[1], 0);
+  EXPECT_EQ(blue[1], 255) << "exact";
+}
+
+TEST_F(CompareCommand, ColoursThatThePointsHaveAreReplacedHoweverTheyAreStored) {
+  const std::vector<double> old(101, 7);
+  io::Cloud parts = io::make_cloud(xyz_.data(), 101, io::Scalar::float32);
+  for (const char* name : {"red", "green", "blue"}) io::set_field(parts, name, io::Scalar::uint8, old);
+  put("parts.ply", io::serialize_cloud(parts, {}, {}).value());
+  ASSERT_EQ(run({"compare", "parts.ply", "truth.off", "-o", "parts.pcd"}).code, 0);
+  EXPECT_EQ(field("parts.pcd", "red")[0], 255);
+  EXPECT_EQ(field("parts.pcd", "green")[1], 255);
+  EXPECT_FALSE(io::find_field(io::read_cloud(at("parts.pcd"), {}, {}).value(), "rgb")) << "one colour";
+
+  io::Cloud both = parts;
+  io::set_field(both, "rgba", io::Scalar::uint32, old);
+  ASSERT_TRUE(io::write_cloud(both, at("both.pcd"), {}, {}).ok());
+  ASSERT_EQ(run({"compare", "both.pcd", "truth.off", "-o", "both.ply"}).code, 0);
+  EXPECT_EQ(field("both.ply", "red")[0], 255);
+  EXPECT_EQ(field("both.ply", "rgba")[0], double(255U << 24 | 255U << 16));
+}
+
 TEST_F(CompareCommand, TheColouredCloudReplacesNothingWithoutForce) {
   put("seen.ply", "mine");
   EXPECT_EQ(run({"compare", "cloud.ply", "truth.off", "-o", "seen.ply"}).code, 5);
