@@ -15,6 +15,7 @@
 
 #include <rfsmooth/denoise.h>
 #include <rfsmooth/mesh.h>
+#include <rfsmooth/normals.h>
 
 namespace rfsmooth {
 
@@ -28,6 +29,7 @@ struct ReconstructOptions {
   Length fill_holes = {8, true};  ///< the longest edge of a face put into a hole; 0 = none are filled
   /// Outliers are removed, or smoothed; a surface cannot keep them beside it.
   DenoiseOptions denoising = {{}, Outliers::remove};
+  NormalsOptions normals = {};  ///< which side is outside: without a viewpoint as estimate_normals finds it
 
   template <class Self, class Visit>
   static void describe(Self& self, Visit&& visit) {
@@ -49,7 +51,8 @@ struct ReconstructOptions {
 /// What a method of reconstruction is given. Points are finite and distinct, around a local origin.
 struct SurfaceInput {
   Positions points;    ///< n x 3
-  Positions normals;   ///< n x 3, unit, on one side (rfsmooth/normals.h): outward on closed shapes
+  Positions normals;   ///< n x 3, unit, on one side (rfsmooth/normals.h): outward on closed shapes, or
+                       ///< towards the viewpoint
   double spacing = 0;  ///< mean distance to the nearest neighbour, after denoising; world units
 };
 

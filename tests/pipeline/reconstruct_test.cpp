@@ -91,6 +91,22 @@ TEST(Reconstruct, NoiseIsTakenOutFirst) {
   EXPECT_LT(height(denoising, xyz), 0.5 * height(without_denoising(), xyz));
 }
 
+TEST(Reconstruct, NormalsFaceTheViewpoint) {
+  for (const double side : {1.0, -1.0}) {
+    ReconstructOptions options = without_denoising();
+    options.normals.viewpoint = Eigen::Vector3d(kFar + 3, 3, side * 50);
+    const auto look = [&](const SurfaceInput& input, const Context& context) {
+      for (const Eigen::Vector3d& normal : input.normals) EXPECT_GT(side * normal.z(), 0.99);
+      return join_grid(input, context);
+    };
+    ASSERT_TRUE(reconstruct(grid_rows(8), options, {"join", false, look}, {}).ok());
+  }
+  ReconstructOptions nowhere = without_denoising();
+  nowhere.normals.viewpoint = Eigen::Vector3d(std::nan(""), 0, 0);
+  EXPECT_EQ(reconstruct(grid_rows(8), nowhere, {"join", false, join_grid}, {}).error().code,
+            ErrorCode::usage);
+}
+
 TEST(Reconstruct, OutliersAreLeftOutOrSmoothedAndNothingElse) {
   std::vector<double> xyz = grid_rows(20);
   xyz.insert(xyz.end(), {kFar + 10, 10, 30});

@@ -190,7 +190,7 @@ void work_on_tiles(const std::string& step, const std::vector<std::string>& argu
   const PlannedOptions planned = planned_options(job);
   if (step == "settle") return pipeline::tiles::settle_job(job, planned.denoise, context);
   std::optional<NormalsOptions> normals;
-  if (planned.normals.normals) normals = NormalsOptions{typed_viewpoint(planned.normals)};
+  if (planned.normals.normals) normals = NormalsOptions{typed_viewpoint(planned.normals.viewpoint)};
   for (std::size_t i = 1; i < arguments.size(); ++i) {
     const std::size_t tile = tile_number(arguments[i]);
     if (step == "measure")
