@@ -101,6 +101,12 @@ std::optional<struct stat> check(const std::filesystem::path& shown, const std::
 
 }  // namespace
 
+void make_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directory(folder, error);
+  if (error) refuse(folder, fmt::format("cannot make the folder: {}", error.message()));
+}
+
 void check_target(const std::filesystem::path& target, bool replace) {
   const std::filesystem::path file = follow_links(target);
   if (const auto open = descriptor_of(file)) return check_descriptor(target, *open);

@@ -40,6 +40,9 @@ class AtomicFile : public Sink {
   int file_ = -1;
 };
 
+/// Makes a folder, if there is none; its parent must be there. \throw Failure (cannot_write).
+void make_folder(const std::filesystem::path& folder);
+
 /// Refuses in advance what the constructor would refuse; creates nothing. \throw Failure (cannot_write).
 void check_target(const std::filesystem::path& target, bool replace);
 

@@ -34,6 +34,7 @@ std::vector<FileBeside> files_beside(const DenoiseCommandOptions& options) {
 
 /// One cloud in tiles. \return the exit code, or none if it is to be smoothed as a whole.
 std::optional<int> denoise_in_tiles(const DenoiseCommandOptions& options, const Invocation& typed) {
+  check(options.normals);
   const std::vector<Job> jobs = plan_cloud_jobs(typed.arguments, options.job.files);
   if (jobs.size() != 1) return std::nullopt;
   const Job& job = jobs.front();
@@ -41,13 +42,12 @@ std::optional<int> denoise_in_tiles(const DenoiseCommandOptions& options, const 
   const Context context = console.context({{"tiles", 1}}, options.job.run.threads);
   const auto memory = memory_of_tiles(options, job, context);
   if (!memory) return std::nullopt;
-  check(options.normals);
   need_own_target(job, options.job.files.output);
   const pipeline::tiles::Within how = pipeline::tiles::plan_within(*memory, options.normals.normals);
   console.say(fmt::format("{}: too large for {:.3g} GB: smoothed in tiles of {} points", job.input,
                           double(*memory) / 1e9, how.plan.tile_points));
   pipeline::tiles::SmoothedInTiles done = pipeline::tiles::smooth_in_tiles(
-      {job.input, job.output, options.job.files.force, options.keep_scale}, how, options.denoise,
+      {job.input, job.output, options.job.files.force, options.keep_scale, job.folder}, how, options.denoise,
       normals_in_tiles(options.normals, {job.input}, context), context);
   const pipeline::io::RefinedScale& scale = done.joined.scale;
   tell_scale(job.input, scale, options.keep_scale, done.report.noise, done.report.noise_left, console);
