@@ -13,12 +13,16 @@ namespace {
 constexpr double kFar = 5e5;  // a scan in map coordinates
 
 /// A grid in the plane, far from the origin, with a row that is not finite and one that comes twice.
-std::vector<double> grid_rows(int side) {
+std::vector<double> grid_rows(int width, int height) {
   std::vector<double> xyz = {std::nan(""), 0, 0};
-  for (int y = 0; y < side; ++y)
-    for (int x = 0; x < side; ++x) xyz.insert(xyz.end(), {kFar + x, y + 0.5, 0});
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) xyz.insert(xyz.end(), {kFar + x, y + 0.5, 0});
   xyz.insert(xyz.end(), {kFar, 0.5, 0});
   return xyz;
+}
+
+std::vector<double> grid_rows(int side) {
+  return grid_rows(side, side);
 }
 
 /// Joins every point to its right and upper neighbour, and those to theirs but at the last corner.
@@ -89,6 +93,16 @@ TEST(Reconstruct, NoiseIsTakenOutFirst) {
   ReconstructOptions denoising;
   denoising.fill_holes.value = 0;
   EXPECT_LT(height(denoising, xyz), 0.5 * height(without_denoising(), xyz));
+}
+
+TEST(Reconstruct, ARibbonIsOpenHoweverNarrow) {
+  ReconstructOptions options;
+  options.denoise = false;  // its edges across are shorter than what fills holes
+  const auto made = reconstruct(grid_rows(5, 30), options, {"join", false, join_grid}, {});
+  ASSERT_TRUE(made.ok()) << made.error().message;
+  EXPECT_EQ(made.value().report.filled, 0u);
+  EXPECT_FALSE(made.value().report.topology.closed_manifold());
+  EXPECT_EQ(made.value().report.topology.boundary_loops, 1u);
 }
 
 TEST(Reconstruct, NormalsFaceTheViewpoint) {
