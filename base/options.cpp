@@ -18,9 +18,11 @@ std::optional<Error> check_range(const OptionInfo& info, double value) {
 }
 
 std::optional<Error> check_choice(const OptionInfo& info, std::size_t value) {
-  if (value < info.choices.size()) return std::nullopt;
-  return Error{ErrorCode::usage,
-               fmt::format("`{}` must be one of: {}", info.name, fmt::join(info.choices, ", "))};
+  if (value < info.choices.size() && !info.choices[value].empty()) return std::nullopt;
+  std::vector<std::string_view> offered;
+  for (const std::string_view word : info.choices)
+    if (!word.empty()) offered.push_back(word);
+  return Error{ErrorCode::usage, fmt::format("`{}` must be one of: {}", info.name, fmt::join(offered, ", "))};
 }
 
 std::optional<Error> check_word(const OptionInfo& info, const std::string& value) {

@@ -3,7 +3,6 @@
 
 #include <Eigen/Geometry>
 
-#include <rfsmooth/normals.h>
 #include <rfsmooth/reconstruct.h>
 
 #include "base/fail.h"
@@ -43,7 +42,7 @@ bool on_one_line(const Positions& points) {
   });
 }
 
-/// Takes the noise out of the rows and outliers out of the cloud.
+/// Takes the noise out of the rows, and outliers, where they were looked for, out of the cloud.
 void clean(std::vector<double>& xyz, const DenoiseOptions& options, ReconstructReport& report,
            const Context& context) {
   report.denoised = value_or_throw(denoise(xyz.data(), xyz.size() / 3, options, context));
@@ -54,10 +53,10 @@ void clean(std::vector<double>& xyz, const DenoiseOptions& options, ReconstructR
 
 /// The normals of the working points.
 Positions working_normals(const std::vector<double>& xyz, const rfs_mesh::WorkingCloud& cloud,
-                          const Context& context) {
+                          const NormalsOptions& options, const Context& context) {
   const std::size_t n = xyz.size() / 3;
   std::vector<double> of_row(xyz.size());
-  value_or_throw(estimate_normals(xyz.data(), n, {}, context, of_row.data()));
+  value_or_throw(estimate_normals(xyz.data(), n, options, context, of_row.data()));
   Positions normals(cloud.points.size());
   for (std::size_t i = 0; i < n; ++i)
     if (const Index p = cloud.of_input[i]; p != kNone) normals[p] = Eigen::Vector3d::Map(&of_row[3 * i]);
@@ -94,7 +93,7 @@ Reconstruction run(std::vector<double> xyz, const ReconstructOptions& options, c
       fail(ErrorCode::no_usable_points, "all points are on one line: there is no surface in them");
     SurfaceInput input;
     input.points = cloud.points;
-    input.normals = working_normals(xyz, cloud, context);
+    input.normals = working_normals(xyz, cloud, options.normals, context);
     in_arena(context, [&] { report.spacing = input.spacing = spacing_of(cloud.points, context); });
 
     watch.next(method.name);

@@ -35,6 +35,8 @@ std::vector<double> color_values(const PictureOptions& options, const std::vecto
   if (options.color == "field") {
     const auto field = io::find_field(clouds[which], options.field);
     if (!field) fail(ErrorCode::usage, "the cloud has no field called '{}'", options.field);
+    if (!clouds[which].points().fields[*field].is_plain())
+      fail(ErrorCode::usage, "--color field takes one value for each point; '{}' has several", options.field);
     const std::vector<double> all = io::field_values(clouds[which], *field);
     for (const Index row : scene.row) values.push_back(all[row]);
   }

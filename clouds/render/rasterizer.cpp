@@ -89,6 +89,7 @@ Color scale_color(double t) {
   static const std::array<Color, 5> kAnchors = {Color(0.267F, 0.005F, 0.329F), Color(0.229F, 0.322F, 0.546F),
                                                 Color(0.128F, 0.567F, 0.551F), Color(0.369F, 0.789F, 0.383F),
                                                 Color(0.993F, 0.906F, 0.144F)};
+  if (!std::isfinite(t)) return Color::Constant(0.5F);
   const double at = 4 * std::clamp(t, 0.0, 1.0);
   const auto k = std::min<std::size_t>(3, std::size_t(at));
   return kAnchors[k] + float(at - double(k)) * (kAnchors[k + 1] - kAnchors[k]);

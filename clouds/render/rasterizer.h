@@ -34,7 +34,8 @@ class Rasterizer {
 /// A matte surface under a raking light from the upper left, so that small bumps show. `normal` as in splat.
 Color shade(const Color& color, const Eigen::Vector3d& normal);
 
-/// From dark blue over green to yellow for t in [0, 1]: even steps of t look even, also in grey.
+/// From dark blue over green to yellow for t in [0, 1]: even steps of t look even, also in grey. Grey where t
+/// is not finite.
 Color scale_color(double t);
 
 }  // namespace rfsmooth::render

@@ -42,7 +42,7 @@ struct ColorRange {
   double low = 0, high = 1;
 };
 
-/// Colours from one value per point.
+/// Colours from one value per point; those that are not finite become grey.
 void color_by(Scene& scene, const std::vector<double>& values, const ColorRange& range);
 
 /// The range of `values` without the outermost 2 % on either side.

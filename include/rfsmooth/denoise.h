@@ -37,20 +37,26 @@ struct DenoiseOptions {
   FlowOptions flow;
   Outliers outliers = Outliers::keep;
   bool swap = true;  ///< alternate each step with a pass of dihedral edge swaps (Vollmer 7)
-  ConnectOptions connect;
-  SwapOptions swaps;
+  ConnectOptions connect = {};
+  SwapOptions swaps = {};
   /// Of the cloud that these points are a part of, from DenoiseReport: what is there is not measured. With
   /// all that a run filled in, the same points come out with the same bytes.
-  std::optional<Statistics> statistics;
+  std::optional<Statistics> statistics = {};
 
   template <class Self, class Visit>
   static void describe(Self& self, Visit&& visit) {
+    describe(self, visit,
+             words("outliers",
+                   "points with no surface near: left in place and out of the smoothing, marked in a field "
+                   "'outlier', removed, or smoothed like all others",
+                   {"keep", "mark", "remove", "smooth"}));
+  }
+
+  /// The same where other things can become of outliers.
+  template <class Self, class Visit>
+  static void describe(Self& self, Visit&& visit, const OptionInfo& of_outliers) {
     FlowOptions::describe(self.flow, visit);
-    visit(words("outliers",
-                "points with no surface near: left in place and out of the smoothing, marked in a field "
-                "'outlier', removed, or smoothed like all others",
-                {"keep", "mark", "remove", "smooth"}),
-          self.outliers);
+    visit(of_outliers, self.outliers);
     visit(OptionInfo{"swap", "alternate each step with dihedral edge swaps", ""}, self.swap);
     ConnectOptions::describe(self.connect, visit);
     SwapOptions::describe(self.swaps, visit);

@@ -11,7 +11,8 @@
 ///
 /// Field types: bool, int, double, std::string, Length, Eigen::Vector3d (a direction of any length but zero),
 /// enumerations, and std::optional of them (empty = chosen from the data). The words of an enumeration are
-/// the `choices`: its values are their indices. A string with `choices` is one of them.
+/// the `choices`: its values are their indices; one whose word is empty cannot be chosen. A string with
+/// `choices` is one of them.
 ///
 /// Errors name an option as the table does, between backticks: "`alpha` is 2; it must be between 0 and 1".
 /// Thread safe: no state is kept.

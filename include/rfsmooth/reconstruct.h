@@ -15,6 +15,7 @@
 
 #include <rfsmooth/denoise.h>
 #include <rfsmooth/mesh.h>
+#include <rfsmooth/normals.h>
 
 namespace rfsmooth {
 
@@ -26,7 +27,9 @@ struct ReconstructOptions {
   /// Poisson invents where normals disagree.
   Length trim = {2.5, true};
   Length fill_holes = {8, true};  ///< the longest edge of a face put into a hole; 0 = none are filled
-  DenoiseOptions denoising;
+  /// Outliers are removed, or smoothed; a surface cannot keep them beside it.
+  DenoiseOptions denoising = {{}, Outliers::remove};
+  NormalsOptions normals = {};  ///< which side is outside: without a viewpoint as estimate_normals finds it
 
   template <class Self, class Visit>
   static void describe(Self& self, Visit&& visit) {
@@ -37,14 +40,19 @@ struct ReconstructOptions {
     visit(OptionInfo{"fill-holes", "fill holes that need no edge longer than this; 0 leaves them open",
                      "world units or x spacing", 0},
           self.fill_holes);
-    DenoiseOptions::describe(self.denoising, visit);
+    DenoiseOptions::describe(self.denoising, visit,
+                             words("outliers",
+                                   "points with no surface near: left out, or smoothed and joined to the "
+                                   "surface like all others",
+                                   {"", "", "remove", "smooth"}));
   }
 };
 
 /// What a method of reconstruction is given. Points are finite and distinct, around a local origin.
 struct SurfaceInput {
   Positions points;    ///< n x 3
-  Positions normals;   ///< n x 3, unit, on one side (rfsmooth/normals.h): outward on closed shapes
+  Positions normals;   ///< n x 3, unit, on one side (rfsmooth/normals.h): outward on closed shapes, or
+                       ///< towards the viewpoint
   double spacing = 0;  ///< mean distance to the nearest neighbour, after denoising; world units
 };
 

@@ -24,13 +24,51 @@ Rgb ramp(double share) {
   return {level(std::max(0.0, 4 - at)), level(std::abs(at - 2)), level(at)};
 }
 
-/// The value that stands for a packed colour in a field of that type: PCL keeps the bits in a float.
-double packed(const Rgb& colour, io::Scalar type) {
-  const std::uint32_t bits = colour[0] << 16 | colour[1] << 8 | colour[2];
+/// Of a point at that distance.
+Rgb colour_at(double distance, double red) {
+  if (!std::isfinite(distance) || distance == 0) return ramp(distance);
+  return ramp(distance < red ? distance / red : 1);
+}
+
+/// The value that stands for packed bits in a field of that type: PCL keeps them in a float.
+double packed(std::uint32_t bits, io::Scalar type) {
+  if (type == io::Scalar::int32) return std::int32_t(bits);
   if (type != io::Scalar::float32) return bits;
   float same = 0;
   std::memcpy(&same, &bits, sizeof same);
   return same;
+}
+
+bool has_plain(const io::Cloud& cloud, const char* name) {
+  const auto field = io::find_field(cloud, name);
+  return field && cloud.points().fields[*field].is_plain();
+}
+
+/// Writes the colours into red, green and blue.
+void paint_parts(io::Cloud& cloud, const std::vector<Rgb>& colours, const Context& context) {
+  const char* const names[] = {"red", "green", "blue"};
+  std::vector<double> values(colours.size());
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto present = io::find_field(cloud, names[k]);
+    // LAS has colours of 16 bits.
+    const int times = present && cloud.points().fields[*present].type == io::Scalar::uint16 ? 256 : 1;
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = times * colours[i][k];
+    io::set_field(cloud, names[k], io::Scalar::uint8, values, context);
+  }
+}
+
+/// Writes the colours into one field, opaque where it is `rgba`, but for floats: as such they would be NaN.
+void paint_packed(io::Cloud& cloud, const char* name, const std::vector<Rgb>& colours,
+                  const Context& context) {
+  const auto present = io::find_field(cloud, name);
+  const io::Scalar type = present ? cloud.points().fields[*present].type : io::Scalar::uint32;
+  const std::uint32_t alpha = std::strcmp(name, "rgba") == 0 && !io::is_float(type) ? 255U << 24 : 0;
+  std::vector<double> values(colours.size());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const auto& [red, green, blue] = colours[i];
+    values[i] = packed(alpha | red << 16 | green << 8 | blue, type);
+  }
+  io::set_field(cloud, name, type, values, context);
 }
 
 }  // namespace
@@ -55,25 +93,14 @@ Deviation summed_up(std::vector<double> distances) {
 
 void color_by_deviation(io::Cloud& cloud, const std::vector<double>& distances, double red,
                         const std::string& output, const Context& context) {
-  const std::size_t n = cloud.size();
-  std::vector<Rgb> colours(n);
-  for (std::size_t i = 0; i < n; ++i) colours[i] = ramp(distances[i] == 0 ? 0 : distances[i] / red);
-  std::vector<double> values(n);
-  if (io::format_of_extension(output).value_or(cloud.format) == io::Format::pcd) {
-    const auto present = io::find_field(cloud, "rgb");
-    const io::Scalar type = present ? cloud.points().fields[*present].type : io::Scalar::uint32;
-    for (std::size_t i = 0; i < n; ++i) values[i] = packed(colours[i], type);
-    io::set_field(cloud, "rgb", type, values, context);
-  } else {
-    const char* const names[] = {"red", "green", "blue"};
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto present = io::find_field(cloud, names[k]);
-      // LAS has colours of 16 bits.
-      const int times = present && cloud.points().fields[*present].type == io::Scalar::uint16 ? 256 : 1;
-      for (std::size_t i = 0; i < n; ++i) values[i] = times * colours[i][k];
-      io::set_field(cloud, names[k], io::Scalar::uint8, values, context);
-    }
-  }
+  std::vector<Rgb> colours(cloud.size());
+  for (std::size_t i = 0; i < colours.size(); ++i) colours[i] = colour_at(distances[i], red);
+  const bool parts = has_plain(cloud, "red") && has_plain(cloud, "green") && has_plain(cloud, "blue"),
+             rgb = has_plain(cloud, "rgb"), rgba = has_plain(cloud, "rgba"), none = !parts && !rgb && !rgba,
+             pcd = io::format_of_extension(output).value_or(cloud.format) == io::Format::pcd;
+  if (parts || (none && !pcd)) paint_parts(cloud, colours, context);
+  if (rgb || (none && pcd)) paint_packed(cloud, "rgb", colours, context);
+  if (rgba) paint_packed(cloud, "rgba", colours, context);
   io::set_field(cloud, "deviation", io::Scalar::float32, distances, context);
 }
 

@@ -1,9 +1,10 @@
-# Manual pages and completion scripts are printed by the command itself, from the tables it parses with.
+# Manual pages and completion scripts are printed by the command itself, from the tables it parses with. There is a page
+# for every command of its overview; the tests compare.
 include(GNUInstallDirs)
 set(doc_dir "${CMAKE_CURRENT_BINARY_DIR}/share")
 set(pages rfsmooth.1.gz)
 set(page_commands COMMAND sh -c "$<TARGET_FILE:rfsmooth_command> man | gzip -9n > ${doc_dir}/rfsmooth.1.gz")
-foreach(name denoise mesh smooth-mesh reconstruct info compare render report flows)
+foreach(name denoise tiles mesh smooth-mesh reconstruct info compare render report flows)
   list(APPEND pages rfsmooth-${name}.1.gz)
   list(APPEND page_commands COMMAND sh -c "$<TARGET_FILE:rfsmooth_command> man ${name} | gzip -9n > ${doc_dir}/rfsmooth-${name}.1.gz")
 endforeach()

@@ -1,10 +1,13 @@
 #include "pipeline/cli/jobs.h"
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <map>
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "base/fail.h"
 #include "pipeline/cli/exit_code.h"
@@ -16,14 +19,17 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Makes the folder if nothing is there; its parent must exist.
-void need_folder(const std::string& folder) {
+/// Whether the folder is still to be made; refused if it cannot be.
+bool is_to_come(const std::string& folder) {
   std::error_code error;
-  const fs::file_status status = fs::status(folder, error);
-  if (fs::is_directory(status)) return;
+  const fs::path plain = (fs::path(folder) / "").parent_path();  // without a slash at its end
+  const fs::file_status status = fs::status(plain, error);
+  if (fs::is_directory(status)) return false;
   if (fs::exists(status)) fail(ErrorCode::cannot_write, "{}: is not a folder", folder);
-  if (!fs::create_directory(folder, error))
-    fail(ErrorCode::cannot_write, "{}: cannot make the folder: {}", folder, error.message());
+  const fs::path parent = plain.has_parent_path() ? plain.parent_path() / "" : fs::path("./");
+  if (access(parent.c_str(), W_OK) != 0)
+    fail(ErrorCode::cannot_write, "{}: cannot make the folder: {}", folder, std::strerror(errno));
+  return true;
 }
 
 std::string joined(const std::string& folder, const std::string& name) {
@@ -39,11 +45,12 @@ std::string name_in_folder(const std::string& input, std::optional<Format> writt
   return fmt::format("{}.{}", name.string(), pipeline::io::name_of(*written));
 }
 
-/// The jobs of a folder, which is made if need be.
+/// The jobs of a folder, which may be one that is still to be made.
 std::vector<Job> into_folder(const std::vector<std::string>& inputs, const std::string& folder,
                              std::optional<Format> written) {
   std::vector<Job> jobs = jobs_in_folder(inputs, folder, written);
-  need_folder(folder);
+  if (is_to_come(folder))
+    for (Job& job : jobs) job.folder = folder;
   return jobs;
 }
 

@@ -16,19 +16,21 @@ namespace rfsmooth::cli {
 struct Job {
   std::string input;   ///< a path, or "-" for standard input
   std::string output;  ///< a path, or "-" for standard output
+  /// That of the output, if -o names it and it is not there yet: to be made before anything is written.
+  std::string folder = {};
 };
 
 /// A job for each input, which keeps its name in the folder, with the extension of `written` where that is
-/// another format. Makes nothing. \throw Failure (usage) for two inputs with the same output name, and for
+/// another format. \throw Failure (usage) for two inputs with the same output name, and for
 /// standard input.
 std::vector<Job> jobs_in_folder(const std::vector<std::string>& inputs, const std::string& folder,
                                 std::optional<Format> written = std::nullopt);
 
 /// Without `output` there must be two arguments, IN and OUT. With it every argument is an input. Then
 /// `output` is a file for one input, or a folder for any number: one that exists, or a name that ends in '/',
-/// or for several inputs any name that is not a cloud file's. The folder is made if need be. \throw Failure:
-/// usage (wrong count, two inputs with the same output name), cannot_write (a file is in the folder's place,
-/// or the folder cannot be made).
+/// or for several inputs any name that is not a cloud file's. Makes nothing. \throw Failure: usage (wrong
+/// count, two inputs with the same output name), cannot_write (a file is in the folder's place, or the folder
+/// cannot be made).
 /// \param written the format of all outputs, whose extension their names in a folder get; none: each as its
 /// input, and called as that is
 std::vector<Job> plan_jobs(const std::vector<std::string>& arguments,

@@ -116,6 +116,13 @@ Result<Done> check_output(const std::filesystem::path& path, const WriteOptions&
   });
 }
 
+Result<Done> check_output_name(const std::filesystem::path& path, const WriteOptions& options) {
+  return guarded([&] {
+    target_format(Cloud{}, path, options);
+    return Done{};
+  });
+}
+
 Result<Done> write_bytes(std::string_view bytes, const std::filesystem::path& path, bool force,
                          const Context& context) {
   return guarded([&] {

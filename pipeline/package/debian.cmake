@@ -94,7 +94,11 @@ if(TARGET rfsmooth_python)
 them, and clouds of Open3D.")
 endif()
 if(TARGET rfsmooth_reconstruct)
-  debian_package(reconstruct NAME rfsmooth-reconstruct SECTION science GPL
+  set(licence "")
+  if(TARGET rfsmooth_cgal)
+    set(licence GPL)  # Open3D alone is under MIT
+  endif()
+  debian_package(reconstruct NAME rfsmooth-reconstruct SECTION science ${licence}
     DEPENDS "rfsmooth (= ${PROJECT_VERSION})"
     SUMMARY "takes the noise out of 3-D scans - surface reconstruction"
     DESCRIPTION "The program behind 'rfsmooth reconstruct': from a noisy point cloud to a

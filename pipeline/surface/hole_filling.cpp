@@ -7,7 +7,9 @@
 
 #include <Eigen/Geometry>
 
+#include "base/disjoint_sets.h"
 #include "rfs_mesh/edge_faces.h"
+#include "rfs_mesh/measure.h"
 
 namespace rfsmooth::pipeline {
 
@@ -16,6 +18,9 @@ namespace {
 // Vertices of a rim. A filling takes memory as their square and time as their cube.
 constexpr std::size_t kLongestRim = 1000;
 constexpr double kNever = std::numeric_limits<double>::infinity();
+// Largest area of a filling over that of the piece it belongs to, sqrt(1/2). An outline closed with a second
+// sheet has 1, the lid of a half sphere 1/2; this is half-way between them, as a ratio.
+constexpr double kMostOfPiece = 0.7071067811865476;
 
 /// The rims, each as its vertices in the order in which a filling face runs along them.
 std::vector<std::vector<Index>> rims_of(const Mesh& mesh) {
@@ -43,6 +48,18 @@ std::vector<std::vector<Index>> rims_of(const Mesh& mesh) {
     if (simple && v == start && rim.size() >= 3) rims.push_back(std::move(rim));
   }
   return rims;
+}
+
+/// The area of the piece, connected through vertices, that each vertex belongs to.
+std::vector<double> piece_areas(const Mesh& mesh) {
+  DisjointSets<Index> pieces(mesh.positions.size());
+  for (const Face& face : mesh.faces)
+    for (const std::size_t k : {1, 2}) pieces.join(face[0], face[k]);
+  std::vector<double> areas(mesh.positions.size(), 0);
+  for (const Face& face : mesh.faces)
+    areas[pieces.of(face[0])] += 0.5 * rfs_mesh::face_cross(mesh.positions, face).norm();
+  for (Index v = 0; v < areas.size(); ++v) areas[v] = areas[pieces.of(v)];
+  return areas;
 }
 
 /// The edges of a mesh, and those added since.
@@ -75,7 +92,8 @@ class Filling {
       }
   }
 
-  bool found() const { return area_[n_ - 1] < kNever; }
+  bool found() const { return area() < kNever; }
+  double area() const { return area_[n_ - 1]; }
 
   /// The faces of the filling; calls `on_edge(a, b)` for the new edges.
   template <class OnEdge>
@@ -120,13 +138,14 @@ class Filling {
 
 std::size_t fill_holes(Mesh& mesh, double longest_edge, const Context& context) {
   EdgeSet edges(mesh);
+  const std::vector<double> areas = piece_areas(mesh);
   std::vector<Face> added;
   std::size_t filled = 0;
   for (const std::vector<Index>& rim : rims_of(mesh)) {
     context.check_stop();
     if (rim.size() > kLongestRim) continue;
     const Filling filling(rim, mesh.positions, edges, longest_edge);
-    if (!filling.found()) continue;
+    if (!filling.found() || filling.area() > kMostOfPiece * areas[rim.front()]) continue;
     const std::vector<Face> faces = filling.faces([&](Index a, Index b) { edges.add(a, b); });
     added.insert(added.end(), faces.begin(), faces.end());
     ++filled;

@@ -136,11 +136,12 @@ SmoothedInTiles smooth_in_tiles(const TiledRun& run, const Within& how, const De
                                 const std::optional<NormalsOptions>& normals, const Context& context) {
   constexpr double kPlan = 0.03, kSettled = 0.1, kJoin = 0.98;  // shares of the time, for the bar
   check_for_tiles(options);
-  io::check_target(run.output, run.force);
   SmoothedInTiles done;
   RowFile file(run.input, context);
   done.had_normals = file.has_normals();
   if (normals) file.need_normals();  // refused before the work
+  if (!run.folder.empty()) io::make_folder(run.folder);
+  io::check_target(run.output, run.force);
   const auto target = io::file_behind(run.output);
   if (!target) fail(ErrorCode::usage, "{}: in tiles the output is a file", run.output);
   const PassingFolder folder(target->parent_path() / fmt::format(".{}.tiles-{}",

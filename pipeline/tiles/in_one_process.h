@@ -44,6 +44,7 @@ struct TiledRun {
   std::string input, output;
   bool force = false;       ///< replaces a file in the place of the output
   bool keep_scale = false;  ///< of JoinOptions
+  std::string folder = {};  ///< of JoinOptions: here the tiles lie beside the output
 };
 
 /// What there is to say of a cloud smoothed in tiles.

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <cstring>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -64,6 +65,41 @@ TEST_F(CompareCommand, AgainstACloudTheDistanceIsToItsNearestPoint) {
   EXPECT_NEAR(said["largest"].get<double>(), 2, 1e-12) << "the corner that is 2 above";
 }
 
+/// A unit square's corners with normals that lean by so many degrees from z.
+std::string leaning(double degrees) {
+  const double angle = degrees * std::atan(1.0) / 45;
+  std::string rows = "x y z nx ny nz\n";
+  for (const char* at : {"0 0 0", "1 0 0", "0 1 0", "1 1 0"})
+    rows += fmt::format("{} {:.17g} 0 {:.17g}\n", at, std::sin(angle), std::cos(angle));
+  return rows;
+}
+
+TEST_F(CompareCommand, NormalsAreComparedWithThoseOfACleanCloud) {
+  put("leaning.xyz", leaning(150));
+  put("upright.xyz", leaning(0));
+  const auto error = [&](std::vector<std::string> typed) {
+    typed.insert(typed.begin(), {"compare", "--json", "leaning.xyz"});
+    const Ran ran = run(typed);
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    return nlohmann::json::parse(ran.out)["own_units"]["normal_error"].get<double>();
+  };
+  EXPECT_NEAR(error({"upright.xyz"}), 30, 1e-9);
+  EXPECT_NEAR(error({"upright.xyz", "--signed-normals"}), 150, 1e-9);
+  EXPECT_NEAR(error({"truth.off"}), 30, 1e-9) << "faces look up";
+}
+
+TEST_F(CompareCommand, SidesOfNormalsThatAreNotThereAreRefused) {
+  put("leaning.xyz", leaning(10));
+  put("bare.xyz", "0 0 0\n1 0 0\n0 1 0\n");
+  const Ran truth = run({"compare", "leaning.xyz", "bare.xyz", "--signed-normals"}),
+            cloud = run({"compare", "bare.xyz", "truth.off", "--signed-normals"});
+  EXPECT_EQ(truth.code, 2);
+  EXPECT_THAT(truth.err, HasSubstr("bare.xyz: has no normals, which --signed-normals compares"));
+  EXPECT_EQ(cloud.code, 2);
+  EXPECT_THAT(cloud.err, HasSubstr("bare.xyz: has no normals"));
+  EXPECT_EQ(run({"compare", "leaning.xyz", "bare.xyz"}).code, 0);
+}
+
 TEST_F(CompareCommand, WritesTheCloudColouredFromBlueToRed) {
   const Ran ran = run({"compare", "cloud.ply", "truth.off", "-o", "seen.ply"});
   ASSERT_EQ(ran.code, 0) << ran.err;
@@ -95,6 +131,37 @@ TEST_F(CompareCommand, APcdHasItsColoursAsPclHasThem) {
   std::uint32_t bits = 0;
   std::memcpy(&bits, &packed, sizeof bits);
   EXPECT_EQ(bits, 255u << 16);
+}
+
+TEST_F(CompareCommand, WhereNearlyAllIsExactTheRestIsRed) {
+  std::string rows = "0 0 1\n";
+  for (int i = 1; i < 100; ++i) rows += fmt::format("0.{:02} 0 0\n", i);
+  put("exact.xyz", rows);
+  const Ran ran = run({"compare", "exact.xyz", "truth.off", "-o", "seen.ply"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  const auto red = field("seen.ply", "red"), blue = field("seen.ply", "blue");
+  EXPECT_EQ(red[0], 255) << "the one that is off";
+  EXPECT_EQ(blue[0], 0);
+  EXPECT_EQ(red[1], 0);
+  EXPECT_EQ(blue[1], 255) << "exact";
+}
+
+TEST_F(CompareCommand, ColoursThatThePointsHaveAreReplacedHoweverTheyAreStored) {
+  const std::vector<double> old(101, 7);
+  io::Cloud parts = io::make_cloud(xyz_.data(), 101, io::Scalar::float32);
+  for (const char* name : {"red", "green", "blue"}) io::set_field(parts, name, io::Scalar::uint8, old);
+  put("parts.ply", io::serialize_cloud(parts, {}, {}).value());
+  ASSERT_EQ(run({"compare", "parts.ply", "truth.off", "-o", "parts.pcd"}).code, 0);
+  EXPECT_EQ(field("parts.pcd", "red")[0], 255);
+  EXPECT_EQ(field("parts.pcd", "green")[1], 255);
+  EXPECT_FALSE(io::find_field(io::read_cloud(at("parts.pcd"), {}, {}).value(), "rgb")) << "one colour";
+
+  io::Cloud both = parts;
+  io::set_field(both, "rgba", io::Scalar::uint32, old);
+  ASSERT_TRUE(io::write_cloud(both, at("both.pcd"), {}, {}).ok());
+  ASSERT_EQ(run({"compare", "both.pcd", "truth.off", "-o", "both.ply"}).code, 0);
+  EXPECT_EQ(field("both.ply", "red")[0], 255);
+  EXPECT_EQ(field("both.ply", "rgba")[0], double(255U << 24 | 255U << 16));
 }
 
 TEST_F(CompareCommand, TheColouredCloudReplacesNothingWithoutForce) {

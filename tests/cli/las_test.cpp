@@ -114,7 +114,7 @@ TEST_F(LasCommand, AnIndexBesideTheOutputIsSaidToBeStale) {
 TEST_F(LasCommand, PointsThatDoNotMoveStayWhereTheyAreUnderARefinedScale) {
   const LasBytes las = survey(2, 1, kSigma);
   put("in.las", las.bytes());
-  ASSERT_EQ(run({"denoise", "--mark-outliers", "--write-displacement", "in.las", "out.las"}).code, 0);
+  ASSERT_EQ(run({"denoise", "--outliers", "mark", "--write-displacement", "in.las", "out.las"}).code, 0);
   const auto cloud = read(at("out.las"));
   const auto displacement = pipeline::io::find_field(cloud, "displacement");
   ASSERT_TRUE(displacement);

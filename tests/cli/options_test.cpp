@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <set>
 #include <sstream>
 
 #include <gmock/gmock.h>
@@ -156,6 +157,18 @@ TEST(Help, EveryOptionIsThereWithItsDefaultAndRange) {
     EXPECT_THAT(complete.out, HasSubstr(text));
 }
 
+/// The sub-commands that the overview lists.
+std::vector<std::string> listed_commands() {
+  const std::string overview = rfsmooth({"--help"}).out;
+  std::istringstream lines(overview.substr(overview.find("commands:\n")));
+  std::vector<std::string> found;
+  std::string line;
+  std::getline(lines, line);
+  while (std::getline(lines, line) && !line.empty())
+    if (line[2] != ' ') found.push_back(line.substr(2, line.find(' ', 2) - 2));
+  return found;
+}
+
 std::vector<std::string> options_in(const std::string& help) {
   std::vector<std::string> found;
   std::istringstream lines(help);
@@ -166,8 +179,7 @@ std::vector<std::string> options_in(const std::string& help) {
 }
 
 TEST(Help, ShowsTheEverydayOptionsOnOneScreen) {
-  for (const char* command :
-       {"denoise", "mesh", "smooth-mesh", "reconstruct", "info", "compare", "render", "report", "flows"}) {
+  for (const std::string& command : listed_commands()) {
     const Ran shorter = rfsmooth({command, "-h"}), complete = rfsmooth({command, "--help-all"});
     EXPECT_EQ(shorter.code, 0);
     EXPECT_EQ(shorter.err, "");
@@ -185,8 +197,7 @@ TEST(Help, ShowsTheEverydayOptionsOnOneScreen) {
 }
 
 TEST(Help, ManualPagesNameEveryOptionOfTheHelp) {
-  for (const char* command :
-       {"denoise", "mesh", "smooth-mesh", "reconstruct", "info", "compare", "render", "report", "flows"}) {
+  for (const std::string& command : listed_commands()) {
     const Ran help = rfsmooth({command, "--help-all"}), man = rfsmooth({"man", command});
     ASSERT_EQ(man.code, 0);
     EXPECT_THAT(man.out, ::testing::StartsWith(".TH "));
@@ -226,9 +237,10 @@ TEST(Help, ExitCodesAreDocumentedThereAndInTheReadme) {
   const std::size_t from = readme.find("Exit codes:");
   std::string codes = readme.substr(from, readme.find("\n\n", from) - from);
   std::replace(codes.begin(), codes.end(), '\n', ' ');
-  for (const char* command : {"", "denoise", "mesh", "smooth-mesh", "reconstruct", "info", "compare"}) {
-    const std::string help =
-        (*command == 0 ? rfsmooth({"--help-all"}) : rfsmooth({command, "--help-all"})).out;
+  std::vector<std::vector<std::string>> pages = {{"--help-all"}};
+  for (const std::string& command : listed_commands()) pages.push_back({command, "--help-all"});
+  for (const std::vector<std::string>& page : pages) {
+    const std::string help = rfsmooth(page).out, command = page.front();
     const std::size_t at = help.find("exit codes:");
     ASSERT_NE(at, std::string::npos) << command;
     for (const std::string code : {"0", "1", "2", "3", "4", "5", "6", "127", "130"}) {
@@ -240,8 +252,7 @@ TEST(Help, ExitCodesAreDocumentedThereAndInTheReadme) {
 
 TEST(Help, ManualPagesAreCleanToTheirFormatter) {
   if (run_program("groff", {"--version"}).code != 0) GTEST_SKIP() << "no groff here";
-  for (const char* command :
-       {"denoise", "mesh", "smooth-mesh", "info", "compare", "render", "report", "flows"}) {
+  for (const std::string& command : listed_commands()) {
     RunSetup setup;
     setup.input = rfsmooth({"man", command}).out;
     const Ran ran = run_program("groff", {"-man", "-Tutf8", "-ww", "-z"}, setup);
@@ -263,9 +274,15 @@ TEST_F(Installed, TheCommandItsManualPagesAndCompletions) {
     return run_program("gzip", {"-dc", at("usr/share/man/man1/" + name + ".1.gz")}).out;
   };
   EXPECT_EQ(page("rfsmooth"), rfsmooth({"man"}).out);
-  for (const char* command :
-       {"denoise", "mesh", "smooth-mesh", "info", "compare", "render", "report", "flows"})
-    EXPECT_EQ(page(std::string("rfsmooth-") + command), rfsmooth({"man", command}).out);
+  std::set<std::string> expected = {"rfsmooth.1.gz"}, installed;
+  for (const std::string& command : listed_commands()) {
+    if (command == "reconstruct") continue;  // its page goes with its program
+    expected.insert("rfsmooth-" + command + ".1.gz");
+    EXPECT_EQ(page("rfsmooth-" + command), rfsmooth({"man", command}).out);
+  }
+  for (const auto& file : std::filesystem::directory_iterator(at("usr/share/man/man1")))
+    installed.insert(file.path().filename().string());
+  EXPECT_EQ(installed, expected) << "a page for every command, as pipeline/cli/install.cmake lists them";
   EXPECT_EQ(text("share/bash-completion/completions/rfsmooth"), rfsmooth({"completion", "bash"}).out);
   EXPECT_EQ(text("share/zsh/site-functions/_rfsmooth"), rfsmooth({"completion", "zsh"}).out);
 }

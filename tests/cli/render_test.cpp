@@ -1,4 +1,7 @@
 /// rfsmooth render: pictures by the program that the command finds.
+#include <set>
+
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -30,6 +33,36 @@ TEST_F(Render, ColouringByAFieldNeedsItsName) {
   const Ran ran = run({"render", "in.ply", "-o", "one.png", "--color", "field"});
   EXPECT_EQ(ran.code, 2);
   EXPECT_THAT(ran.err, HasSubstr("--color field needs the name of a field: --field NAME"));
+}
+
+/// A grid of 6 x 6 points as a PCD with one more field, the same for every point.
+std::string pcd_with(int count, const std::string& values) {
+  std::string rows;
+  for (int i = 0; i < 36; ++i) rows += fmt::format("{} {} 0 {}\n", i % 6, i / 6, values);
+  return fmt::format(
+      "VERSION .7\nFIELDS x y z more\nSIZE 4 4 4 4\nTYPE F F F F\nCOUNT 1 1 1 {}\nWIDTH 36\nHEIGHT 1\n"
+      "VIEWPOINT 0 0 0 1 0 0 0\nPOINTS 36\nDATA ascii\n{}",
+      count, rows);
+}
+
+TEST_F(Render, AFieldOfSeveralValuesColoursNothing) {
+  put("three.pcd", pcd_with(3, "1 2 3"));
+  const Ran ran = run({"render", "three.pcd", "-o", "one.png", "--color", "field", "--field", "more"});
+  EXPECT_EQ(ran.code, 2);
+  EXPECT_THAT(ran.err, HasSubstr("--color field takes one value for each point; 'more' has several"));
+  EXPECT_FALSE(there("one.png"));
+}
+
+TEST_F(Render, ValuesThatAreNotFiniteHaveAColourOfTheirOwn) {
+  std::set<std::string> pictures;
+  for (const char* value : {"nan", "0", "0.5", "1"}) {
+    put("field.pcd", pcd_with(1, value));
+    const Ran ran = run({"render", "field.pcd", "-o", "out.png", "--force", "--color", "field", "--field",
+                         "more", "--low", "0", "--high", "1", "--width", "100", "--height", "80"});
+    ASSERT_EQ(ran.code, 0) << value << ran.err;
+    pictures.insert(take("out.png"));
+  }
+  EXPECT_EQ(pictures.size(), 4u);
 }
 
 TEST_F(Render, DrawsCloudsSideBySide) {

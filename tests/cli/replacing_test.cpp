@@ -159,6 +159,36 @@ TEST_F(Replacing, SeveralInputsMakeTheirFolder) {
   EXPECT_TRUE(take("b.ply") == raw_);
 }
 
+TEST_F(Replacing, NoFolderIsMadeWhereNothingIsWritten) {
+  put("broken.ply", "not a cloud");
+  put("tiles.ply", noisy_plane(20).bytes());
+  ASSERT_EQ(run({"tiles", "plan", "tiles.ply", "job"}).code, 0);
+  struct Slip {
+    std::vector<std::string> words;
+    int code;
+  };
+  for (const Slip& slip :
+       {Slip{{"denoise", "a.ply", "b.ply", "-o", "made", "--viewpoint", "1,2,3"}, 2},
+        Slip{{"denoise", "a.ply", "b.ply", "-o", "made", "--html", "page.html"}, 2},
+        Slip{{"denoise", "a.ply", "-o", "made/", "--report", "made/a.ply"}, 2},
+        Slip{{"denoise", "a.ply", "-o", "made/", "--strength-field", "none"}, 2},
+        Slip{{"denoise", "a.ply", "-o", "made/", "--memory", "much"}, 2},
+        Slip{{"smooth-mesh", "a.ply", "-o", "made/", "--refine-chart", "mixed"}, 2},
+        Slip{{"denoise", "broken.ply", "-o", "made/"}, 3}, Slip{{"tiles", "join", "job", "made/"}, 2},
+        Slip{{"denoise", "a.ply", "-o", "none/made/"}, 5}}) {
+    const Ran ran = run(slip.words);
+    EXPECT_EQ(ran.code, slip.code) << slip.words[2] << ran.err;
+    EXPECT_FALSE(there("made")) << ran.err;
+  }
+}
+
+TEST_F(Replacing, FilesBesideTheCloudMayGoIntoItsNewFolder) {
+  const Ran ran = run({"denoise", "--flow", "hc", "a.ply", "-o", "made/", "--report", "made/r.json", "--html",
+                       "made/../made/r.html"});
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  for (const char* name : {"made/a.ply", "made/r.json", "made/r.html"}) EXPECT_TRUE(there(name)) << name;
+}
+
 TEST_F(Replacing, AFolderThatHoldsTheInputsKeepsThem) {
   const std::string a = take("a.ply");
   const Ran ran = run({"denoise", "--force", "a.ply", "b.ply", "-o", "."});

@@ -13,12 +13,16 @@ namespace {
 constexpr double kFar = 5e5;  // a scan in map coordinates
 
 /// A grid in the plane, far from the origin, with a row that is not finite and one that comes twice.
-std::vector<double> grid_rows(int side) {
+std::vector<double> grid_rows(int width, int height) {
   std::vector<double> xyz = {std::nan(""), 0, 0};
-  for (int y = 0; y < side; ++y)
-    for (int x = 0; x < side; ++x) xyz.insert(xyz.end(), {kFar + x, y + 0.5, 0});
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) xyz.insert(xyz.end(), {kFar + x, y + 0.5, 0});
   xyz.insert(xyz.end(), {kFar, 0.5, 0});
   return xyz;
+}
+
+std::vector<double> grid_rows(int side) {
+  return grid_rows(side, side);
 }
 
 /// Joins every point to its right and upper neighbour, and those to theirs but at the last corner.
@@ -89,6 +93,61 @@ TEST(Reconstruct, NoiseIsTakenOutFirst) {
   ReconstructOptions denoising;
   denoising.fill_holes.value = 0;
   EXPECT_LT(height(denoising, xyz), 0.5 * height(without_denoising(), xyz));
+}
+
+TEST(Reconstruct, ARibbonIsOpenHoweverNarrow) {
+  ReconstructOptions options;
+  options.denoise = false;  // its edges across are shorter than what fills holes
+  const auto made = reconstruct(grid_rows(5, 30), options, {"join", false, join_grid}, {});
+  ASSERT_TRUE(made.ok()) << made.error().message;
+  EXPECT_EQ(made.value().report.filled, 0u);
+  EXPECT_FALSE(made.value().report.topology.closed_manifold());
+  EXPECT_EQ(made.value().report.topology.boundary_loops, 1u);
+}
+
+TEST(Reconstruct, NormalsFaceTheViewpoint) {
+  for (const double side : {1.0, -1.0}) {
+    ReconstructOptions options = without_denoising();
+    options.normals.viewpoint = Eigen::Vector3d(kFar + 3, 3, side * 50);
+    const auto look = [&](const SurfaceInput& input, const Context& context) {
+      for (const Eigen::Vector3d& normal : input.normals) EXPECT_GT(side * normal.z(), 0.99);
+      return join_grid(input, context);
+    };
+    ASSERT_TRUE(reconstruct(grid_rows(8), options, {"join", false, look}, {}).ok());
+  }
+  ReconstructOptions nowhere = without_denoising();
+  nowhere.normals.viewpoint = Eigen::Vector3d(std::nan(""), 0, 0);
+  EXPECT_EQ(reconstruct(grid_rows(8), nowhere, {"join", false, join_grid}, {}).error().code,
+            ErrorCode::usage);
+}
+
+TEST(Reconstruct, OutliersAreLeftOutOrSmoothedAndNothingElse) {
+  std::vector<double> xyz = grid_rows(20);
+  xyz.insert(xyz.end(), {kFar + 10, 10, 30});
+  const auto points = [&](Outliers outliers) {
+    std::size_t given = 0;
+    const auto join = [&](const SurfaceInput& input, const Context&) {
+      given = input.points.size();
+      Mesh mesh;
+      mesh.positions = input.points;
+      for (Index i = 0; i + 2 < given; ++i) mesh.faces.push_back({i, i + 1, i + 2});
+      return Result<Mesh>(mesh);
+    };
+    ReconstructOptions options;
+    options.fill_holes.value = 0;
+    options.denoising.outliers = outliers;
+    const auto made = reconstruct(xyz, options, {"all", false, join}, {});
+    EXPECT_EQ(made.ok(), given > 0);
+    if (!made.ok()) {
+      EXPECT_EQ(made.error().code, ErrorCode::usage) << made.error().message;
+    }
+    return given;
+  };
+  EXPECT_EQ(ReconstructOptions().denoising.outliers, Outliers::remove);
+  EXPECT_EQ(points(Outliers::remove), 400u);
+  EXPECT_EQ(points(Outliers::smooth), 401u);
+  EXPECT_EQ(points(Outliers::keep), 0u) << "a surface has no place beside it";
+  EXPECT_EQ(points(Outliers::mark), 0u);
 }
 
 TEST(Reconstruct, ErrorsOfTheMethodAndTheCloudComeThrough) {

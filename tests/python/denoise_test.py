@@ -91,6 +91,21 @@ def test_the_report_does_it_again(sphere):
     assert not np.array_equal(other, clean)
 
 
+def test_a_report_of_the_command_does_it_again(sphere, command, tmp_path, monkeypatch):
+    """Also where the whole cloud's statistics came from a file."""
+    monkeypatch.chdir(tmp_path)
+    rfsmooth.write("in.ply", sphere)
+    command("tiles", "plan", "--tile-points", "1000", "in.ply", "job")
+    tiles = json.loads(command("tiles", "status", "--json", "job").stdout)["tiles"]
+    command("tiles", "measure", "job", *range(tiles))
+    command("tiles", "settle", "job")
+    command("denoise", "--statistics", "job/statistics.json", "--report", "r.json", "in.ply", "out.ply")
+    clean, report = rfsmooth.denoise(sphere, config="r.json")
+    assert report["options"]["statistics"] == "job/statistics.json"
+    assert np.array_equal(clean, rfsmooth.read("out.ply")[1].positions())
+    assert np.array_equal(rfsmooth.denoise(sphere, statistics=None)[0], rfsmooth.denoise(sphere)[0])
+
+
 def test_one_thread_gives_the_same_bytes(sphere):
     assert np.array_equal(rfsmooth.denoise(sphere, threads=1)[0], rfsmooth.denoise(sphere, threads=2)[0])
 
@@ -159,7 +174,7 @@ def test_signature_and_help_name_every_option_of_the_command(command):
     first = {"noise": None, "strength": 1.0, "flow": "auto", "outliers": "keep", "normals": False, "threads": 0}
     assert {name: parameters[name].default for name in first} == first
     names_there = {line.split()[0].rstrip(",") for line in shown.splitlines() if line.strip().startswith("--")}
-    of_files = {"output", "format", "encoding", "force", "drop-unsupported", "report", "html", "trace", "quiet", "verbose", "help", "help-all", "statistics"}
+    of_files = {"output", "format", "encoding", "force", "drop-unsupported", "report", "html", "trace", "quiet", "verbose", "help", "help-all"}
     for name in names_there:
         plain = name[2:].removeprefix("no-").split("=")[0].split("[")[0]
         if plain not in of_files:

@@ -61,6 +61,11 @@ def test_a_coarse_scale_is_refined_and_what_stays_stays_exact(sphere, tmp_path):
     kept = rfsmooth.las.denoise_file(tmp_path / "a.laz", tmp_path / "c.laz", keep_scale=True)
     coarse = laspy.read(tmp_path / "c.laz")
     assert "takes back" in kept["scale"] and np.array_equal(coarse.header.scales, before.header.scales)
+    assert kept["options"]["keep-scale"] and not report["options"]["keep-scale"]
+    again = rfsmooth.las.denoise_file(tmp_path / "a.laz", tmp_path / "d.laz", config=kept)
+    assert again["scale"] == kept["scale"] and np.array_equal(laspy.read(tmp_path / "d.laz").X, coarse.X)
+    rfsmooth.las.denoise_file(tmp_path / "a.laz", tmp_path / "d.laz", config=kept, keep_scale=False, force=True)
+    assert np.array_equal(laspy.read(tmp_path / "d.laz").X, after.X)
     moved = np.asarray(after.xyz)[:-1] - [4e5, 5e6, 100]
     assert kept["noise_left"] > report["noise_left"]
     assert error_of(moved) < error_of(np.asarray(coarse.xyz)[:-1] - [4e5, 5e6, 100])
@@ -84,9 +89,13 @@ def test_python_m_rfsmooth(sphere, tmp_path):
 
 def test_outliers_are_removed_with_their_record(sphere, tmp_path):
     scan(np.vstack([[[3, 3, 3]], sphere]), tmp_path / "a.laz")
-    rfsmooth.las.denoise_file(tmp_path / "a.laz", tmp_path / "b.laz", outliers="remove")
+    report = rfsmooth.las.denoise_file(tmp_path / "a.laz", tmp_path / "b.laz", outliers="remove")
     after = laspy.read(tmp_path / "b.laz")
     assert len(after) == len(sphere) and np.array_equal(after.intensity, (np.arange(len(sphere)) + 1) % 65536)
+    assert report["options"]["outliers"] == "remove"
+    assert report["counts"]["removed"] == report["counts"]["outliers"] == 1
+    rfsmooth.las.denoise_file(tmp_path / "a.laz", tmp_path / "c.laz", config=report)
+    assert np.array_equal(laspy.read(tmp_path / "c.laz").xyz, after.xyz)
 
 
 @pytest.mark.parametrize("names", [("a.las", "b.laz"), ("a.laz", "b.las")])

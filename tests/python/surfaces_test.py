@@ -84,6 +84,32 @@ def test_errors_of_normals_are_compared():
     assert right["own_units"]["normal_error"] < 10
 
 
+def test_errors_of_normals_against_a_clean_cloud():
+    clean = noisy_sphere(500, 0)
+    turned = np.stack([clean[:, 1], -clean[:, 0], clean[:, 2]], axis=1)  # by 90 degrees around z
+    _, same = rfsmooth.compare(clean, clean, normals=clean, truth_normals=clean)
+    assert same["own_units"]["normal_error"] < 1e-6
+    _, flipped = rfsmooth.compare(clean, clean, normals=-clean, truth_normals=clean, signed_normals=True)
+    assert np.isclose(flipped["own_units"]["normal_error"], 180)
+    expected = np.degrees(np.arccos(np.clip(np.abs(np.sum(turned * clean, axis=1)), 0, 1))).mean()
+    _, quarter = rfsmooth.compare(clean, clean, normals=turned, truth_normals=clean)
+    assert np.isclose(quarter["own_units"]["normal_error"], expected)
+
+
+def test_normals_that_nothing_is_compared_with_are_refused():
+    clean = noisy_sphere(500, 0)
+    with pytest.raises(ValueError, match="normals need truth_normals, or faces"):
+        rfsmooth.compare(clean, clean, normals=clean)
+    with pytest.raises(ValueError, match="signed_normals needs normals"):
+        rfsmooth.compare(clean, clean, signed_normals=True)
+    with pytest.raises(ValueError, match="truth_normals needs normals"):
+        rfsmooth.compare(clean, clean, truth_normals=clean)
+    with pytest.raises(ValueError, match="one row for each true point"):
+        rfsmooth.compare(clean, clean, normals=clean, truth_normals=clean[1:])
+    with pytest.raises(ValueError, match="faces have their own"):
+        rfsmooth.compare(clean, *sphere_mesh(), normals=clean, truth_normals=sphere_mesh()[0])
+
+
 def sphere_mesh():
     made, _ = rfsmooth.mesh(noisy_sphere(2000, 0))
     return made.vertices, made.faces
@@ -111,6 +137,13 @@ def test_reconstruction_by_the_program(sphere):
     with pytest.raises(rfsmooth.Error) as caught:
         rfsmooth.reconstruct(sphere, strength=11)
     assert caught.value.code == "usage"
+    with pytest.raises(rfsmooth.Error, match="trim has no effect with .*method advancing-front"):
+        rfsmooth.reconstruct(sphere, method="advancing-front", trim="3x")
+    assert report["options"]["outliers"] == "remove" and "trim" not in report["options"]
+    again, _ = rfsmooth.reconstruct(sphere, config=report)
+    assert np.array_equal(again.vertices, made.vertices) and np.array_equal(again.faces, made.faces)
+    raw, _ = rfsmooth.reconstruct(sphere, config=report, denoise=False)
+    assert error_of(raw.vertices) > error_of(made.vertices)
 
 
 def test_without_the_program_it_says_so(sphere, monkeypatch):

@@ -190,8 +190,10 @@ void close_up(::pcl::PCLPointCloud2& cloud, const ::pcl::Indices& gone) {
 void Denoise<::pcl::PCLPointCloud2>::filter(PCLPointCloud2& output) {
   if (input_) {
     // PCL's own filter() clears an output that is also the input before it is read.
-    if (input_.get() == &output) input_.reset(new PCLPointCloud2(output));
+    const auto given = input_;
+    if (given.get() == &output) input_.reset(new PCLPointCloud2(output));
     ::pcl::Filter<PCLPointCloud2>::filter(output);
+    input_ = given;
     return;
   }
   fail("no input cloud: call setInputCloud first");

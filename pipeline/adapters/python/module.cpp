@@ -18,6 +18,7 @@
 #include <rfsmooth/normals.h>
 #include <rfsmooth/version.h>
 
+#include "base/parallel.h"
 #include "pipeline/adapters/python/cloud.h"
 #include "pipeline/adapters/python/option_tables.h"
 #include "pipeline/adapters/python/released.h"
@@ -29,6 +30,7 @@
 #include "pipeline/cli/options/parse.h"
 #include "pipeline/cli/program.h"
 #include "pipeline/io/formats/las/las_scale.h"
+#include "pipeline/normals/normal_sides.h"
 
 namespace rfsmooth::python {
 
@@ -72,25 +74,34 @@ std::string info(const pipeline::io::Cloud& cloud) {
   return text_of(found);
 }
 
-/// Writes the unit normals of `points`. \return the report, as JSON.
+/// Writes the unit normals of `points`, on the side that those `before` were on, if any are given and have
+/// sides. \return the report, as JSON.
 std::string normals(const Points& points, const Numbers<nb::shape<-1, 3>>& into,
-                    const std::optional<std::array<double, 3>>& viewpoint, int threads,
-                    const nb::object& progress) {
+                    const std::optional<std::array<double, 3>>& viewpoint,
+                    const std::optional<Points>& before, int threads, const nb::object& progress) {
   NormalsOptions options;
   if (viewpoint) options.viewpoint = Eigen::Vector3d(viewpoint->data());
   NormalsReport done;
   released(progress, threads, {{"normals", 1}}, [&](const Context& context, cli::Console&) {
     done = value_or_throw(
         rfsmooth::estimate_normals(points.data(), points.shape(0), options, context, into.data()));
+    if (!before) return;
+    value_or_throw(guarded([&] {
+      in_arena(context, [&] {
+        pipeline::keep_sides(points.data(), points.shape(0), before->data(), into.data(), context);
+      });
+      return Done{};
+    }));
   });
   return text_of({{"points", done.points}, {"finite", done.finite}, {"parts", done.parts}});
 }
 
-/// Measures `points` against a true mesh, or a clean cloud where there are no `faces`; writes each point's
-/// deviation. \return the figures, as JSON.
+/// Measures `points` against a true mesh, or a clean cloud, which may have normals, where there are no
+/// `faces`; writes each point's deviation. \return the figures, as JSON.
 std::string compare(const Points& points, const std::optional<Points>& normals_of_points, const Points& truth,
-                    const std::optional<Corners>& faces, bool signed_normals, int threads,
-                    const nb::object& progress, const Numbers<nb::ndim<1>>& deviation) {
+                    const std::optional<Corners>& faces, const std::optional<Points>& normals_of_truth,
+                    bool signed_normals, int threads, const nb::object& progress,
+                    const Numbers<nb::ndim<1>>& deviation) {
   const CloudView cloud = {points.data(), points.shape(0),
                            normals_of_points ? normals_of_points->data() : nullptr};
   Truth known;
@@ -98,7 +109,8 @@ std::string compare(const Points& points, const std::optional<Points>& normals_o
     known.mesh =
         MeshView{truth.data(), truth.shape(0), reinterpret_cast<const Face*>(faces->data()), faces->shape(0)};
   else
-    known.cloud = CloudView{truth.data(), truth.shape(0), nullptr};
+    known.cloud =
+        CloudView{truth.data(), truth.shape(0), normals_of_truth ? normals_of_truth->data() : nullptr};
   ordered_json figures;
   released(progress, threads, {{"compare", 1}}, [&](const Context& context, cli::Console&) {
     const CompareReport report = value_or_throw(rfsmooth::compare(cloud, known, {signed_normals}, context));
@@ -163,10 +175,10 @@ NB_MODULE(_rfsmooth, module) {
   module.def("run_on_cloud", &run_on_cloud, nb::arg(), nb::arg(), nb::arg(), nb::arg(), nb::arg(),
              nb::arg("progress").none());
   module.def("info", &info);
-  module.def("normals", &normals, nb::arg(), nb::arg(), nb::arg().none(), nb::arg(),
+  module.def("normals", &normals, nb::arg(), nb::arg(), nb::arg().none(), nb::arg().none(), nb::arg(),
              nb::arg("progress").none());
-  module.def("compare", &compare, nb::arg(), nb::arg().none(), nb::arg(), nb::arg().none(), nb::arg(),
-             nb::arg(), nb::arg("progress").none(), nb::arg());
+  module.def("compare", &compare, nb::arg(), nb::arg().none(), nb::arg(), nb::arg().none(), nb::arg().none(),
+             nb::arg(), nb::arg(), nb::arg("progress").none(), nb::arg());
   module.def("parse_command", &parse_command);
   module.def("run_command", &run_command);
 }

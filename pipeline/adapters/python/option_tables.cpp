@@ -45,6 +45,11 @@ std::set<std::string> names_for_files() {
   return names;
 }
 
+/// Whether an option names a file that is written beside the result: one that is read says what is done.
+bool is_written(const cli::CommandOption& option) {
+  return option.kind == cli::ValueKind::file && option.name != "statistics";
+}
+
 const char* name_of(cli::ValueKind kind) {
   constexpr std::array kNames = {"flag", "integer", "number", "word", "length", "file"};
   return kNames.at(std::size_t(kind));
@@ -76,7 +81,7 @@ nb::list option_table(const std::string& name) {
   const Defaults of_flows = defaults_of_flows();
   nb::list table;
   for (const cli::CommandOption& o : command_of(name).options) {
-    if (elsewhere.count(o.name) > 0 || o.kind == cli::ValueKind::file) continue;
+    if (elsewhere.count(o.name) > 0 || is_written(o)) continue;
     nb::dict entry;
     entry["name"] = o.name;
     entry["kind"] = name_of(o.kind);

@@ -66,6 +66,7 @@ _TYPES = {
     "faces": "ArrayLike",
     "truth": "ArrayLike",
     "normals": "ArrayLike | None",
+    "truth_normals": "ArrayLike | None",
     "signed_normals": "bool",
     "viewpoint": "Sequence[float] | None",
     "threads": "int",

@@ -1,12 +1,13 @@
 #include "pipeline/cli/commands/reconstruct_command.h"
 
-#include <filesystem>
+#include <map>
 #include <memory>
 
 #include <fmt/format.h>
 
 #include "base/fail.h"
 #include "pipeline/cli/files/cloud_jobs.h"
+#include "pipeline/cli/files/cloud_normals.h"
 #include "pipeline/cli/files/memory.h"
 #include "pipeline/cli/files/surface_file.h"
 #include "pipeline/cli/other_program.h"
@@ -20,12 +21,14 @@ using nlohmann::ordered_json;
 /// The method, by its name, and how it is used.
 struct SurfaceOptions : ReconstructOptions {
   std::string method = "poisson";
+  std::optional<std::string> viewpoint;
 
   template <class Self, class Visit>
   static void describe(Self& self, Visit&& visit) {
     OptionInfo method{"method", "how the surface is made", ""};
     method.choices = {"poisson", "advancing-front", "ball-pivoting"};
     visit(method, self.method);
+    visit(viewpoint_option(), self.viewpoint);
     ReconstructOptions::describe(self, visit);
   }
 };
@@ -34,6 +37,28 @@ struct ReconstructCommandOptions {
   SurfaceOptions reconstruct;
   JobOptions job;
 };
+
+/// The options that do nothing beside the others, and what makes it so.
+std::map<std::string, std::string> without_effect(const SurfaceOptions& options,
+                                                  const SurfaceMethod& method) {
+  std::map<std::string, std::string> idle;
+  if (!method.closes_all) idle["trim"] = "--method " + method.name;
+  if (options.denoise) return idle;
+  DenoiseOptions unused;
+  std::vector<CommandOption> of_denoising;
+  collect(unused, of_denoising);
+  for (const CommandOption& option : of_denoising) idle[option.name] = "--no-denoise";
+  return idle;
+}
+
+/// Refuses options that were typed and do nothing, and a viewpoint that is none. \throw Failure (usage).
+void check_options(const SurfaceOptions& options, const SurfaceMethod& method, const Invocation& typed) {
+  typed_viewpoint(options.viewpoint);
+  const auto idle = without_effect(options, method);
+  for (const auto& [name, text] : typed.options)
+    if (const auto it = idle.find(name); it != idle.end())
+      fail(ErrorCode::usage, "--{} has no effect with {}", name, it->second);
+}
 
 /// Checked before the work: the output must be able to hold faces.
 void check_format(const Job& job, const FileOptions& options) {
@@ -58,10 +83,13 @@ std::string text_of(const Topology& found) {
   return text + (found.manifold() ? "" : "; not a manifold");
 }
 
-void enter(const Reconstruction& made, const ReconstructCommandOptions& options, ordered_json& entry) {
+void enter(const Reconstruction& made, const ReconstructCommandOptions& options, const SurfaceMethod& method,
+           ordered_json& entry) {
   ReconstructCommandOptions used = options;
   if (options.reconstruct.denoise) used.reconstruct.denoising = made.report.denoised.effective;
   entry["options"] = effective_options(used.reconstruct, options.job.files);
+  for (const auto& [name, because] : without_effect(options.reconstruct, method))
+    entry["options"].erase(name);
   const Topology& found = made.report.topology;
   entry["counts"] = {{"points", entry["input"]["points"]},
                      {"vertices", found.vertices},
@@ -85,13 +113,14 @@ std::string reconstruct_cloud(const ReconstructCommandOptions& options, const Su
   const auto& [job, context, console, stages, entry] = task;
   check_format(job, options.job.files);
   need_memory(job.input, rfsmooth::denoise_memory(cloud.size()));
-  const Reconstruction made = value_or_fail(
-      rfsmooth::reconstruct(pipeline::io::positions(cloud, context), options.reconstruct, method, context),
-      job.input);
-  warn_if_coarse(cloud, pipeline::io::positions(cloud, context), made.report.spacing, job.input, console);
+  const std::vector<double> xyz = pipeline::io::positions(cloud, context);
+  ReconstructOptions how = options.reconstruct;
+  how.normals = normals_facing(options.reconstruct.viewpoint, cloud, xyz.data(), task);
+  const Reconstruction made = value_or_fail(rfsmooth::reconstruct(xyz, how, method, context), job.input);
+  warn_if_coarse(cloud, xyz, made.report.spacing, job.input, console);
   cloud = surface_file(std::move(cloud), made, context);
   stages.insert(stages.end(), made.report.seconds.begin(), made.report.seconds.end());
-  enter(made, options, entry);
+  enter(made, options, method, entry);
   return text_of(made.report.topology);
 }
 
@@ -122,11 +151,14 @@ Command table(const std::shared_ptr<ReconstructCommandOptions>& options) {
   command.usage = {"[options] IN OUT.ply"};
   command.description =
       "Takes the noise out of a cloud, as rfsmooth denoise does, gives the points normals on one side, and "
-      "makes a triangle mesh of them. poisson (Open3D's screened Poisson) makes a smooth surface near the "
+      "makes a triangle mesh of them: closed shapes face outward, scans the scanner, where the file tells "
+      "or --viewpoint says where it stood. poisson (Open3D's screened Poisson) makes a smooth surface near "
+      "the "
       "points and closes gaps; what it invents far from every point is trimmed. advancing-front (CGAL) and "
       "ball-pivoting (Open3D) put triangles between the points themselves: specks are dropped, slits filled, "
       "and where an advancing front all but bounds a solid, it is closed. All scales come from the measured "
-      "spacing. Outliers are left out. Colours and other fields of the points go to the vertices.\n\n"
+      "spacing. Outliers are left out (--outliers smooth keeps them). Colours and other fields of the points "
+      "go to the vertices.\n\n"
       "The work is done by the program rfsmooth-reconstruct, which links those libraries and may be "
       "installed or not; without it, or without the library that a method needs, the exit code is 127.";
   collect(options->reconstruct, command.options);
@@ -154,7 +186,7 @@ Command reconstruct_command(std::vector<SurfaceMethod> methods) {
     const SurfaceMethod& method = find_method(methods, options->reconstruct.method);
     return run_cloud_jobs(
         "reconstruct", options->job, typed,
-        {[](const Invocation&) {},
+        {[&](const Invocation& given) { check_options(options->reconstruct, method, given); },
          [&] { return reconstructing_stages(*options); },
          [&](auto& cloud, const CloudTask& task) { return reconstruct_cloud(*options, method, cloud, task); },
          {},

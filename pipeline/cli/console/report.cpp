@@ -4,16 +4,13 @@
 
 #include <rfsmooth/version.h>
 
-#include "pipeline/cli/own_files.h"
 #include "pipeline/io/io.h"
 #include "rfs_mesh/noise/noise_levels.h"
 
 namespace rfsmooth::cli {
 
 Report::Report(std::string command, const std::optional<std::string>& path, bool force)
-    : command_(std::move(command)), path_(path.value_or("")), force_(force) {
-  if (wanted() && path_ != "-") check_no_cloud_target(path_, force_, "report");
-}
+    : command_(std::move(command)), path_(path.value_or("")), force_(force) {}
 
 void Report::write(bool any_done) const {
   if (!wanted() || (path_ != "-" && !any_done)) return;

@@ -13,7 +13,6 @@ namespace rfsmooth::cli {
 
 class Report {
  public:
-  /// \throw Failure (cannot_write) if `path` exists and `force` is not set, before any work is done.
   Report(std::string command, const std::optional<std::string>& path, bool force);
 
   bool wanted() const { return !path_.empty(); }

@@ -57,6 +57,20 @@ void check_target(const std::string& output, const FileOptions& options) {
   if (output != "-") value_or_throw(io::check_output(output, write_options(options)));
 }
 
+void check_target(const Job& job, const FileOptions& options) {
+  if (!in_folder_to_come(job, job.output)) return check_target(job.output, options);
+  value_or_throw(io::check_output_name(job.output, write_options(options)));
+}
+
+bool in_folder_to_come(const Job& job, const std::string& path) {
+  std::error_code unknown;
+  if (job.folder.empty() || std::filesystem::is_directory(job.folder, unknown)) return false;
+  const auto folder_of = [](const std::string& file) {
+    return std::filesystem::path(place_of(file)).parent_path();
+  };
+  return folder_of(path) == folder_of(job.output);
+}
+
 std::vector<Job> plan_cloud_jobs(const std::vector<std::string>& arguments, const FileOptions& options,
                                  std::optional<io::Format> makes) {
   const auto named = options.format ? io::format_by_name(*options.format) : std::nullopt;

@@ -18,6 +18,12 @@ namespace rfsmooth::cli {
 /// Refuses an output that cannot be written, before any work. "-" always can. \throw Failure.
 void check_target(const std::string& output, const FileOptions& options);
 
+/// The same of a job, whose folder may be still to be made.
+void check_target(const Job& job, const FileOptions& options);
+
+/// Whether a path names a file in the folder that the job is still to make.
+bool in_folder_to_come(const Job& job, const std::string& path);
+
 /// The jobs of a sub-command. `makes`: the format of what it makes, unless --format says another; none: that
 /// of the input. \throw Failure as plan_jobs.
 std::vector<Job> plan_cloud_jobs(const std::vector<std::string>& arguments, const FileOptions& options,

@@ -10,6 +10,7 @@
 #include "pipeline/cli/options/text_values.h"
 #include "pipeline/cli/own_files.h"
 #include "pipeline/io/formats/las/las_plain.h"
+#include "pipeline/io/stream/atomic_file.h"
 
 namespace rfsmooth::cli {
 
@@ -49,7 +50,7 @@ std::string unnamed_columns(const pipeline::io::Cloud& cloud, std::size_t first,
 void run_one(const Job& job, const JobOptions& options, const OnCloud& on_cloud, const Context& context,
              Console& console, ordered_json& entry, bool one_of_many) {
   need_own_target(job, options.files.output);
-  check_target(job.output, options.files);
+  check_target(job, options.files);
   std::vector<StageTime> stages;
   pipeline::io::Cloud cloud;
   {
@@ -64,6 +65,7 @@ void run_one(const Job& job, const JobOptions& options, const OnCloud& on_cloud,
     return on_cloud.work(cloud, {job, context, console, stages, entry});
   });
   const pipeline::io::Format format = output_format(cloud, job.output, options.files);
+  if (!job.folder.empty()) pipeline::io::make_folder(job.folder);
   {
     const Stopwatch watch(stages, "write");
     const auto more = pipeline::io::naming(job.output == "-" ? "standard output" : job.output, [&] {
@@ -94,11 +96,14 @@ void check_outputs(const std::vector<Job>& jobs, const JobOptions& options, cons
   if (options.run.report) outputs.emplace_back("--report", *options.run.report);
   for (const FileBeside& file : beside) outputs.emplace_back(file.option, file.path);
   need_different_outputs(outputs);
-  for (const FileBeside& file : beside) {
+  for (const FileBeside& file : beside)
     if (jobs.size() > 1)
       fail(ErrorCode::usage, "{} is for one input; run the command once for each", file.option);
-    check_no_cloud_target(file.path, options.files.force, file.what);
-  }
+  if (const auto& report = options.run.report; report && *report != "-")
+    beside.push_back({"--report", "report", *report});
+  for (const FileBeside& file : beside)
+    if (!in_folder_to_come(jobs.front(), file.path))
+      check_no_cloud_target(file.path, options.files.force, file.what);
 }
 
 }  // namespace

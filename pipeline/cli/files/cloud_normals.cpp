@@ -39,15 +39,26 @@ void put(io::Cloud& cloud, const Names& names, const std::vector<double>& normal
 
 }  // namespace
 
-std::optional<Vector3d> typed_viewpoint(const NormalsFields& options) {
-  if (!options.viewpoint) return std::nullopt;
-  auto point = read_point(*options.viewpoint);
-  if (!point) fail(ErrorCode::usage, "--viewpoint: expected x,y,z; found '{}'", *options.viewpoint);
+std::optional<Vector3d> typed_viewpoint(const std::optional<std::string>& text) {
+  if (!text) return std::nullopt;
+  auto point = read_point(*text);
+  if (!point) fail(ErrorCode::usage, "--viewpoint: expected x,y,z; found '{}'", *text);
   return point;
 }
 
+NormalsOptions normals_facing(const std::optional<std::string>& viewpoint, const io::Cloud& cloud,
+                              const double* xyz, const CloudTask& task) {
+  NormalsOptions wanted;
+  wanted.viewpoint = typed_viewpoint(viewpoint);
+  if (!wanted.viewpoint) wanted.viewpoint = pipeline::recorded_viewpoint(cloud, xyz, task.context);
+  auto& told = task.entry["normals"]["viewpoint"];
+  told = nullptr;
+  if (const auto& v = wanted.viewpoint) told = {(*v)[0], (*v)[1], (*v)[2]};
+  return wanted;
+}
+
 void check(const NormalsFields& options) {
-  if (typed_viewpoint(options) && !options.normals)
+  if (typed_viewpoint(options.viewpoint) && !options.normals)
     fail(ErrorCode::usage, "--viewpoint says where normals point; it needs --normals");
 }
 
@@ -56,7 +67,7 @@ std::optional<NormalsOptions> normals_in_tiles(const NormalsFields& options,
                                                const Context& context) {
   if (!options.normals) return std::nullopt;
   NormalsOptions wanted;
-  wanted.viewpoint = typed_viewpoint(options);
+  wanted.viewpoint = typed_viewpoint(options.viewpoint);
   if (!wanted.viewpoint) wanted.viewpoint = pipeline::tiles::common_viewpoint(inputs, context);
   return wanted;
 }
@@ -72,9 +83,7 @@ void write_normals(const NormalsFields& options, io::Cloud& cloud, const double*
   if (!options.normals) return;
   const auto& [job, context, console, stages, entry] = task;
   const Stopwatch watch(stages, "normals");
-  NormalsOptions wanted;
-  wanted.viewpoint = typed_viewpoint(options);
-  if (!wanted.viewpoint) wanted.viewpoint = pipeline::recorded_viewpoint(cloud, xyz, context);
+  const NormalsOptions wanted = normals_facing(options.viewpoint, cloud, xyz, task);
   std::vector<double> normals(3 * cloud.size());
   value_or_throw(rfsmooth::estimate_normals(xyz, cloud.size(), wanted, context, normals.data()));
   bool written = false;
@@ -86,9 +95,6 @@ void write_normals(const NormalsFields& options, io::Cloud& cloud, const double*
   if (!written)
     put(cloud, output_format(cloud, job.output, files) == io::Format::pcd ? io::kPcdNormal : io::kPlyNormal,
         normals, context);
-  auto& viewpoint = entry["normals"]["viewpoint"];
-  viewpoint = nullptr;
-  if (const auto& v = wanted.viewpoint) viewpoint = {(*v)[0], (*v)[1], (*v)[2]};
 }
 
 }  // namespace rfsmooth::cli

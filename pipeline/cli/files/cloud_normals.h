@@ -16,6 +16,11 @@
 
 namespace rfsmooth::cli {
 
+/// Of every sub-command that finds normals.
+inline OptionInfo viewpoint_option() {
+  return {"viewpoint", "x,y,z of the scanner, which the normals face; auto: the file's, else outward", ""};
+}
+
 struct NormalsFields {
   bool normals = false;
   std::optional<std::string> viewpoint;
@@ -24,14 +29,17 @@ struct NormalsFields {
   static void describe(Self& self, Visit&& visit) {
     visit(OptionInfo{"normals", "write the smoothed surface's unit normals, all on one side", ""},
           self.normals);
-    visit(OptionInfo{"viewpoint",
-                     "x,y,z of the scanner, which the normals face; auto: the file's, else outward", ""},
-          self.viewpoint);
+    visit(viewpoint_option(), self.viewpoint);
   }
 };
 
 /// The viewpoint that was typed, if any. \throw Failure (usage).
-std::optional<Eigen::Vector3d> typed_viewpoint(const NormalsFields& options);
+std::optional<Eigen::Vector3d> typed_viewpoint(const std::optional<std::string>& text);
+
+/// How the normals of a cloud with the coordinates `xyz` are found: with the viewpoint that was typed, else
+/// the one that its file tells, else none. Told in the report. \throw Failure (usage).
+NormalsOptions normals_facing(const std::optional<std::string>& viewpoint, const pipeline::io::Cloud& cloud,
+                              const double* xyz, const CloudTask& task);
 
 /// Refuses contradictory options, before any file is touched. \throw Failure (usage).
 void check(const NormalsFields& options);

@@ -84,7 +84,8 @@ CommandOption describe_option(const OptionInfo& info) {
   o.kind = info.unit == "file" ? ValueKind::file : kind_of<T>();
   if (o.kind == ValueKind::file) o.unit.clear();
   o.range = range_text(info);
-  o.choices.assign(info.choices.begin(), info.choices.end());
+  for (const std::string_view word : info.choices)
+    if (!word.empty()) o.choices.emplace_back(word);
   for (const auto& [name, letter] : {std::pair("output", 'o'), {"quiet", 'q'}, {"verbose", 'v'}})
     if (o.name == name) o.short_name = letter;
   return o;
@@ -149,11 +150,12 @@ template void OptionCollector::operator()(const OptionInfo&, std::optional<Eigen
 void OptionCollector::add_words(const OptionInfo& info, const std::function<std::size_t()>& get,
                                 const std::function<void(std::size_t)>& set) {
   CommandOption o = describe_option<std::string>(info);
-  o.default_text = info.choices.at(get());
-  o.set = [set](const CommandOption& option, const std::string& text) {
-    set(std::size_t(std::find(option.choices.begin(), option.choices.end(), text) - option.choices.begin()));
+  const std::vector<std::string> words(info.choices.begin(), info.choices.end());  // of every value
+  o.default_text = words.at(get());
+  o.set = [set, words](const CommandOption&, const std::string& text) {
+    set(std::size_t(std::find(words.begin(), words.end(), text) - words.begin()));
   };
-  o.get = [get, choices = o.choices] { return std::optional(choices.at(get())); };
+  o.get = [get, words] { return std::optional(words.at(get())); };
   out_.push_back(std::move(o));
 }
 

@@ -120,15 +120,14 @@ void plan_tiles(TilesOptions& options, const std::vector<std::string>& arguments
 
 /// Where the inputs of a job go, which is refused, before any work, if something must not be replaced. Pieces
 /// are written to a name: "-" becomes that of standard output.
-std::vector<std::string> outputs_of(const std::vector<std::string>& inputs, const std::string& out,
-                                    bool force) {
-  std::vector<std::string> outputs;
-  for (const cli::Job& file : plan_jobs(inputs, out)) {
-    outputs.push_back(file.output == "-" ? "/dev/stdout" : file.output);
-    need_own_target(inputs, outputs.back());
-    pipeline::io::check_target(outputs.back(), force);
+std::vector<cli::Job> outputs_of(const std::vector<std::string>& inputs, const std::string& out, bool force) {
+  std::vector<cli::Job> files = plan_jobs(inputs, out);
+  for (cli::Job& file : files) {
+    if (file.output == "-") file.output = "/dev/stdout";
+    need_own_target(inputs, file.output);
+    if (file.folder.empty()) pipeline::io::check_target(file.output, force);
   }
-  return outputs;
+  return files;
 }
 
 /// \return the exit code.
@@ -136,12 +135,15 @@ int join_tiles(const TilesOptions& options, const std::vector<std::string>& argu
                Console& console) {
   if (arguments.size() != 2) fail(ErrorCode::usage, "rfsmooth tiles join takes JOB OUT");
   const Job job = pipeline::tiles::open_job(arguments[0]);
-  std::vector<std::string> inputs;
+  std::vector<std::string> inputs, outputs;
   for (const auto& input : job.inputs) inputs.push_back(input.path);
-  const std::vector<std::string> outputs = outputs_of(inputs, arguments[1], options.force);
+  const std::vector<cli::Job> files = outputs_of(inputs, arguments[1], options.force);
+  for (const cli::Job& file : files) outputs.push_back(file.output);
   auto done = guarded([&] {
     return pipeline::tiles::join_job(
-        job, outputs, {options.force, options.keep_scale, planned_options(job).normals.normals}, context);
+        job, outputs,
+        {options.force, options.keep_scale, planned_options(job).normals.normals, files.front().folder},
+        context);
   });
   const bool to_reader = arguments[1] == "-" && !done.ok() && done.error().code == ErrorCode::cannot_write;
   if (to_reader && stdout_reader_is_gone()) return exit_code(ErrorCode::cannot_write);  // it has seen enough
@@ -190,7 +192,7 @@ void work_on_tiles(const std::string& step, const std::vector<std::string>& argu
   const PlannedOptions planned = planned_options(job);
   if (step == "settle") return pipeline::tiles::settle_job(job, planned.denoise, context);
   std::optional<NormalsOptions> normals;
-  if (planned.normals.normals) normals = NormalsOptions{typed_viewpoint(planned.normals)};
+  if (planned.normals.normals) normals = NormalsOptions{typed_viewpoint(planned.normals.viewpoint)};
   for (std::size_t i = 1; i < arguments.size(); ++i) {
     const std::size_t tile = tile_number(arguments[i]);
     if (step == "measure")

@@ -109,6 +109,12 @@ std::optional<std::filesystem::path> file_behind(const std::filesystem::path& ta
   return file;
 }
 
+void make_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directory(folder, error);
+  if (error) refuse(folder, fmt::format("cannot make the folder: {}", error.message()));
+}
+
 void check_target(const std::filesystem::path& target, bool replace) {
   const std::filesystem::path file = follow_links(target);
   if (const auto open = descriptor_of(file)) return check_descriptor(target, *open);

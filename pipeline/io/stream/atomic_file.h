@@ -45,6 +45,9 @@ class AtomicFile : public Sink {
 /// into a pipe, a device, or an open file (/dev/stdout). \throw Failure (cannot_write) for links in a circle.
 std::optional<std::filesystem::path> file_behind(const std::filesystem::path& target);
 
+/// Makes a folder, if there is none; its parent must be there. \throw Failure (cannot_write).
+void make_folder(const std::filesystem::path& folder);
+
 /// Refuses in advance what the constructor would refuse; creates nothing. \throw Failure (cannot_write).
 void check_target(const std::filesystem::path& target, bool replace);
 

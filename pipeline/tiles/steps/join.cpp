@@ -229,6 +229,7 @@ std::vector<Joined> join_job(const Job& job, const std::vector<std::string>& out
     done.noise = settled.noise;
     done.noise_left = settled.noise_left;
     if (done.las) done.scale = prepare_las(job, input, how.keep_scale, settled, context);
+    if (!how.folder.empty()) io::make_folder(how.folder);
     write_joined(job, input, outputs[i], how.force, patcher, context);
     before += input.file.rows();
   }

@@ -25,6 +25,7 @@ struct JoinOptions {
   bool force = false;       ///< replaces files in the place of the outputs
   bool keep_scale = false;  ///< of LAS: does not refine scales that are coarse for what is left of the noise
   bool normals = false;     ///< whether the tiles were run with them
+  std::string folder = {};  ///< of the outputs, if it is still to be made before they are written
 };
 
 /// Needs every tile run. `outputs`: one for each input, of its format. A scale of LAS is refined only where

@@ -1,4 +1,4 @@
-/// denoise --outliers and --mark-outliers: what happens to strays in the file.
+/// denoise --outliers: what happens to strays in the file.
 #include <cmath>
 #include <random>
 
@@ -90,18 +90,15 @@ TEST_F(OutliersOption, AreLeftWhereTheyAreByDefault) {
 }
 
 TEST_F(OutliersOption, MarkAddsAField) {
-  for (const std::vector<std::string>& options :
-       {std::vector<std::string>{"--outliers", "mark"}, {"--mark-outliers"}}) {
-    for (const char* extension : {".ply", ".pcd"}) {
-      const io::Cloud out = clean(options, extension);
-      const io::Field& field = out.points().fields.back();
-      EXPECT_EQ(field.name, "outlier");
-      EXPECT_EQ(field.type, io::Scalar::uint8);
-      const std::vector<double> flags = values_of(out, "outlier");
-      ASSERT_EQ(flags.size(), plane_with_strays().size());
-      for (std::size_t i = 0; i < flags.size(); ++i)
-        EXPECT_EQ(flags[i], std::count(std::begin(kStrays), std::end(kStrays), i)) << i;
-    }
+  for (const char* extension : {".ply", ".pcd"}) {
+    const io::Cloud out = clean({"--outliers", "mark"}, extension);
+    const io::Field& field = out.points().fields.back();
+    EXPECT_EQ(field.name, "outlier");
+    EXPECT_EQ(field.type, io::Scalar::uint8);
+    const std::vector<double> flags = values_of(out, "outlier");
+    ASSERT_EQ(flags.size(), plane_with_strays().size());
+    for (std::size_t i = 0; i < flags.size(); ++i)
+      EXPECT_EQ(flags[i], std::count(std::begin(kStrays), std::end(kStrays), i)) << i;
   }
 }
 
@@ -249,9 +246,6 @@ TEST_F(OutliersOption, SmoothLooksForNone) {
   clean({"--outliers", "smooth"});
   EXPECT_EQ(report()["counts"]["outliers"], 0);
   EXPECT_FALSE(report()["seconds"].contains("outliers"));
-  const Ran ran = run({"denoise", "--outliers", "smooth", "--mark-outliers", "in.ply", "never.ply"});
-  EXPECT_EQ(ran.code, 2);
-  EXPECT_THAT(ran.err, HasSubstr("--mark-outliers"));
 }
 
 TEST_F(OutliersOption, EveryCommandSaysTheSameSpacingAndNoise) {

@@ -126,6 +126,81 @@ TEST_F(Reconstruct, ReportIsTakenBackByConfig) {
   EXPECT_TRUE(take("a.ply") == take("b.ply"));
 }
 
+TEST_F(Reconstruct, TheSurfaceOfAScanFacesTheScanner) {
+  std::vector<double> xyz;
+  for (int i = 0; i < 900; ++i) xyz.insert(xyz.end(), {double(i % 30), double(i / 30), 0.001 * (i * i % 7)});
+  io::Cloud scan = io::make_cloud(xyz.data(), 900, io::Scalar::float32);
+  const auto up = [&](const char* input, const std::vector<std::string>& typed) {
+    std::vector<std::string> words = {"reconstruct", "--method", "advancing-front", input,
+                                      "out.ply",     "--force",  "--report",        "r.json"};
+    words.insert(words.end(), typed.begin(), typed.end());
+    const Ran ran = run(words);
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    const io::Cloud made = io::read_cloud(at("out.ply"), {}, {}).value();
+    const std::vector<double> p = io::positions(made);
+    double area = 0;  // twice, seen from above
+    for (const Face& f : io::faces_of(made))
+      area += (p[3 * f[1]] - p[3 * f[0]]) * (p[3 * f[2] + 1] - p[3 * f[0] + 1]) -
+              (p[3 * f[2]] - p[3 * f[0]]) * (p[3 * f[1] + 1] - p[3 * f[0] + 1]);
+    EXPECT_GT(std::abs(area), 1000);
+    return area > 0;
+  };
+  WriteOptions as_pcd;
+  as_pcd.format = Format::pcd;
+  for (const bool above : {true, false}) {
+    scan.viewpoint = above ? "15 15 40 1 0 0 0" : "15 15 -40 1 0 0 0";
+    put("scan.pcd", io::serialize_cloud(scan, as_pcd, {}).value());
+    EXPECT_EQ(up("scan.pcd", {}), above) << "as the file tells";
+    EXPECT_EQ(nlohmann::json::parse(take("r.json"))["normals"]["viewpoint"][2], above ? 40 : -40);
+    EXPECT_EQ(up("scan.pcd", {above ? "--viewpoint=15,15,-40" : "--viewpoint=15,15,40"}), !above)
+        << "what is typed wins";
+  }
+  EXPECT_EQ(run({"reconstruct", "in.ply", "new.ply", "--viewpoint", "here"}).code, 2);
+}
+
+TEST_F(Reconstruct, OptionsThatDoNothingAreRefused) {
+  const auto refused = [&](std::vector<std::string> typed, const char* says) {
+    typed.insert(typed.begin(), {"reconstruct", "in.ply", "out.ply"});
+    const Ran ran = run(typed);
+    EXPECT_EQ(ran.code, 2) << says;
+    EXPECT_THAT(ran.err, HasSubstr(says));
+  };
+  refused({"--no-denoise", "--strength", "2"}, "--strength has no effect with --no-denoise");
+  refused({"--no-denoise", "--noise", "0.1"}, "--noise has no effect with --no-denoise");
+  refused({"--no-denoise", "--flow", "taubin"}, "--flow has no effect with --no-denoise");
+  refused({"--no-denoise", "--outliers", "smooth"}, "--outliers has no effect with --no-denoise");
+  refused({"--no-denoise", "--connect-neighbours", "20"}, "--connect-neighbours has no effect");
+  for (const std::string method : {"ball-pivoting", "advancing-front"})
+    refused({"--method", method, "--trim", "3x"}, ("--trim has no effect with --method " + method).c_str());
+  for (const char* word : {"keep", "mark"})
+    refused({"--outliers", word}, "it must be one of: remove, smooth");
+  EXPECT_EQ(names(), std::vector<std::string>{"in.ply"});
+}
+
+TEST_F(Reconstruct, TheReportHasTheOptionsThatDidSomething) {
+  const auto options = [&](std::vector<std::string> typed) {
+    typed.insert(typed.begin(), {"reconstruct", "in.ply", "out.ply", "--force", "--report", "r.json"});
+    const Ran ran = run(typed);
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    return nlohmann::json::parse(take("r.json"))["options"];
+  };
+  const auto all = options({"--method", "poisson"}), front = options({"--method", "advancing-front"}),
+             bare = options({"--method", "poisson", "--no-denoise"});
+  EXPECT_EQ(all["outliers"], "remove");
+  EXPECT_TRUE(all.contains("trim") && all.contains("strength"));
+  EXPECT_TRUE(!front.contains("trim") && front.contains("strength"));
+  EXPECT_TRUE(bare.contains("trim") && bare["denoise"] == false);
+  for (const char* name : {"strength", "flow", "outliers", "connect-neighbours"})
+    EXPECT_FALSE(bare.contains(name)) << name;
+}
+
+TEST_F(Reconstruct, WhatIsTypedWinsOverAReportAlsoWhereItLeavesOptionsIdle) {
+  ASSERT_EQ(run({"reconstruct", "--method", "poisson", "in.ply", "a.ply", "--report", "a.json"}).code, 0);
+  const Ran ran = run({"reconstruct", "--config", "a.json", "--method", "advancing-front", "--no-denoise",
+                       "in.ply", "b.ply"});
+  EXPECT_EQ(ran.code, 0) << ran.err;
+}
+
 TEST_F(Reconstruct, NothingIsReplacedWithoutForce) {
   put("out.ply", "mine");
   EXPECT_EQ(run({"reconstruct", "in.ply", "out.ply"}).code, 5);

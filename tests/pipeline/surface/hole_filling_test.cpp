@@ -93,4 +93,48 @@ TEST(FillHoles, AnOpenTetrahedronIsClosed) {
   EXPECT_TRUE(topology(4, mesh.faces).closed_manifold());
 }
 
+TEST(FillHoles, TheOutlineOfANarrowPieceStaysOpen) {
+  // Every chord across the ribbon is short enough: filled, its outline would be a second sheet over the
+  // first.
+  const auto outside = [](int x, int y) { return x >= 5 || y >= 18; };
+  Mesh mesh = grid([&](int x, int y) { return outside(x, y) || (x == 2 && y == 9); });
+  const std::size_t before = mesh.faces.size();
+  EXPECT_EQ(fill_holes(mesh, 8, {}), 1u) << "the hole within it is one";
+  EXPECT_EQ(mesh.faces.size(), before + 2);
+  EXPECT_EQ(topology(mesh.positions.size(), mesh.faces).boundary_loops, 1u);
+
+  Mesh both = grid(outside);
+  const Mesh lonely = both;
+  const Index n = Index(both.positions.size());
+  for (const Eigen::Vector3d& p : lonely.positions)
+    both.positions.push_back(10 * (p + Eigen::Vector3d(99, 0, 0)));
+  for (const Face& f : lonely.faces) both.faces.push_back({f[0] + n, f[1] + n, f[2] + n});
+  rebuild_adjacency(both, {});
+  EXPECT_EQ(fill_holes(both, 8, {}), 0u) << "another piece, however large, is no reason";
+}
+
+TEST(FillHoles, AHalfSphereGetsItsLid) {
+  // Rings of 24 vertices from the equator up, and the pole.
+  constexpr int kAround = 24, kRings = 6;
+  Mesh mesh;
+  const double right_angle = std::acos(0.0);
+  for (int ring = 0; ring < kRings; ++ring)
+    for (int k = 0; k < kAround; ++k) {
+      const double up = right_angle * ring / kRings, turn = 4 * right_angle * k / kAround;
+      mesh.positions.emplace_back(std::cos(up) * std::cos(turn), std::cos(up) * std::sin(turn), std::sin(up));
+    }
+  mesh.positions.emplace_back(0, 0, 1);
+  const auto at = [](int ring, int k) {
+    return ring == kRings ? Index(kRings * kAround) : Index(ring * kAround + k % kAround);
+  };
+  for (int ring = 0; ring < kRings; ++ring)
+    for (int k = 0; k < kAround; ++k) {
+      mesh.faces.push_back({at(ring, k), at(ring, k + 1), at(ring + 1, k)});
+      if (ring + 1 < kRings) mesh.faces.push_back({at(ring, k + 1), at(ring + 1, k + 1), at(ring + 1, k)});
+    }
+  rebuild_adjacency(mesh, {});
+  EXPECT_EQ(fill_holes(mesh, 3, {}), 1u);
+  EXPECT_TRUE(topology(mesh.positions.size(), mesh.faces).closed_manifold());
+}
+
 }  // namespace

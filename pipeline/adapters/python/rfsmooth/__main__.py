@@ -26,7 +26,7 @@ def _denoise_las(files, options):
         files = [*files, options.pop("output")]
     if len(files) != 2 or not all(path.lower().endswith((".las", ".laz")) for path in files):
         raise Error("usage", "LAZ goes to LAZ or LAS, one file at a time: rfsmooth denoise IN.laz OUT.laz")
-    of_files = {"keep_scale", "force", "threads", "quiet", "verbose", *las.denoise_file.table.entries}
+    of_files = {"force", "threads", "quiet", "verbose", *las.denoise_file.table.entries}
     for name in options:
         if name not in of_files:
             raise Error("usage", f"--{name} has no meaning for LAZ files here")
@@ -51,15 +51,14 @@ def _las_arguments(arguments):
     """The files and options of a `denoise` that names a LAZ file; None for anything else."""
     if arguments[:1] != ["denoise"] or not any(_is_laspys(a) for a in arguments) or {"-h", "--help", "--help-all"} & set(arguments):
         return None
-    keep = "--keep-scale" in arguments
-    _, files, options = _rfsmooth.parse_command([a for a in arguments if a != "--keep-scale"])
+    _, files, options = _rfsmooth.parse_command(arguments)
     flags = {"true": True, "false": False}
     values = {python_name(name): flags.get(text, text) for name, text in options}
     threads = values.get("threads", "auto")
     if threads != "auto" and not (threads.isdecimal() and int(threads) > 0):
         raise Error("usage", f"--threads is '{threads}'; it must be a whole number, 1 or more")
     values["threads"] = 0 if threads == "auto" else int(threads)
-    return files, {**values, **({"keep_scale": True} if keep else {})}
+    return files, values
 
 
 def main():

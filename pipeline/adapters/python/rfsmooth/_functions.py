@@ -92,6 +92,18 @@ def denoise(points, *, threads=0, progress=None, config=None, **options):
     return out, report
 
 
+def denoise_every_row(points, options, threads, progress):
+    """`denoise` for those who take outliers out themselves: every row comes back. Returns the points, the report, which is
+    that of outliers="remove" where that was asked for, and which rows are to stay, or None for all.
+    """
+    if options.get("outliers") != "remove":
+        return *denoise(points, threads=threads, progress=progress, **options), None
+    clean, report = denoise(points, threads=threads, progress=progress, **{**options, "outliers": "mark"})
+    report["options"]["outliers"] = "remove"
+    report["counts"]["removed"] = report["counts"]["outliers"]
+    return clean, report, ~report["fields"]["outlier"]
+
+
 @takes_options("denoise")
 def denoise_structured(array, *, threads=0, progress=None, config=None, **options):
     """`denoise` for a structured array with fields X, Y, Z or x, y, z, as PDAL and laspy give them. Returns a new array and
@@ -160,26 +172,44 @@ def reconstruct(points, *, threads=0, config=None, **options):
     links the libraries that make surfaces (Open3D, CGAL); rfsmooth.Error with code "not_installed" if it is not in PATH.
     """
     cloud = _arrays.cloud_of_points(_arrays.as_points(points))
-    texts = reconstruct.table.texts(_config(reconstruct.table, config, options))
-    file, report = run_reconstruct(cloud, texts, _threads(threads))
+    table = reconstruct.table
+    earlier = {name: value for name, value in _config(table, config, {}).items() if name not in options}
+    file, report = run_reconstruct(cloud, table.texts(options), table.texts(earlier), _threads(threads))
     return Mesh(file.positions(), file.faces(), file.edges()), report
 
 
-def compare(points, truth, faces=None, *, normals=None, signed_normals=False, threads=0, progress=None):
+def _normals_of(points, normals, name, whose):
+    """One for each of the points, or None."""
+    if normals is None:
+        return None
+    normals = _arrays.as_points(normals, name).astype(np.float64, copy=False)
+    if len(normals) != len(points):
+        raise ValueError(f"{name} must have one row for each {whose}")
+    return normals
+
+
+def compare(
+    points, truth, faces=None, *, normals=None, truth_normals=None, signed_normals=False, threads=0, progress=None
+):
     """Measures points against the truth: a mesh (its vertices and faces), or a clean cloud. Returns the distance of every
-    point and the report. normals: n x 3, of the points, whose error is then measured too; signed_normals: they claim a side.
+    point and the report. normals: n x 3, of the points, whose error is then measured too, against the faces or against
+    truth_normals, one for each clean point; signed_normals: they claim a side.
     """
     given = _arrays.as_points(points).astype(np.float64, copy=False)
     true_points = _arrays.as_points(truth, "truth").astype(np.float64, copy=False)
     corners = None if faces is None else _arrays.as_faces(faces, len(true_points))
-    if normals is not None:
-        normals = _arrays.as_points(normals, "normals").astype(np.float64, copy=False)
-        if len(normals) != len(given):
-            raise ValueError("normals must have one row for each point")
+    normals = _normals_of(given, normals, "normals", "point")
+    truth_normals = _normals_of(true_points, truth_normals, "truth_normals", "true point")
+    if truth_normals is not None and corners is not None:
+        raise ValueError("truth_normals are of a clean cloud; faces have their own")
+    if normals is not None and truth_normals is None and corners is None:
+        raise ValueError("normals need truth_normals, or faces, to be compared with")
+    if normals is None and (truth_normals is not None or signed_normals):
+        raise ValueError(f"{'signed_normals' if signed_normals else 'truth_normals'} needs normals")
     deviation = np.empty(len(given))
     with listener(progress) as listening:
         report = _rfsmooth.compare(
-            given, normals, true_points, corners, signed_normals, _threads(threads), listening, deviation
+            given, normals, true_points, corners, truth_normals, signed_normals, _threads(threads), listening, deviation
         )
     return deviation, json.loads(report)
 
@@ -193,8 +223,19 @@ def normals(points, *, viewpoint=None, threads=0, progress=None):
     if viewpoint is not None:
         viewpoint = [float(v) for v in viewpoint]
     with listener(progress) as listening:
-        report = _rfsmooth.normals(given, made, viewpoint, _threads(threads), listening)
+        report = _rfsmooth.normals(given, made, viewpoint, None, _threads(threads), listening)
     return made, json.loads(report)
+
+
+def normals_anew(points, before, threads, progress):
+    """Unit normals of points that have moved, on the side that those before were on; points that are not finite keep
+    theirs.
+    """
+    given, old = (_arrays.as_points(array).astype(np.float64, copy=False) for array in (points, before))
+    made = np.empty_like(given)
+    with listener(progress) as listening:
+        _rfsmooth.normals(given, made, None, old, _threads(threads), listening)
+    return np.where(np.isfinite(given).all(axis=1, keepdims=True), made, old)
 
 
 def info(points):

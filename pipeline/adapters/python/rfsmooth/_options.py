@@ -59,9 +59,13 @@ class Table:
                 raise TypeError(f"{function}() got an unexpected keyword argument '{name}'{hint}")
 
     def texts(self, given):
-        """Names and values as the command has them."""
+        """Names and values as the command has them; a file that is None is left out."""
         self.check_names(given)
-        return [(self.entries[name]["name"], self._text(name, value)) for name, value in given.items()]
+        return [
+            (self.entries[name]["name"], self._text(name, value))
+            for name, value in given.items()
+            if value is not None or self.entries[name]["kind"] != "file"
+        ]
 
     def from_config(self, config):
         """The options in a report, or in an object of options, with their names here."""

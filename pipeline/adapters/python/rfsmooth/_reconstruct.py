@@ -18,19 +18,24 @@ def _typed(name, text):
     return f"--{name}={text}"
 
 
-def run_reconstruct(cloud, options, threads):
-    """The surface as a Cloud with faces, and the report."""
+def run_reconstruct(cloud, options, config, threads):
+    """The surface as a Cloud with faces, and the report. config: the options of an earlier run that are not among `options`,
+    which may leave some of them without effect; both are names and texts.
+    """
     program = shutil.which("rfsmooth-reconstruct")
     if program is None:
         raise Error("not_installed", "the program rfsmooth-reconstruct is not in PATH; it comes with the package of that name")
     with tempfile.TemporaryDirectory(prefix="rfsmooth-") as folder:
-        source, target, report = (os.path.join(folder, name) for name in ("points.ply", "surface.ply", "report.json"))
+        names = ("points.ply", "surface.ply", "report.json", "config.json")
+        source, target, report, earlier = (os.path.join(folder, name) for name in names)
+        with open(earlier, "w", encoding="utf-8") as file:
+            json.dump(dict(config), file)
         _rfsmooth.write_file(cloud, source, None, None, False, False)
         arguments = [_typed(name, text) for name, text in options if text != "auto"]
         if threads:
             arguments.append(f"--threads={threads}")
         ran = subprocess.run(
-            [program, *arguments, "--quiet", f"--report={report}", source, target],
+            [program, *arguments, "--quiet", f"--report={report}", f"--config={earlier}", source, target],
             stdin=subprocess.DEVNULL,
             stderr=subprocess.PIPE,
             text=True,

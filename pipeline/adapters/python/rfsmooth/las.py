@@ -71,7 +71,7 @@ def _store(las, xyz, moved):
 
 
 @takes_options("denoise")
-def denoise_file(source, target, *, keep_scale=False, force=False, threads=0, progress=None, config=None, **options):
+def denoise_file(source, target, *, force=False, threads=0, progress=None, config=None, **options):
     """Reads a LAS or LAZ file, takes the noise out and writes another; returns the report, whose "scale" says whether the
     scale of coordinates was refined: it is, by a power of ten, where it is coarser than half of the noise left, since
     rounding to it would cost what smoothing gained (keep_scale: not). A COPC file is written as LAZ, without its index;
@@ -83,12 +83,11 @@ def denoise_file(source, target, *, keep_scale=False, force=False, threads=0, pr
         raise Error("cannot_write", f"{target}: exists (--force replaces it)")
     laspy = _laspy(source)
     options = _functions._config(denoise_file.table, config, options)
-    for name in ("normals", "write_displacement", "mark_outliers"):
+    for name in ("normals", "write_displacement"):
         if options.get(name):
             raise Error("usage", f"{source}: LAS has no field for --{name.replace('_', '-')}")
     if options.get("outliers") == "mark":
         raise Error("usage", f"{source}: LAS has no field for --outliers mark")
-    remove = options.get("outliers") == "remove"
     try:
         las = laspy.read(source)
     except FileNotFoundError as missing:
@@ -96,21 +95,20 @@ def denoise_file(source, target, *, keep_scale=False, force=False, threads=0, pr
     except Exception as broken:  # laspy's, lazrs's and struct's own
         raise Error("input_unreadable", f"{source}: {broken}") from broken
     xyz = np.stack([np.asarray(las.x), np.asarray(las.y), np.asarray(las.z)], axis=1)
-    asked = {**options, "outliers": "mark"} if remove else options
-    strength = asked.get("strength_field")
+    strength = options.get("strength_field")
     if isinstance(strength, str):
         if strength not in las.point_format.dimension_names:
             raise Error("usage", f"{source}: the points have no field '{strength}'")
-        asked = {**asked, "strength_field": np.asarray(las[strength], float)}
-    clean, report = _functions.denoise(xyz, threads=threads, progress=progress, **asked)
+        options = {**options, "strength_field": np.asarray(las[strength], float)}
+    clean, report, staying = _functions.denoise_every_row(xyz, options, threads, progress)
     step = _rfsmooth.finest_needed(report["noise"], report["noise_left"])
     rounded = step > 0 and report["counts"]["moved"] > 0
-    report["scale"] = _rescale(las, step, keep_scale) if rounded else None
+    report["scale"] = _rescale(las, step, options.get("keep_scale", False)) if rounded else None
     if rounded and report["noise_left"] is not None:
         report["noise_left"] = math.hypot(report["noise_left"], np.abs(las.header.scales).max() / math.sqrt(12))
     _store(las, clean, np.any(clean != xyz, axis=1))
-    if remove:
-        las.points = las.points[~report["fields"]["outlier"]]
+    if staying is not None:
+        las.points = las.points[staying]
     report["index"] = "the index of COPC is left out" if _forget_index(las) else None
     _write(las, target)
     beside = os.path.splitext(target)[0] + ".lax"

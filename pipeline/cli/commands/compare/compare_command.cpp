@@ -31,7 +31,7 @@ struct CompareCommandOptions {
 
   template <class Self, class Visit>
   static void describe(Self& self, Visit&& visit) {
-    visit(OptionInfo{"signed-normals", "the cloud's normals claim a side: angles up to 180 degrees", ""},
+    visit(OptionInfo{"signed-normals", "the normals of both claim a side: angles up to 180 degrees", ""},
           self.signed_normals);
     visit(OptionInfo{"json", "print JSON", ""}, self.json);
     visit(OptionInfo{"output",
@@ -66,12 +66,16 @@ struct TruthFile {
     const auto file = load_cloud(path, context);
     xyz = pipeline::io::positions(file, context);
     faces = pipeline::io::value_or_fail(guarded([&] { return pipeline::io::faces_of(file, context); }), path);
-    if (faces.empty())
-      view.cloud = CloudView{xyz.data(), file.size(), nullptr};
-    else
+    if (faces.empty()) {
+      normals = pipeline::io::normals_of(file, context);
+      view.cloud = CloudView{xyz.data(), file.size(), normals.empty() ? nullptr : normals.data()};
+    } else {
       view.mesh = MeshView{xyz.data(), file.size(), faces.data(), faces.size()};
+    }
   }
-  std::vector<double> xyz;
+  bool has_normals() const { return view.mesh || !normals.empty(); }
+
+  std::vector<double> xyz, normals;  // normals: of a clean cloud that has some
   std::vector<Face> faces;
   Truth view;
 };
@@ -103,6 +107,9 @@ int run_compare(const CompareCommandOptions& options, const Invocation& typed) {
   const TruthFile truth(typed.arguments[1], context);
   const std::vector<double> xyz = pipeline::io::positions(cloud, context),
                             normals = pipeline::io::normals_of(cloud, context);
+  if (options.signed_normals && (normals.empty() || !truth.has_normals()))
+    fail(ErrorCode::usage, "{}: has no normals, which --signed-normals compares",
+         typed.arguments[normals.empty() ? 0 : 1]);
   CompareOptions compare_options;
   compare_options.signed_normals = options.signed_normals;
   const CompareReport report = pipeline::io::value_or_fail(
@@ -138,7 +145,7 @@ Command compare_command() {
       "median, the 95th percentile and the largest of the distances between them in the units of the file; "
       "-o writes the cloud coloured by them. Then what papers compare by: against a mesh distances to the "
       "surface, P2M, shrinkage; against a cloud: Chamfer distance; evenness of the cloud; the error of its "
-      "normals if it has some. Points that are not finite are left out.";
+      "normals if it and the truth (a mesh always) have some. Points that are not finite are left out.";
   collect(*options, command.options);
   command.run = [options](const Invocation& typed) { return run_compare(*options, typed); };
   return command;

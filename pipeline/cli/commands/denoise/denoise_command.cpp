@@ -25,12 +25,6 @@ void write_beside(const DenoiseCommandOptions& options, const Beside& beside, Co
   console.say(fmt::format("{}: open it in a browser", *options.html));
 }
 
-void check_denoise(const DenoiseCommandOptions& options) {
-  if (options.mark_outliers && options.denoise.outliers == Outliers::smooth)
-    fail(ErrorCode::usage, "--mark-outliers has nothing to mark with --outliers smooth");
-  check(options.normals);
-}
-
 /// The page and the trace, as far as they were asked for.
 std::vector<FileBeside> files_beside(const DenoiseCommandOptions& options) {
   std::vector<FileBeside> files = options.trace.files();
@@ -40,6 +34,7 @@ std::vector<FileBeside> files_beside(const DenoiseCommandOptions& options) {
 
 /// One cloud in tiles. \return the exit code, or none if it is to be smoothed as a whole.
 std::optional<int> denoise_in_tiles(const DenoiseCommandOptions& options, const Invocation& typed) {
+  check(options.normals);
   const std::vector<Job> jobs = plan_cloud_jobs(typed.arguments, options.job.files);
   if (jobs.size() != 1) return std::nullopt;
   const Job& job = jobs.front();
@@ -47,13 +42,12 @@ std::optional<int> denoise_in_tiles(const DenoiseCommandOptions& options, const 
   const Context context = console.context({{"tiles", 1}}, options.job.run.threads);
   const auto memory = memory_of_tiles(options, job, context);
   if (!memory) return std::nullopt;
-  check_denoise(options);
   need_own_target(job, options.job.files.output);
   const pipeline::tiles::Within how = pipeline::tiles::plan_within(*memory, options.normals.normals);
   console.say(fmt::format("{}: too large for {:.3g} GB: smoothed in tiles of {} points", job.input,
                           double(*memory) / 1e9, how.plan.tile_points));
   pipeline::tiles::SmoothedInTiles done = pipeline::tiles::smooth_in_tiles(
-      {job.input, job.output, options.job.files.force, options.keep_scale}, how, options.denoise,
+      {job.input, job.output, options.job.files.force, options.keep_scale, job.folder}, how, options.denoise,
       normals_in_tiles(options.normals, {job.input}, context), context);
   const pipeline::io::RefinedScale& scale = done.joined.scale;
   tell_scale(job.input, scale, options.keep_scale, done.report.noise, done.report.noise_left, console);
@@ -77,7 +71,7 @@ Command denoise_command() {
       "Reads a cloud (PLY, PCD, XYZ, LAS; the format is found by content), connects its points to a rough "
       "mesh (EMST, SDG, RFS-mesh), smooths the mesh, and writes the same cloud with x, y, z replaced: every "
       "other field, the order and the number of points stay. Points that are not finite stay as they are. "
-      "Fields that are asked for (--write-displacement, --mark-outliers, --normals) come behind the "
+      "Fields that are asked for (--write-displacement, --outliers mark, --normals) come behind the "
       "points' other fields, or take the place of the one of that name.\n\n"
       "What is said of the noise beside its figure (the loudest tenth, shared by N neighbours, depth in "
       "steps) is explained by rfsmooth info --help.\n\n"
@@ -94,7 +88,7 @@ Command denoise_command() {
   command.everyday = {"strength", "noise",   "flow",   "outliers", "normals", "output",
                       "force",    "threads", "report", "quiet",    "verbose"};
   const auto beside = std::make_shared<Beside>();
-  command.on_cloud = {[options](const Invocation&) { check_denoise(*options); },
+  command.on_cloud = {[options](const Invocation&) { check(options->normals); },
                       [options] { return denoising_stages(options->normals.normals); },
                       [options, beside](auto& cloud, const CloudTask& task) {
                         return denoise_cloud(*options, *beside, cloud, task);

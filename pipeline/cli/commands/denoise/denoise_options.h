@@ -16,7 +16,6 @@ struct DenoiseCommandOptions {
   DenoiseOptions denoise;
   std::optional<std::string> strength_field;
   bool write_displacement = false;
-  bool mark_outliers = false;
   bool keep_scale = false;
   std::optional<std::string> html;
   std::optional<std::string> memory, statistics;
@@ -31,8 +30,6 @@ struct DenoiseCommandOptions {
           self.strength_field);
     visit(OptionInfo{"write-displacement", "add a field 'displacement': how far each point moved", ""},
           self.write_displacement);
-    visit(OptionInfo{"mark-outliers", "add a field 'outlier': 1 for points with no surface near, else 0", ""},
-          self.mark_outliers);
     visit(
         OptionInfo{
             "keep-scale",
@@ -56,7 +53,7 @@ struct DenoiseCommandOptions {
     TraceFile::describe(self.trace, visit);
   }
 
-  bool marks() const { return mark_outliers || denoise.outliers == Outliers::mark; }
+  bool marks() const { return denoise.outliers == Outliers::mark; }
   bool removes() const { return denoise.outliers == Outliers::remove; }
 };
 

@@ -41,7 +41,7 @@ std::string needs_whole_cloud(const DenoiseCommandOptions& options) {
   const std::pair<bool, const char*> needs[] = {{options.html.has_value(), "--html"},
                                                 {options.strength_field.has_value(), "--strength-field"},
                                                 {options.write_displacement, "--write-displacement"},
-                                                {options.marks(), "marked outliers"},
+                                                {options.marks(), "--outliers mark"},
                                                 {options.removes(), "--outliers remove"},
                                                 {options.trace.trace.has_value(), "--trace"},
                                                 {options.statistics.has_value(), "--statistics"},

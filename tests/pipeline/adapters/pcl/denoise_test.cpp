@@ -240,6 +240,12 @@ TEST(PclDenoiseCloud2, AnyFieldsSameCoordinatesAsTheTypedFilter) {
   const ::pcl::PCLPointCloud2 separate = out;
   untyped.filter(*message);
   EXPECT_EQ(message->data, separate.data) << "in place";
+  EXPECT_EQ(untyped.getInputCloud().get(), message.get());
+  Denoise<::pcl::PCLPointCloud2> afresh;
+  afresh.setInputCloud(message);
+  afresh.filter(out);
+  untyped.filter(*message);
+  EXPECT_EQ(message->data, out.data) << "in place again: from what came of it the first time";
 }
 
 ::pcl::PCLPointField field(const char* name, std::size_t offset, std::uint8_t type, std::size_t count) {
