@@ -35,10 +35,13 @@ double quantile_of(const Items& items, double share, const Value& value) {
   return quantile(values, share);
 }
 
-/// The median of [first, last): the quantile of a half, of no values 0.
+/// The median of [first, last): of an even number of values the upper of the two in the middle, of none 0.
 template <class Iterator>
 double median(Iterator first, Iterator last) {
-  return first == last ? 0 : quantile(first, last, 0.5);
+  if (first == last) return 0;
+  const Iterator middle = first + (last - first) / 2;
+  std::nth_element(first, middle, last);
+  return *middle;
 }
 
 /// The median of `values`.

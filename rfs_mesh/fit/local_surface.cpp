@@ -98,7 +98,9 @@ NoiseScale seen_at(const SpatialIndex& index, std::size_t m, const Context& cont
       radii[s] = row.empty() ? 0 : (points[row.back()] - points[i]).norm();
     }
   });
-  return {quantile(residuals, 0.25) / quartile_of_deviation(std::max(1.0, kEffective * double(m + 1) - 6)), m,
+  const auto quartile = residuals.begin() + std::ptrdiff_t(samples / 4);
+  std::nth_element(residuals.begin(), quartile, residuals.end());
+  return {*quartile / quartile_of_deviation(std::max(1.0, kEffective * double(m + 1) - 6)), m,
           median(radii)};
 }
 

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include "pipeline/io/io.h"
-#include "pipeline/tiles/files/row_file.h"
 
 namespace rfsmooth::pipeline {
 namespace {
@@ -52,26 +51,6 @@ TEST(Viewpoint, TheDefaultOfAPcdIsBelievedOnlyWhereTheGridFits) {
   cloud.width = image.size() / 3;
   cloud.height = 1;
   EXPECT_FALSE(recorded_viewpoint(cloud, image.data(), {}).has_value()) << "unorganised";
-}
-
-// A file as rows is looked at in its first rows only, and where two of them are too many, not at all.
-TEST(Viewpoint, AGridTooWideToLookAtHasNoSay) {
-  for (const std::size_t width : {std::size_t{1000}, std::size_t{140'000}}) {
-    std::vector<double> xyz;
-    for (std::size_t row = 0; row < 2; ++row)
-      for (std::size_t column = 0; column < width; ++column)
-        xyz.insert(xyz.end(), {double(column), double(row), 10.0});
-    io::Cloud cloud = io::make_cloud(xyz.data(), 2 * width);
-    cloud.format = io::Format::pcd;
-    cloud.width = width;
-    cloud.height = 2;
-    for (const char* place : {"0 0 0 1 0 0 0", "1 2 3 1 0 0 0"}) {
-      cloud.viewpoint = place;
-      const std::string bytes = io::serialize_cloud(cloud, {}, {}).value();
-      const auto found = tiles::RowFile(bytes, "wide.pcd", {}).viewpoint({});
-      EXPECT_EQ(found.has_value(), width == 1000 || place[0] == '1') << width << ": " << place;
-    }
-  }
 }
 
 TEST(Viewpoint, AnythingElseIsBelieved) {

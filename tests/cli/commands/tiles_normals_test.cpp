@@ -2,6 +2,8 @@
 #include <cstring>
 #include <string_view>
 
+#include "pipeline/io/io.h"
+#include "pipeline/tiles/files/row_file.h"
 #include "tests/cli/support/tile_jobs.h"
 #include "tests/support/sanitized.h"
 
@@ -144,6 +146,26 @@ TEST_F(Tiles, NormalsFaceTheViewpointAndElseTheSameSideInAllTiles) {
       EXPECT_NEAR(share, 0, 0.001);
     }
     EXPECT_NEAR(std::abs(share - 0.5), 0.5, 0.001) << "all on one side";
+  }
+}
+
+// A file as rows is looked at in its first rows only, and where two of them are too many, not at all.
+TEST(Tiles, AGridTooWideToLookAtHasNoSayOnTheViewpoint) {
+  for (const std::size_t width : {std::size_t{1000}, std::size_t{140'000}}) {
+    std::vector<double> xyz;
+    for (std::size_t row = 0; row < 2; ++row)
+      for (std::size_t column = 0; column < width; ++column)
+        xyz.insert(xyz.end(), {double(column), double(row), 10.0});
+    pipeline::io::Cloud cloud = pipeline::io::make_cloud(xyz.data(), 2 * width);
+    cloud.format = pipeline::io::Format::pcd;
+    cloud.width = width;
+    cloud.height = 2;
+    for (const char* place : {"0 0 0 1 0 0 0", "1 2 3 1 0 0 0"}) {
+      cloud.viewpoint = place;
+      const std::string bytes = pipeline::io::serialize_cloud(cloud, {}, {}).value();
+      const auto found = pipeline::tiles::RowFile(bytes, "wide.pcd", {}).viewpoint({});
+      EXPECT_EQ(found.has_value(), width == 1000 || place[0] == '1') << width << ": " << place;
+    }
   }
 }
 
