@@ -13,11 +13,13 @@ using Eigen::Vector3d;
 AllowedMoves::AllowedMoves(const Constraints& constraints, std::size_t n) : strength_(constraints.strength) {
   if (!strength_.empty() && strength_.size() != n)
     throw std::invalid_argument("the strengths are not one per vertex");
-  bool any_still = false;
+  bool any_still = false, all_free = true;
   for (const double s : strength_) {
     if (!(s >= 0 && s <= 1)) throw std::invalid_argument("a strength is outside [0, 1]");
     any_still = any_still || s == 0;
+    all_free = all_free && s == 1;
   }
+  if (all_free) strength_.clear();
   if (constraints.hard.empty() && !any_still) return;
   kind_.assign(n, Kind::free);
   direction_.assign(n, Vector3d::Zero());

@@ -30,7 +30,7 @@ class AllowedMoves {
     return kind_.empty() ? move : projected(i, move);
   }
 
-  /// Whether any vertex has a strength of its own.
+  /// Whether any vertex has another strength than 1.
   bool has_strengths() const { return !strength_.empty(); }
 
   /// The strength of vertex i: 1 = moves freely, 0 = stays.
@@ -42,7 +42,7 @@ class AllowedMoves {
   enum class Kind : unsigned char { free, fixed, axis, plane };
   std::vector<Kind> kind_;  ///< empty: no hard constraint and no zero strength
   std::vector<Eigen::Vector3d> direction_;
-  std::vector<double> strength_;
+  std::vector<double> strength_;  ///< empty: all 1
 };
 
 /// Wraps an explicit flow: after each step, p = q + s P (p - q). Fixed vertices keep their bits.

@@ -150,7 +150,7 @@ TEST_F(Tiles, NormalsFaceTheViewpointAndElseTheSameSideInAllTiles) {
 }
 
 // A file as rows is looked at in its first rows only, and where two of them are too many, not at all.
-TEST(Tiles, AGridTooWideToLookAtHasNoSayOnTheViewpoint) {
+TEST(RowFile, OfAGridTooWideToLookAtKnowsNoViewpointButItsHeaders) {
   for (const std::size_t width : {std::size_t{1000}, std::size_t{140'000}}) {
     std::vector<double> xyz;
     for (std::size_t row = 0; row < 2; ++row)

@@ -59,8 +59,7 @@ TEST(Solver, ImplicitFairingByDefaultTakesThePolynomial) {
     Mesh stepped = mesh;
     const auto flow = options.start(stepped, constrained ? even : Constraints(), {});
     flow->step(stepped, {});
-    EXPECT_EQ(stepped.positions == x, !constrained);
-    EXPECT_LT(support::rms_distance(stepped.positions, x), 1e-4);
+    EXPECT_TRUE(stepped.positions == x) << constrained;
   }
 }
 
