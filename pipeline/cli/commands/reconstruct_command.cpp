@@ -153,12 +153,11 @@ Command table(const std::shared_ptr<ReconstructCommandOptions>& options) {
       "Takes the noise out of a cloud, as rfsmooth denoise does, gives the points normals on one side, and "
       "makes a triangle mesh of them: closed shapes face outward, scans the scanner, where the file tells "
       "or --viewpoint says where it stood. poisson (Open3D's screened Poisson) makes a smooth surface near "
-      "the "
-      "points and closes gaps; what it invents far from every point is trimmed. advancing-front (CGAL) and "
-      "ball-pivoting (Open3D) put triangles between the points themselves: specks are dropped, slits filled, "
-      "and where an advancing front all but bounds a solid, it is closed. All scales come from the measured "
-      "spacing. Outliers are left out (--outliers smooth keeps them). Colours and other fields of the points "
-      "go to the vertices.\n\n"
+      "the points and closes gaps; what it invents far from every point is trimmed. advancing-front (CGAL) "
+      "and ball-pivoting (Open3D) put triangles between the points themselves: specks are dropped, slits "
+      "filled, and where an advancing front all but bounds a solid, it is closed. All scales come from the "
+      "measured spacing. Outliers are left out (--outliers smooth keeps them). Colours and other fields of "
+      "the points go to the vertices.\n\n"
       "The work is done by the program rfsmooth-reconstruct, which links those libraries and may be "
       "installed or not; without it, or without the library that a method needs, the exit code is 127.";
   collect(options->reconstruct, command.options);
