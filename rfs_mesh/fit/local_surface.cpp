@@ -100,8 +100,7 @@ NoiseScale seen_at(const SpatialIndex& index, std::size_t m, const Context& cont
   });
   const auto quartile = residuals.begin() + std::ptrdiff_t(samples / 4);
   std::nth_element(residuals.begin(), quartile, residuals.end());
-  return {*quartile / quartile_of_deviation(std::max(1.0, kEffective * double(m + 1) - 6)), m,
-          median(radii)};
+  return {*quartile / quartile_of_deviation(std::max(1.0, kEffective * double(m + 1) - 6)), m, median(radii)};
 }
 
 }  // namespace

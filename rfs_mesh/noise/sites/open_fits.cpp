@@ -1,5 +1,7 @@
 #include "rfs_mesh/noise/sites/open_fits.h"
 
+#include "rfs_mesh/noise/noise_search.h"
+
 namespace rfsmooth::rfs_mesh {
 
 OpenFits fit_wide(const Places& places, std::size_t points, const Context& context) {
