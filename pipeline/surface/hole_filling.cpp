@@ -1,6 +1,7 @@
 #include "pipeline/surface/hole_filling.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <set>
 #include <utility>
@@ -20,7 +21,7 @@ constexpr std::size_t kLongestRim = 1000;
 constexpr double kNever = std::numeric_limits<double>::infinity();
 // Largest area of a filling over that of the piece it belongs to, sqrt(1/2). An outline closed with a second
 // sheet has 1, the lid of a half sphere 1/2; this is half-way between them, as a ratio.
-constexpr double kMostOfPiece = 0.7071067811865476;
+constexpr double kMostOfPiece = M_SQRT1_2;
 
 /// The rims, each as its vertices in the order in which a filling face runs along them.
 std::vector<std::vector<Index>> rims_of(const Mesh& mesh) {

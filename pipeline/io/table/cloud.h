@@ -113,8 +113,7 @@ std::vector<double> field_values(const Cloud& cloud, std::size_t field, const Co
 /// Sets a field of the points (displacement, outlier, normals):
 ///
 /// - if there is none of that name, which is one word, it is appended behind the points' last field, as
-/// `type`;
-///   every other byte stays.
+///   `type`; every other byte stays.
 /// - if there is one (the first of several), its values are replaced in place, in its own type.
 ///
 /// \throw Failure (usage) if that one cannot take the values; `check_field` tells in advance.

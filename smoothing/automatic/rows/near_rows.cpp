@@ -19,7 +19,7 @@ rfs_mesh::NeighborTable NearRows::first(std::size_t k, const Context& context) c
   table.k = int(width);
   table.items.resize(size_ * width);
   for_each_index(context, size_, [&](std::size_t i) {
-    const Row row = (*this)[i];
+    const Row row = first_of(i, width);
     std::copy_n(row.begin(), width, table.items.data() + i * width);
   });
   return table;

@@ -29,19 +29,19 @@ TEST(Thinning, OfASubsetIsTheSameWhereverTheNearestComeFrom) {
   EXPECT_EQ(thin(points, {4}, {}), std::vector<Index>{4});
 }
 
-/// Whether no two that are kept are neighbours, and every other one has a kept neighbour.
-bool is_maximal_and_independent(const std::vector<Index>& kept, const NeighborTable& near) {
+/// No two that are kept are among the first k of each other, and every other one has a kept one there.
+void expect_independent_and_maximal(const std::vector<Index>& kept, const NeighborTable& near,
+                                    std::size_t k) {
+  const std::size_t n = near.size();
   const std::set<Index> in(kept.begin(), kept.end());
-  std::vector<char> reached(near.size());
-  for (Index i = 0; i < near.size(); ++i)
-    for (const Index j : near[i]) {
-      if (in.count(i) == 1 && in.count(j) == 1) return false;
-      if (in.count(i) == 1) reached[j] = 1;
-      if (in.count(j) == 1) reached[i] = 1;
+  std::vector<char> reached(n);
+  for (std::size_t i = 0; i < n; ++i)
+    for (const Index* j = near[i].begin(); j < near[i].begin() + k; ++j) {
+      EXPECT_FALSE(in.count(Index(i)) == 1 && in.count(*j) == 1) << i;
+      reached[i] = char(reached[i] | int(in.count(*j) == 1));
+      reached[*j] = char(reached[*j] | int(in.count(Index(i)) == 1));
     }
-  for (Index i = 0; i < near.size(); ++i)
-    if ((reached[i] != 0) == (in.count(i) == 1)) return false;
-  return true;
+  for (std::size_t i = 0; i < n; ++i) EXPECT_NE(reached[i] != 0, in.count(Index(i)) == 1) << i;
 }
 
 // Points at equal distances tie, and by their order one of a row would be settled in each round.
@@ -54,8 +54,7 @@ TEST(Thinning, OfRegularPointsTakesFewRounds) {
   }
   for (const Positions& points : {line, grid}) {
     const NeighborTable near = SpatialIndex(points, {}).nearest(3, {});
-    const std::vector<Index> kept = thin_all(points, near, {});
-    EXPECT_TRUE(is_maximal_and_independent(kept, near));
+    expect_independent_and_maximal(thin_all(points, near, {}), near, 3);
   }
 }
 
@@ -68,15 +67,7 @@ TEST_P(ThinningBy, KeepsAnIndependentSetThatEveryPointIsNearTo) {
   const std::vector<Index> kept = thin_all(points, near, {}, k);
   EXPECT_TRUE(std::is_sorted(kept.begin(), kept.end()));
   EXPECT_NEAR(double(n) / double(kept.size()), 1.3 + 0.5 * double(k), 0.15 * (1.3 + 0.5 * double(k)));
-  const std::set<Index> in(kept.begin(), kept.end());
-  std::vector<char> reached(n);
-  for (std::size_t i = 0; i < n; ++i)
-    for (const Index* j = near[i].begin(); j < near[i].begin() + k; ++j) {
-      EXPECT_FALSE(in.count(Index(i)) == 1 && in.count(*j) == 1) << i;
-      reached[i] = char(reached[i] | int(in.count(*j) == 1));
-      reached[*j] = char(reached[*j] | int(in.count(Index(i)) == 1));
-    }
-  for (std::size_t i = 0; i < n; ++i) EXPECT_NE(reached[i] != 0, in.count(Index(i)) == 1) << i;
+  expect_independent_and_maximal(kept, near, k);
 }
 
 INSTANTIATE_TEST_SUITE_P(Neighbours, ThinningBy, testing::Values(3, 7, 13, 24));
