@@ -97,8 +97,9 @@ void check_sites(const NoiseModel& noise, Wrong& wrong) {
 
 void check_noise(const NoiseModel& noise, Wrong& wrong) {
   wrong.expect(
-      is_length(noise.sigma) && is_length(noise.spacing) && is_length(noise.apart) && is_length(noise.step),
-      "noise: a sigma, a spacing, what points keep apart or the step of depths is no length");
+      is_length(noise.sigma) && is_length(noise.spacing) && is_length(noise.apart) && is_length(noise.step) &&
+          is_length(noise.rounding),
+      "noise: a sigma, a spacing, what points keep apart, the step of depths or its rounding is no length");
   wrong.expect(!(noise.sigma > 0) || (noise.spacing > 0 && !noise.sites.empty()),
                "noise: a sigma above 0, but no site or no spacing above 0");
   wrong.expect(is_within(noise.shape, 0, 1), "noise: shape is no share");

@@ -43,6 +43,7 @@ struct NoiseModel {
   bool on_lines = false;  ///< whether fewer are on one line; there is another at least
   double step = 0;        ///< typical distance between depths that come in steps, a length; 0: none
   bool on_grid = false;   ///< whether the points are on a grid of that step, as voxels' centres are
+  double rounding = 0;  ///< what the steps add along the normals of calm places, standard deviation; a length
   /// Places, around the middle of the box, coordinates within 1e100; one where noise and density are even.
   std::vector<Eigen::Vector3d> sites;
   std::vector<double> at_sites;  ///< sigma there, one for each site; lengths

@@ -43,7 +43,8 @@ void scale(double unit, std::optional<double>& length) {
 }
 
 void scale(double unit, NoiseModel& noise) {
-  for (double* length : {&noise.sigma, &noise.spacing, &noise.apart, &noise.step}) *length *= unit;
+  for (double* length : {&noise.sigma, &noise.spacing, &noise.apart, &noise.step, &noise.rounding})
+    *length *= unit;
   for (Eigen::Vector3d& site : noise.sites) site *= unit;
   scale(unit, noise.at_sites);
   scale(unit, noise.spacing_at_sites);

@@ -19,14 +19,15 @@ namespace rfsmooth::rfs_mesh {
 /// Of neighbourhoods of `first` points and of ever twice as many, up to kWidestFit and below n, the one in
 /// which sigma over the radius is least; no more are tried once that is at most kFlatSlab, or where sigma
 /// grows as shape does. \param see what neighbourhoods of m points show, by m; neighbours is 0 where no more
-/// shall be tried.
+/// shall be tried. \param layers sigma of points in two layers that are one surface: what shows less grows to
+/// that for want of points, not of shape. World units.
 template <class See>
-NoiseScale flattest_slab(std::size_t first, std::size_t n, See&& see) {
+NoiseScale flattest_slab(std::size_t first, std::size_t n, See&& see, double layers = 0) {
   NoiseScale best;
   double least = std::numeric_limits<double>::infinity(), before = 0;
   for (std::size_t m = first; m <= kWidestFit && m < n && least > kFlatSlab; m *= 2) {
     const NoiseScale seen = see(m);
-    if (seen.neighbours == 0 || (m > first && seen.sigma > kGrowthOfNoise * before)) break;
+    if (seen.neighbours == 0 || (m > first && seen.sigma > kGrowthOfNoise * std::max(before, layers))) break;
     before = seen.sigma;
     const double share = seen.radius > 0 ? seen.sigma / seen.radius : 0;
     if (!(share < least)) continue;

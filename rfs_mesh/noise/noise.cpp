@@ -201,6 +201,7 @@ NoiseStart find_start(const SpatialIndex& index, const DepthSteps* steps, double
   Places places = search_places(index, context);
   NoiseStart start = search_noise(places, steps, rounding);
   start.apart = noise.apart;
+  noise.rounding = noise.on_grid ? rounding_noise(noise.step) : start.of_steps;
   // Terraces of depths in steps look like lines, too; there the noise is shared.
   if (steps != nullptr && !steps->on_shells()) {
     noise.shared = double(start.piece) / double(kNarrowestPatch);

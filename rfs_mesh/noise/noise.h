@@ -40,9 +40,10 @@ inline bool stays(double local, double figure) {
   return local < 2 * kStays * figure;
 }
 
-/// Whether most of the noise may be what depths in steps are rounded by.
+/// Whether depths in steps lie farther apart along the normals than the noise reaches: layers of points, that
+/// look like sheets.
 inline bool is_of_steps(const NoiseModel& noise) {
-  return rounding_noise(noise.step) > noise.sigma;
+  return noise.rounding > rounding_noise(noise.sigma);
 }
 
 /// How many points say as much as one: as many as share the noise, or, where 16 points are on few lines, as

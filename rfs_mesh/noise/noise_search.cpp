@@ -44,15 +44,16 @@ double open_window(double window, double seen) {
 }
 
 /// What the calmer fifth of the places shows without a window: more than the noise where there is shape, so a
-/// bound. `narrowest`: fewer points are no piece of a surface.
-double bound(Places& places, std::size_t narrowest) {
+/// bound. `narrowest`: fewer points are no piece of a surface. `layers`: as of flattest_slab.
+double bound(Places& places, std::size_t narrowest, double layers) {
   const auto see = [&](std::size_t m) {
     const std::vector<Scatter> all = places.fits(m);
     std::vector<Weighed> seen = comparable(all, areas(all), kCalmFifthDeviate);
     if (seen.empty()) return NoiseScale();
     return NoiseScale{std::sqrt(quantile(seen, kCalmFifth)), m, quantile_of(all, 0.5, &Scatter::radius)};
   };
-  return flattest_slab(std::max(narrowest, kNeighbourhood), places.index().points().size(), see).sigma;
+  return flattest_slab(std::max(narrowest, kNeighbourhood), places.index().points().size(), see, layers)
+      .sigma;
 }
 
 /// Where second sheets are as near as the neighbours nearly everywhere, fits without a window tell their
@@ -177,9 +178,12 @@ double variance_of_steps(const std::vector<double>& rounding, const std::vector<
   return quantile(variances, kCalmPlaces);
 }
 
+double two_depths(double rounding) {
+  return std::sqrt(3.0) * rounding;  // 1 / 2 of a step over 1 / sqrt(12)
+}
+
 bool are_two_depths(double variance, double rounding) {
-  constexpr double kTwoDepths = 3;  // (1 / 2)^2 of a step over (1 / sqrt(12))^2
-  return variance <= kTwoDepths * kSameNoise * kSameNoise * rounding * rounding;
+  return variance <= std::pow(kSameNoise * two_depths(rounding), 2);
 }
 
 double scatter_reach(double sigma, double narrow) {
@@ -212,11 +216,10 @@ NoiseStart search_noise(Places& places, const DepthSteps* steps, double rounding
   start.least = std::max(1e-9 * narrow, steps == nullptr ? 0 : steps->rounding());
   start.sigma = std::sqrt(mean_variance(all, kCalmPlaces, kCalmDeviate));
   // Of coordinates that are rounded a narrower window holds those alone that are rounded alike.
-  const double rounded = kSameNoise * rounding / kScatterWindow,
-               of_steps =
-                   steps == nullptr ? 0 : std::sqrt(variance_of_steps(rounding_at(places, all, *steps), all)),
-               sure = std::min(start.sigma, std::max(rounded, of_steps));
-  start.most = kSameNoise * bound(places, start.m);
+  const double rounded = kSameNoise * rounding / kScatterWindow;
+  if (steps != nullptr) start.of_steps = std::sqrt(variance_of_steps(rounding_at(places, all, *steps), all));
+  const double sure = std::min(start.sigma, std::max(rounded, start.of_steps));
+  start.most = kSameNoise * bound(places, start.m, two_depths(start.of_steps));
   // Lines are no sheets, and a window narrow enough finds some that are exact. Nor are steps normal noise.
   const bool surface = start.piece == kNarrowestPatch;
   const std::optional<NoiseInKernels> read =

@@ -30,6 +30,7 @@ struct NoiseStart {
   double sigma = 0;                 ///< world units
   double least = 0;                 ///< what counts as zero; 0: the points coincide
   double most = 0;                  ///< bound
+  double of_steps = 0;              ///< NoiseModel::rounding of depths in steps
   double apart = 0;                 ///< NoiseModel::apart
   std::size_t m = kNarrowestPatch;  ///< points of a neighbourhood; along lines it follows them
   double shape_grows = 2;           ///< variance that is shape, from m to 2 m points: at least so many times
@@ -56,8 +57,11 @@ std::vector<double> rounding_at(const Places& places, const std::vector<Scatter>
 /// Variance that steps make sure of at calm places. \param rounding of rounding_at
 double variance_of_steps(const std::vector<double>& rounding, const std::vector<Scatter>& all);
 
-/// Whether points scatter no more than those at two depths that follow each other: by half a step, where
-/// rounding adds 1 / sqrt(12) of it. Nothing that is nearer to each other than a step is two sheets.
+/// How far points scatter that are at two depths which follow each other: by half a step, where rounding adds
+/// 1 / sqrt(12) of it.
+double two_depths(double rounding);
+
+/// Whether they scatter no more. Nothing that is nearer to each other than a step is two sheets.
 bool are_two_depths(double variance, double rounding);
 
 /// How far the ball of a fit must reach for noise sigma: to a patch of 2 sigma with all of the window above

@@ -154,8 +154,9 @@ AutomaticResult automatic_smoothing(const AutomaticTask& task, AutomaticReport& 
   const double of_whole = whole.points ? double(*whole.points) / double(n) : 1;
   const std::vector<float> one_sheet = task.learned ? heights.height : std::vector<float>();
   // A k-th of the evidence never was enough for walls, across lines there is none, and noise that fills
-  // voxels evenly looks like two sheets.
-  const bool own_noise = !is_shared(noise) && !noise.on_lines && !noise.on_grid;
+  // voxels evenly looks like two sheets, as depths in steps do.
+  const bool own_noise =
+      !is_shared(noise) && !noise.on_lines && !noise.on_grid && !rfs_mesh::is_of_steps(noise);
   HiddenSheets hidden;
   if (own_noise && untamed > rfs_mesh::detail(noise.spacing))
     hidden = split_hidden_sheets(

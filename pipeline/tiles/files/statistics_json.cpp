@@ -23,7 +23,7 @@ ordered_json json_of_noise(const NoiseModel& noise) {
   ordered_json json = {{"sigma", noise.sigma},       {"shape", noise.shape},      {"spacing", noise.spacing},
                        {"apart", noise.apart},       {"shared_by", noise.shared}, {"piece", noise.piece},
                        {"on_lines", noise.on_lines}, {"depth_step", noise.step},  {"on_grid", noise.on_grid},
-                       {"at_sites", noise.at_sites}};
+                       {"rounding", noise.rounding}, {"at_sites", noise.at_sites}};
   if (!noise.spacing_at_sites.empty()) json["spacing_at_sites"] = noise.spacing_at_sites;
   if (!noise.told_at_sites.empty()) json["told_at_sites"] = noise.told_at_sites;
   if (!noise.shared_at_sites.empty()) json["shared_at_sites"] = noise.shared_at_sites;
@@ -41,6 +41,7 @@ NoiseModel noise_of(const ordered_json& json) {
   noise.shared = json.at("shared_by");
   noise.step = json.at("depth_step");
   noise.on_grid = json.at("on_grid");
+  noise.rounding = json.at("rounding");
   noise.piece = json.at("piece");
   noise.on_lines = json.at("on_lines");
   noise.at_sites = json.at("at_sites").get<std::vector<double>>();

@@ -9,11 +9,12 @@
 /// turns that into a step along the normal.
 ///
 /// It is asked where the second, third or fourth scale is worse than the one before, so where there is
-/// anything that quadrics do not follow; not where neighbours share their noise, or it is that of depths in
-/// steps, nor where there is less of it than kLeastNoise spacings. Trained on shapes that tests/bench/train
-/// makes, with noise that is white, along the ray, with tails, and louder in places, also on the rings of a
-/// spinning laser. Differs from networks that denoise: it sees nothing but invariants, and moves nothing but
-/// a height. It is asked once: asked again about where it led, it made thirteen further meshes no better.
+/// anything that quadrics do not follow; not where neighbours share their noise, or depths come in
+/// steps that are wider than it, nor where there is less of it than kLeastNoise spacings. Trained on shapes
+/// that tests/bench/train makes, with noise that is white, along the ray, with tails, and louder in places,
+/// also on the rings of a spinning laser. Differs from networks that denoise: it sees nothing but invariants,
+/// and moves nothing but a height. It is asked once: asked again about where it led, it made thirteen further
+/// meshes no better.
 #pragma once
 
 #include <functional>
