@@ -66,9 +66,10 @@ class Listener {
     loud_part_ = double(louder) > kLeastPart * double(at.size());
   }
 
-  /// One round that opens windows which are too narrow for their places; false if there are none. A place
-  /// far louder than the start fills its window evenly, and keeps so little of the weight that no fit says
-  /// anything. Nor does one where the second sheet of a wall is cut off; but there the window is not full.
+  /// One round that opens windows which are too narrow for their places; false if there are none. A window
+  /// that is too narrow shows less than there is, but more than it was made for. A place far louder than the
+  /// start fills its window evenly, and keeps so little of the weight that no fit says anything. Nor does one
+  /// where the second sheet of a wall is cut off; but there the window is not full.
   bool open_windows() {
     const std::vector<char> renewed = renew_fits(1);
     std::vector<char> opened(group_.size(), 0);
@@ -83,7 +84,9 @@ class Listener {
             const Scatter& fit = fits_[q.index];
             if (fit.within > 0) full.push_back(fit.within / (window_[q.index] * window_[q.index]));
           }
-          if (!hear_at(s, said, 1)) {
+          if (hear_at(s, said, 1)) {
+            opened[s] = char(sigma[s] > kSettled * window_[s]);
+          } else {
             // Nearly nothing around is left within windows made for far calmer places.
             const bool empty = double(full.size()) < (1 - kLeastSpeaking) * double(group_[s].size());
             if (views[s].sheet == SiteView::kNone) open_window(s, empty ? kEven : quantile(full, 0.5));
