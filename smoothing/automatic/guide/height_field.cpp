@@ -62,9 +62,9 @@ std::vector<float> HeightField::local_mean(const std::vector<float>& values, con
   std::vector<float> mean(values.size());
   for_each_index(context, size(), [&](std::size_t i) {
     const NearRows::Row row = near_[i];
-    const WeightedSum around =
-        weighted_sum(width, row.begin(), near_weight_.data() + i * width, values.data());
-    mean[i] = (kByteUnit * values[i] + around.sum) / (kByteUnit + around.weights);
+    const auto around =
+        weighted_sums<std::uint8_t, 1>(width, row.begin(), near_weight_.data() + i * width, {values.data()});
+    mean[i] = (kByteUnit * values[i] + around.sum[0]) / (kByteUnit + around.weights);
   });
   return mean;
 }

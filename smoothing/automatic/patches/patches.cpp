@@ -139,27 +139,37 @@ void Patches::fit_wave(Wave& wave, const std::vector<double>& sigma, const Conte
   });
 }
 
-std::vector<float> Patches::mean(const std::vector<float>& values, const Context& context) const {
-  std::vector<float> of_patch(memory_.patches(), 0);
+template <std::size_t kCount>
+void Patches::average(const std::array<std::vector<float>*, kCount>& values, const Context& context) const {
+  using One = std::array<float, kCount>;
+  std::array<const float*, kCount> from;
+  std::transform(values.begin(), values.end(), from.begin(), [](const auto* v) { return v->data(); });
+  std::vector<One> of_patch(memory_.patches(), One{});
   for_each_index(
       context, of_patch.size(),
       [&](std::size_t p) {
         const std::size_t begin = memory_.begin(p);
-        const WeightedSum inside =
-            weighted_sum(memory_.size(p), memory_.point() + begin, memory_.weight() + begin, values.data());
-        if (inside.weights > 0) of_patch[p] = inside.sum / inside.weights;
+        const auto inside =
+            weighted_sums(memory_.size(p), memory_.point() + begin, memory_.weight() + begin, from);
+        if (!(inside.weights > 0)) return;
+        for (std::size_t c = 0; c < kCount; ++c) of_patch[p][c] = inside.sum[c] / inside.weights;
       },
       kTogether);
-  std::vector<float> mean(values.size(), 0);
+  std::vector<One> sum(field_.size(), One{});
   memory_.for_each_by_point(
       0,
       [&](std::size_t i, std::size_t patch, std::size_t k) {
-        mean[i] += float(memory_.weight()[k]) * of_patch[patch];
+        const auto weight = float(memory_.weight()[k]);
+        for (std::size_t c = 0; c < kCount; ++c) sum[i][c] += weight * of_patch[patch][c];
       },
       context);
-  for_each_index(context, mean.size(),
-                 [&](std::size_t i) { mean[i] = around_[i] > 0 ? mean[i] / around_[i] : values[i]; });
-  return mean;
+  for_each_index(context, sum.size(), [&](std::size_t i) {
+    if (!(around_[i] > 0)) return;
+    for (std::size_t c = 0; c < kCount; ++c) (*values[c])[i] = sum[i][c] / around_[i];
+  });
 }
+
+template void Patches::average(const std::array<std::vector<float>*, 1>&, const Context&) const;
+template void Patches::average(const std::array<std::vector<float>*, 2>&, const Context&) const;
 
 }  // namespace rfsmooth::smoothing

@@ -6,6 +6,7 @@
 /// Const functions are thread safe.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -49,9 +50,11 @@ class Patches {
   /// by more than the noise.
   const std::vector<Index>& with_several_sheets() const { return several_; }
 
-  /// Averages over patches of the patches' averages: a mean over about twice `members` points. \param values
-  /// n. Not after another Patches was given the same memory. O(members of all patches).
-  std::vector<float> mean(const std::vector<float>& values, const Context& context) const;
+  /// Averages over patches of the patches' averages, in place: a mean over about twice `members` points. Of
+  /// one value or several of each point: reading the members is what takes the time. \param values each n.
+  /// Not after another Patches was given the same memory. O(members of all patches).
+  template <std::size_t kCount>
+  void average(const std::array<std::vector<float>*, kCount>& values, const Context& context) const;
 
  private:
   struct Wave;

@@ -184,11 +184,14 @@ class Ladder {
       risk_[i] = risk;
     });
     if (averages(members)) {
-      scale.mean = patches.mean(patches.mean(scale.worse, context_), context_);
-      if (!precision.empty()) {
-        const std::vector<float> around = patches.mean(patches.mean(precision, context_), context_);
-        in_own_units(precision, around, scale.mean, context_);
-      }
+      scale.mean = scale.worse;
+      std::vector<float> around = precision;
+      for (int twice = 0; twice < 2; ++twice)
+        if (precision.empty())
+          patches.average<1>({&scale.mean}, context_);
+        else
+          patches.average<2>({&scale.mean, &around}, context_);
+      if (!precision.empty()) in_own_units(precision, around, scale.mean, context_);
     }
     return scale;
   }

@@ -1,6 +1,7 @@
-/// The weighted sum of values picked out of an array, several at a time. Thread safe.
+/// The weighted sums of values picked out of arrays, several at a time. Thread safe.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstring>
 
@@ -8,31 +9,38 @@
 
 namespace rfsmooth::smoothing {
 
-/// sum w_k v_k and sum w_k.
-struct WeightedSum {
-  float sum = 0, weights = 0;
+/// sum w_k v_k of each of several arrays, and sum w_k.
+template <std::size_t kCount>
+struct WeightedSums {
+  std::array<float, kCount> sum = {};
+  float weights = 0;
 };
 
-/// Over v = values[picked[k]], k in [0, size); `weight`: small whole numbers. Four sums side by side: one
-/// after the other, each addition would wait for the one before. O(size), the same bits every time.
-template <class Weight>
-WeightedSum weighted_sum(std::size_t size, const Index* picked, const Weight* weight, const float* values) {
+/// Over v = values[picked[k]], k in [0, size), of each array; `weight`: small whole numbers. Four sums side
+/// by side: one after the other, each addition would wait for the one before. O(size), the same bits every
+/// time and for any number of arrays.
+template <class Weight, std::size_t kCount>
+WeightedSums<kCount> weighted_sums(std::size_t size, const Index* picked, const Weight* weight,
+                                   const std::array<const float*, kCount>& values) {
   typedef float Floats __attribute__((vector_size(4 * sizeof(float))));
   typedef Weight Weights __attribute__((vector_size(4 * sizeof(Weight))));
-  Floats sum = {}, weights = {};
+  Floats sum[kCount] = {}, weights = {};
   std::size_t k = 0;
   for (; k + 4 <= size; k += 4) {
-    const Floats v = {values[picked[k]], values[picked[k + 1]], values[picked[k + 2]], values[picked[k + 3]]};
     Weights whole;
     std::memcpy(&whole, weight + k, sizeof whole);
     const Floats w = __builtin_convertvector(whole, Floats);
-    sum += w * v;
+    for (std::size_t c = 0; c < kCount; ++c) {
+      const float* const from = values[c];
+      sum[c] += w * Floats{from[picked[k]], from[picked[k + 1]], from[picked[k + 2]], from[picked[k + 3]]};
+    }
     weights += w;
   }
-  WeightedSum all{(sum[0] + sum[1]) + (sum[2] + sum[3]),
-                  (weights[0] + weights[1]) + (weights[2] + weights[3])};
+  WeightedSums<kCount> all;
+  for (std::size_t c = 0; c < kCount; ++c) all.sum[c] = (sum[c][0] + sum[c][1]) + (sum[c][2] + sum[c][3]);
+  all.weights = (weights[0] + weights[1]) + (weights[2] + weights[3]);
   for (; k < size; ++k) {
-    all.sum += float(weight[k]) * values[picked[k]];
+    for (std::size_t c = 0; c < kCount; ++c) all.sum[c] += float(weight[k]) * values[c][picked[k]];
     all.weights += float(weight[k]);
   }
   return all;

@@ -1,5 +1,6 @@
 #include "smoothing/automatic/rows/weighted_sum.h"
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -12,8 +13,9 @@ using namespace rfsmooth::smoothing;
 
 namespace {
 
-TEST(WeightedSum, IsThatOfOneAfterTheOtherForAnySize) {
+TEST(WeightedSums, AreThoseOfOneAfterTheOtherForAnySize) {
   std::vector<float> values(50);
+  const std::vector<float> others(values.size(), 1);
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = float(i * i) - 300;
   for (std::size_t size = 0; size < 14; ++size) {
     std::vector<Index> picked;
@@ -28,10 +30,12 @@ TEST(WeightedSum, IsThatOfOneAfterTheOtherForAnySize) {
       large_sum += double(large[k]) * double(values[picked[k]]);
       weights += double(small[k]);
     }
-    const WeightedSum found = weighted_sum(size, picked.data(), small.data(), values.data());
-    EXPECT_NEAR(double(found.sum), sum, 1e-6 * 250 * 2200 * double(size));
+    const std::array<const float*, 2> both = {others.data(), values.data()};
+    const auto found = weighted_sums(size, picked.data(), small.data(), both);
+    EXPECT_NEAR(double(found.sum[1]), sum, 1e-6 * 250 * 2200 * double(size));
     EXPECT_EQ(double(found.weights), weights);
-    EXPECT_NEAR(double(weighted_sum(size, picked.data(), large.data(), values.data()).sum), large_sum,
+    EXPECT_EQ(found.sum[0], found.weights);
+    EXPECT_NEAR(double(weighted_sums(size, picked.data(), large.data(), both).sum[1]), large_sum,
                 1e-6 * 65535 * 2200 * double(size));
   }
 }
