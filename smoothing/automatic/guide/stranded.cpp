@@ -51,6 +51,15 @@ class MovingGuide {
     moved_index_.emplace(places_, context);
   }
 
+  /// New rows for the points `moved`, as all points are now. O(n).
+  void renew_rows(const std::vector<Index>& moved, const Positions& guide, NeighborTable& near,
+                  const Context& context) {
+    staying_.reset();
+    std::vector<char> wanted(guide.size(), 0);
+    for (const Index i : moved) wanted[i] = 1;
+    rfs_mesh::SpatialIndex(guide, rfs_mesh::KdTree(index_.tree()), context).renew(near, wanted, context);
+  }
+
   /// Whether point i is where it was.
   bool stays(Index i) const { return gone_[i] == 0; }
 
@@ -183,16 +192,6 @@ std::vector<Index> land(const Positions& points, const std::vector<Index>& stran
   return moved;
 }
 
-/// A new row for point i.
-void renew(const MovingGuide& surface, const Positions& guide, std::size_t i, NeighborTable& near,
-           MovingGuide::Search& search) {
-  const auto width = std::size_t(near.k);
-  Index* const row = near.items.data() + i * width;
-  std::size_t to = 0;
-  for (const Neighbor& q : surface.nearest(guide[i], width + 1, search))
-    if (q.index != i && to < width) row[to++] = q.index;
-}
-
 /// Who is to have a new row: the moved points, and those that had one near.
 std::vector<char> beside_moved(const MovingGuide& surface, const NeighborTable& near,
                                const Context& context) {
@@ -242,11 +241,7 @@ std::vector<Index> Landing::move_stranded(const Positions& points, const Adjacen
     for (const Index i : landed) surface.set_gone(i, true);
     moved = std::move(all);
     if (round + 1 == kStrandedRounds) break;
-    surface.set_moved(moved, guide, context);
-    for_blocks(context, moved.size(), 256, [&](std::size_t begin, std::size_t end) {
-      MovingGuide::Search search;
-      for (std::size_t k = begin; k < end; ++k) renew(surface, guide, moved[k], near, search);
-    });
+    surface.renew_rows(moved, guide, near, context);
   }
   return moved;
 }
