@@ -1,6 +1,7 @@
 #include "rfs_mesh/fit/quadric.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 
@@ -154,13 +155,36 @@ void weigh_by_residual(QuadricWorkspace& w, double cut) {
   }
 }
 
+/// The median of the residuals, finite. Of a histogram only the bin that it is in is searched: a selection
+/// among all takes a branch at every one that cannot be foreseen.
+double median_residual(QuadricWorkspace& w) {
+  constexpr std::size_t kBins = 64;
+  const auto begin = w.residual.begin(), end = begin + std::ptrdiff_t(w.count);
+  const double bins = double(kBins) / *std::max_element(begin, end);
+  w.sorted.assign(begin, end);
+  if (!(bins > 0 && std::isfinite(bins))) return median(w.sorted);
+  const auto bin_of = [bins](double r) { return std::size_t(r * bins); };
+  std::array<std::size_t, kBins + 2> size = {};  // a product may be rounded up
+  for (auto r = begin; r != end; ++r) ++size[bin_of(*r)];
+  std::size_t bin = 0, nth = w.count / 2;
+  while (nth >= size[bin]) nth -= size[bin++];
+  std::size_t kept = 0;
+  for (auto r = begin; r != end; ++r) {
+    w.sorted[kept] = *r;
+    kept += std::size_t(bin_of(*r) == bin);
+  }
+  const auto middle = w.sorted.begin() + std::ptrdiff_t(nth);
+  std::nth_element(w.sorted.begin(), middle, w.sorted.begin() + std::ptrdiff_t(size[bin]));
+  return *middle;
+}
+
 /// Tukey's biweight on top of the distance weights; returns false if the residuals leave nothing to do.
 bool reweight(QuadricWorkspace& w, const Quadric& q) {
+  if (!q.c.allFinite()) return false;
   find_residuals(w, q);
-  w.sorted.assign(w.residual.begin(), w.residual.begin() + std::ptrdiff_t(w.count));
   constexpr double kOfMedian = 1.4826;  // sigma of a normal distribution over its median deviation
   constexpr double kExact = 1e-12;      // of the radius: the points lie on the quadric but for rounding
-  const double cut = kTukey * kOfMedian * median(w.sorted);
+  const double cut = kTukey * kOfMedian * median_residual(w);
   if (!(cut > kExact)) return false;
   weigh_by_residual(w, cut);
   return true;
