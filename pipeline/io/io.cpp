@@ -50,12 +50,8 @@ void write_as_is(const Cloud& cloud, Encoding encoding, Sink& sink, const Contex
 void write(const Cloud& cloud, Format format, std::optional<Separators> cells, const WriteOptions& options,
            Sink& sink, const Context& context) {
   const Encoding encoding = target_encoding(cloud, format, options.encoding);
-  if (!options.drop_unsupported) {
-    const std::vector<std::string> losses = what_is_lost(cloud, format, encoding, context);
-    if (!losses.empty())
-      fail(ErrorCode::usage, "{} ({}) cannot carry {}; `drop-unsupported` leaves that out", name_of(format),
-           name_of(encoding), fmt::join(losses, ", "));
-  }
+  if (!options.drop_unsupported)
+    need_no_losses(what_is_lost(cloud, format, encoding, context), format, encoding);
   if (format == Format::xyz && cells) {
     const Cloud table =
         as_cells(cloud.format == format ? cloud : convert(cloud, format, context), *cells, context);

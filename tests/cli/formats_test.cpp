@@ -136,6 +136,38 @@ TEST_F(Formats, TheNameOfATableDecidesWhatPartsItsCells) {
   EXPECT_EQ(written("cloud.txt", "out.txt"), take("cloud.txt"));
 }
 
+TEST_F(Formats, WhatTheOutputHasNoRoomForIsRefusedBeforeTheWork) {
+  put("in.ply", ply_of_everything());
+  std::string rows;
+  for (int i = 0; i < 100; ++i)
+    rows += std::to_string(i % 10) + " " + std::to_string(i / 10) + " 0." + std::to_string(i * i % 7) + "\n";
+  put("in.xyz", rows);
+  put("in.off", "OFF\n4 2 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2\n3 0 2 3\n");
+  const std::pair<std::vector<std::string>, std::string> cases[] = {
+      {{"denoise", "in.ply", "out.xyz"}, "out.xyz: xyz (ascii) cannot carry field 'seen', element 'camera'"},
+      {{"denoise", "in.ply", "-", "--format", "xyz"}, "standard output: xyz (ascii) cannot carry"},
+      {{"denoise", "--write-displacement", "in.xyz", "out.off"}, "cannot carry field 'displacement'"},
+      {{"denoise", "--outliers", "mark", "in.xyz", "out.off"}, "cannot carry field 'outlier'"},
+      {{"denoise", "in.xyz", "out.ply", "--encoding", "binary_compressed"}, "ply has no encoding"},
+      {{"mesh", "in.xyz", "out.pcd"}, "out.pcd: pcd (ascii) cannot carry element 'face'"},
+      {{"mesh", "--stage", "emst", "in.xyz", "out.off"}, "cannot carry element 'edge'"},
+      {{"smooth-mesh", "in.off", "out.pcd"}, "cannot carry element 'face'"},
+      {{"smooth-mesh", "--refine", "1", "in.off", "out.pcd"}, "cannot carry element 'face'"}};
+  for (const auto& [words, says] : cases) {
+    std::vector<std::string> typed = words;
+    const bool piped = words[2] == "-";
+    typed.insert(typed.end(), {"--report", piped ? "r.json" : "-"});
+    const Ran ran = run(typed);
+    EXPECT_EQ(ran.code, 2) << says;
+    EXPECT_THAT(ran.err, HasSubstr(says));
+    if (piped) continue;
+    const nlohmann::json report = nlohmann::json::parse(ran.out);
+    EXPECT_EQ(report["error"]["code"], 2);
+    EXPECT_FALSE(report.contains("counts")) << "the work was done: " << says;
+  }
+  EXPECT_THAT(names(), ::testing::ElementsAre("in.off", "in.ply", "in.xyz"));
+}
+
 TEST_F(Formats, WhatAConversionLeavesOutIsNotSaidToBeKept) {
   std::string text = "ply\nformat ascii 1.0\nelement vertex 100\n";
   for (const char* name : {"x", "y", "z", "nx", "ny"}) text += std::string("property double ") + name + "\n";

@@ -70,6 +70,10 @@ struct OnCloud {
   std::optional<Format> makes = std::nullopt;
   /// The files that `beside` writes, as asked for; empty: none.
   std::function<std::vector<FileBeside>()> files_beside = {};
+  /// What a file of that format and encoding has no room for, in words, of what `work` will make of the
+  /// cloud, as far as it is known before the work. \throw Failure.
+  std::function<std::vector<std::string>(const pipeline::io::Cloud&, Format, Encoding, const Context&)>
+      will_lose = {};
 };
 
 struct Command {

@@ -12,6 +12,7 @@
 #include "pipeline/cli/commands/command.h"
 #include "pipeline/cli/files/cloud_jobs.h"
 #include "pipeline/cli/files/memory.h"
+#include "pipeline/io/convert/convert.h"
 #include "pipeline/io/mesh_file.h"
 #include "pipeline/outliers.h"
 #include "pipeline/prepare.h"
@@ -145,6 +146,13 @@ std::string connect_cloud(const MeshCommandOptions& options, pipeline::io::Cloud
                      counted(edges.size(), "edge"), counted(faces.size(), "face"));
 }
 
+/// A point with what the stage makes of points: what its file needs room for.
+pipeline::io::Cloud smallest_of(const std::string& stage) {
+  const Positions point = {Eigen::Vector3d::Zero()};
+  return stage == "rfs" ? pipeline::io::make_mesh_file(point, {Face{0, 0, 0}}, {})
+                        : pipeline::io::make_mesh_file(point, {}, {Edge{0, 0}});
+}
+
 /// What is reported until the stage that was asked for is made.
 std::vector<StageShare> stages_up_to(const std::string& stage) {
   std::vector<StageShare> stages = connecting_stages();
@@ -182,6 +190,10 @@ Command mesh_command() {
       [options](auto& cloud, const CloudTask& task) { return connect_cloud(*options, cloud, task); },
       {},
       pipeline::io::Format::ply};
+  command.on_cloud.will_lose = [options](const auto&, Format format, Encoding encoding,
+                                         const Context& context) {
+    return pipeline::io::what_is_lost(smallest_of(options->mesh.stage), format, encoding, context);
+  };
   command.run = [options, on_cloud = command.on_cloud](const Invocation& typed) {
     return run_cloud_jobs("mesh", options->job, typed, on_cloud);
   };

@@ -113,9 +113,8 @@ std::vector<std::string> store_cloud(const io::Cloud& cloud, const std::string& 
   context.report("write", 0);
   std::vector<std::string> dropped;
   if (options.drop_unsupported) {
-    const io::Format format = output_format(cloud, output, options);
-    dropped = io::what_is_lost(cloud, format,
-                               io::target_encoding(cloud, format, write_options(options).encoding), context);
+    const Target target = target_of(cloud, output, options);
+    dropped = io::what_is_lost(cloud, target.format, target.encoding, context);
   }
   if (output == "-") {
     const std::string bytes = value_or_throw(io::serialize_cloud(cloud, write_options(options), context));
@@ -127,6 +126,13 @@ std::vector<std::string> store_cloud(const io::Cloud& cloud, const std::string& 
   }
   if (context.progress) context.progress("write", 1);  // too late to cancel: the file is there
   return dropped;
+}
+
+Target target_of(const io::Cloud& cloud, const std::string& output, const FileOptions& options,
+                 std::optional<io::Format> makes) {
+  io::Format format = output_format(cloud, output, options);
+  if (makes && !options.format && !io::format_of_extension(output)) format = *makes;
+  return {format, io::target_encoding(cloud, format, write_options(options).encoding)};
 }
 
 io::Format output_format(const io::Cloud& cloud, const std::string& output, const FileOptions& options) {

@@ -52,6 +52,17 @@ std::vector<std::string> store_cloud(const pipeline::io::Cloud& cloud, const std
 void warn_if_coarse(const pipeline::io::Cloud& cloud, const std::vector<double>& xyz, double spacing,
                     const std::string& name, Console& console);
 
+/// How a cloud will be written.
+struct Target {
+  pipeline::io::Format format;
+  pipeline::io::Encoding encoding;
+};
+
+/// How what is made of `cloud` will be written. `makes`: the format of what is made; none: the cloud's own.
+/// \throw Failure (usage) if that format has no such encoding.
+Target target_of(const pipeline::io::Cloud& cloud, const std::string& output, const FileOptions& options,
+                 std::optional<pipeline::io::Format> makes = std::nullopt);
+
 /// The format that `output` will be written in.
 pipeline::io::Format output_format(const pipeline::io::Cloud& cloud, const std::string& output,
                                    const FileOptions& options);

@@ -9,6 +9,8 @@
 #include "pipeline/cli/exit_code.h"
 #include "pipeline/cli/options/text_values.h"
 #include "pipeline/cli/own_files.h"
+#include "pipeline/io/convert/capacity.h"
+#include "pipeline/io/convert/convert.h"
 #include "pipeline/io/formats/las/las_plain.h"
 #include "pipeline/io/stream/atomic_file.h"
 
@@ -27,10 +29,35 @@ std::string text_of(const std::vector<StageTime>& stages) {
 }
 
 /// What the input's file says of its cloud and what a file made anew goes without: of LAS all that no other
-/// format has a place for, as the coordinate system.
-std::vector<std::string> left_behind(const pipeline::io::Cloud& cloud, const OnCloud& on_cloud) {
-  if (!on_cloud.makes || cloud.format != pipeline::io::Format::las) return {};
-  return pipeline::io::las_losses(cloud);
+/// format has a place for, as the coordinate system; and what `work` could not take along.
+std::vector<std::string> left_behind(const pipeline::io::Cloud& cloud, const OnCloud& on_cloud,
+                                     const Context& context) {
+  if (!on_cloud.makes) return {};
+  std::vector<std::string> left;
+  if (cloud.format == pipeline::io::Format::las) left = pipeline::io::las_losses(cloud);
+  if (!on_cloud.will_lose) return left;
+  const auto encoding = pipeline::io::target_encoding(cloud, *on_cloud.makes, std::nullopt);
+  const auto more = on_cloud.will_lose(cloud, *on_cloud.makes, encoding, context);
+  left.insert(left.end(), more.begin(), more.end());
+  return left;
+}
+
+/// What an output is called in messages.
+std::string name_of_output(const std::string& output) {
+  return output == "-" ? "standard output" : output;
+}
+
+/// Refuses, before the work, an output whose format has no room for what is known to go there. \throw
+/// Failure.
+void need_room(const Job& job, const FileOptions& files, const OnCloud& on_cloud,
+               const pipeline::io::Cloud& cloud, const Context& context) {
+  pipeline::io::naming(name_of_output(job.output), [&] {
+    const Target target = target_of(cloud, job.output, files, on_cloud.makes);
+    if (on_cloud.will_lose && !files.drop_unsupported)
+      pipeline::io::need_no_losses(on_cloud.will_lose(cloud, target.format, target.encoding, context),
+                                   target.format, target.encoding);
+    return Done{};
+  });
 }
 
 /// "column 5 is displacement, 6 nx": those from column `first` on, where the file has no names that say so.
@@ -60,7 +87,8 @@ void run_one(const Job& job, const JobOptions& options, const OnCloud& on_cloud,
   entry["input"].update(describe(cloud));
   console.set_points(cloud.size());
   const std::size_t columns = cloud.points().fields.size();
-  std::vector<std::string> dropped = left_behind(cloud, on_cloud);
+  need_room(job, options.files, on_cloud, cloud, context);
+  std::vector<std::string> dropped = left_behind(cloud, on_cloud, context);
   const std::string summary = pipeline::io::naming(name_of_input(job.input), [&] {
     return on_cloud.work(cloud, {job, context, console, stages, entry});
   });
@@ -68,9 +96,8 @@ void run_one(const Job& job, const JobOptions& options, const OnCloud& on_cloud,
   if (!job.folder.empty()) pipeline::io::make_folder(job.folder);
   {
     const Stopwatch watch(stages, "write");
-    const auto more = pipeline::io::naming(job.output == "-" ? "standard output" : job.output, [&] {
-      return store_cloud(cloud, job.output, options.files, context);
-    });
+    const auto more = pipeline::io::naming(
+        name_of_output(job.output), [&] { return store_cloud(cloud, job.output, options.files, context); });
     dropped.insert(dropped.end(), more.begin(), more.end());
   }
   if (!dropped.empty()) {

@@ -18,6 +18,9 @@ namespace {
 
 using Losses = std::vector<std::string>;
 
+// Whether the digits of the coordinates count, or they will get others.
+enum class Digits { of_all, of_others };
+
 // OFF's columns have no names: those of a file that OFF has no word for stay, one that was added is lost.
 bool is_unnamed(const Field& f) {
   return f.name.rfind("column_", 0) == 0;
@@ -42,8 +45,8 @@ bool has_ragged_values(const Table& table, const Context& context) {
   return false;
 }
 
-void add_lost_fields(const Cloud& cloud, Format format, Encoding encoding, const Context& context,
-                     Losses& lost) {
+void add_lost_fields(const Cloud& cloud, Format format, Encoding encoding, Digits digits,
+                     const Context& context, Losses& lost) {
   const Table& points = cloud.points();
   const bool as_is = is_writable_as_is(cloud, format);
   for (std::size_t f = 0; f < points.fields.size(); ++f) {
@@ -52,7 +55,8 @@ void add_lost_fields(const Cloud& cloud, Format format, Encoding encoding, const
                       capacity_of(format).field(cloud, f, context);
     if (!kept)
       lost.push_back(fmt::format("field '{}'", field.name));
-    else if (encoding != Encoding::ascii && !(format == Format::las && is_coordinate(cloud, f)) &&
+    else if (encoding != Encoding::ascii &&
+             !((format == Format::las || digits == Digits::of_others) && is_coordinate(cloud, f)) &&
              float_digits_lost(points, f, context))
       lost.push_back(fmt::format("all digits of field '{}' (float32)", field.name));
   }
@@ -131,6 +135,32 @@ void add_kept_elements(const Cloud& cloud, Format format, const Context& context
   }
 }
 
+// What writing the cloud in this way would lose.
+Losses losses_of(const Cloud& cloud, Format format, Encoding encoding, Digits digits,
+                 const Context& context) {
+  Losses lost;
+  if (cloud.format == Format::las && format != Format::las) {
+    Cloud fields = make_cloud(nullptr, 0);
+    fields.points().fields = plain_fields(cloud);
+    lost = losses_of(fields, format, encoding, digits, context);
+    const Losses more = las_losses(cloud);
+    lost.insert(lost.end(), more.begin(), more.end());
+    return lost;
+  }
+  add_lost_fields(cloud, format, encoding, digits, context, lost);
+  if (format == cloud.format) return lost;
+  add_lost_elements(cloud, format, context, lost);
+  const Capacity& capacity = capacity_of(format);
+  if (!capacity.not_finite)
+    if (const std::size_t n = cloud.size() - finite_rows(positions(cloud, context), context); n > 0)
+      lost.push_back(fmt::format("{} not finite", counted(n, "point")));
+  if (capacity.grid == Capacity::Grid::none) {
+    if (cloud.organised()) lost.push_back(fmt::format("the grid of {} x {}", cloud.width, cloud.height));
+    if (cloud.viewpoint != kNoViewpoint) lost.push_back("the viewpoint");
+  }
+  return lost;
+}
+
 // Only XYZ may call x, y and z otherwise.
 void name_coordinates(Table& points, const std::array<std::size_t, 3>& xyz) {
   for (std::size_t axis = 0; axis < 3; ++axis)
@@ -173,27 +203,25 @@ bool is_writable_as_is(const Cloud& cloud, Format format) {
 
 std::vector<std::string> what_is_lost(const Cloud& cloud, Format format, Encoding encoding,
                                       const Context& context) {
-  Losses lost;
-  if (cloud.format == Format::las && format != Format::las) {
-    Cloud fields = make_cloud(nullptr, 0);
-    fields.points().fields = plain_fields(cloud);
-    lost = what_is_lost(fields, format, encoding, context);
-    const Losses more = las_losses(cloud);
-    lost.insert(lost.end(), more.begin(), more.end());
-    return lost;
-  }
-  add_lost_fields(cloud, format, encoding, context, lost);
-  if (format == cloud.format) return lost;
-  add_lost_elements(cloud, format, context, lost);
-  const Capacity& capacity = capacity_of(format);
-  if (!capacity.not_finite)
-    if (const std::size_t n = cloud.size() - finite_rows(positions(cloud, context), context); n > 0)
-      lost.push_back(fmt::format("{} not finite", counted(n, "point")));
-  if (capacity.grid == Capacity::Grid::none) {
-    if (cloud.organised()) lost.push_back(fmt::format("the grid of {} x {}", cloud.width, cloud.height));
-    if (cloud.viewpoint != kNoViewpoint) lost.push_back("the viewpoint");
-  }
+  return losses_of(cloud, format, encoding, Digits::of_all, context);
+}
+
+std::vector<std::string> what_will_be_lost(const Cloud& cloud, const std::vector<Field>& added, Format format,
+                                           Encoding encoding, const Context& context) {
+  Losses lost = losses_of(cloud, format, encoding, Digits::of_others, context);
+  Cloud fields = make_cloud(nullptr, 0);
+  if (cloud.format != Format::las) fields.format = cloud.format;
+  for (const Field& field : added)
+    if (!find_field(cloud, field.name)) fields.points().fields.push_back(field);
+  const Losses more = what_is_lost(fields, format, encoding, context);
+  lost.insert(lost.end(), more.begin(), more.end());
   return lost;
+}
+
+void need_no_losses(const std::vector<std::string>& losses, Format format, Encoding encoding) {
+  if (!losses.empty())
+    fail(ErrorCode::usage, "{} ({}) cannot carry {}; `drop-unsupported` leaves that out", name_of(format),
+         name_of(encoding), fmt::join(losses, ", "));
 }
 
 Cloud convert(const Cloud& cloud, Format format, const Context& context) {

@@ -17,6 +17,14 @@ bool is_writable_as_is(const Cloud& cloud, Format format);
 std::vector<std::string> what_is_lost(const Cloud& cloud, Format format, Encoding encoding,
                                       const Context& context);
 
+/// The same before the points get new coordinates and the fields `added`, plain ones. Not counted: digits of
+/// the coordinates, which new ones may not have.
+std::vector<std::string> what_will_be_lost(const Cloud& cloud, const std::vector<Field>& added, Format format,
+                                           Encoding encoding, const Context& context);
+
+/// Refuses to lose anything. \throw Failure (usage) naming `losses`, unless there are none.
+void need_no_losses(const std::vector<std::string>& losses, Format format, Encoding encoding);
+
 /// The cloud as one of `format`, without what is lost. Arrays (PCD's COUNT) become PLY lists and back; width
 /// x height and viewpoint become obj_info lines (num_cols, num_rows, viewpoint) and back; comments stay
 /// comments. To and from LAS by way of a cloud of plain numbers (las_plain.h, las_pack.h).

@@ -375,21 +375,22 @@ TEST_F(DenoiseCommand, ConfigOfSeveralFilesDoesThemAgain) {
 
 TEST_F(DenoiseCommand, WithoutACloudNothingStandsBesideIt) {
   put("broken.ply", "not a cloud");
-  // A list is what XYZ cannot hold, which is found when all the work is done.
-  std::string list = "ply\nformat ascii 1.0\nelement vertex 100\n";
-  for (const char* property : {"float x", "float y", "float z", "list uchar int seen"})
-    list += std::string("property ") + property + "\n";
-  list += "end_header\n";
+  // Bytes of float32 cannot hold all digits of coordinates that did not move, which is found when all the
+  // work is done.
+  std::string digits = "ply\nformat ascii 1.0\nelement vertex 100\n";
+  for (const char* property : {"float x", "float y", "float z"})
+    digits += std::string("property ") + property + "\n";
+  digits += "end_header\n";
   for (int i = 0; i < 100; ++i)
-    list += std::to_string(i % 10) + " " + std::to_string(i / 10) + " 0." + std::to_string(i * i % 7) +
-            (i % 2 ? " 1 5\n" : " 0\n");
-  put("list.ply", list);
-  for (const auto& [input, code] : {std::pair("broken.ply", 3), {"list.ply", 2}})
+    digits += std::to_string(i % 10) + " " + std::to_string(i / 10) + " 0.123456789012" +
+              std::to_string(i * i % 7) + "\n";
+  put("digits.ply", digits);
+  for (const auto& [input, code] : {std::pair("broken.ply", 3), {"digits.ply", 2}})
     for (int again = 0; again < 2; ++again) {
-      const Ran ran = run({"denoise", "--flow", "hc", input, "out.xyz", "--report", "r.json", "--html",
-                           "page.html", "--trace", "trace.csv"});
+      const Ran ran = run({"denoise", "--flow", "hc", "--iterations", "0", "--encoding", "binary", input,
+                           "out.ply", "--report", "r.json", "--html", "page.html", "--trace", "trace.csv"});
       EXPECT_EQ(ran.code, code) << ran.err;
-      EXPECT_THAT(names(), ElementsAre("broken.ply", "list.ply")) << "they would be in the next run's way";
+      EXPECT_THAT(names(), ElementsAre("broken.ply", "digits.ply")) << "they would be in the next run's way";
     }
   const Ran piped = run({"denoise", "broken.ply", "out.xyz", "--report", "-"});
   EXPECT_EQ(nlohmann::json::parse(piped.out)["error"]["code"], 3);

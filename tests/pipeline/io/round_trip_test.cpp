@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "pipeline/io/convert/convert.h"
 #include "tests/pipeline/io/random_cloud.h"
 
 using namespace rfsmooth;                // NOLINT(google-build-using-namespace)
@@ -123,6 +124,20 @@ TEST(Convert, RandomPcdThroughPlyAndBack) {
     to_ply.drop_unsupported = true;
     EXPECT_EQ(parsed(serialize_cloud(cloud, to_ply, {}).value()).size(), cloud.size());
   }
+}
+
+TEST(Convert, DigitsOfCoordinatesAreNoLossBeforeTheyChange) {
+  const Cloud cloud = parsed(
+      "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
+      "property float i\nend_header\n0.12345678901 0.5 0.12345678901 0.12345678901\n");
+  const Encoding bytes = Encoding::binary_little_endian;
+  EXPECT_EQ(what_is_lost(cloud, Format::ply, bytes, {}).size(), 3u);
+  const std::vector<std::string> others = {"all digits of field 'i' (float32)"};
+  EXPECT_EQ(what_will_be_lost(cloud, {}, Format::ply, bytes, {}), others);
+  const std::vector<Field> added = {{"displacement", Scalar::float32}};
+  EXPECT_EQ(what_will_be_lost(cloud, added, Format::ply, bytes, {}), others) << "PLY has room for it";
+  const std::vector<std::string> off = {"field 'i'", "field 'displacement'"};
+  EXPECT_EQ(what_will_be_lost(cloud, added, Format::off, Encoding::ascii, {}), off);
 }
 
 TEST(Edit, FieldsAreAddedAndPointsSelectedInEveryKind) {

@@ -32,9 +32,8 @@ constexpr const char *kDisplacement = "displacement", *kOutlier = "outlier";
 
 /// Refuses fields that could not be added, before the work. \throw Failure.
 void check_fields(const DenoiseCommandOptions& options, const pipeline::io::Cloud& cloud) {
-  if (options.write_displacement)
-    pipeline::io::check_field(cloud, kDisplacement, pipeline::io::Scalar::float32);
-  if (options.marks()) pipeline::io::check_field(cloud, kOutlier, pipeline::io::Scalar::uint8);
+  for (const pipeline::io::Field& field : added_fields(options))
+    pipeline::io::check_field(cloud, field.name, field.type);
   check_normals(options.normals, cloud);
 }
 
@@ -242,6 +241,13 @@ void page_after(const DenoiseReport& done, const DenoiseCommandOptions& options,
 }
 
 }  // namespace
+
+std::vector<pipeline::io::Field> added_fields(const DenoiseCommandOptions& options) {
+  std::vector<pipeline::io::Field> added;
+  if (options.write_displacement) added.push_back({kDisplacement, pipeline::io::Scalar::float32});
+  if (options.marks()) added.push_back({kOutlier, pipeline::io::Scalar::uint8});
+  return added;
+}
 
 std::string denoise_cloud(const DenoiseCommandOptions& options, Beside& beside, pipeline::io::Cloud& cloud,
                           const CloudTask& task) {

@@ -8,6 +8,7 @@
 
 #include "pipeline/cli/commands/command.h"
 #include "pipeline/cli/commands/denoise/denoise_options.h"
+#include "pipeline/io/table/field.h"
 
 namespace rfsmooth::cli {
 
@@ -17,6 +18,9 @@ struct Beside {
   std::string page;
   std::vector<TraceRow> trace;
 };
+
+/// The fields that are not normals and that the cloud gets, unless it has them.
+std::vector<pipeline::io::Field> added_fields(const DenoiseCommandOptions& options);
 
 /// Smooths the cloud, adds the fields that were asked for, says what was done, and makes ready what stands
 /// beside it. Returns the summary. \throw Failure.

@@ -11,6 +11,7 @@
 #include "pipeline/cli/console/scale_said.h"
 #include "pipeline/cli/other_program.h"
 #include "pipeline/cli/own_files.h"
+#include "pipeline/io/convert/convert.h"
 #include "pipeline/tiles/in_one_process.h"
 
 namespace rfsmooth::cli {
@@ -95,6 +96,10 @@ Command denoise_command() {
                       },
                       [options, beside](Console& console) { write_beside(*options, *beside, console); }};
   command.on_cloud.files_beside = [options] { return files_beside(*options); };
+  command.on_cloud.will_lose = [options](const auto& cloud, Format format, Encoding encoding,
+                                         const Context& context) {
+    return pipeline::io::what_will_be_lost(cloud, added_fields(*options), format, encoding, context);
+  };
   command.run = [options, beside, on_cloud = command.on_cloud,
                  known = command.options](const Invocation& typed) {
     if (const auto tiled = denoise_in_tiles(*options, typed)) return *tiled;
