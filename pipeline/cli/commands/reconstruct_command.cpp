@@ -183,13 +183,16 @@ Command reconstruct_command(std::vector<SurfaceMethod> methods) {
   Command command = table(options);
   command.run = [options, methods = std::move(methods)](const Invocation& typed) {
     const SurfaceMethod& method = find_method(methods, options->reconstruct.method);
-    return run_cloud_jobs(
-        "reconstruct", options->job, typed,
-        {[&](const Invocation& given) { check_options(options->reconstruct, method, given); },
-         [&] { return reconstructing_stages(*options); },
-         [&](auto& cloud, const CloudTask& task) { return reconstruct_cloud(*options, method, cloud, task); },
-         {},
-         pipeline::io::Format::ply});
+    OnCloud on_cloud = {
+        [&](const Invocation& given) { check_options(options->reconstruct, method, given); },
+        [&] { return reconstructing_stages(*options); },
+        [&](auto& cloud, const CloudTask& task) { return reconstruct_cloud(*options, method, cloud, task); },
+        {},
+        pipeline::io::Format::ply};
+    on_cloud.will_lose = [](const auto& cloud, Format format, Encoding encoding, const Context& context) {
+      return lost_in_surface(cloud, format, encoding, context);
+    };
+    return run_cloud_jobs("reconstruct", options->job, typed, on_cloud);
   };
   return command;
 }

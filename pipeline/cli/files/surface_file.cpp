@@ -1,6 +1,7 @@
 #include "pipeline/cli/files/surface_file.h"
 
 #include "pipeline/io/convert/convert.h"
+#include "pipeline/io/formats/las/las_plain.h"
 #include "pipeline/io/mesh_file.h"
 #include "pipeline/io/point_fields.h"
 #include "rfs_mesh/measure.h"
@@ -12,7 +13,7 @@ namespace io = pipeline::io;
 namespace {
 
 void unpack_colours(io::Cloud& cloud, const Context& context) {
-  if (io::find_field(cloud, "red") || cloud.points().has_lists()) return;
+  if (io::find_field(cloud, "red")) return;
   for (const char* name : {"rgb", "rgba"}) {
     const auto field = io::find_field(cloud, name);
     if (!field || !cloud.points().fields[*field].is_plain() ||
@@ -46,14 +47,23 @@ void set_normals(io::Cloud& cloud, const Mesh& mesh, const Context& context) {
 
 }  // namespace
 
+std::vector<std::string> lost_in_surface(const io::Cloud& cloud, io::Format format, io::Encoding encoding,
+                                         const Context& context) {
+  io::Cloud fields = io::make_cloud(nullptr, 0);
+  const bool las = cloud.format == io::Format::las;
+  if (!las) fields.format = cloud.format;
+  fields.xyz = cloud.xyz;
+  fields.points().fields = las ? io::plain_fields(cloud) : cloud.points().fields;
+  return io::what_is_lost(fields, format, encoding, context);
+}
+
 io::Cloud surface_file(io::Cloud cloud, const Reconstruction& made, const Context& context) {
-  if (cloud.format == io::Format::las) cloud = io::convert(cloud, io::Format::ply, context);
+  if (cloud.format != io::Format::ply) cloud = io::convert(cloud, io::Format::ply, context);
   io::Cloud out;
   out.encoding =
       cloud.encoding == io::Encoding::binary_compressed ? io::Encoding::binary_little_endian : cloud.encoding;
   out.elements.push_back(std::move(cloud.points()));
   out.points().name = "vertex";
-  io::make_words(out.points(), context);  // PLY has no commas
   out.xyz = cloud.xyz;
   out.width = out.points().count;
   io::select_points(out, made.row, context);

@@ -247,6 +247,72 @@ TEST_F(Reconstruct, PackedColoursAreUnpackedAndOtherFieldsStay) {
   }
 }
 
+TEST_F(Reconstruct, PcdWithArraysPaddingAndWideFields) {
+  const std::vector<double> xyz = io::positions(coloured_sphere(600));
+  const auto pcd = [&](bool wide) {
+    std::string out = "VERSION 0.7\nFIELDS x y z _ rgb pair";
+    out += wide ? " stamp\nSIZE 4 4 4 1 4 4 8\nTYPE F F F U F F U\nCOUNT 1 1 1 4 1 2 1\n"
+                : "\nSIZE 4 4 4 1 4 4\nTYPE F F F U F F\nCOUNT 1 1 1 4 1 2\n";
+    out += "WIDTH 600\nHEIGHT 1\nPOINTS 600\nDATA binary\n";
+    const auto add = [&](const auto& value) {
+      out.append(reinterpret_cast<const char*>(&value), sizeof value);
+    };
+    for (std::uint32_t i = 0; i < 600; ++i) {
+      for (std::size_t axis = 0; axis < 3; ++axis) add(float(xyz[3 * i + axis]));
+      add(std::uint32_t{0xffffffff});
+      add(std::uint32_t((7u << 16) | (8u << 8) | 9u));
+      for (const float value : {float(i), 0.5f}) add(value);
+      if (wide) add(std::uint64_t{1} << 60);
+    }
+    return out;
+  };
+  put("in.pcd", pcd(false));
+  const std::vector<std::string> how = {"reconstruct", "--method", "advancing-front", "--no-denoise"};
+  const auto made_of = [&](const char* in, const std::vector<std::string>& more) {
+    std::vector<std::string> words = how;
+    words.insert(words.end(), {in, "out.ply", "--force"});
+    words.insert(words.end(), more.begin(), more.end());
+    return run(words);
+  };
+  const Ran ran = made_of("in.pcd", {});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  const io::Cloud made = value_or_throw(io::read_cloud(at("out.ply"), {}, {}));
+  ASSERT_EQ(made.size(), 600u) << "advancing front keeps the points";
+  EXPECT_FALSE(io::find_field(made, "_"));
+  const std::vector<double> after = io::positions(made);
+  const auto pairs = io::gather_lists(made.points(), io::find_field(made, "pair").value(), {});
+  for (std::size_t v = 0; v < 600; ++v) {
+    const auto row = std::size_t(pairs.values.at(2 * v));
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      ASSERT_NEAR(after[3 * v + axis], xyz.at(3 * row + axis), 1e-6) << v;
+    EXPECT_EQ(pairs.values.at(2 * v + 1), 0.5);
+  }
+  EXPECT_EQ(io::field_values(made, io::find_field(made, "green").value())[5], 8);
+  EXPECT_FALSE(io::faces_of(made).empty());
+
+  put("wide.pcd", pcd(true));
+  const Ran refused = made_of("wide.pcd", {"--report", "-"});
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("out.ply: ply (binary_little_endian) cannot carry field 'stamp'; "
+                                     "--drop-unsupported leaves that out"));
+  EXPECT_FALSE(nlohmann::json::parse(refused.out).contains("counts")) << "before the work";
+  const Ran dropped = made_of("wide.pcd", {"--drop-unsupported", "--report", "r.json"});
+  ASSERT_EQ(dropped.code, 0) << dropped.err;
+  EXPECT_THAT(dropped.err, HasSubstr("out.ply: left out, as ply cannot carry them: field 'stamp'"));
+  EXPECT_EQ(nlohmann::json::parse(take("r.json"))["output"]["dropped"][0], "field 'stamp'");
+  EXPECT_EQ(take("out.ply").find("int64"), std::string::npos);
+}
+
+TEST_F(Reconstruct, CoordinatesThatATableCallsOtherwiseAreXyzInAPly) {
+  std::string table = "Easting,Northing,Height\n";
+  for (int i = 0; i < 900; ++i) table += fmt::format("{},{},0.{}\n", i % 30, i / 30, i * i % 7);
+  put("in.csv", table);
+  const Ran ran = run({"reconstruct", "in.csv", "out.ply"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  const io::Cloud made = value_or_throw(io::read_cloud(at("out.ply"), {}, {}));
+  for (const char* name : {"x", "y", "z"}) EXPECT_TRUE(io::find_field(made, name)) << name;
+}
+
 TEST_F(Reconstruct, MistakesHaveTheirExitCodesAndLeaveNoFile) {
   put("three.xyz", "0 0 0\n1 0 0\n0 1 0\n");
   EXPECT_EQ(run({"reconstruct", "in.ply", "out.pcd"}).code, 2);
