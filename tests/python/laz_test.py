@@ -125,6 +125,27 @@ def test_indexes_that_no_longer_hold_are_said(sphere, tmp_path):
     assert ran.returncode == 0 and "c.lax is an index of other points" in ran.stderr, ran.stderr
 
 
+def test_records_behind_the_points_stay_but_those_of_copc(sphere, tmp_path):
+    for name in ("a.las", "a.laz"):
+        scan(sphere, tmp_path / name)
+        las = laspy.read(tmp_path / name)
+        las.evlrs = laspy.vlrs.vlrlist.VLRList([laspy.VLR("someone", 8, "theirs", b"behind"), laspy.VLR("copc", 1000, "", b"x")])
+        las.write(tmp_path / name)
+        assert len(laspy.read(tmp_path / name).evlrs) == 2
+        report = rfsmooth.las.denoise_file(tmp_path / name, tmp_path / f"clean_{name}")
+        assert "COPC" in report["index"]
+        (left,) = laspy.read(tmp_path / f"clean_{name}").evlrs
+        assert (left.user_id, left.record_id, left.record_data_bytes()) == ("someone", 8, b"behind")
+
+
+def test_a_file_that_cannot_be_written_is_refused_before_the_work(sphere, tmp_path):
+    (tmp_path / "broken.laz").write_bytes(b"no scan")
+    (tmp_path / "folder.laz").mkdir()
+    for target, says in (("none/b.laz", "none' is not there"), ("folder.laz", "is a folder")):
+        ran = command("denoise", "--force", tmp_path / "broken.laz", tmp_path / target)
+        assert ran.returncode == 5 and says in ran.stderr, ran.stderr
+
+
 def test_without_laspy_it_says_what_to_install(sphere, tmp_path):
     scan(sphere, tmp_path / "a.laz")
     hidden = "import sys; sys.modules['laspy'] = None; sys.argv = ['rfsmooth', 'denoise', sys.argv[1], sys.argv[2]];"

@@ -70,6 +70,19 @@ def _store(las, xyz, moved):
         las.points.array[name][moved] = whole[moved].astype(np.int32)
 
 
+def _check_target(target, force):
+    """Refuses, before any work, a file that cannot be written."""
+    if os.path.exists(target) and not force:
+        raise Error("cannot_write", f"{target}: exists (--force replaces it)")
+    folder = os.path.dirname(target) or "."
+    if not os.path.isdir(folder):
+        raise Error("cannot_write", f"{target}: cannot write: the folder '{folder}' is not there")
+    if os.path.isdir(target):
+        raise Error("cannot_write", f"{target}: cannot write: is a folder")
+    if not os.access(folder, os.W_OK):
+        raise Error("cannot_write", f"{target}: cannot write into the folder '{folder}'")
+
+
 @takes_options("denoise")
 def denoise_file(source, target, *, force=False, threads=0, progress=None, config=None, **options):
     """Reads a LAS or LAZ file, takes the noise out and writes another; returns the report, whose "scale" says whether the
@@ -79,8 +92,7 @@ def denoise_file(source, target, *, force=False, threads=0, progress=None, confi
     normals and write_displacement have no place in these files; outliers may be removed.
     """
     source, target = os.fspath(source), os.fspath(target)
-    if os.path.exists(target) and not force:
-        raise Error("cannot_write", f"{target}: exists (--force replaces it)")
+    _check_target(target, force)
     laspy = _laspy(source)
     options = _functions._config(denoise_file.table, config, options)
     for name in ("normals", "write_displacement"):
@@ -119,11 +131,12 @@ def denoise_file(source, target, *, force=False, threads=0, progress=None, confi
 
 def _forget_index(las):
     """That of a COPC file: it says where points are that have moved. Returns whether there was one."""
-    had = len(las.vlrs) + len(las.evlrs or [])
-    las.vlrs = [record for record in las.vlrs if record.user_id != "copc"]
-    if las.evlrs:
-        las.evlrs = [record for record in las.evlrs if record.user_id != "copc"]
-    return len(las.vlrs) + len(las.evlrs or []) < had
+    had = False
+    for records in (las.vlrs, las.evlrs or []):
+        kept = [record for record in records if record.user_id != "copc"]
+        had = had or len(kept) < len(records)
+        records[:] = kept  # in place: laspy writes lists of its own kind only
+    return had
 
 
 def _write(las, target):
