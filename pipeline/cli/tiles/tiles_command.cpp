@@ -15,6 +15,7 @@
 #include "pipeline/cli/options/json_values.h"
 #include "pipeline/cli/options/text_values.h"
 #include "pipeline/cli/own_files.h"
+#include "pipeline/io/io.h"
 #include "pipeline/io/stream/atomic_file.h"
 #include "pipeline/tiles/allowed.h"
 #include "pipeline/tiles/files/row_file.h"
@@ -96,6 +97,15 @@ std::size_t tile_number(const std::string& text) {
   return std::size_t(*tile);
 }
 
+/// Refuses inputs whose fields cannot take normals, which join would write. \throw Failure (usage).
+void need_room_for_normals(const std::vector<std::string>& inputs, const Context& context) {
+  for (const std::string& input : inputs)
+    pipeline::io::naming(input, [&] {
+      pipeline::tiles::RowFile(input, context).need_normals();
+      return Done{};
+    });
+}
+
 void plan_tiles(TilesOptions& options, const std::vector<std::string>& arguments, const Context& context,
                 Console& console) {
   if (arguments.size() < 2) fail(ErrorCode::usage, "rfsmooth tiles plan takes IN... JOB");
@@ -107,6 +117,7 @@ void plan_tiles(TilesOptions& options, const std::vector<std::string>& arguments
   if (inputs.size() > 1) jobs_in_folder(inputs, "OUT");  // as join will write them
   NormalsFields& normals = options.planned.normals;
   check(normals);
+  if (normals.normals) need_room_for_normals(inputs, context);
   if (const auto how = normals_in_tiles(normals, inputs, context); how && how->viewpoint)
     normals.viewpoint = to_text(*how->viewpoint);
   std::vector<CommandOption> bound;

@@ -21,10 +21,11 @@ namespace rfsmooth::pipeline::tiles {
 namespace {
 
 [[noreturn]] void refuse_pieces(const std::string& name, const std::string& why) {
-  fail(ErrorCode::usage,
-       "{}: {}, so it cannot be read in pieces; write it as binary PLY, binary PCD or LAS, or give the "
-       "machine the memory for the whole",
-       name, why);
+  fail(
+      ErrorCode::usage,
+      "{}: {}, so it cannot be read in pieces; write it as binary PLY (little-endian), binary PCD or LAS, or "
+      "give the machine the memory for the whole",
+      name, why);
 }
 
 }  // namespace

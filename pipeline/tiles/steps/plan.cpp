@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <iterator>
 #include <memory>
 #include <utility>
 
@@ -27,8 +28,9 @@ using Eigen::AlignedBox3d;
 using Eigen::Vector3d;
 using nlohmann::ordered_json;
 
-constexpr std::uint64_t kPlanned = 250'000;         // points that the cuts are found among, to twice as many
-constexpr std::size_t kOpen = 500;                  // files that are written at once
+constexpr std::uint64_t kPlanned = 250'000;  // points that the cuts are found among, to twice as many
+constexpr std::size_t kOpen = 500;           // files that are written at once
+constexpr const char* kFolders[] = {"cut", "sample", "done"};  // of a job
 constexpr std::uint64_t kMeasuredOverSmoothed = 4;  // points: so many that measuring takes no more memory
 
 /// A number that a place has, whatever its row: the finaliser of splitmix64 (Steele et al. 2014) of its bits.
@@ -164,9 +166,22 @@ Job same_job_there(const Job& job, const PlanOptions& how) {
        "{}: holds a job of other inputs or options; remove it, or name another folder", job.folder.string());
 }
 
+/// Refuses a folder that is not the job's alone: whoever is done removes it with all that is in it.
+void need_own_folder(const fs::path& folder) {
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+    const std::string name = entry.path().filename().string();
+    const bool own = std::find(std::begin(kFolders), std::end(kFolders), name) != std::end(kFolders);
+    const bool left_by_a_crash = name.rfind(".job.json.part-", 0) == 0;
+    if (!own && !left_by_a_crash)
+      fail(ErrorCode::cannot_write, "{}: holds other files ({}); name a folder of its own for the job",
+           folder.string(), name);
+  }
+}
+
 void make_folders(const Job& job) {
   std::error_code error;
-  for (const char* name : {"cut", "sample", "done"}) {
+  for (const char* name : kFolders) {
     fs::create_directories(job.folder / name, error);
     if (error)
       fail(ErrorCode::cannot_write, "{}: cannot make the folder '{}': {}", job.folder.string(), name,
@@ -249,6 +264,7 @@ Job plan_job(const std::vector<std::string>& inputs, const fs::path& folder, con
   job.options = options;
   for (const std::string& path : inputs) job.inputs.push_back(describe_input(path, context));
   if (fs::exists(plan_file(folder))) return same_job_there(job, how);
+  need_own_folder(folder);
   make_folders(job);
   const std::uint64_t rows = job.rows();
   const std::uint64_t one_in = std::max<std::uint64_t>(1, rows / kPlanned);

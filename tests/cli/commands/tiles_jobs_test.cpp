@@ -268,6 +268,23 @@ TEST_F(Tiles, InputsThatJoinCouldNotTellApartAreRefusedByPlan) {
   EXPECT_FALSE(there("OUT"));
 }
 
+TEST_F(Tiles, AFolderOfOtherFilesIsNoJob) {
+  put("in.ply", strip(0.3, 40).bytes());
+  std::filesystem::create_directory(at("cleaned"));
+  put("cleaned/mine.ply", "mine");
+  const Ran ran = run({"tiles", "plan", "in.ply", "cleaned"});
+  EXPECT_EQ(ran.code, 5);
+  EXPECT_EQ(ran.err,
+            "rfsmooth: error: cleaned: holds other files (mine.ply); name a folder of its own for the job\n");
+  EXPECT_FALSE(there("cleaned/cut"));
+  std::filesystem::create_directories(at("empty"));
+  std::filesystem::create_directories(at("cut_short/cut"));
+  for (const char* folder : {"empty", "cut_short"}) {
+    step({"plan", "in.ply", folder});
+    step({"plan", "in.ply", folder});  // its own job
+  }
+}
+
 TEST_F(Tiles, JoinReplacesNoScan) {
   std::filesystem::create_directory(at("scans"));
   const std::string a = noisy_plane(20).bytes(), b = noisy_plane(21).bytes(), other = noisy_plane(5).bytes();

@@ -2,6 +2,8 @@
 #include <cstring>
 #include <string_view>
 
+#include <gmock/gmock.h>
+
 #include "pipeline/io/io.h"
 #include "pipeline/tiles/files/row_file.h"
 #include "tests/cli/support/tile_jobs.h"
@@ -147,6 +149,22 @@ TEST_F(Tiles, NormalsFaceTheViewpointAndElseTheSameSideInAllTiles) {
     }
     EXPECT_NEAR(std::abs(share - 0.5), 0.5, 0.001) << "all on one side";
   }
+}
+
+TEST_F(Tiles, NormalsThatTheFileCannotTakeAreRefusedByPlan) {
+  using namespace pipeline::io;  // NOLINT(google-build-using-namespace)
+  Cloud whole = make_cloud(strip(0.3, 20).xyz.data(), 100);
+  for (const char* name : {"nx", "ny", "nz"})
+    set_field(whole, name, Scalar::int8, std::vector<double>(100, 0));
+  put("whole.ply", serialize_cloud(whole, {}, {}).value());
+  const Ran ran = run({"tiles", "plan", "--normals", "whole.ply", "job"});
+  EXPECT_EQ(ran.code, 2);
+  EXPECT_THAT(ran.err,
+              ::testing::StartsWith(
+                  "rfsmooth: error: whole.ply: the points have a field 'nx' already, of whole numbers "
+                  "(int8); it cannot take values of type float32\n"));
+  EXPECT_FALSE(std::filesystem::exists(at("job")));
+  step({"plan", "whole.ply", "job"});
 }
 
 // A file as rows is looked at in its first rows only, and where two of them are too many, not at all.
