@@ -30,7 +30,8 @@ inline constexpr ExitCode kExitCodes[] = {
      "not enough memory (estimated before starting, or met on the way)"},
     {127, ErrorCode::not_installed, "not_installed",
      "reconstruct or render needs a program or a library that is not installed"},
-    {130, ErrorCode::cancelled, "cancelled", "cancelled (Ctrl-C); no file is left behind"}};
+    {130, ErrorCode::cancelled, "cancelled",
+     "cancelled (Ctrl-C, kill, or the end of the terminal but under nohup); no file is left behind"}};
 
 /// How the command ends with that error.
 inline const ExitCode& exit_of(ErrorCode error) {

@@ -244,6 +244,33 @@ TEST_F(Awkward, InterruptWhileWaitingForStandardInput) {
   EXPECT_TRUE(names().empty());
 }
 
+TEST_F(Awkward, TheEndOfTheTerminalStopsTheWorkUnlessNohup) {
+  put("in.ply", noisy_plane(300).bytes());
+  RunSetup setup;
+  setup.interrupt_after_ms = 1000;
+  setup.interrupt_by = SIGHUP;
+  const Ran ran = run({"denoise", "--flow", "hc", "--iterations", "100000", "in.ply", "out.ply"}, setup);
+  EXPECT_EQ(ran.code, 130) << ran.err;
+  EXPECT_THAT(names(), ElementsAre("in.ply"));
+  setup.folder = at("");
+  const Ran kept = run_program(
+      "nohup", {RFSMOOTH_COMMAND, "denoise", "--flow", "hc", "--iterations", "40", "in.ply", "out.ply"},
+      setup);
+  EXPECT_EQ(kept.code, 0) << kept.err;
+  EXPECT_TRUE(there("out.ply"));
+}
+
+TEST_F(Awkward, AFileBeyondTheLimitOfSizesIsAnErrorAndLeavesNothing) {
+  put("in.ply", noisy_plane(80).bytes());  // 128 kB
+  RunSetup setup;
+  setup.folder = at("");
+  const Ran ran = run_program(
+      "sh", {"-c", std::string("ulimit -f 16; exec ") + RFSMOOTH_COMMAND + " denoise in.ply out.ply"}, setup);
+  EXPECT_EQ(ran.code, 5) << ran.err;
+  EXPECT_EQ(ran.err, "rfsmooth: error: out.ply: cannot write: File too large\n");
+  EXPECT_THAT(names(), ElementsAre("in.ply"));
+}
+
 TEST_F(Awkward, FullStandardOutputIsAnError) {
   if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
   put("in.ply", noisy_plane(4).bytes());

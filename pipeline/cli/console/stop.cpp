@@ -1,6 +1,6 @@
 #include "pipeline/cli/console/stop.h"
 
-#include <csignal>
+#include <initializer_list>
 
 namespace rfsmooth::cli {
 
@@ -22,9 +22,13 @@ void catch_signals() {
   action.sa_handler = set_stopped;
   sigemptyset(&action.sa_mask);
   action.sa_flags = 0;  // not SA_RESTART: a read that waits for standard input is to return
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
-  std::signal(SIGPIPE, SIG_IGN);  // writing to a closed pipe then fails: exit code 5
+  for (const int signal : kCancelling) {
+    struct sigaction inherited = {};
+    sigaction(signal, nullptr, &inherited);
+    if (inherited.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
+  }
+  // Writing to a closed pipe, or beyond the size that files may have, then fails: exit code 5.
+  for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);
 }
 
 }  // namespace rfsmooth::cli

@@ -1,12 +1,15 @@
 /// rfsmooth-reconstruct: what `rfsmooth reconstruct` becomes. The same options, with the methods that this
 /// build has.
+#include <array>
 #include <csignal>
+#include <iterator>
 #include <string_view>
 
 #include <fcntl.h>
 #include <unistd.h>
 
 #include "pipeline/cli/commands/reconstruct_command.h"
+#include "pipeline/cli/console/stop.h"
 #include "pipeline/cli/program.h"
 #ifdef RFSMOOTH_HAVE_CGAL
 #include <rfsmooth/cgal/advancing_front.h>
@@ -36,13 +39,16 @@ class InsideLibrary {
     struct sigaction action = {};
     action.sa_handler = cancel;
     sigemptyset(&action.sa_mask);
-    sigaction(SIGINT, &action, &interrupt_);
-    sigaction(SIGTERM, &action, &terminate_);
+    for (std::size_t k = 0; k < before_.size(); ++k) {
+      const int signal = rfsmooth::cli::kCancelling[k];
+      sigaction(signal, nullptr, &before_[k]);
+      if (before_[k].sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
+    }
     if (kept_ >= 0 && nowhere_ >= 0) dup2(nowhere_, STDERR_FILENO);
   }
   ~InsideLibrary() {
-    sigaction(SIGINT, &interrupt_, nullptr);
-    sigaction(SIGTERM, &terminate_, nullptr);
+    for (std::size_t k = 0; k < before_.size(); ++k)
+      sigaction(rfsmooth::cli::kCancelling[k], &before_[k], nullptr);
     messages = STDERR_FILENO;
     if (kept_ >= 0) dup2(kept_, STDERR_FILENO);
     for (const int descriptor : {kept_, nowhere_})
@@ -53,7 +59,7 @@ class InsideLibrary {
 
  private:
   int kept_, nowhere_;
-  struct sigaction interrupt_ = {}, terminate_ = {};
+  std::array<struct sigaction, std::size(rfsmooth::cli::kCancelling)> before_{};
 };
 
 rfsmooth::SurfaceMethod guarded(rfsmooth::SurfaceMethod method) {

@@ -59,7 +59,7 @@ void close_and_forget(int& descriptor) {
   dup2(in.read_end, 0);
   dup2(out.write_end, 1);
   dup2(err.write_end, 2);
-  signal(SIGPIPE, SIG_DFL);
+  for (const int inherited : {SIGPIPE, SIGINT, SIGTERM, SIGHUP}) signal(inherited, SIG_DFL);
   if (!setup.folder.empty() && chdir(setup.folder.c_str()) != 0) _exit(125);
   for (const std::string& variable : setup.environment) putenv(const_cast<char*>(variable.c_str()));
   if (setup.address_space > 0) {
@@ -124,7 +124,7 @@ Ran run_program(const std::string& program, const std::vector<std::string>& argu
     }
     const auto elapsed = Clock::now() - start;
     if (interrupt_now(elapsed)) {
-      kill(child, SIGINT);
+      kill(child, setup.interrupt_by);
       interrupted = Clock::now();
     }
     if (elapsed > kLimit) kill(child, SIGKILL);

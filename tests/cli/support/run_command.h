@@ -1,6 +1,7 @@
 /// Runs the real binary and says what it did: exit code, stdout, stderr.
 #pragma once
 
+#include <csignal>
 #include <string>
 #include <vector>
 
@@ -20,8 +21,9 @@ struct RunSetup {
   std::string folder;                    ///< working folder; empty: the test's own
   std::vector<std::string> environment;  ///< "NAME=value", added
   std::size_t address_space = 0;         ///< bytes; 0 = no limit
-  int interrupt_after_ms = -1;           ///< sends SIGINT then; -1 = never
-  std::string interrupt_when;            ///< sends SIGINT when stderr says this
+  int interrupt_after_ms = -1;           ///< sends the signal then; -1 = never
+  std::string interrupt_when;            ///< sends the signal when stderr says this
+  int interrupt_by = SIGINT;             ///< the signal
   bool terminal = false;                 ///< stderr is a terminal
 };
 
