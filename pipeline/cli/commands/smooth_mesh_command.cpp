@@ -130,12 +130,16 @@ void refine_file(const After& after, pipeline::io::Cloud& cloud, FileMesh& file,
                  const std::vector<double>& rows, const CloudTask& task) {
   const auto sharp = after.sharp_angle ? sharp_edges(file.mesh, *after.sharp_angle) : std::vector<Edge>{};
   Mesh fine = value_or_fail(smoothing::refine(file.mesh, after.refine, task.context, sharp), task.job.input);
-  const bool more = cloud.points().fields.size() > 3;
+  const std::vector<std::string> lost = lost_in_refined(cloud);
+  const auto& fields = cloud.points().fields;
+  pipeline::io::warn_of_rounding({fields[cloud.xyz[0]], fields[cloud.xyz[1]], fields[cloud.xyz[2]]}, 0,
+                                 task.context);
   put_refined(cloud, file, rows, fine);
   file.mesh = std::move(fine);
-  if (more)
-    task.console.warn(task.job.input +
-                      ": a refined mesh has new points; only x, y, z and triangles are written");
+  if (!lost.empty())
+    task.console.warn(
+        fmt::format("{}: a refined mesh has new points; only x, y, z and triangles are written, not {}",
+                    task.job.input, fmt::join(lost, ", ")));
 }
 
 /// Adds the field of ridges and ravines.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/fail.h"
+#include "pipeline/io/convert/capacity.h"
 #include "pipeline/io/io.h"
 #include "pipeline/io/mesh_file.h"
 
@@ -60,6 +61,23 @@ std::vector<double> FileMesh::moved_rows(bool& any) const {
       }
   }
   return rows;
+}
+
+std::vector<std::string> lost_in_refined(const io::Cloud& cloud) {
+  std::vector<std::string> lost;
+  for (std::size_t f = 0; f < cloud.points().fields.size(); ++f)
+    if (!io::is_coordinate(cloud, f))
+      lost.push_back(fmt::format("field '{}'", cloud.points().fields[f].name));
+  for (std::size_t e = 0; e < cloud.elements.size(); ++e) {
+    const io::Table& table = cloud.elements[e];
+    if (e == cloud.vertex || table.count == 0) continue;
+    const auto corners = io::polygon_field(table);
+    if (!corners) lost.push_back(fmt::format("element '{}'", table.name));
+    for (std::size_t f = 0; corners && f < table.fields.size(); ++f)
+      if (f != *corners) lost.push_back(fmt::format("field '{}' of the faces", table.fields[f].name));
+  }
+  if (!cloud.notes.empty()) lost.push_back(counted(cloud.notes.size(), "comment"));
+  return lost;
 }
 
 void put_refined(io::Cloud& cloud, const FileMesh& file, const std::vector<double>& rows, const Mesh& fine) {

@@ -29,8 +29,11 @@ struct FileMesh {
 FileMesh file_mesh(const pipeline::io::Cloud& cloud, const std::string& name, const Context& context,
                    bool own_heights);
 
+/// What `put_refined` drops of the cloud, in words: fields, elements, comments.
+std::vector<std::string> lost_in_refined(const pipeline::io::Cloud& cloud);
+
 /// Replaces the cloud by a refined mesh: first its rows, at `rows`, then the new vertices of `fine`, whose
-/// first vertices are those of `file`. Other fields and elements are dropped.
+/// first vertices are those of `file`. Other fields, elements and comments are dropped.
 void put_refined(pipeline::io::Cloud& cloud, const FileMesh& file, const std::vector<double>& rows,
                  const Mesh& fine);
 

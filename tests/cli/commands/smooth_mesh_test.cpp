@@ -348,6 +348,28 @@ TEST_F(SmoothMesh, RidgesOfAPartKeepTheSideOfTheFileWhateverStandsBesideIt) {
   EXPECT_GT(marked, 0);
 }
 
+TEST_F(SmoothMesh, WhatARefinedMeshGoesWithoutIsSaid) {
+  std::string text = "ply\nformat ascii 1.0\ncomment by hand\ncomment of stone\nelement vertex 6\n";
+  for (const char* property : {"int x", "int y", "int z", "float heat"})
+    text += std::string("property ") + property + "\n";
+  text +=
+      "element face 8\nproperty list uchar int vertex_indices\nproperty uchar part\n"
+      "element camera 1\nproperty float focus\nend_header\n";
+  for (const char* row : {"10 0 0", "-10 0 0", "0 10 0", "0 -10 0", "0 0 10", "0 0 -10"})
+    text += std::string(row) + " 5\n";
+  for (const char* face : {"0 2 4", "2 1 4", "1 3 4", "3 0 4", "2 0 5", "1 2 5", "3 1 5", "0 3 5"})
+    text += std::string("3 ") + face + " 1\n";
+  put("in.ply", text + "50\n");
+  const Ran ran = run({"smooth-mesh", "in.ply", "out.ply", "--iterations", "0", "--refine", "1"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  EXPECT_THAT(ran.err, HasSubstr("only x, y, z and triangles are written, not field 'heat', field 'part' of "
+                                 "the faces, element 'camera', 2 comments\n"));
+  EXPECT_THAT(ran.err, HasSubstr("the coordinates are whole numbers (int32): new ones are rounded"));
+  put("plain.ply", bumpy_grid(""));
+  EXPECT_THAT(run({"smooth-mesh", "plain.ply", "fine.ply", "--iterations", "0", "--refine", "1"}).err,
+              ::testing::Not(HasSubstr("warning")));
+}
+
 TEST_F(SmoothMesh, RidgesOfAnOffFileGoIntoAPly) {
   put("in.off", "OFF\n6 8 0\n" + octahedron_vertices(0) + octahedron_faces(0, false));
   const Ran ran = run({"smooth-mesh", "in.off", "out.ply", "--iterations", "0", "--ridges"});
