@@ -127,8 +127,8 @@ void check_field(const Cloud& cloud, const std::string& name, Scalar type);
 
 /// Keeps the points `rows`, in that order. Unless these are all points in order, the result is not organised.
 /// Rows of elements that name points by index (lists called vertex_indices or vertex_index; vertex1, vertex2)
-/// stay where all of their points do, and get the new indices. \throw std::invalid_argument if there is no
-/// such row.
+/// stay where all of their points do, and get the new indices; strips of triangles (tristrips) are cut.
+/// \throw std::invalid_argument if there is no such row.
 void select_points(Cloud& cloud, const std::vector<std::size_t>& rows, const Context& context = {});
 
 /// A cloud of n points with fields x, y, z of `type` and nothing else.

@@ -86,6 +86,8 @@ std::vector<std::size_t> fields_of_indices(const Table& table);
 /// Keeps the rows of which every value of the fields `which`, plain or lists, has a new number, and writes
 /// that in its place; all other bytes stay. `number`: the new one of each old one; kNone: it has none, as
 /// those beyond have not. Values below 0 name no point and stay (PLY's tristrips have -1 between strips).
+/// Strips of triangles (element tristrips) are cut where a point has none: the other triangles stay, and
+/// their sides.
 void renumber(Table& table, const std::vector<std::size_t>& which, const std::vector<Index>& number,
               const Context& context);
 

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <atomic>
 #include <filesystem>
 #include <fstream>
@@ -212,6 +213,36 @@ TEST(CloudFile, StripsOfTrianglesAreRenumberedAndStayApart) {
     expected.replace(expected.find("vertex 5"), 8, "vertex 4");
     EXPECT_EQ(file.serialize(as).value(), expected);
   }
+}
+
+TEST(CloudFile, StripsOfTrianglesAreCutWhereAPointGoes) {
+  const std::string points =
+      "\nproperty float x\nproperty float y\nproperty float z\nelement tristrips 2\nproperty uchar id\n"
+      "property list int int vertex_indices\nproperty uchar part\nend_header\n";
+  const std::string rows = "0 0 0\n0 1 0\n1 0 0\n1 1 0\n2 0 0\n2 1 0\n3 0 0\n";
+  const std::string before = "ply\nformat ascii 1.0\nelement vertex 7" + points + rows +
+                             "1 12 0 1 2 3 4 5 6 -1 4 5 6 -1 8\n2 3 0 1 2 9\n";
+  struct Case {
+    std::size_t gone;
+    std::string strips;
+  };
+  for (const auto& [gone, strips] :
+       {Case{3, "1 12 0 1 2 -1 3 4 5 -1 3 4 5 -1 8\n2 3 0 1 2 9\n"},
+        Case{2, "1 10 2 2 3 4 5 -1 3 4 5 -1 8\n"},  // the piece begins with a triangle that is turned
+        Case{5, "1 6 0 1 2 3 4 -1 8\n2 3 0 1 2 9\n"}})
+    for (const Encoding encoding : {Encoding::ascii, Encoding::binary_little_endian}) {
+      WriteOptions as;
+      as.encoding = encoding;
+      const std::string bytes = CloudFile::parse(before, "strips.ply").value().serialize(as).value();
+      auto file = CloudFile::parse(bytes, "strips.ply").value();
+      std::vector<std::size_t> staying;
+      for (std::size_t i = 0; i < 7; ++i)
+        if (i != gone) staying.push_back(i);
+      file.select(staying);
+      as.encoding = Encoding::ascii;
+      const std::string after = file.serialize(as).value();
+      EXPECT_EQ(after.substr(after.size() - std::min(after.size(), strips.size())), strips) << gone;
+    }
 }
 
 }  // namespace

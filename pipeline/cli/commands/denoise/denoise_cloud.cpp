@@ -182,7 +182,9 @@ std::string drop_outliers(pipeline::io::Cloud& cloud, const std::vector<char>& o
     if (e == cloud.vertex || element.count == counts[e]) continue;
     const std::size_t gone = counts[e] - element.count;
     task.entry["counts"]["removed_with_points"][element.name] = gone;
-    said += fmt::format("{} {} of {} {}s", said.empty() ? ", with them" : ",", gone, counts[e], element.name);
+    const char* const plural = !element.name.empty() && element.name.back() == 's' ? "" : "s";  // tristrips
+    said += fmt::format("{} {} of {} {}{}", said.empty() ? ", with them" : ",", gone, counts[e], element.name,
+                        plural);
   }
   return said;
 }
