@@ -10,6 +10,7 @@
 
 #include <rfsmooth/version.h>
 
+#include "base/fail.h"
 #include "pipeline/cli/console/console.h"
 #include "pipeline/cli/console/stop.h"
 #include "pipeline/cli/exit_code.h"
@@ -51,6 +52,18 @@ int print(const std::string& text) {
   return 0;
 }
 
+/// Refuses names of files that a report could not tell: their letters are not UTF-8, as JSON needs them.
+void need_whole_names(const std::string& report, const Config& config) {
+  constexpr std::string_view kReplaced = "\xef\xbf\xbd";  // what JSON has in the place of such a letter
+  std::vector<std::string> names = config.arguments;
+  if (config.folder) names.push_back(*config.folder);
+  for (const std::string& name : names)
+    if (name.find(kReplaced) != std::string::npos)
+      fail(ErrorCode::usage,
+           "{}: cannot tell the name of {}, which is not UTF-8; name the files beside --config", report,
+           name);
+}
+
 /// Assigns the options: those of --config first, then what was typed. The files come from the config if none
 /// were typed.
 Invocation with_config(const Command& command, Invocation typed) {
@@ -64,6 +77,7 @@ Invocation with_config(const Command& command, Invocation typed) {
     Config config = read_config(text, command);
     assign_all(config.options);
     if (!typed.arguments.empty() || output_typed) continue;
+    need_whole_names(text, config);
     typed.arguments = std::move(config.arguments);
     if (config.folder) assign_all(std::vector{std::pair("output", *config.folder)});
   }

@@ -1,36 +1,19 @@
 #include "pipeline/cli/options/config.h"
 
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 
 #include <nlohmann/json.hpp>
 
 #include "base/fail.h"
 #include "pipeline/cli/options/json_values.h"
 #include "pipeline/cli/options/suggest.h"
+#include "pipeline/tiles/files/json_file.h"
 
 namespace rfsmooth::cli {
 
 namespace {
 
 using nlohmann::json;
-
-json parse_file(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) fail(ErrorCode::input_unreadable, "{}: {}", path, std::strerror(errno));
-  const std::string text((std::istreambuf_iterator<char>(file)), {});
-  if (file.bad()) fail(ErrorCode::input_unreadable, "{}: cannot be read", path);
-  try {
-    return json::parse(text);
-  } catch (const json::parse_error& error) {
-    fail(ErrorCode::input_unreadable, "{}: not JSON at byte {}", path, error.byte);
-  } catch (const json::exception&) {  // the one other thing that goes wrong in reading
-    fail(ErrorCode::usage, "{}: a number in it is too large for any option", path);
-  }
-}
 
 /// The value as it would be typed after the option.
 std::string as_typed(const std::string& path, const std::string& name, const json& value) {
@@ -77,7 +60,8 @@ void enter_files(const json& root, Config& config) {
 }  // namespace
 
 Config read_config(const std::string& path, const Command& command) {
-  const json root = parse_file(path);
+  if (path == "-") fail(ErrorCode::usage, "--config takes the name of a file, not standard input (-)");
+  const json root = pipeline::tiles::read_json(path);
   if (!root.is_object()) fail(ErrorCode::usage, "{}: a JSON object is needed", path);
   const json& part = part_with_options(path, root);
   const bool report = part.contains("options");
@@ -89,8 +73,9 @@ Config read_config(const std::string& path, const Command& command) {
 
   Config config;
   for (const auto& [name, value] : options.items()) {
+    if (name == "config") fail(ErrorCode::usage, "{}: 'config' is for the command line only", path);
     const CommandOption* const option = find_option(command.options, name);
-    if (option == nullptr || name == "config")
+    if (option == nullptr)
       fail(ErrorCode::usage, "{}: unknown option '{}'{}", path, name, did_you_mean(name, names_of(command)));
     if (value.is_null() && option->kind == ValueKind::file) continue;  // left out
     config.options.emplace_back(name, as_typed(path, name, value));

@@ -1,8 +1,9 @@
 #include "pipeline/tiles/files/job_json.h"
 
-#include <fstream>
+#include <system_error>
 
 #include "base/fail.h"
+#include "pipeline/tiles/files/json_file.h"
 #include "pipeline/tiles/files/statistics_json.h"
 
 namespace rfsmooth::pipeline::tiles {
@@ -12,7 +13,7 @@ namespace {
 using nlohmann::ordered_json;
 
 [[noreturn]] void refuse_plan(const std::filesystem::path& folder, const nlohmann::json::exception& error) {
-  fail(ErrorCode::input_unreadable, "{}: is no plan: {}", plan_file(folder).string(), error.what());
+  fail(ErrorCode::input_unreadable, "{}: is no plan: {}", plan_file(folder).string(), said_of(error));
 }
 
 }  // namespace
@@ -40,14 +41,9 @@ ordered_json json_of_job(const Job& job, const PlanOptions& how) {
 }
 
 ordered_json read_plan(const std::filesystem::path& folder) {
-  std::ifstream file(plan_file(folder));
-  if (!file)
+  if (std::error_code unknown; !std::filesystem::exists(plan_file(folder), unknown))
     fail(ErrorCode::input_unreadable, "{}: holds no job (rfsmooth tiles plan makes one)", folder.string());
-  try {
-    return ordered_json::parse(file);
-  } catch (const nlohmann::json::exception& error) {
-    refuse_plan(folder, error);
-  }
+  return read_json(plan_file(folder));
 }
 
 Job job_of(const ordered_json& json, const std::filesystem::path& folder) {

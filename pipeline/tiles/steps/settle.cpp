@@ -1,7 +1,6 @@
 #include "pipeline/tiles/steps/settle.h"
 
 #include <algorithm>
-#include <fstream>
 #include <utility>
 #include <vector>
 
@@ -12,6 +11,7 @@
 #include "pipeline/io/io.h"
 #include "pipeline/prepare.h"
 #include "pipeline/tiles/allowed.h"
+#include "pipeline/tiles/files/json_file.h"
 #include "pipeline/tiles/files/records.h"
 #include "pipeline/tiles/files/statistics_json.h"
 #include "pipeline/tiles/halo.h"
@@ -143,10 +143,9 @@ Settled settled_of(const Job& job) {
 }
 
 Settled read_settled(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  if (!file) fail(ErrorCode::input_unreadable, "{}: cannot be read", path.string());
+  const ordered_json json = read_json(path);
   try {
-    Settled settled = settled_of_json(ordered_json::parse(file));
+    Settled settled = settled_of_json(json);
     std::vector<std::string> wrong = check(settled.report.statistics);
     if (!(settled.halo >= 0 && settled.halo <= rfs_mesh::kLargestSide && settled.radii > 0 &&
           settled.radii <= rfs_mesh::kLargestSide && settled.widest >= 1 && settled.widest < kNone))
@@ -154,7 +153,8 @@ Settled read_settled(const std::filesystem::path& path) {
     if (!wrong.empty()) fail(ErrorCode::input_unreadable, "{}: {}", path.string(), wrong.front());
     return settled;
   } catch (const nlohmann::json::exception& error) {
-    fail(ErrorCode::input_unreadable, "{}: {}", path.string(), error.what());
+    fail(ErrorCode::input_unreadable, "{}: is not what 'rfsmooth tiles settle' writes: {}", path.string(),
+         said_of(error));
   }
 }
 

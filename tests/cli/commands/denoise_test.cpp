@@ -1,5 +1,6 @@
 /// rfsmooth denoise on small files: the cloud's own bytes, and the contracts of files and streams.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <sstream>
 
@@ -334,7 +335,49 @@ TEST_F(DenoiseCommand, ConfigErrorsAreNamed) {
   const Ran huge = run({"denoise", "--config", "huge.json", "in.ply", "out.ply"});
   EXPECT_EQ(huge.code, 2);
   EXPECT_THAT(huge.err, ::testing::AllOf(HasSubstr("huge.json: "), HasSubstr("too large")));
+  put("itself.json", R"({"config": "typo.json"})");
+  const Ran itself = run({"denoise", "--config", "itself.json", "in.ply", "out.ply"});
+  EXPECT_EQ(itself.code, 2);
+  EXPECT_THAT(itself.err, HasSubstr("itself.json: 'config' is for the command line only"));
+  const Ran piped = run({"denoise", "--config", "-", "in.ply", "out.ply"});
+  EXPECT_EQ(piped.code, 2);
+  EXPECT_THAT(piped.err, HasSubstr("--config takes the name of a file, not standard input"));
   EXPECT_FALSE(there("out.ply"));
+}
+
+TEST_F(DenoiseCommand, JsonThatIsNoneIsSaidInPlainWords) {
+  put("in.ply", noisy_plane(10).bytes());
+  put("broken.json", "{\"halo\": ");
+  put("empty.json", "{}");
+  put("words.json", R"({"halo": "far"})");
+  const std::array<const char*, 3> cases[] = {
+      {"--config", ".", ".: is a directory, expected a file"},
+      {"--statistics", ".", ".: is a directory, expected a file"},
+      {"--statistics", "missing.json", "missing.json: cannot open: No such file or directory"},
+      {"--statistics", "broken.json", "broken.json: not JSON at byte 10"},
+      {"--statistics", "empty.json",
+       "empty.json: is not what 'rfsmooth tiles settle' writes: the key 'halo' is missing"},
+      {"--statistics", "words.json",
+       "words.json: is not what 'rfsmooth tiles settle' writes: a value in it is of another kind than "
+       "rfsmooth "
+       "writes"}};
+  for (const auto& [option, file, says] : cases) {
+    const Ran ran = run({"denoise", option, file, "in.ply", "out.ply"});
+    EXPECT_EQ(ran.code, 3) << says;
+    EXPECT_THAT(ran.err, HasSubstr(std::string(says) + "\n"));
+    EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
+  }
+}
+
+TEST_F(DenoiseCommand, AReportThatCannotTellANameSaysSo) {
+  const std::string name = "caf\xe9.ply";  // Latin-1, which JSON does not hold
+  put(name, noisy_plane(10).bytes());
+  ASSERT_EQ(run({"denoise", "--flow", "hc", name, "out.ply", "--report", "r.json"}).code, 0);
+  const Ran alone = run({"denoise", "--config", "r.json", "--force"});
+  EXPECT_EQ(alone.code, 2);
+  EXPECT_THAT(alone.err, HasSubstr("r.json: cannot tell the name of caf"));
+  EXPECT_EQ(run({"denoise", "--config", "r.json", name, "two.ply"}).code, 0);
+  EXPECT_TRUE(take("two.ply") == take("out.ply"));
 }
 
 TEST_F(DenoiseCommand, ManyFilesGoOnAfterAnError) {
