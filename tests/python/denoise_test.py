@@ -193,3 +193,11 @@ def test_real_scan():
     clean, report = rfsmooth.denoise(points)
     assert report["counts"]["moved"] > 0.5 * np.isfinite(points).all(axis=1).sum()
     assert clean.dtype == np.float32
+
+
+def test_true_is_no_number(sphere):
+    with pytest.raises(rfsmooth.Error, match="iterations") as caught:
+        rfsmooth.denoise(sphere, flow="hc", iterations=True)
+    assert caught.value.code == "usage"
+    with pytest.raises(TypeError, match="threads"):
+        rfsmooth.denoise(sphere, threads=True)

@@ -81,6 +81,63 @@ def test_a_field_that_is_added_comes_last(sphere, tmp_path):
     assert again.dtype == wide.dtype and np.array_equal(again, wide)
 
 
+def with_column(points, name, values):
+    wide = np.empty(len(points), points.dtype.descr + [(name, values.dtype, values.shape[1:])])
+    for present in points.dtype.names:
+        wide[present] = points[present]
+    wide[name] = values
+    return wide
+
+
+def test_what_read_gave_is_written_without_the_file_too(sphere, tmp_path):
+    rfsmooth.write(tmp_path / "a.ply", sphere)
+    points, _ = rfsmooth.read(tmp_path / "a.ply")
+    wide = with_column(points, "pair", np.arange(2 * len(points), dtype="f4").reshape(-1, 2))
+    rfsmooth.write(tmp_path / "a.pcd", wide)
+    again, _ = rfsmooth.read(tmp_path / "a.pcd")
+    assert again.dtype == wide.dtype and np.array_equal(again, wide)
+    rfsmooth.write(tmp_path / "b.pcd", again)
+    assert np.array_equal(rfsmooth.read(tmp_path / "b.pcd")[0], wide)
+    rfsmooth.write(tmp_path / "b.ply", again)
+    assert b"property list uchar float pair" in (tmp_path / "b.ply").read_bytes()
+    rfsmooth.write(tmp_path / "c.pcd", *rfsmooth.read(tmp_path / "b.ply"))  # lists stay in the file
+    assert np.array_equal(rfsmooth.read(tmp_path / "c.pcd")[0], wide)
+
+
+@pytest.mark.parametrize("kind", ["i8", "u8"])
+def test_whole_numbers_of_64_bits_are_refused_in_ply(sphere, tmp_path, kind):
+    rfsmooth.write(tmp_path / "a.ply", sphere)
+    points, file = rfsmooth.read(tmp_path / "a.ply")
+    wide = with_column(points, "stamp", np.arange(len(points)).astype(kind))
+    for beside in (None, file):
+        with pytest.raises(rfsmooth.Error, match="cannot carry field 'stamp'; drop_unsupported leaves") as caught:
+            rfsmooth.write(tmp_path / "b.ply", wide, beside)
+        assert caught.value.code == "usage" and not (tmp_path / "b.ply").exists()
+        rfsmooth.write(tmp_path / "b.pcd", wide, beside, force=True)
+        assert np.array_equal(rfsmooth.read(tmp_path / "b.pcd")[0]["stamp"], wide["stamp"])
+    text = "ply\nformat ascii 1.0\nelement vertex 1\n"
+    text += "".join(f"property {t} {n}\n" for t, n in (("double", "x"), ("double", "y"), ("double", "z"), ("int64", "stamp")))
+    (tmp_path / "c.ply").write_text(text + "end_header\n1 2 3 4\n")
+    rfsmooth.write(tmp_path / "d.ply", *rfsmooth.read(tmp_path / "c.ply"))
+    assert (tmp_path / "d.ply").read_text() == (tmp_path / "c.ply").read_text()
+
+
+def test_masked_values_are_refused(sphere, tmp_path):
+    masked = np.ma.masked_array(sphere, mask=np.zeros(sphere.shape, bool))
+    assert np.array_equal(rfsmooth.denoise(masked)[0], rfsmooth.denoise(sphere)[0])
+    masked[3, 1] = np.ma.masked
+    array = np.ma.masked_array(structured(sphere), mask=False)
+    array["Intensity"][0] = np.ma.masked
+    for call in (
+        lambda: rfsmooth.denoise(masked),
+        lambda: rfsmooth.write(tmp_path / "a.ply", masked),
+        lambda: rfsmooth.denoise_structured(array),
+        lambda: rfsmooth.denoise(sphere, strength_field=np.ma.masked_less(np.ones(len(sphere)), 2)),
+    ):
+        with pytest.raises(ValueError, match="masked values"):
+            call()
+
+
 @pytest.mark.parametrize("ending", [".ply", ".pcd", ".xyz", ".csv"])
 def test_names_of_several_words_are_written_as_one(sphere, tmp_path, ending):
     """Numpy's names may be anything, as laspy's of extra dimensions are; those of headers may not."""

@@ -26,6 +26,14 @@ bool is_unnamed(const Field& f) {
   return f.name.rfind("column_", 0) == 0;
 }
 
+// PLY has no arrays, and no whole numbers of 64 bits but those of a file that has some.
+bool has_ply_types(const Table& points) {
+  return std::all_of(points.fields.begin(), points.fields.end(), [](const Field& f) {
+    const bool wide = f.type == Scalar::int64 || f.type == Scalar::uint64;
+    return f.count == 1 && (!wide || !f.spelling.empty());
+  });
+}
+
 bool float_digits_lost(const Table& table, std::size_t field, const Context& context) {
   if (!table.text || table.fields[field].type != Scalar::float32 || !table.fields[field].is_plain())
     return false;
@@ -192,6 +200,7 @@ void add_kept_points(const Cloud& cloud, Format format, const Context& context, 
 
 bool is_writable_as_is(const Cloud& cloud, Format format) {
   if (format != cloud.format) return false;
+  if (format == Format::ply) return has_ply_types(cloud.points());
   if (format != Format::off) return true;
   const std::vector<std::size_t> in_order = off_fields(cloud);
   const std::vector<Field>& fields = cloud.points().fields;

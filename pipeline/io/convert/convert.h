@@ -8,8 +8,9 @@
 
 namespace rfsmooth::pipeline::io {
 
-/// Whether the cloud's rows can be written as they are: the format is the same, and for OFF, whose columns
-/// have no names, no field stands out of order or is unknown to OFF.
+/// Whether the cloud's rows can be written as they are: the format is the same, for PLY no field of the
+/// points is of a type that it lacks, and for OFF, whose columns have no names, none stands out of order or
+/// is unknown to OFF.
 bool is_writable_as_is(const Cloud& cloud, Format format);
 
 /// What writing the cloud in this way would lose, in words; empty if nothing. Not counted: the type names of

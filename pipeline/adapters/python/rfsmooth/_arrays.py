@@ -1,5 +1,7 @@
 """Arrays of points as clouds in memory, and back."""
 
+import math
+
 import numpy as np
 
 from . import _rfsmooth
@@ -8,9 +10,16 @@ _TYPES = {np.dtype(t) for t in ("i1", "u1", "i2", "u2", "i4", "u4", "i8", "u8", 
 _XYZ = (("x", "y", "z"), ("X", "Y", "Z"))
 
 
+def as_array(values, name):
+    """An array of the values. ValueError if some are masked: what stands there is no value."""
+    if isinstance(values, np.ma.MaskedArray) and b"\1" in np.ma.getmaskarray(values).tobytes():
+        raise ValueError(f"{name} has masked values: fill them (coordinates with NaN, say), or take their rows out")
+    return np.asarray(values)
+
+
 def as_points(points, name="points"):
     """n x 3 of float32 or float64, in C order and the machine's byte order; a copy only where it must be."""
-    array = np.asarray(points)
+    array = as_array(points, name)
     if array.dtype.kind in "iub":
         array = array.astype(np.float64)
     if array.ndim != 2 or array.shape[1] != 3:
@@ -23,7 +32,7 @@ def as_points(points, name="points"):
 
 def as_faces(faces, vertices):
     """m x 3 of uint32, each naming one of that many vertices."""
-    array = np.asarray(faces)
+    array = as_array(faces, "faces")
     if array.size == 0:
         return np.empty((0, 3), np.uint32)
     if array.ndim != 2 or array.shape[1] != 3 or array.dtype.kind not in "iu":
@@ -35,7 +44,7 @@ def as_faces(faces, vertices):
 
 def as_column(values, n, name):
     """One number of a plain type for each of n points."""
-    array = np.asarray(values)
+    array = as_array(values, name)
     if array.dtype.kind == "b":
         array = array.astype(np.uint8)
     if array.shape != (n,):
@@ -54,13 +63,18 @@ def cloud_of_points(points, fields=None):
     return cloud_of_columns(columns, ("x", "y", "z"))
 
 
+def field_of(name, dtype):
+    """A field as clouds have it: its name, its type and how many values a row has."""
+    return name, dtype.base.name, math.prod(dtype.shape)
+
+
 def cloud_of_columns(columns, xyz):
     """Of columns by name, three of which are the coordinates."""
     n = len(columns[xyz[0]])
-    packed = np.empty(n, [(name, column.dtype.newbyteorder("=")) for name, column in columns.items()])
+    packed = np.empty(n, [(name, column.dtype.newbyteorder("="), column.shape[1:]) for name, column in columns.items()])
     for name, column in columns.items():
         packed[name] = column
-    fields = [(name, packed.dtype[name].name, 1) for name in columns]
+    fields = [field_of(name, packed.dtype[name]) for name in columns]
     names = list(columns)
     return _rfsmooth.Cloud(fields, packed.view(np.uint8), n, tuple(names.index(axis) for axis in xyz))
 

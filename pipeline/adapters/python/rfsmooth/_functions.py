@@ -40,6 +40,8 @@ def _config(table, config, given):
 
 def _threads(threads):
     """A whole number, 0 or more."""
+    if isinstance(threads, bool):
+        raise TypeError("threads must be a whole number")
     threads = operator.index(threads)
     if threads < 0:
         raise ValueError("threads must be 0 (all cores) or more")
@@ -111,7 +113,7 @@ def denoise_structured(array, *, threads=0, progress=None, config=None, **option
     take the place of those of that name. strength_field may name a field. Whole numbers, as laspy has them, are rounded to
     whole numbers; they must be of one scale on all three axes.
     """
-    array = np.asarray(array)
+    array = _arrays.as_array(array, "the array")
     if array.ndim != 1:
         raise ValueError("the array must have one dimension")
     xyz = _arrays.names_of_coordinates(array.dtype)
@@ -260,7 +262,7 @@ def write(path, points, file=None, *, format=None, encoding=None, force=False, d
     encoding, force, drop_unsupported: as of the command. scale: of n x 3 into a LAS file, the largest step that coordinates
     may be rounded to; a coarser one is refined by a power of ten.
     """
-    array = np.asarray(points)
+    array = _arrays.as_array(points, "points")
     if array.dtype.names is None:
         xyz = _arrays.as_points(array)
         if file is None:
@@ -294,7 +296,7 @@ def _with_rows(file, array):
     packed = np.empty(len(array), table.dtype.descr + [(name, array.dtype[name]) for name in added])
     for name in packed.dtype.names:
         packed[name] = array[name]
-    fields = file.fields + [(name, packed.dtype[name].name, 1) for name in added]
+    fields = file.fields + [_arrays.field_of(name, packed.dtype[name]) for name in added]
     cloud = file.__copy__()
     cloud.put_rows(fields, packed.view(np.uint8).reshape(-1), len(names))
     return cloud

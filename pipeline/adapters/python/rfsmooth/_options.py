@@ -86,8 +86,8 @@ class Table:
             return value
         if isinstance(value, os.PathLike):
             return os.fspath(value)
-        if self.entries[name]["kind"] == "flag":
-            return "true" if value else "false"
+        if self.entries[name]["kind"] == "flag" or isinstance(value, bool):
+            return "true" if value else "false"  # refused where a number is needed
         if isinstance(value, numbers.Integral):
             return str(int(value))
         if isinstance(value, numbers.Real):
