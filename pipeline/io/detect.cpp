@@ -4,6 +4,7 @@
 
 #include "pipeline/io/formats/header_lines.h"
 #include "pipeline/io/formats/off.h"
+#include "pipeline/io/formats/ply.h"
 #include "pipeline/io/other_formats.h"
 #include "pipeline/io/table/text.h"
 
@@ -48,7 +49,7 @@ Format detect_format(const Source& source, const Context& context) {
   HeaderLines lines(source, context);
   while (!lines.at_end()) {
     const std::string_view line = lines.next("a point");
-    if (lines.line() == 1 && line == "ply") return Format::ply;
+    if (is_ply_line(line)) return Format::ply;
     if (line.substr(0, 6) == "# .PCD") return Format::pcd;
     const char* p = line.data();
     const char* end = p + line.size();

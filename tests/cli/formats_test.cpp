@@ -182,6 +182,16 @@ TEST_F(Formats, WhatAConversionLeavesOutIsNotSaidToBeKept) {
                              HasSubstr("normals are stale"), ::testing::Not(HasSubstr("kept"))));
 }
 
+TEST_F(Formats, BlanksInAPlyHeaderStay) {
+  const RichCloud cloud = bumpy(kPoints, false);
+  std::string header = cloud.header();
+  header.replace(header.find("ply\n"), 4, "ply \n");
+  header.insert(header.find("element"), " \n\n");
+  const std::string bytes = header + cloud.bytes().substr(cloud.header().size());
+  expect_only_coordinates_differ(bytes, denoised("in.ply", bytes), header.size(), cloud.row_bytes(), 0,
+                                 bytes.size());
+}
+
 TEST_F(Formats, PcdPaddingIsKept) {
   // As PCL writes a PointXYZRGBNormal cloud: padding fields called _, some of several bytes.
   const std::string header =

@@ -27,6 +27,17 @@ Command render_table(const std::shared_ptr<RenderOptions>& options) {
   return command;
 }
 
+/// Refuses options that were typed and do nothing. \throw Failure (usage).
+void check_colours(const RenderOptions& options, const Invocation& typed) {
+  const bool by_value = options.color != "plain" && options.color != "rgb";
+  for (const auto& [name, text] : typed.options) {
+    if (name == "field" && options.color != "field")
+      fail(ErrorCode::usage, "--field has no effect without --color field");
+    if ((name == "low" || name == "high") && !by_value)
+      fail(ErrorCode::usage, "--{} has no effect with --color {}", name, options.color);
+  }
+}
+
 /// Checks before the work. \throw Failure.
 void check_request(const RenderOptions& options, const Invocation& typed) {
   if (typed.arguments.empty()) fail(ErrorCode::usage, "no input given");
@@ -34,6 +45,7 @@ void check_request(const RenderOptions& options, const Invocation& typed) {
   if (options.color == "field" && options.field.empty())
     fail(ErrorCode::usage,
          "--color field needs the name of a field: --field NAME (rfsmooth info lists them)");
+  check_colours(options, typed);
   check_no_cloud_target(*options.output, options.force, "picture");
   const std::string extension = std::filesystem::path(*options.output).extension().string();
   if (!extension.empty() && extension != ".png" && extension != ".PNG")

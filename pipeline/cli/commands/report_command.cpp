@@ -66,8 +66,9 @@ pipeline::PageContents contents_of(const pipeline::io::Cloud& before, const pipe
   pipeline::PageContents contents = pipeline::page_before(typed.arguments[0], before, context);
   contents.after = pipeline::page_side(typed.arguments[1], after, context);
   contents.outlier = marked_outliers(after, context);
-  const pipeline::Measured measured =
-      pipeline::measure_points(contents.before.xyz, Outliers::keep, {}, context);
+  const pipeline::Measured measured = pipeline::io::naming(typed.arguments[0], [&] {
+    return pipeline::measure_points(contents.before.xyz, Outliers::keep, {}, context);
+  });
   if (contents.outlier.empty()) contents.outlier = measured.outlier;
   contents.figures = {
       {"outliers", fmt::format("{}", std::count(contents.outlier.begin(), contents.outlier.end(), 1))},
@@ -78,6 +79,7 @@ pipeline::PageContents contents_of(const pipeline::io::Cloud& before, const pipe
 
 int run_report(const ReportCommandOptions& options, const Invocation& typed, const std::string& line) {
   if (typed.arguments.size() != 2) fail(ErrorCode::usage, "two files are needed: the cloud before and after");
+  need_one_standard_input(typed.arguments);
   if (!options.output) fail(ErrorCode::usage, "no page named: -o OUT.html");
   const std::size_t points = read_points(options.points);
   check_no_cloud_target(*options.output, options.force, "page");

@@ -93,6 +93,11 @@ std::string name_of_input(const std::string& input) {
   return input == "-" ? "standard input" : input;
 }
 
+void need_one_standard_input(const std::vector<std::string>& inputs) {
+  if (std::count(inputs.begin(), inputs.end(), "-") > 1)
+    fail(ErrorCode::usage, "standard input (-) is given twice, and can be read once");
+}
+
 io::Cloud load_cloud(const std::string& input, const Context& context) {
   context.report("read", 0);
   const std::string standard_input = "/dev/stdin", path = input == "-" ? standard_input : input;

@@ -37,6 +37,9 @@ void need_different_outputs(const std::vector<std::pair<std::string, std::string
 /// What an input is called in messages: its path, "standard input" for "-".
 std::string name_of_input(const std::string& input);
 
+/// Refuses standard input given twice: it is read once. \throw Failure (usage).
+void need_one_standard_input(const std::vector<std::string>& inputs);
+
 /// Reads a path, or standard input for "-", as stage "read". \throw Failure, also if the file is larger than
 /// the available memory.
 pipeline::io::Cloud load_cloud(const std::string& input, const Context& context);

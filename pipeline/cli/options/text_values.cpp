@@ -24,7 +24,7 @@ std::optional<T> read_whole(std::string_view text) {
 std::optional<double> read_number(std::string_view text) {
   const auto value = read_whole<double>(text);
   if (!value || !std::isfinite(*value)) return std::nullopt;
-  return value;
+  return *value + 0.0;  // without the sign of a zero
 }
 
 std::optional<int> read_integer(std::string_view text) {

@@ -34,7 +34,11 @@ void find_coordinates(Cloud& cloud, const Source& source, const Context& context
     }
     if (best == fields.size()) {
       std::string there;
-      for (const Field& f : fields) there += (there.empty() ? "" : ", ") + in_quotes(f.name);
+      for (const Field& f : fields)
+        there += (there.empty() ? "" : ", ") + in_quotes(f.name) +
+                 (f.is_list()    ? " (a list)"
+                  : f.is_plain() ? ""
+                                 : " (several values)");
       source.fail("expected the coordinate '{}' among the points' fields, found {}", char('x' + char(axis)),
                   there.empty() ? "none" : there);
     }

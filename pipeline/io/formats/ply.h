@@ -15,6 +15,9 @@ Cloud read_ply(const Source& source, const Context& context);
 /// Reads the header alone: elements without their rows. Leaves `lines` behind end_header.
 Cloud read_ply_header(HeaderLines& lines);
 
+/// Whether it is the first line of a PLY file, which may end in blanks.
+bool is_ply_line(std::string_view line);
+
 /// The header of `cloud` as we write it, in `encoding`.
 std::string ply_header(const Cloud& cloud, Encoding encoding);
 

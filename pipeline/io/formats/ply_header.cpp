@@ -81,10 +81,15 @@ void append_notes(std::string& out, const Cloud& cloud, std::size_t element, std
 
 }  // namespace
 
+bool is_ply_line(std::string_view line) {
+  return words_of(line) == std::vector<std::string_view>{"ply"};
+}
+
 Cloud read_ply_header(HeaderLines& lines) {
   Cloud cloud;
   cloud.format = Format::ply;
-  if (lines.next("'ply'") != "ply") lines.fail("expected 'ply'");
+  if (const std::string_view first = lines.next("'ply'"); !is_ply_line(first))
+    lines.fail("expected 'ply', found {}", in_quotes(first));
   cloud.newline = lines.crlf() ? "\r\n" : "\n";
   bool format_seen = false;
   for (;;) {
@@ -94,6 +99,7 @@ Cloud read_ply_header(HeaderLines& lines) {
     const std::string_view keyword = next_word(p, end);
     const std::string_view rest(p, std::size_t(end - p));
     if (keyword == "end_header") break;
+    if (keyword.empty()) continue;
     if (keyword == "comment" || keyword == "obj_info") {
       Note note{std::string(line)};
       if (!format_seen) {

@@ -235,6 +235,39 @@ TEST_F(Commands, ErrorsNameTheFile) {
     EXPECT_THAT(run(words).err, ::testing::StartsWith("rfsmooth: error: " + says));
 }
 
+TEST_F(Commands, OptionsThatDoNothingBesideTheOthersAreRefused) {
+  put("in.ply", noisy_plane(20).bytes());
+  const std::pair<std::vector<std::string>, std::string> cases[] = {
+      {{"render", "in.ply", "-o", "a.png", "--field", "intensity"},
+       "--field has no effect without --color field"},
+      {{"render", "in.ply", "-o", "a.png", "--low", "1"}, "--low has no effect with --color plain"},
+      {{"render", "in.ply", "-o", "a.png", "--color", "rgb", "--high", "1"},
+       "--high has no effect with --color rgb"},
+      {{"compare", "in.ply", "in.ply", "--red-from", "1"}, "--red-from has no effect without -o"},
+      {{"denoise", "in.ply", "out.ply", "--swap-rounds", "2"}, "--swap-rounds has no effect without swaps"},
+      {{"denoise", "in.ply", "out.ply", "--flow", "hc", "--no-swap", "--swap-quality", "0.5"},
+       "--swap-quality has no effect without swaps"}};
+  for (const auto& [words, says] : cases) {
+    const Ran ran = run(words);
+    EXPECT_EQ(ran.code, 2) << says;
+    EXPECT_THAT(ran.err, HasSubstr(says));
+  }
+  EXPECT_THAT(names(), ::testing::ElementsAre("in.ply"));
+  EXPECT_EQ(run({"denoise", "in.ply", "out.ply", "--flow", "hc", "--swap-rounds", "2"}).code, 0);
+}
+
+TEST_F(Commands, StandardInputIsTakenOnce) {
+  RunSetup setup;
+  setup.input = noisy_plane(20).bytes();
+  for (const std::vector<std::string>& words : {std::vector<std::string>{"compare", "-", "-"},
+                                                {"info", "-", "-"},
+                                                {"report", "-", "-", "-o", "a.html"}}) {
+    const Ran ran = run(words, setup);
+    EXPECT_EQ(ran.code, 2) << words[0];
+    EXPECT_THAT(ran.err, HasSubstr("standard input (-) is given twice"));
+  }
+}
+
 TEST_F(Commands, InfoTakesThreads) {
   put("in.ply", noisy_plane(20).bytes());
   EXPECT_EQ(run({"info", "--threads", "1", "in.ply"}).out, run({"info", "in.ply"}).out);

@@ -120,8 +120,15 @@ TEST_F(DenoiseCommand, WhatLooksLikeShapeIsNamedAndMoreStrengthAdvised) {
         cloud.xyz.push_back(float(c));
   put("in.ply", cloud.bytes());
   const std::string err = run({"denoise", "in.ply", "out.ply"}).err;
-  EXPECT_THAT(err, HasSubstr("noise 0, 0.0"));
-  EXPECT_THAT(err, HasSubstr("with what looks like shape, too little to smooth (--strength 2 does it all"));
+  EXPECT_THAT(err, HasSubstr("noise 0, beside 0.0"));
+  EXPECT_THAT(err, HasSubstr(" that looks like small shape, too little to smooth (--strength 2 does it all"));
+  for (const char* none : {"0", "-0"}) {
+    const Ran stated =
+        run({"denoise", "in.ply", "out.ply", "--force", "--noise", none, "--report", "r.json"});
+    EXPECT_EQ(stated.code, 0) << stated.err;
+    EXPECT_THAT(stated.err, HasSubstr("noise 0, as stated, nothing to smooth; spacing"));
+    EXPECT_EQ(nlohmann::json::parse(take("r.json"))["noise"].dump(), "0.0");
+  }
 }
 
 TEST_F(DenoiseCommand, OneIsCountedAsOne) {

@@ -109,6 +109,14 @@ TEST_F(ReportPage, CloudsOfDifferentSizeAreRefused) {
   EXPECT_FALSE(there("r.html"));
 }
 
+TEST_F(ReportPage, OfCloudsWithoutAFinitePointNamesTheFile) {
+  put("none.xyz", "nan nan nan\n1 nan 2\n");
+  const Ran ran = run({"report", "none.xyz", "none.xyz", "-o", "none.html"});
+  EXPECT_EQ(ran.code, 4) << ran.err;
+  EXPECT_THAT(ran.err, HasSubstr("error: none.xyz: "));
+  EXPECT_FALSE(there("none.html"));
+}
+
 TEST_F(ReportPage, KeepsTheContractsOfTheCommand) {
   put("a.ply", noisy_plane(5).bytes());
   put("r.html", "mine");

@@ -231,7 +231,32 @@ TEST_F(Tiles, PipesAndOpenFilesGetTheWholeCloud) {
     const Ran ran = run({"denoise", "--memory", kLittle, "in.ply", output});
     EXPECT_EQ(ran.code, 6) << output << ": " << ran.err;
     EXPECT_THAT(ran.err, Not(HasSubstr("in tiles of"))) << output;
+    EXPECT_THAT(ran.err, HasSubstr("; into a file it would be smoothed in tiles")) << output;
   }
+  put("more.ply", noisy_plane(4).bytes());
+  const Ran several = run({"denoise", "--memory", kLittle, "in.ply", "more.ply", "-o", "out/"});
+  EXPECT_THAT(several.err, HasSubstr("in.ply: needs about"));
+  EXPECT_THAT(several.err, HasSubstr("; as the only input it would be smoothed in tiles"));
+}
+
+TEST_F(Tiles, TheFormatOfTheFileIsNoOtherFormat) {
+  put("in.ply", noisy_sheet(kTooLong, kWide).bytes());
+  const std::vector<std::string> how = {"denoise", "--memory", kLittle, "in.ply", "out.ply"};
+  const auto with = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words = how;
+    words.insert(words.end(), more.begin(), more.end());
+    return run(words);
+  };
+  for (const std::vector<std::string>& other :
+       {std::vector<std::string>{"--format", "pcd"}, {"--encoding", "ascii"}}) {
+    const Ran ran = with(other);
+    EXPECT_EQ(ran.code, 2);
+    EXPECT_THAT(ran.err, HasSubstr("another format needs the whole cloud"));
+  }
+  if (kSanitized) return;  // what takes longest
+  const Ran same = with({"--format", "ply", "--encoding", "binary"});
+  EXPECT_EQ(same.code, 0) << same.err;
+  EXPECT_THAT(same.err, HasSubstr("in tiles of"));
 }
 
 TEST_F(Tiles, WhatCannotGoInTilesIsRefusedWhereTheMemoryIsLess) {

@@ -98,6 +98,9 @@ void print_text(const CompareReport& report, const Deviation& deviation, const o
 int run_compare(const CompareCommandOptions& options, const Invocation& typed) {
   if (typed.arguments.size() != 2)
     fail(ErrorCode::usage, "two files are needed: the cloud and the truth (a mesh or a clean cloud)");
+  need_one_standard_input(typed.arguments);
+  if (options.red_from && !options.files.output)
+    fail(ErrorCode::usage, "--red-from has no effect without -o");
   if (options.files.output == "-")
     fail(ErrorCode::usage, "-o needs the name of a file: standard output takes the figures");
   if (options.files.output) check_target(*options.files.output, options.files);

@@ -20,8 +20,8 @@ std::string said_of_outliers(const DenoiseReport& done, const DenoiseCommandOpti
   return fmt::format("; {} {}", counted(done.outliers, "outlier"), what);
 }
 
-/// Why nothing was smoothed, or nothing.
-std::string why_not(const DenoiseReport& done) {
+/// Why nothing was smoothed, or nothing. `stated`: the noise was, and is not what the cloud shows.
+std::string why_not(const DenoiseReport& done, bool stated) {
   if (!done.not_smoothed) return "";
   switch (*done.not_smoothed) {
     case NotSmoothed::no_iterations:
@@ -31,12 +31,13 @@ std::string why_not(const DenoiseReport& done) {
     case NotSmoothed::too_few_points:
       return "too few points to smooth";
     case NotSmoothed::too_little_noise: {
+      if (stated && done.noise == 0) return "nothing to smooth";
       const double with_shape = done.noise > 0 ? done.noise : done.measured.typical;
       constexpr double kExact = 0.002;  // spacings
       if (with_shape < kExact * done.spacing) return "too little to smooth";
       return fmt::format(
           "{}too little to smooth (--strength 2 does it all the same)",
-          done.noise > 0 ? "" : fmt::format("{:.3g} with what looks like shape, ", with_shape));
+          done.noise > 0 ? "" : fmt::format("beside {:.3g} that looks like small shape, ", with_shape));
     }
   }
   throw std::invalid_argument("why_not: not a NotSmoothed");
@@ -47,7 +48,7 @@ std::string said_of_noise(const DenoiseReport& done, const DenoiseCommandOptions
   const auto* typed = std::get_if<AutomaticOptions>(&options.denoise.flow.flow);
   const bool stated = typed != nullptr && typed->noise;
   std::string words = stated ? ", as stated" : "";
-  if (const std::string why = why_not(done); !why.empty()) return words + ", " + why;
+  if (const std::string why = why_not(done, stated); !why.empty()) return words + ", " + why;
   if (!stated) words += in_words(done.measured);
   if (done.tail_times > 1) words += fmt::format(", some points {:.2g} times that", done.tail_times);
   if (done.noise_left && *done.noise_left < done.noise)

@@ -35,8 +35,16 @@ std::uint64_t memory_of_whole(std::uint64_t finite, std::uint64_t bytes, bool no
   return rfsmooth::denoise_memory(std::size_t(finite)) + (normals ? kMoreForNormals * finite : 0) + bytes;
 }
 
+/// Whether the options ask for another format or encoding than the file's, which can be read in pieces.
+bool asks_for_another_format(const FileOptions& files, pipeline::io::Format format) {
+  using pipeline::io::Encoding;
+  return (files.format && pipeline::io::format_by_name(*files.format) != format) ||
+         (files.encoding &&
+          pipeline::io::encoding_by_name(*files.encoding) != Encoding::binary_little_endian);
+}
+
 /// What the options ask for that is made of the whole cloud at once; empty: nothing.
-std::string needs_whole_cloud(const DenoiseCommandOptions& options) {
+std::string needs_whole_cloud(const DenoiseCommandOptions& options, pipeline::io::Format format) {
   const FileOptions& files = options.job.files;
   const std::pair<bool, const char*> needs[] = {{options.html.has_value(), "--html"},
                                                 {options.strength_field.has_value(), "--strength-field"},
@@ -46,7 +54,7 @@ std::string needs_whole_cloud(const DenoiseCommandOptions& options) {
                                                 {options.trace.trace.has_value(), "--trace"},
                                                 {options.statistics.has_value(), "--statistics"},
                                                 {options.job.run.report.has_value(), "--report"},
-                                                {files.format || files.encoding, "another format"}};
+                                                {asks_for_another_format(files, format), "another format"}};
   for (const auto& [asked, name] : needs)
     if (asked) return name;
   return "";
@@ -83,13 +91,25 @@ std::optional<LargeFile> too_large(const std::string& input, std::uint64_t most,
 /// Refuses what cannot be done in tiles within `most` bytes. \throw Failure (usage).
 void check_tiles(const DenoiseCommandOptions& options, const Job& job, const LargeFile& file,
                  std::uint64_t most) {
-  if (const std::string what = needs_whole_cloud(options); !what.empty())
+  if (const std::string what = needs_whole_cloud(options, file.format); !what.empty())
     fail(ErrorCode::usage, "{}: larger than --memory, and {} needs the whole cloud", job.input, what);
   pipeline::tiles::check_format(file.format, job.output);
   if (const std::uint64_t least = pipeline::tiles::least_memory(file.finite, options.normals.normals);
       most < least)
     fail(ErrorCode::usage, "{}: in tiles it takes --memory {:.0f}M or more", job.input,
          std::ceil(double(least) / 1e6));
+}
+
+/// Whether what is written goes into a file, beside which there is a place for tiles.
+bool goes_into_file(const Job& job) {
+  return job.output != "-" && pipeline::io::file_behind(job.output).has_value();
+}
+
+/// What would let a cloud that is smoothed as a whole go in tiles.
+const char* way_into_tiles(const Job& job, const Context& context) {
+  if (!pipeline::tiles::in_pieces(job.input, context))
+    return "a single file of binary PLY (little-endian), binary PCD or LAS";
+  return goes_into_file(job) ? "as the only input it" : "into a file it";
 }
 
 }  // namespace
@@ -104,16 +124,14 @@ void check_memory(const DenoiseCommandOptions& options, const Job& job, const st
                                                options.normals.normals);
   if (needed <= most) return;
   fail(ErrorCode::out_of_memory,
-       "{}: needs about {:.0f} MB, --memory allows {:.0f} MB; a single file of binary PLY, binary PCD or LAS "
-       "would be smoothed in tiles",
-       job.input, std::ceil(double(needed) / 1e6), double(most) / 1e6);
+       "{}: needs about {:.0f} MB, --memory allows {:.0f} MB; {} would be smoothed in tiles", job.input,
+       std::ceil(double(needed) / 1e6), double(most) / 1e6, way_into_tiles(job, context));
 }
 
 std::optional<std::uint64_t> memory_of_tiles(const DenoiseCommandOptions& options, const Job& job,
                                              const Context& context) {
   const auto most = memory_to_use(options);
-  if (!most || job.input == "-" || job.output == "-" || !pipeline::io::file_behind(job.output))
-    return std::nullopt;
+  if (!most || job.input == "-" || !goes_into_file(job)) return std::nullopt;
   const auto large = too_large(job.input, *most, options.normals.normals, context);
   if (!large) return std::nullopt;
   const auto possible = guarded([&] {

@@ -85,6 +85,7 @@ void print_text(const ordered_json& info) {
 
 int run_info(const InfoCommandOptions& options, const Invocation& typed) {
   if (typed.arguments.empty()) fail(ErrorCode::usage, "no input given");
+  need_one_standard_input(typed.arguments);
   Console console(options.talk);
   const Context context = console.context({{"read", 1}}, options.threads);
   auto all = ordered_json::array();
