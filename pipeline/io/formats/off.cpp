@@ -40,18 +40,22 @@ std::size_t element_count(std::string_view word, const TextCursor& cursor, const
   return std::size_t(*value);
 }
 
-std::string_view next_content(TextCursor& cursor, const char* expected) {
+// The next line that is no comment. Comments before and in it become notes.
+std::string_view next_content(TextCursor& cursor, const char* expected, std::vector<Note>& notes) {
   for (;;) {
     const std::string_view line = peek_line(cursor);
     if (line.empty())
       cursor.source.fail("line {}: expected {}, found the end of the file", cursor.lines + 1, expected);
     skip_line(cursor);
+    const std::string_view plain = line.substr(0, line.find_last_not_of("\r\n") + 1);
+    const std::size_t sign = plain.find('#');
+    if (sign != std::string_view::npos) notes.push_back({std::string(plain.substr(sign))});
     if (!is_blank_or_comment(line)) return line.substr(0, line.find('#'));
   }
 }
 
-Counts read_header(TextCursor& cursor, Kind& kind) {
-  std::string_view line = next_content(cursor, "'OFF'");
+Counts read_header(TextCursor& cursor, Kind& kind, std::vector<Note>& notes) {
+  std::string_view line = next_content(cursor, "'OFF'", notes);
   const char* p = line.data();
   const char* end = p + line.size();
   const std::string_view word = next_word(p, end);
@@ -64,7 +68,7 @@ Counts read_header(TextCursor& cursor, Kind& kind) {
   if (first == "BINARY")
     cursor.source.fail("line {}: expected an ascii OFF file, found BINARY", cursor.lines);
   if (first.empty()) {
-    line = next_content(cursor, "the numbers of vertices, faces and edges");
+    line = next_content(cursor, "the numbers of vertices, faces and edges", notes);
     p = line.data();
     end = p + line.size();
     first = next_word(p, end);
@@ -118,7 +122,7 @@ Cloud read_off(const Source& source, const Context& context) {
   cloud.encoding = Encoding::ascii;
   TextCursor cursor(source, 0, 0, context);
   Kind kind;
-  const Counts counts = read_header(cursor, kind);
+  const Counts counts = read_header(cursor, kind, cloud.notes);
   cloud.original_header.assign(cursor.all.data(), cursor.at);
   if (cloud.original_header.find("\r\n") != std::string::npos) cloud.newline = "\r\n";
 

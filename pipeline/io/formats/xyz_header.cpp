@@ -100,6 +100,28 @@ void need_line_feeds(const TextCursor& cursor, std::string_view content) {
       cursor.lines + 1);
 }
 
+// The line that names the columns, if there is one.
+std::string names_line(const Cloud& cloud) {
+  if (!cloud.xyz_style.names) return "";
+  std::string out = *cloud.xyz_style.names;
+  std::vector<std::string> cells = cloud.xyz_style.cells;
+  const char separator = cloud.xyz_style.separator;
+  const bool quoted = !cells.empty() && cells.front().substr(0, 1) == "\"";
+  bool first = true;
+  for (const Field& f : cloud.points().fields) {
+    if (!first) out += separator;
+    first = false;
+    const auto cell = std::find_if(cells.begin(), cells.end(),
+                                   [&](const std::string& c) { return name_in_cell(c) == f.name; });
+    const std::string word = one_word(f.name);
+    const std::string name = cell != cells.end() ? *cell : quoted ? '"' + word + '"' : word;
+    const bool parted = separator != ' ' && name.find(separator) != std::string::npos;
+    out += parted && name.front() != '"' ? '"' + name + '"' : name;
+    if (cell != cells.end()) cells.erase(cell);  // a name may be there several times
+  }
+  return out + cloud.newline;
+}
+
 }  // namespace
 
 std::string name_in_cell(std::string_view cell) {
@@ -141,6 +163,7 @@ std::vector<XyzNames> read_xyz_beginning(TextCursor& cursor, Cloud& cloud) {
       if (!words.empty()) cloud.notes.push_back({std::string(content)});
     } else if (words.size() == 1 && parse_count(words[0]) && !cloud.xyz_style.counted) {
       cloud.xyz_style.counted = parse_count(words[0]);
+      cloud.xyz_style.notes_first = cloud.notes.size();
     } else {
       break;
     }
@@ -160,6 +183,8 @@ std::vector<std::string> take_xyz_names(const std::vector<XyzNames>& lines, std:
       if (cell_separator(s) != '\0') cloud.xyz_style.separator = cell_separator(s);
       cloud.xyz_style.cells.assign(cells.begin(), cells.end());
       cloud.notes.erase(cloud.notes.begin() + std::ptrdiff_t(names.note));
+      cloud.xyz_style.names_first = names.note < cloud.xyz_style.notes_first;
+      if (cloud.xyz_style.names_first) --cloud.xyz_style.notes_first;
       return cloud.xyz_style.cells;
     }
   for (const XyzNames& names : lines)
@@ -173,29 +198,16 @@ std::vector<std::string> take_xyz_names(const std::vector<XyzNames>& lines, std:
 }
 
 std::string xyz_header(const Cloud& cloud) {
+  const XyzStyle& style = cloud.xyz_style;
+  const std::size_t first =
+      style.counted ? std::min(style.notes_first, cloud.notes.size()) : cloud.notes.size();
   std::string out;
-  for (const Note& note : cloud.notes) out += note.line + cloud.newline;
-  if (cloud.xyz_style.names) {
-    out += *cloud.xyz_style.names;
-    std::vector<std::string> cells = cloud.xyz_style.cells;
-    const char separator = cloud.xyz_style.separator;
-    const bool quoted = !cells.empty() && cells.front().substr(0, 1) == "\"";
-    bool first = true;
-    for (const Field& f : cloud.points().fields) {
-      if (!first) out += separator;
-      first = false;
-      const auto cell = std::find_if(cells.begin(), cells.end(),
-                                     [&](const std::string& c) { return name_in_cell(c) == f.name; });
-      const std::string word = one_word(f.name);
-      const std::string name = cell != cells.end() ? *cell : quoted ? '"' + word + '"' : word;
-      const bool parted = separator != ' ' && name.find(separator) != std::string::npos;
-      out += parted && name.front() != '"' ? '"' + name + '"' : name;
-      if (cell != cells.end()) cells.erase(cell);  // a name may be there several times
-    }
-    out += cloud.newline;
-  }
-  if (cloud.xyz_style.counted) out += fmt::format("{}{}", cloud.size(), cloud.newline);
-  return out;
+  for (std::size_t k = 0; k < first; ++k) out += cloud.notes[k].line + cloud.newline;
+  if (!style.counted) return out + names_line(cloud);
+  if (style.names_first) out += names_line(cloud);
+  out += fmt::format("{}{}", cloud.size(), cloud.newline);
+  for (std::size_t k = first; k < cloud.notes.size(); ++k) out += cloud.notes[k].line + cloud.newline;
+  return style.names_first ? out : out + names_line(cloud);
 }
 
 }  // namespace rfsmooth::pipeline::io

@@ -40,6 +40,8 @@ struct Note {
 /// What an XYZ file says before its first point, besides comments.
 struct XyzStyle {
   std::optional<std::uint64_t> counted;  ///< the number of points, on a line of its own (.pts)
+  std::size_t notes_first = 0;           ///< of the comments, those that come before that line
+  bool names_first = false;              ///< whether the line of names does
   std::optional<std::string> names;      ///< the start of a line that names the columns ("//", "# ", "")
   char separator = ' ';                  ///< between those names
   std::vector<std::string> cells;        ///< those names as written, with quotes and units

@@ -1,4 +1,5 @@
 /// denoise --outliers: what happens to strays in the file.
+#include <array>
 #include <cmath>
 #include <random>
 
@@ -73,6 +74,25 @@ class OutliersOption : public InFolder {
 
 std::vector<double> values_of(const io::Cloud& cloud, const std::string& name) {
   return io::field_values(cloud, io::find_field(cloud, name).value());
+}
+
+TEST_F(OutliersOption, RemovedLeaveTheCommentsOfAHeaderWhereTheyAre) {
+  std::string rows;
+  const std::vector<double> xyz = io::positions(plane_with_strays());
+  for (std::size_t i = 0; i < xyz.size(); i += 3)
+    rows += fmt::format("{} {} {}\n", xyz[i], xyz[i + 1], xyz[i + 2]);
+  const std::array<std::string, 3> cases[] = {
+      {"in.off", "# by hand\nOFF\n# of stone\n900 0 0\n", "OFF\n# by hand\n# of stone\n897 0 0\n"},
+      {"in.pts", "900\n# by hand\n", "897\n# by hand\n"},
+      {"first.pts", "# by hand\n900\n", "# by hand\n897\n"},
+      {"named.pts", "900\n# by hand\n//X Y Z\n", "897\n# by hand\n//X Y Z\n"},
+      {"names_first.pts", "//X Y Z\n900\n", "//X Y Z\n897\n"}};
+  for (const auto& [name, header, expected] : cases) {
+    put(name, header + rows);
+    const Ran ran = run({"denoise", "--outliers", "remove", name, "out-" + name});
+    ASSERT_EQ(ran.code, 0) << ran.err;
+    EXPECT_EQ(take("out-" + name).substr(0, expected.size()), expected) << name;
+  }
 }
 
 TEST_F(OutliersOption, AreLeftWhereTheyAreByDefault) {
