@@ -320,6 +320,7 @@ done
   EXPECT_THAT(completed("rfsmooth denoise --rep"), HasSubstr("--report"));
   EXPECT_THAT(completed("rfsmooth denoise --flow lapl"), HasSubstr("--flow laplacian"));
   EXPECT_THAT(completed("rfsmooth mesh --stage sd"), HasSubstr("--stage sdg"));
+  EXPECT_THAT(completed("rfsmooth tiles stat"), HasSubstr("tiles status"));
 }
 
 TEST(Completion, BashOffersOptionsAndWords) {
@@ -331,6 +332,9 @@ TEST(Completion, BashOffersOptionsAndWords) {
     return run_program("bash", {}, setup).out;
   };
   EXPECT_EQ(complete("rfsmooth den", 1), "denoise\n");
+  EXPECT_EQ(complete("rfsmooth tiles stat", 2), "status\n");
+  EXPECT_EQ(complete("rfsmooth man den", 2), "denoise\n");
+  EXPECT_EQ(complete("rfsmooth completion z", 2), "zsh\n");
   EXPECT_EQ(complete("rfsmooth denoise --rep", 2), "--report\n");
   EXPECT_EQ(complete("rfsmooth denoise --flow lapl", 3), "laplacian\n");
   EXPECT_THAT(complete("rfsmooth mesh --stage ''", 3), HasSubstr("emst sdg rfs"));

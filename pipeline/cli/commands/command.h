@@ -82,7 +82,8 @@ struct Command {
   std::vector<std::string> usage;  ///< what follows the name, one per form: "[options] IN OUT"
   std::string description;         ///< paragraphs for --help-all and the man page
   std::vector<CommandOption> options;
-  std::vector<std::string> everyday;  ///< what --help shows, in this order; empty: all of them
+  std::vector<std::string> everyday;          ///< what --help shows, in this order; empty: all of them
+  std::vector<std::string> first_words = {};  ///< one of which comes first, for completion; empty: a file
   /// \return the exit code. \throw Failure. `invocation.options` are already assigned when it is called.
   std::function<int(const Invocation&)> run;
   OnCloud on_cloud;    ///< empty where it does something else

@@ -24,9 +24,14 @@ Command text_command(std::string name, std::string summary, std::string usage, s
 }
 
 std::vector<Command> all_commands() {
-  return {denoise_command(),     tiles_command(), mesh_command(),    smooth_mesh_command(),
-          reconstruct_command(), info_command(),  compare_command(), render_command(),
-          report_command(),      flows_command(), man_command(),     completion_command()};
+  std::vector<Command> all = {denoise_command(),     tiles_command(),       mesh_command(),
+                              smooth_mesh_command(), reconstruct_command(), info_command(),
+                              compare_command(),     render_command(),      report_command(),
+                              flows_command(),       man_command(),         completion_command()};
+  for (Command& command : all)
+    if (command.name == "man")
+      for (const Command& each : all) command.first_words.push_back(each.name);
+  return all;
 }
 
 const Command* find_command(const std::vector<Command>& commands, std::string_view name) {

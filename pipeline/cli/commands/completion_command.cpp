@@ -19,9 +19,11 @@ std::vector<std::string> words_of(const Command& command) {
 }
 
 std::string bash_script(const std::vector<Command>& commands) {
-  std::string names, options, values;
+  std::string names, options, values, first;
   for (const Command& c : commands) {
     names += (names.empty() ? "" : " ") + c.name;
+    if (!c.first_words.empty())
+      first += fmt::format("    {}:2) first=\"{}\" ;;\n", c.name, fmt::join(c.first_words, " "));
     options += fmt::format("    {}) words=\"{}\" ;;\n", c.name, fmt::join(words_of(c), " "));
     for (const CommandOption& o : c.options) {
       if (o.kind == ValueKind::flag || o.kind == ValueKind::file) continue;
@@ -33,7 +35,7 @@ std::string bash_script(const std::vector<Command>& commands) {
   }
   return fmt::format(R"(# bash completion for rfsmooth; made by: rfsmooth completion bash
 _rfsmooth() {{
-  local cur="${{COMP_WORDS[COMP_CWORD]}}" prev="${{COMP_WORDS[COMP_CWORD-1]}}" command="${{COMP_WORDS[1]}}" words=""
+  local cur="${{COMP_WORDS[COMP_CWORD]}}" prev="${{COMP_WORDS[COMP_CWORD-1]}}" command="${{COMP_WORDS[1]}}" words="" first=""
   if [ "$COMP_CWORD" -eq 1 ]; then
     COMPREPLY=($(compgen -W "{} --help --help-all --version" -- "$cur"))
     return
@@ -42,14 +44,16 @@ _rfsmooth() {{
 {}  esac
   case "$command" in
 {}  esac
+  case "$command:$COMP_CWORD" in
+{}  esac
   case "$cur" in
     -*) COMPREPLY=($(compgen -W "$words" -- "$cur")) ;;
-    *) COMPREPLY=($(compgen -f -- "$cur")) ;;
+    *) if [ -n "$first" ]; then COMPREPLY=($(compgen -W "$first" -- "$cur")); else COMPREPLY=($(compgen -f -- "$cur")); fi ;;
   esac
 }}
 complete -o filenames -F _rfsmooth rfsmooth
 )",
-                     names, values, options);
+                     names, values, options, first);
 }
 
 /// Text inside _arguments '...[text]'.
@@ -86,6 +90,8 @@ std::string zsh_script(const std::vector<Command>& commands) {
     names += fmt::format("    '{}:{}'\n", c.name, zsh_escaped(c.summary));
     cases += fmt::format("    {})\n      _arguments \\\n", c.name);
     for (const CommandOption& o : c.options) cases += zsh_option(o);
+    if (!c.first_words.empty())
+      cases += fmt::format("        '1:{}:({})' \\\n", c.name, fmt::join(c.first_words, " "));
     cases +=
         "        '--help[everyday options]' '--help-all[everything about the command]' '*:file:_files' ;;\n";
   }
@@ -119,9 +125,11 @@ std::string script(const std::vector<std::string>& arguments) {
 }  // namespace
 
 Command completion_command() {
-  return text_command(
+  Command command = text_command(
       "completion", "print a completion script for bash or zsh", "bash|zsh",
       "Prints the script on standard output; source it, or put it where the shell looks for it.", script);
+  command.first_words = {"bash", "zsh"};
+  return command;
 }
 
 }  // namespace rfsmooth::cli

@@ -213,11 +213,16 @@ void work_on_tiles(const std::string& step, const std::vector<std::string>& argu
   }
 }
 
+/// The words that come first.
+std::vector<std::string> steps_of_tiles() {
+  return {"plan", "measure", "settle", "run", "join", "status"};
+}
+
 int run_tiles(TilesOptions& options, const Invocation& typed) {
-  static const std::vector<std::string> kSteps = {"plan", "measure", "settle", "run", "join", "status"};
+  const std::vector<std::string> steps = steps_of_tiles();
   const std::string step = typed.arguments.empty() ? "" : typed.arguments.front();
-  if (std::find(kSteps.begin(), kSteps.end(), step) == kSteps.end())
-    fail(ErrorCode::usage, "rfsmooth tiles takes one of {}", fmt::join(kSteps, ", "));
+  if (std::find(steps.begin(), steps.end(), step) == steps.end())
+    fail(ErrorCode::usage, "rfsmooth tiles takes one of {}", fmt::join(steps, ", "));
   if (step != "plan") {
     std::vector<CommandOption> planned;
     PlannedOptions unused;
@@ -262,6 +267,7 @@ Command tiles_command() {
       "again: what is there complete is not made again. The same inputs give the same bytes. On one machine "
       "'rfsmooth denoise --memory 8G IN OUT' does all of it.";
   collect(*options, command.options);
+  command.first_words = steps_of_tiles();
   command.everyday = {"tile-points", "sample-points", "strength", "noise",
                       "threads",     "json",          "force",    "quiet"};
   command.run = [options](const Invocation& typed) { return run_tiles(*options, typed); };
