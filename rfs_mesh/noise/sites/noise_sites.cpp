@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "base/parallel.h"
@@ -44,6 +45,7 @@ class Listener {
         points_(at.size(), 0),
         window_(at.size(), 0),
         from_(at.size()),
+        opened_by_(at.size(), std::numeric_limits<double>::infinity()),
         widest_(widest_scatter(cloud)),
         start_(start.sigma),
         deep_(start.fills_nearest()),
@@ -85,7 +87,7 @@ class Listener {
             if (fit.within > 0) full.push_back(fit.within / (window_[q.index] * window_[q.index]));
           }
           if (hear_at(s, said, 1)) {
-            opened[s] = char(sigma[s] > kSettled * window_[s]);
+            opened[s] = char(opens_on(s));
           } else {
             // Nearly nothing around is left within windows made for far calmer places.
             const bool empty = double(full.size()) < (1 - kLeastSpeaking) * double(group_[s].size());
@@ -186,6 +188,17 @@ class Listener {
            (places_.at()[s] - from_[s]).squaredNorm() <= (kSettled - 1) * last * last;
   }
 
+  /// Whether the window of a place that fits speak for is still too narrow. In one sheet it opens by less
+  /// every round. Where a window far wider than the start's opens by more than before, another sheet comes
+  /// in.
+  bool opens_on(std::size_t s) {
+    const double times = sigma[s] / window_[s];
+    if (window_[s] > kMuchLouder * start_ && times > kSettled * std::max(1.0, opened_by_[s]))
+      sigma[s] = views[s].sheet = window_[s];
+    opened_by_[s] = times;
+    return sigma[s] > kSettled * window_[s];
+  }
+
   /// Widens the window of a place that no fit speaks for and that sees one sheet. \param full of those
   /// around, as kFilled
   void open_window(std::size_t s, double full) {
@@ -260,6 +273,7 @@ class Listener {
   std::vector<std::size_t> points_;  ///< ... so many points, ...
   std::vector<double> window_;       ///< ... this window ...
   Positions from_;                   ///< ... around this place
+  std::vector<double> opened_by_;    ///< times that the window of each was wider after its last round
   std::size_t widest_;
   double start_;            ///< world units
   bool loud_part_ = false;  ///< whether a part of the cloud is plainly louder than the start

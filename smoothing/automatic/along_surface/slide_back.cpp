@@ -122,9 +122,9 @@ void slide_back(Positions& points, const Positions& before, rfs_mesh::NeighborTa
   const SmoothSurface surface(points, std::move(near), context);
   Positions back(points.size());
   for_blocks(context, points.size(), 256, [&](std::size_t begin, std::size_t end) {
-    RingAround near(surface.index());
+    RingAround around(surface.index());
     for (std::size_t i = begin; i < end; ++i)
-      back[i] = points[i] == before[i] ? points[i] : surface.foot(i, before[i], near);
+      back[i] = points[i] == before[i] ? points[i] : surface.foot(i, before[i], around);
   });
   points = std::move(back);
 }

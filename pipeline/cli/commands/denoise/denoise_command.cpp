@@ -33,23 +33,9 @@ std::vector<FileBeside> files_beside(const DenoiseCommandOptions& options) {
   return files;
 }
 
-/// Refuses options that contradict each other or do nothing, before any file is touched. \throw Failure
-/// (usage).
-void check_denoising(const DenoiseCommandOptions& options, const Invocation& typed) {
-  check(options.normals);
-  const bool swaps = options.denoise.swap && iterations(options.denoise.flow.flow) > 1;
-  std::vector<CommandOption> of_swaps;
-  SwapOptions unused;
-  collect(unused, of_swaps);
-  for (const auto& [name, text] : typed.options)
-    if (!swaps && find_option(of_swaps, name) != nullptr)
-      fail(ErrorCode::usage, "--{} has no effect without swaps, which go between steps (--iterations 2)",
-           name);
-}
-
 /// One cloud in tiles. \return the exit code, or none if it is to be smoothed as a whole.
 std::optional<int> denoise_in_tiles(const DenoiseCommandOptions& options, const Invocation& typed) {
-  check_denoising(options, typed);
+  check(options.normals);
   const std::vector<Job> jobs = plan_cloud_jobs(typed.arguments, options.job.files);
   if (jobs.size() != 1) return std::nullopt;
   const Job& job = jobs.front();
@@ -103,7 +89,7 @@ Command denoise_command() {
   command.everyday = {"strength", "noise",   "flow",   "outliers", "normals", "output",
                       "force",    "threads", "report", "quiet",    "verbose"};
   const auto beside = std::make_shared<Beside>();
-  command.on_cloud = {[options](const Invocation& typed) { check_denoising(*options, typed); },
+  command.on_cloud = {[options](const Invocation&) { check(options->normals); },
                       [options] { return denoising_stages(options->normals.normals); },
                       [options, beside](auto& cloud, const CloudTask& task) {
                         return denoise_cloud(*options, *beside, cloud, task);

@@ -15,9 +15,9 @@ inline constexpr double kSigma = 0.05;
 inline constexpr double kLimb = 0.08;
 
 /// A ring's cloud with noise, as a rough mesh.
-inline Mesh noisy_ring(double tube) {
-  Positions points = clouds::sample(*clouds::make_torus(1, tube), 5000, 3);
-  clouds::add_noise(points, kSigma, 4);
+inline Mesh noisy_ring(double tube, std::uint64_t seed = 3) {
+  Positions points = clouds::sample(*clouds::make_torus(1, tube), 5000, seed);
+  clouds::add_noise(points, kSigma, seed + 1);
   return value_or_throw(connect(points, {}, {})).mesh;
 }
 
