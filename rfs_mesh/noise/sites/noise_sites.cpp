@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "base/parallel.h"
@@ -45,7 +44,7 @@ class Listener {
         points_(at.size(), 0),
         window_(at.size(), 0),
         from_(at.size()),
-        opened_by_(at.size(), std::numeric_limits<double>::infinity()),
+        least_opened_by_(at.size(), kFilled),
         widest_(widest_scatter(cloud)),
         start_(start.sigma),
         deep_(start.fills_nearest()),
@@ -189,13 +188,14 @@ class Listener {
   }
 
   /// Whether the window of a place that fits speak for is still too narrow. In one sheet it opens by less
-  /// every round. Where a window far wider than the start's opens by more than before, another sheet comes
-  /// in.
+  /// every round, once it is not full. Where a window far wider than the start's opens by more again before
+  /// it has settled, another sheet comes in.
   bool opens_on(std::size_t s) {
-    const double times = sigma[s] / window_[s];
-    if (window_[s] > kMuchLouder * start_ && times > kSettled * std::max(1.0, opened_by_[s]))
+    const double least = least_opened_by_[s], times = sigma[s] / window_[s];
+    least_opened_by_[s] = std::min(least, std::max(1.0, times));
+    const bool still_opens = least > kSettled && least * least < kFilled;
+    if (window_[s] > kMuchLouder * start_ && still_opens && times > kSameNoise * least)
       sigma[s] = views[s].sheet = window_[s];
-    opened_by_[s] = times;
     return sigma[s] > kSettled * window_[s];
   }
 
@@ -273,7 +273,7 @@ class Listener {
   std::vector<std::size_t> points_;  ///< ... so many points, ...
   std::vector<double> window_;       ///< ... this window ...
   Positions from_;                   ///< ... around this place
-  std::vector<double> opened_by_;    ///< times that the window of each was wider after its last round
+  std::vector<double> least_opened_by_;  ///< of the rounds: times that the window of each was wider after it
   std::size_t widest_;
   double start_;            ///< world units
   bool loud_part_ = false;  ///< whether a part of the cloud is plainly louder than the start
