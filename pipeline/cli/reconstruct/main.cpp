@@ -39,16 +39,16 @@ class InsideLibrary {
     struct sigaction action = {};
     action.sa_handler = cancel;
     sigemptyset(&action.sa_mask);
-    for (std::size_t k = 0; k < before_.size(); ++k) {
-      const int signal = rfsmooth::cli::kCancelling[k];
-      sigaction(signal, nullptr, &before_[k]);
-      if (before_[k].sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
+    auto before = before_.begin();
+    for (const int signal : rfsmooth::cli::kCancelling) {
+      sigaction(signal, nullptr, &*before);
+      if (before++->sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
     }
     if (kept_ >= 0 && nowhere_ >= 0) dup2(nowhere_, STDERR_FILENO);
   }
   ~InsideLibrary() {
-    for (std::size_t k = 0; k < before_.size(); ++k)
-      sigaction(rfsmooth::cli::kCancelling[k], &before_[k], nullptr);
+    auto before = before_.cbegin();
+    for (const int signal : rfsmooth::cli::kCancelling) sigaction(signal, &*before++, nullptr);
     messages = STDERR_FILENO;
     if (kept_ >= 0) dup2(kept_, STDERR_FILENO);
     for (const int descriptor : {kept_, nowhere_})
