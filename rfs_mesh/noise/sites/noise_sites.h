@@ -4,12 +4,14 @@
 /// (scatter.h) that begins at the noise search_noise found. The mean is of up to 48 fits; but where the dozen
 /// nearest show 1.5 times the variance of all, it is of these alone: a loud part beside a calm one. (A dozen
 /// that shows less does not speak alone: a flat beside an edge would, and noise that is read too large does
-/// little harm.) A window that is too narrow for the noise cuts off so many points that no fit says anything.
-/// So does one that cuts off the second sheet of a wall; but there what is left in the window scatters as
-/// little as the window was made for, while louder noise fills it evenly, at three times that variance, or
-/// leaves nothing in it at nearly all of the sites around. A window that is filled evenly gets wider, to the
-/// scatter seen in it, and that up to eight times. A site is fitted again while its window or its place
-/// changes.
+/// little harm.) A window that is too narrow for the noise shows more than it was made for, and opens to
+/// that; one that is far too narrow cuts off so many points that no fit says anything. So does one that cuts
+/// off the second sheet of a wall; but there what is left in the window scatters as little as the window was
+/// made for, while louder noise fills it evenly, at three times that variance, or leaves nothing in it at
+/// nearly all of the sites around. A window that is filled evenly gets wider, to the scatter seen in it.
+/// Windows open up to eight times; in one sheet by less every time. One that is far wider than the first,
+/// opened by ever less and then opens by a tenth more lets another sheet in (the far wall of a pipe), and
+/// stays as it was. A site is fitted again while its window or its place changes.
 ///
 /// A site's fits take more points, until their ball is as wide as its noise needs, if its window ends above
 /// twice the noise it began with; or the points are denser than elsewhere; or it ends above 1.1 times that
