@@ -17,16 +17,19 @@ const std::atomic<bool>& stop_flag() {
   return stopped;
 }
 
+struct sigaction handle_unless_ignored(int signal, const struct sigaction& handler) {
+  struct sigaction before = {};
+  sigaction(signal, nullptr, &before);
+  if (before.sa_handler != SIG_IGN) sigaction(signal, &handler, nullptr);
+  return before;
+}
+
 void catch_signals() {
   struct sigaction action = {};
   action.sa_handler = set_stopped;
   sigemptyset(&action.sa_mask);
   action.sa_flags = 0;  // not SA_RESTART: a read that waits for standard input is to return
-  for (const int signal : kCancelling) {
-    struct sigaction inherited = {};
-    sigaction(signal, nullptr, &inherited);
-    if (inherited.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
-  }
+  for (const int signal : kCancelling) handle_unless_ignored(signal, action);
   // Writing to a closed pipe, or beyond the size that files may have, then fails: exit code 5.
   for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);
 }

@@ -15,9 +15,13 @@ inline constexpr int kCancelling[] = {SIGINT, SIGTERM, SIGHUP};
 /// True once one of them has arrived; it never becomes false again. May be read by any thread.
 const std::atomic<bool>& stop_flag();
 
-/// From now on they set the flag instead of ending the process, and system calls that wait return with EINTR;
-/// one that the caller has ignored, as nohup does, stays ignored. Signals of writing that fails (SIGPIPE,
-/// SIGXFSZ) are ignored: it returns an error. Call it once, before other threads start.
+/// Gives a signal that handler, unless it is ignored, as the caller may have asked for (nohup). Returns what
+/// it did before.
+struct sigaction handle_unless_ignored(int signal, const struct sigaction& handler);
+
+/// From now on what cancels the work sets the flag instead of ending the process, and system calls that wait
+/// return with EINTR. Signals of writing that fails (SIGPIPE, SIGXFSZ) are ignored: it returns an error. Call
+/// it once, before other threads start.
 void catch_signals();
 
 }  // namespace rfsmooth::cli

@@ -40,10 +40,8 @@ class InsideLibrary {
     action.sa_handler = cancel;
     sigemptyset(&action.sa_mask);
     auto before = before_.begin();
-    for (const int signal : rfsmooth::cli::kCancelling) {
-      sigaction(signal, nullptr, &*before);
-      if (before++->sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
-    }
+    for (const int signal : rfsmooth::cli::kCancelling)
+      *before++ = rfsmooth::cli::handle_unless_ignored(signal, action);
     if (kept_ >= 0 && nowhere_ >= 0) dup2(nowhere_, STDERR_FILENO);
   }
   ~InsideLibrary() {
