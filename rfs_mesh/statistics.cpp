@@ -117,8 +117,6 @@ void check_tails(const Statistics::Tails& tails, Wrong& wrong) {
 }
 
 void check_pass(const Statistics::Pass& pass, Wrong& wrong) {
-  wrong.expect(are(pass.reductions, [](double v) { return v > 0 && v < 1; }),
-               "passes: a reduction is not between 0 and 1");
   wrong.expect(are(pass.scales, is_scale) && (!pass.narrow || is_scale(*pass.narrow)),
                "passes: a scale without members, or without 1 to 64 thinnings");
   wrong.expect(

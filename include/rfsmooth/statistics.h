@@ -78,8 +78,7 @@ struct Statistics {
   };
   /// A pass over all scales; clouds with tails take two.
   struct Pass {
-    std::vector<double> reductions;  ///< of the residual, by the guide's polynomials; between 0 and 1
-    std::optional<Scale> narrow;     ///< stands for the data where points share their noise
+    std::optional<Scale> narrow;  ///< stands for the data where points share their noise
     static constexpr std::size_t kMostScales = 15;
     std::vector<Scale> scales;  ///< ascending, at most kMostScales
     /// Of the cloud that the data and each scale serve best: none, or one more than scales, 0 or more each,

@@ -28,6 +28,8 @@ namespace {
 // Chosen on the development shapes (tests/bench/quality) at 10,000 and 50,000 points, noise of 1 to 3 %.
 constexpr double kGuide = 10;  // c = kGuide (sigma/h)^2, to the fourth power above h
 
+constexpr double kNearlySolved = 1e-3;  // of the noise: what the guide keeps of it no height tells from none
+
 /// Rings of the nearest points along the lines that the cloud lies on, two to either side: an RFS-mesh has
 /// hardly a face there, and where it has one it leads to another line, far away.
 Adjacency along_lines(const Positions& points, const Context& context) {
@@ -39,23 +41,21 @@ Adjacency along_lines(const Positions& points, const Context& context) {
   return make_adjacency(points.size(), edges, context);
 }
 
-Positions fair(const Positions& points, const Adjacency& rings, double strength,
-               std::vector<double>& reductions, const Context& context) {
+Positions fair(const Positions& points, const Adjacency& rings, double strength, const Context& context) {
   const Operator op = umbrella(rings, context);
   SolverOptions options;
-  options.tolerance = 1e-4;
-  options.reductions = reductions;
+  options.tolerance = kNearlySolved;
+  options.of_start = true;
   Positions x;
-  reductions =
-      solve({rings, op, {0, strength, 0, 0}, {}, {}}, points, x, AllowedMoves(), options, context).reductions;
+  solve({rings, op, {0, strength, 0, 0}, {}, {}}, points, x, AllowedMoves(), options, context);
   return x;
 }
 
 /// The guide of the points, faired over their rings, and the heights over it.
 std::unique_ptr<HeightField> raise_field(const Positions& points, const Adjacency& rings,
                                          const rfs_mesh::NoiseField& noise, AutomaticReport& report,
-                                         Statistics::Pass& whole, const Context& context) {
-  Positions guide = fair(points, rings, report.guide_strength, whole.reductions, context);
+                                         const Context& context) {
+  Positions guide = fair(points, rings, report.guide_strength, context);
   Landed landed = land_stranded(points, rings, noise.strays_beyond(1, context), guide, context);
   report.stranded = landed.stranded;
   return std::make_unique<HeightField>(std::move(guide), std::move(landed.tree), landed.near, points, noise,
@@ -89,7 +89,7 @@ Mixed mix_scales(const AutomaticTask& task, AutomaticReport& report, Statistics&
     whole.passes.resize(std::max(pass + 1, whole.passes.size()));
     report.guide_strength = strength_of_guide(noise);
     mixed.field.reset();
-    mixed.field = raise_field(points, rings, noise, report, whole.passes[pass], context);
+    mixed.field = raise_field(points, rings, noise, report, context);
     context.report("smooth", 0.1);
     std::optional<RingsAtRest> rest;  // only with tails will they be read again
     if (!task.keep_rings) rest.emplace(std::move(mesh.one_ring), context);

@@ -89,29 +89,23 @@ class FairingSolve {
       r[i] = Vector4f(float(scaled[0]), float(scaled[1]), float(scaled[2]), 0);
     };
     double norm = residual(as_float);
-    const auto wanted = [&] {
-      return options_.reductions.empty() ? norm > goal_
-                                         : report.reductions.size() < options_.reductions.size();
-    };
-    bool polynomials_alone = true;
-    while (wanted() && std::isfinite(norm) && report.iterations < options_.max_iterations) {
+    if (options_.of_start) goal_ = options_.tolerance * norm;
+    report.by_polynomials = norm > goal_;
+    while (norm > goal_ && std::isfinite(norm) && report.iterations < options_.max_iterations) {
       const double before = norm;
-      if (!correct_by_polynomial(r, norm, report)) {
-        polynomials_alone = false;
+      if (!correct_by_polynomial(r, norm, report.iterations)) {
+        report.by_polynomials = false;
         correct_by_iteration(r, norm, report.iterations);
       }
       norm = residual(as_float);
-      if (!wanted()) break;
-      if (norm > kWorthwhile * before) {
-        polynomials_alone = false;
+      if (norm > goal_ && norm > kWorthwhile * before) {
+        report.by_polynomials = false;
         norm = finish_in_double(report.iterations);
         break;
       }
     }
-    if (!polynomials_alone) report.reductions.clear();
     report.residual = relative(norm, goal_, options_.tolerance);
-    report.converged =
-        norm <= goal_ || norm <= rounding_of(largest_eigenvalue() * goal_ / options_.tolerance);
+    report.converged = norm <= goal_ || norm <= rounding_of(largest_eigenvalue() * size_);
     return report;
   }
 
@@ -136,10 +130,10 @@ class FairingSolve {
     umbrella_ = s_.op.weight.empty() && sums.other_mass == 0;
     mean_mass_ = sums.mass / double(n_);
     const Vector3d centre = sums.x / double(n_);
-    const double size = norm_of([&](std::size_t i) { return Vector3d(data(i) * (o_[i] - centre)); });
-    goal_ = options_.tolerance * size;
+    size_ = norm_of([&](std::size_t i) { return Vector3d(data(i) * (o_[i] - centre)); });
+    goal_ = options_.tolerance * size_;
     // Single precision sees lengths in this unit and the norm in that one.
-    length_ = options_.linf ? size : size / std::sqrt(mean_mass_ * double(n_));
+    length_ = options_.linf ? size_ : size_ / std::sqrt(mean_mass_ * double(n_));
     if (!(length_ > 0)) length_ = 1;
     norm_unit_ = options_.linf ? length_ : length_ * std::sqrt(mean_mass_);
   }
@@ -244,19 +238,15 @@ class FairingSolve {
 
   /// Adds a solution of A d = r in single precision to x; r is overwritten. For the umbrella with the data's
   /// own mass, second order: the degree that it takes is known beforehand. False for all else.
-  bool correct_by_polynomial(Vectors<Vector4f>& r, double norm, SolverReport& report) {
+  bool correct_by_polynomial(Vectors<Vector4f>& r, double norm, int& iterations) {
     const bool plain = umbrella_ && s_.data.empty() && s_.strength.empty() && allowed_.all_free();
     if (!plain || options_.linf || !(s_.a[1] > 0 && s_.a[0] >= 0) || s_.a[2] != 0 || s_.a[3] != 0)
       return false;
-    const std::size_t done = report.reductions.size();
-    const double reduction = done < options_.reductions.size() ? options_.reductions[done]
-                                                               : std::max(kSlack * goal_ / norm, kCorrection);
     constexpr int kMost = 2000;
-    const auto polynomial = inverse_polynomial(
-        s_.a[0], s_.a[1], reduction, std::min(kMost, 2 * (options_.max_iterations - report.iterations)));
+    const auto polynomial = inverse_polynomial(s_.a[0], s_.a[1], std::max(kSlack * goal_ / norm, kCorrection),
+                                               std::min(kMost, 2 * (options_.max_iterations - iterations)));
     if (!polynomial) return false;
-    report.iterations += int(polynomial->size() + 1) / 2;
-    report.reductions.push_back(reduction);
+    iterations += int(polynomial->size() + 1) / 2;
     Vectors<Vector4f> d(n_);
     for_each_index(context_, n_, [&](std::size_t i) { r[i] *= float(mean_mass_ / s_.op.mass[i]); });
     apply_polynomial(*polynomial, s_.rows, r, d, context_);
@@ -321,7 +311,7 @@ class FairingSolve {
   const Context& context_;
   std::size_t n_;
   bool umbrella_ = false;
-  double mean_mass_ = 1, goal_ = 0, length_ = 1, norm_unit_ = 1;
+  double mean_mass_ = 1, size_ = 0, goal_ = 0, length_ = 1, norm_unit_ = 1;
   Positions level_;  ///< of the residual
   std::optional<FairingMatrix<Vector4f>> matrix_;
   Scales<float> scales_;

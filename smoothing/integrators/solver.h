@@ -13,6 +13,10 @@
 ///
 ///     |A x - b| < tolerance |b|    in the inner product of M^-1 (l2), or per vertex over m_i (linf)
 ///
+/// What this asks for grows with the extent of the cloud. Relative to the residual of the start it does not:
+/// each part of the start's error, coarse or fine, is reduced by the tolerance or more where a polynomial
+/// (below) does it.
+///
 /// Corrections are computed in single precision, residuals and positions in double. Where single precision
 /// does not suffice, all is double. Second order with the umbrella and nothing else (Q = M, C = 1, no
 /// constraint, l2) is solved by a polynomial instead (chebyshev.h), several times faster.
@@ -34,18 +38,17 @@ namespace rfsmooth::smoothing {
 /// When to stop.
 struct SolverOptions {
   double tolerance = 1e-5;    ///< of the residual, relative to the centred right side
+  bool of_start = false;      ///< the tolerance is relative to the residual of the start instead
   int max_iterations = 5000;  ///< then the last iterate is returned as it is
-  /// Not empty: what each polynomial reduces the residual to, instead of the tolerance.
-  std::vector<double> reductions = {};
-  bool linf = false;  ///< stop on the largest instead of the root mean square residual
+  bool linf = false;          ///< stop on the largest instead of the root mean square residual
 };
 
 /// How it ended.
 struct SolverReport {
-  int iterations = 0;      ///< products with A in the iteration
-  double residual = 0;     ///< at the end; relative, in the norm of the options
-  bool converged = false;  ///< within the tolerance, or as near as rounding lets the residual come to 0
-  std::vector<double> reductions = {};  ///< of each polynomial; empty if anything else was needed
+  int iterations = 0;           ///< products with A in the iteration
+  double residual = 0;          ///< at the end; relative, in the norm of the options
+  bool converged = false;       ///< within the tolerance, or as near as rounding lets the residual come to 0
+  bool by_polynomials = false;  ///< and by nothing else
 };
 
 /// y = A x for a symmetric positive definite A; x and y are distinct, n rows. Returns x . y, summed in fixed

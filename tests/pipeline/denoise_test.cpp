@@ -478,7 +478,6 @@ TEST(Denoise, StatisticsThatNoCloudHasAreRefused) {
       },
       "shares");
   expect_refused([](Statistics& s) { s.passes[0].shares[0] = -1; }, "shares");
-  expect_refused([](Statistics& s) { s.passes[0].reductions.push_back(0); }, "reduction");
   expect_refused(
       [](Statistics& s) {
         s.noise->sites.clear();

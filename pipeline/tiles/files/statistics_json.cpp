@@ -64,7 +64,7 @@ Statistics::Scale patches_of(const ordered_json& json) {
 }
 
 ordered_json json_of_pass(const Statistics::Pass& pass) {
-  ordered_json json = {{"reductions", pass.reductions}, {"shares", pass.shares}};
+  ordered_json json = {{"shares", pass.shares}};
   json["scales"] = ordered_json::array();
   for (const auto& s : pass.scales) json["scales"].push_back(json_of_patches(s));
   if (pass.narrow) json["narrow"] = json_of_patches(*pass.narrow);
@@ -73,7 +73,6 @@ ordered_json json_of_pass(const Statistics::Pass& pass) {
 
 Statistics::Pass pass_of(const ordered_json& json) {
   Statistics::Pass pass;
-  pass.reductions = json.at("reductions").get<std::vector<double>>();
   pass.shares = json.at("shares").get<std::vector<double>>();
   for (const auto& s : json.at("scales")) pass.scales.push_back(patches_of(s));
   if (json.contains("narrow")) pass.narrow = patches_of(json.at("narrow"));

@@ -30,7 +30,6 @@ Statistics full() {
   all.noise->shared_at_sites = {3.7, 5};
   all.tails = {0.05, 4.1, 0.9, 1.2};
   all.passes.resize(2);
-  all.passes[0].reductions = {0.5, 1.0 / 3};
   all.passes[0].narrow = {16, 1};
   all.passes[0].scales = {{32, 2}, {64, 3}};
   all.passes[0].shares = {0.25, 0.75};
