@@ -7,7 +7,7 @@
 #include "base/fail.h"
 #include "pipeline/cli/options/json_values.h"
 #include "pipeline/cli/options/suggest.h"
-#include "pipeline/tiles/files/json_file.h"
+#include "pipeline/io/json_file.h"
 
 namespace rfsmooth::cli {
 
@@ -61,7 +61,7 @@ void enter_files(const json& root, Config& config) {
 
 Config read_config(const std::string& path, const Command& command) {
   if (path == "-") fail(ErrorCode::usage, "--config takes the name of a file, not standard input (-)");
-  const json root = pipeline::tiles::read_json(path);
+  const json root = pipeline::io::read_json(path);
   if (!root.is_object()) fail(ErrorCode::usage, "{}: a JSON object is needed", path);
   const json& part = part_with_options(path, root);
   const bool report = part.contains("options");

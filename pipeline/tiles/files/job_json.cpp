@@ -3,7 +3,7 @@
 #include <system_error>
 
 #include "base/fail.h"
-#include "pipeline/tiles/files/json_file.h"
+#include "pipeline/io/json_file.h"
 #include "pipeline/tiles/files/statistics_json.h"
 
 namespace rfsmooth::pipeline::tiles {
@@ -13,7 +13,7 @@ namespace {
 using nlohmann::ordered_json;
 
 [[noreturn]] void refuse_plan(const std::filesystem::path& folder, const nlohmann::json::exception& error) {
-  fail(ErrorCode::input_unreadable, "{}: is no plan: {}", plan_file(folder).string(), said_of(error));
+  fail(ErrorCode::input_unreadable, "{}: is no plan: {}", plan_file(folder).string(), io::said_of(error));
 }
 
 }  // namespace
@@ -43,7 +43,7 @@ ordered_json json_of_job(const Job& job, const PlanOptions& how) {
 ordered_json read_plan(const std::filesystem::path& folder) {
   if (std::error_code unknown; !std::filesystem::exists(plan_file(folder), unknown))
     fail(ErrorCode::input_unreadable, "{}: holds no job (rfsmooth tiles plan makes one)", folder.string());
-  return read_json(plan_file(folder));
+  return io::read_json(plan_file(folder));
 }
 
 Job job_of(const ordered_json& json, const std::filesystem::path& folder) {

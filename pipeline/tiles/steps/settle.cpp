@@ -9,9 +9,9 @@
 #include "base/fail.h"
 #include "base/parallel.h"
 #include "pipeline/io/io.h"
+#include "pipeline/io/json_file.h"
 #include "pipeline/prepare.h"
 #include "pipeline/tiles/allowed.h"
-#include "pipeline/tiles/files/json_file.h"
 #include "pipeline/tiles/files/records.h"
 #include "pipeline/tiles/files/statistics_json.h"
 #include "pipeline/tiles/halo.h"
@@ -143,7 +143,7 @@ Settled settled_of(const Job& job) {
 }
 
 Settled read_settled(const std::filesystem::path& path) {
-  const ordered_json json = read_json(path);
+  const ordered_json json = io::read_json(path);
   try {
     Settled settled = settled_of_json(json);
     std::vector<std::string> wrong = check(settled.report.statistics);
@@ -154,7 +154,7 @@ Settled read_settled(const std::filesystem::path& path) {
     return settled;
   } catch (const nlohmann::json::exception& error) {
     fail(ErrorCode::input_unreadable, "{}: is not what 'rfsmooth tiles settle' writes: {}", path.string(),
-         said_of(error));
+         io::said_of(error));
   }
 }
 

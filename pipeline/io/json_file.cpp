@@ -1,4 +1,4 @@
-#include "pipeline/tiles/files/json_file.h"
+#include "pipeline/io/json_file.h"
 
 #include <string_view>
 
@@ -7,13 +7,13 @@
 #include "base/fail.h"
 #include "pipeline/io/stream/source.h"
 
-namespace rfsmooth::pipeline::tiles {
+namespace rfsmooth::pipeline::io {
 
 using nlohmann::ordered_json;
 
 ordered_json read_json(const std::filesystem::path& path) {
-  const io::Source source(path, {});
-  const io::Bytes text = source.read(0, std::size_t(source.size()), {});
+  const Source source(path, {});
+  const Bytes text = source.read(0, std::size_t(source.size()), {});
   try {
     return ordered_json::parse(text.begin(), text.end());
   } catch (const nlohmann::json::parse_error& error) {
@@ -32,4 +32,4 @@ std::string said_of(const nlohmann::json::exception& error) {
   return "a value in it is of another kind than rfsmooth writes";
 }
 
-}  // namespace rfsmooth::pipeline::tiles
+}  // namespace rfsmooth::pipeline::io

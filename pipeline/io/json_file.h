@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace rfsmooth::pipeline::tiles {
+namespace rfsmooth::pipeline::io {
 
 /// What a file holds. \throw Failure: input_unreadable (missing, a folder, no JSON; says the byte), usage (a
 /// number beyond all that programs hold).
@@ -16,4 +16,4 @@ nlohmann::ordered_json read_json(const std::filesystem::path& path);
 /// missing".
 std::string said_of(const nlohmann::json::exception& error);
 
-}  // namespace rfsmooth::pipeline::tiles
+}  // namespace rfsmooth::pipeline::io
