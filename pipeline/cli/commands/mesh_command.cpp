@@ -146,13 +146,6 @@ std::string connect_cloud(const MeshCommandOptions& options, pipeline::io::Cloud
                      counted(edges.size(), "edge"), counted(faces.size(), "face"));
 }
 
-/// A point with what the stage makes of points: what its file needs room for.
-pipeline::io::Cloud smallest_of(const std::string& stage) {
-  const Positions point = {Eigen::Vector3d::Zero()};
-  return stage == "rfs" ? pipeline::io::make_mesh_file(point, {Face{0, 0, 0}}, {})
-                        : pipeline::io::make_mesh_file(point, {}, {Edge{0, 0}});
-}
-
 /// What is reported until the stage that was asked for is made.
 std::vector<StageShare> stages_up_to(const std::string& stage) {
   std::vector<StageShare> stages = connecting_stages();
@@ -190,9 +183,9 @@ Command mesh_command() {
       [options](auto& cloud, const CloudTask& task) { return connect_cloud(*options, cloud, task); },
       {},
       pipeline::io::Format::ply};
-  command.on_cloud.will_lose = [options](const auto&, Format format, Encoding encoding,
-                                         const Context& context) {
-    return pipeline::io::what_is_lost(smallest_of(options->mesh.stage), format, encoding, context);
+  command.on_cloud.will_lose = [options](const auto&, Format format, Encoding, const Context&) {
+    return options->mesh.stage == "rfs" ? pipeline::io::lost_of_triangles(format)
+                                        : pipeline::io::lost_of_edges(format);
   };
   command.run = [options, on_cloud = command.on_cloud](const Invocation& typed) {
     return run_cloud_jobs("mesh", options->job, typed, on_cloud);

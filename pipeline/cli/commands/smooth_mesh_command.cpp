@@ -20,7 +20,6 @@
 #include "pipeline/cli/files/file_mesh.h"
 #include "pipeline/cli/files/memory.h"
 #include "pipeline/io/convert/convert.h"
-#include "pipeline/io/mesh_file.h"
 #include "pipeline/io/point_fields.h"
 #include "rfs_mesh/edge_faces.h"
 #include "rfs_mesh/measure.h"
@@ -212,17 +211,6 @@ std::string smooth_file(const SmoothMeshCommandOptions& options, std::vector<Tra
                      counted(faces, "face"), counted(std::uint64_t(done.steps), "step"), done.largest_move);
 }
 
-/// What a file has no room for of the smoothed mesh, or of a refined one, which has only x, y, z and faces.
-std::vector<std::string> lost_of_mesh(const SmoothMeshCommandOptions& options,
-                                      const pipeline::io::Cloud& cloud, Format format, Encoding encoding,
-                                      const Context& context) {
-  if (options.after.refine.levels == 0)
-    return pipeline::io::what_will_be_lost(cloud, {}, format, encoding, context);
-  const pipeline::io::Cloud refined =
-      pipeline::io::make_mesh_file({Eigen::Vector3d::Zero()}, {Face{0, 0, 0}}, {});
-  return pipeline::io::what_is_lost(refined, format, encoding, context);
-}
-
 void check_smooth_mesh(const SmoothMeshCommandOptions& options, const Invocation& typed) {
   options.after.check_partners(typed);
   if (const auto& fields = options.constraints; fields.direction && !fields.axis && !fields.plane)
@@ -261,7 +249,9 @@ Command smooth_mesh_command() {
   command.on_cloud.files_beside = [options] { return options->trace.files(); };
   command.on_cloud.will_lose = [options](const auto& cloud, Format format, Encoding encoding,
                                          const Context& context) {
-    return lost_of_mesh(*options, cloud, format, encoding, context);
+    return options->after.refine.levels > 0  // then there are only x, y, z and faces
+               ? pipeline::io::lost_of_triangles(format)
+               : pipeline::io::what_will_be_lost(cloud, {}, format, encoding, context);
   };
   command.run = [options, on_cloud = command.on_cloud](const Invocation& typed) {
     return run_cloud_jobs("smooth-mesh", options->job, typed, on_cloud);

@@ -227,6 +227,16 @@ std::vector<std::string> what_will_be_lost(const Cloud& cloud, const std::vector
   return lost;
 }
 
+std::vector<std::string> lost_of_triangles(Format format) {
+  if (capacity_of(format).elements != Capacity::Elements::none) return {};
+  return {"element 'face'"};
+}
+
+std::vector<std::string> lost_of_edges(Format format) {
+  if (capacity_of(format).elements == Capacity::Elements::all) return {};
+  return {"element 'edge'"};
+}
+
 void need_no_losses(const std::vector<std::string>& losses, Format format, Encoding encoding) {
   if (!losses.empty())
     fail(ErrorCode::usage, "{} ({}) cannot carry {}; `drop-unsupported` leaves that out", name_of(format),

@@ -23,6 +23,12 @@ std::vector<std::string> what_is_lost(const Cloud& cloud, Format format, Encodin
 std::vector<std::string> what_will_be_lost(const Cloud& cloud, const std::vector<Field>& added, Format format,
                                            Encoding encoding, const Context& context);
 
+/// The same of a mesh that is still to be made: x, y, z and triangles.
+std::vector<std::string> lost_of_triangles(Format format);
+
+/// The same of x, y, z and edges.
+std::vector<std::string> lost_of_edges(Format format);
+
 /// Refuses to lose anything. \throw Failure (usage) naming `losses`, unless there are none.
 void need_no_losses(const std::vector<std::string>& losses, Format format, Encoding encoding);
 

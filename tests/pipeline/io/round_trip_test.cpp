@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include "pipeline/io/convert/capacity.h"
 #include "pipeline/io/convert/convert.h"
+#include "pipeline/io/mesh_file.h"
 #include "tests/pipeline/io/random_cloud.h"
 
 using namespace rfsmooth;                // NOLINT(google-build-using-namespace)
@@ -138,6 +140,18 @@ TEST(Convert, DigitsOfCoordinatesAreNoLossBeforeTheyChange) {
   EXPECT_EQ(what_will_be_lost(cloud, added, Format::ply, bytes, {}), others) << "PLY has room for it";
   const std::vector<std::string> off = {"field 'i'", "field 'displacement'"};
   EXPECT_EQ(what_will_be_lost(cloud, added, Format::off, Encoding::ascii, {}), off);
+}
+
+TEST(Losses, OfAMeshToBeMadeAreThoseOfOneThatIs) {
+  const Positions corners = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  for (const Format format : {Format::ply, Format::pcd, Format::xyz, Format::off, Format::las}) {
+    const auto lost_of = [&](const Cloud& mesh) {
+      return what_is_lost(mesh, format, target_encoding(mesh, format, {}), {});
+    };
+    EXPECT_EQ(lost_of_triangles(format), lost_of(make_mesh_file(corners, {{0, 1, 2}}, {})))
+        << name_of(format);
+    EXPECT_EQ(lost_of_edges(format), lost_of(make_mesh_file(corners, {}, {{0, 1}}))) << name_of(format);
+  }
 }
 
 TEST(Edit, FieldsAreAddedAndPointsSelectedInEveryKind) {
