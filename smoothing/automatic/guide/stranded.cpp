@@ -102,12 +102,10 @@ class MovingGuide {
   const std::vector<Neighbor>& with_moved(const Eigen::Vector3d& at, std::size_t k, Search& search,
                                           double bound) const {
     std::vector<Neighbor>& found = search.found;
-    if (moved_index_) {
-      moved_index_->nearest_within(at, int(k), found.size() < k ? bound : found.back().squared_distance,
-                                   search.moved);
-      for (const Neighbor& q : search.moved) found.push_back({moved_[q.index], q.squared_distance});
-      if (!search.moved.empty()) std::sort(found.begin(), found.end());
-    }
+    moved_index_->nearest_within(at, int(k), found.size() < k ? bound : found.back().squared_distance,
+                                 search.moved);
+    for (const Neighbor& q : search.moved) found.push_back({moved_[q.index], q.squared_distance});
+    if (!search.moved.empty()) std::sort(found.begin(), found.end());
     found.resize(std::min(k, found.size()));
     return found;
   }
@@ -115,10 +113,9 @@ class MovingGuide {
   const Positions before_;
   rfs_mesh::SpatialIndex index_;
   std::vector<char> gone_;
-  std::optional<rfs_mesh::SpatialIndex> staying_;
   std::vector<Index> moved_;
   Positions places_;
-  std::optional<rfs_mesh::SpatialIndex> moved_index_;
+  std::optional<rfs_mesh::SpatialIndex> staying_, moved_index_;  // from set_moved on; an index takes no other
 };
 
 std::vector<Index> find_stranded(const Adjacency& rings, const Positions& guide, const NeighborTable& near,
