@@ -140,8 +140,8 @@ SmoothedInTiles smooth_in_tiles(const TiledRun& run, const Within& how, const De
   RowFile file(run.input, context);
   done.had_normals = file.has_normals();
   if (normals) file.need_normals();  // refused before the work
-  if (!run.folder.empty()) io::make_folder(run.folder);
-  io::check_target(run.output, run.force);
+  if (!run.join.folder.empty()) io::make_folder(run.join.folder);
+  io::check_target(run.output, run.join.force);
   const auto target = io::file_behind(run.output);
   if (!target) fail(ErrorCode::usage, "{}: in tiles the output is a file", run.output);
   const PassingFolder folder(target->parent_path() / fmt::format(".{}.tiles-{}",
@@ -158,9 +158,7 @@ SmoothedInTiles smooth_in_tiles(const TiledRun& run, const Within& how, const De
     context.report("tiles", kSettled + each * double(t + 1));
   }
   done.report = report_of(job, options);
-  done.joined = join_job(job, {run.output}, {run.force, run.keep_scale, normals.has_value()},
-                         part_of(context, kJoin, 1))
-                    .front();
+  done.joined = join_job(job, {run.output}, run.join, part_of(context, kJoin, 1)).front();
   return done;
 }
 

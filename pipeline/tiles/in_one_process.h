@@ -42,9 +42,7 @@ std::uint64_t finite_rows(const std::string& path, const Context& context);
 /// A file to smooth in tiles.
 struct TiledRun {
   std::string input, output;
-  bool force = false;       ///< replaces a file in the place of the output
-  bool keep_scale = false;  ///< of JoinOptions
-  std::string folder = {};  ///< of JoinOptions: here the tiles lie beside the output
+  JoinOptions join = {};  ///< its normals: whether there are some to write; its folder is made at once
 };
 
 /// What there is to say of a cloud smoothed in tiles.

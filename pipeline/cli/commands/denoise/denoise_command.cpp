@@ -48,8 +48,10 @@ std::optional<int> denoise_in_tiles(const DenoiseCommandOptions& options, const 
   console.say(fmt::format("{}: too large for {:.3g} GB: smoothed in tiles of {} points", job.input,
                           double(*memory) / 1e9, how.plan.tile_points));
   pipeline::tiles::SmoothedInTiles done = pipeline::tiles::smooth_in_tiles(
-      {job.input, job.output, options.job.files.force, options.keep_scale, job.folder}, how, options.denoise,
-      normals_in_tiles(options.normals, {job.input}, context), context);
+      {job.input,
+       job.output,
+       {options.job.files.force, options.keep_scale, options.normals.normals, job.folder}},
+      how, options.denoise, normals_in_tiles(options.normals, {job.input}, context), context);
   const pipeline::io::RefinedScale& scale = done.joined.scale;
   tell_scale(job.input, scale, options.keep_scale, done.report.noise, done.report.noise_left, console);
   if (auto& left = done.report.noise_left) left = pipeline::io::with_rounding(*left, scale.coarsest());
