@@ -43,18 +43,15 @@ struct DenoiseOptions {
   /// all that a run filled in, the same points come out with the same bytes.
   std::optional<Statistics> statistics = {};
 
+  /// \param of_outliers what is said of them where not all of that can become of them
   template <class Self, class Visit>
-  static void describe(Self& self, Visit&& visit) {
-    describe(self, visit,
-             words("outliers",
-                   "points with no surface near: left in place and out of the smoothing, marked in a field "
-                   "'outlier', removed, or smoothed like all others",
-                   {"keep", "mark", "remove", "smooth"}));
-  }
-
-  /// The same where other things can become of outliers.
-  template <class Self, class Visit>
-  static void describe(Self& self, Visit&& visit, const OptionInfo& of_outliers) {
+  static void describe(
+      Self& self, Visit&& visit,
+      const OptionInfo& of_outliers =
+          words("outliers",
+                "points with no surface near: left in place and out of the smoothing, marked in a field "
+                "'outlier', removed, or smoothed like all others",
+                {"keep", "mark", "remove", "smooth"})) {
     FlowOptions::describe(self.flow, visit);
     visit(of_outliers, self.outliers);
     visit(OptionInfo{"swap", "alternate each step with dihedral edge swaps", ""}, self.swap);
