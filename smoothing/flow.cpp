@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <type_traits>
 
 #include <fmt/format.h>
 
@@ -25,48 +26,23 @@ std::vector<AnyFlow> one_of_each(const std::variant<Options...>*) {
   return {Options{}...};
 }
 
+/// What `get` makes of the options of the flow; `other` where it cannot be called with them.
+template <class AnyOptions, class T, class Get>
+T of_options(AnyOptions& flow, T other, const Get& get) {
+  return std::visit(
+      [&](auto& options) -> T {
+        if constexpr (std::is_invocable_v<Get, decltype(options)>)
+          return get(options);
+        else
+          return other;
+      },
+      flow);
+}
+
 /// The length of an explicit flow's step or the time of an implicit one's; 1 for flows that have neither.
-template <class Options>
-auto step_length(const Options& options, int) -> decltype(options.lambda) {
-  return options.lambda;
-}
-template <class Options>
-auto step_length(const Options& options, long) -> decltype(options.dt) {
-  return options.dt;
-}
-template <class Options>
-double step_length(const Options&, ...) {
-  return 1;
-}
-
-/// Where a flow's scheme is; null of flows that have none.
-template <class Options>
-auto scheme_of(Options& options, int) -> decltype(&options.scheme) {
-  return &options.scheme;
-}
-template <class Options>
-Scheme* scheme_of(Options&, long) {
-  return nullptr;
-}
-
-/// Whether the order of the vertices matters.
-template <class Options>
-auto is_sequential(const Options& options, int) -> decltype(options.update == Update::sequential) {
-  return options.update == Update::sequential;
-}
-template <class Options>
-bool is_sequential(const Options&, ...) {
-  return false;
-}
-
-/// Of one step; none of flows that do not say.
-template <class Options>
-auto rings_of(const Options& options, int) -> decltype(options.rings()) {
-  return options.rings();
-}
-template <class Options>
-std::optional<int> rings_of(const Options&, long) {
-  return std::nullopt;
+double step_length(const AnyFlow& flow) {
+  const double time = of_options(flow, 1.0, [](auto& o) -> decltype(o.dt) { return o.dt; });
+  return of_options(flow, time, [](auto& o) -> decltype(o.lambda) { return o.lambda; });
 }
 
 /// The flow around which the invariant is kept, if one is asked for.
@@ -91,11 +67,10 @@ std::unique_ptr<Flow> compose(const FlowMaker& make, const Mesh& mesh, const Flo
     rule.rings = m.threshold == ThresholdKind::two_ring ? 2 : m.threshold == ThresholdKind::one_ring ? 1 : 0;
     rule.constant = m.threshold_value;
     rule.every = m.threshold_every;
-    rule.lambda = std::visit([](const auto& o) { return step_length(o, 0); }, options.flow);
+    rule.lambda = step_length(options.flow);
     if (!(rule.lambda > 0)) rule.lambda = 1;
-    const Scheme* const scheme =
-        std::visit([](const auto& o) -> const Scheme* { return scheme_of(o, 0); }, options.flow);
-    if (scheme != nullptr) rule.scheme = *scheme;
+    rule.scheme =
+        of_options(options.flow, rule.scheme, [](auto& o) -> decltype(o.scheme) { return o.scheme; });
     flow = make_threshold(std::move(flow), mesh, rule, context);
   }
   return flow;
@@ -128,8 +103,8 @@ Result<AnyFlow> find_flow(std::string_view name) {
 Result<FlowOptions> as_printed(FlowOptions options) {
   if (std::holds_alternative<AutomaticOptions>(options.flow))
     return Error{ErrorCode::usage, "the flow 'auto' is in no paper; name one that is"};
-  Scheme* const scheme = std::visit([](auto& o) -> Scheme* { return scheme_of(o, 0); }, options.flow);
-  if (scheme != nullptr) *scheme = Scheme::printed;
+  of_options(options.flow, Scheme::printed,
+             [](auto& o) -> decltype(o.scheme) { return o.scheme = Scheme::printed; });
   return options;
 }
 
@@ -144,7 +119,8 @@ Result<Done> validate(const FlowOptions& options) {
 std::optional<int> support_rings(const FlowOptions& options) {
   Modifiers others = options.modifiers;
   others.push_back = false;
-  const std::optional<int> rings = std::visit([](const auto& o) { return rings_of(o, 0); }, options.flow);
+  const auto rings = of_options(options.flow, std::optional<int>(),
+                                [](auto& o) -> decltype(o.rings()) { return o.rings(); });
   if (!rings || others.any()) return std::nullopt;
   return iterations(options.flow) * (*rings + int(options.modifiers.push_back));
 }
@@ -217,8 +193,9 @@ Result<FlowReport> smooth(Mesh& mesh, const FlowOptions& options, const Context&
     original = mesh.positions;
     FlowReport report;
     in_arena(context, [&] {
-      const bool any_order = !std::visit([](const auto& o) { return is_sequential(o, 0); }, options.flow);
-      report = any_order && iterations(options.flow) > 0 && is_scattered(mesh, context)
+      const Update update = of_options(options.flow, Update::simultaneous,
+                                       [](auto& o) -> decltype(o.update) { return o.update; });
+      report = update == Update::simultaneous && iterations(options.flow) > 0 && is_scattered(mesh, context)
                    ? run_reordered(mesh, options, context, constraints)
                    : run(mesh, options, context, constraints);
       report.largest_move = largest_move(original, mesh.positions, context);
