@@ -10,6 +10,7 @@
 #include "base/fail.h"
 #include "base/parallel.h"
 #include "pipeline/true_surface.h"
+#include "rfs_mesh/points.h"
 
 namespace rfsmooth {
 
@@ -44,19 +45,13 @@ struct Sphere {
   double radius = 0;
 };
 
-Sphere bounding_sphere(const double* xyz, std::size_t n) {
-  Eigen::AlignedBox3d box;
-  const auto each_finite = [&](auto&& body) {
-    for (std::size_t i = 0; i < n; ++i) {
-      const Vector3d p = Eigen::Map<const Vector3d>(xyz + 3 * i);
-      if (p.allFinite()) body(p);
-    }
-  };
-  each_finite([&](const Vector3d& p) { box.extend(p); });
-  if (box.isEmpty()) fail(ErrorCode::no_usable_points, "the truth has no finite point to measure against");
-  Sphere sphere{box.min() + box.sizes() / 2, 0};
-  each_finite(
-      [&](const Vector3d& p) { sphere.radius = std::max(sphere.radius, (p - sphere.centre).norm()); });
+Sphere bounding_sphere(const double* xyz, std::size_t n, const Context& context) {
+  const auto box = rfs_mesh::finite_box(xyz, n, context);
+  if (!box) fail(ErrorCode::no_usable_points, "the truth has no finite point to measure against");
+  Sphere sphere{box->low + (box->high - box->low) / 2, 0};
+  for (std::size_t i = 0; i < n; ++i)
+    if (const Vector3d p = Eigen::Map<const Vector3d>(xyz + 3 * i); p.allFinite())
+      sphere.radius = std::max(sphere.radius, (p - sphere.centre).norm());
   return sphere;
 }
 
@@ -214,8 +209,8 @@ Result<CompareReport> compare(const CloudView& cloud, const Truth& truth, const 
   return guarded([&] {
     CompareReport report;
     in_arena(context, [&] {
-      const Sphere sphere = truth.cloud ? bounding_sphere(truth.cloud->xyz, truth.cloud->n)
-                                        : bounding_sphere(truth.mesh->xyz, truth.mesh->n);
+      const Sphere sphere = truth.cloud ? bounding_sphere(truth.cloud->xyz, truth.cloud->n, context)
+                                        : bounding_sphere(truth.mesh->xyz, truth.mesh->n, context);
       const Points points = finite_points(cloud, sphere.centre);
       report.points = cloud.n;
       report.finite = points.positions.size();

@@ -2,10 +2,9 @@
 
 #include <cmath>
 
-#include <Eigen/Geometry>
-
 #include "base/fail.h"
 #include "pipeline/io/io.h"
+#include "rfs_mesh/points.h"
 
 namespace rfsmooth::render {
 
@@ -17,12 +16,8 @@ namespace {
 /// Middle of the finite points, so that large coordinates lose nothing on the way to the picture.
 Vector3d middle(const io::Cloud& cloud) {
   const std::vector<double> xyz = io::positions(cloud);
-  Eigen::AlignedBox3d box;
-  for (std::size_t i = 0; i < xyz.size(); i += 3) {
-    const Vector3d p = Eigen::Map<const Vector3d>(xyz.data() + i);
-    if (p.allFinite()) box.extend(p);
-  }
-  return box.isEmpty() ? Vector3d(Vector3d::Zero()) : Vector3d(box.min() + box.sizes() / 2);
+  const auto box = rfs_mesh::finite_box(xyz.data(), cloud.size(), {});
+  return box ? Vector3d(box->low + (box->high - box->low) / 2) : Vector3d(Vector3d::Zero());
 }
 
 /// One value per point of `scene` for --color height, field and displacement; empty for the others.
