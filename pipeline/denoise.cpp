@@ -180,16 +180,6 @@ void commit(double* xyz, const rfs_mesh::WorkingCloud& cloud, const Positions& n
   if (report.finite > 0) report.rms_move = std::sqrt(square_sum / double(report.finite));
 }
 
-/// The strengths of the rows: where some share a position, the least of theirs, so that they move together.
-std::vector<double> least_strengths(std::vector<double> strength, const rfs_mesh::WorkingCloud& cloud) {
-  std::vector<double> least(strength.empty() ? 0 : cloud.points.size(), 1);
-  for (std::size_t i = 0; i < strength.size(); ++i)
-    if (const Index p = cloud.of_input[i]; p != kNone) least[p] = std::min(least[p], strength[i]);
-  for (std::size_t i = 0; i < strength.size(); ++i)
-    if (const Index p = cloud.of_input[i]; p != kNone) strength[i] = least[p];
-  return strength;
-}
-
 /// The strengths of the working points, the least of their rows': twins are one working point.
 std::vector<double> working_strengths(const std::vector<double>& strength,
                                       const rfs_mesh::WorkingCloud& cloud, std::size_t points) {
@@ -197,6 +187,14 @@ std::vector<double> working_strengths(const std::vector<double>& strength,
   for (std::size_t i = 0; i < strength.size(); ++i)
     if (const Index p = cloud.of_input[i]; p != kNone) working[p] = std::min(working[p], strength[i]);
   return working;
+}
+
+/// The strengths of the rows: where some share a position, the least of theirs, so that they move together.
+std::vector<double> least_strengths(std::vector<double> strength, const rfs_mesh::WorkingCloud& cloud) {
+  const std::vector<double> least = working_strengths(strength, cloud, cloud.points.size());
+  for (std::size_t i = 0; i < strength.size(); ++i)
+    if (const Index p = cloud.of_input[i]; p != kNone) strength[i] = least[p];
+  return strength;
 }
 
 /// Outliers that the tails of the noise explain are none: such points stood alone among calm ones, and are
