@@ -39,11 +39,6 @@ double packed(std::uint32_t bits, io::Scalar type) {
   return same;
 }
 
-bool has_plain(const io::Cloud& cloud, const char* name) {
-  const auto field = io::find_field(cloud, name);
-  return field && cloud.points().fields[*field].is_plain();
-}
-
 /// Writes the colours into red, green and blue.
 void paint_parts(io::Cloud& cloud, const std::vector<Rgb>& colours, const Context& context) {
   const char* const names[] = {"red", "green", "blue"};
@@ -95,8 +90,9 @@ void color_by_deviation(io::Cloud& cloud, const std::vector<double>& distances, 
                         const std::string& output, const Context& context) {
   std::vector<Rgb> colours(cloud.size());
   for (std::size_t i = 0; i < colours.size(); ++i) colours[i] = colour_at(distances[i], red);
-  const bool parts = has_plain(cloud, "red") && has_plain(cloud, "green") && has_plain(cloud, "blue"),
-             rgb = has_plain(cloud, "rgb"), rgba = has_plain(cloud, "rgba"), none = !parts && !rgb && !rgba,
+  const auto has = [&](const char* name) { return io::find_plain_field(cloud, name).has_value(); };
+  const bool parts = has("red") && has("green") && has("blue"), rgb = has("rgb"), rgba = has("rgba"),
+             none = !parts && !rgb && !rgba,
              pcd = io::format_of_extension(output).value_or(cloud.format) == io::Format::pcd;
   if (parts || (none && !pcd)) paint_parts(cloud, colours, context);
   if (rgb || (none && pcd)) paint_packed(cloud, "rgb", colours, context);

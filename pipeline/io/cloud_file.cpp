@@ -92,8 +92,8 @@ std::vector<std::string> CloudFile::field_names() const {
 }
 
 std::optional<std::vector<double>> CloudFile::field(std::string_view name, const Context& context) const {
-  const auto which = io::find_field(contents_->cloud, name);
-  if (!which || !contents_->cloud.points().fields[*which].is_plain()) return std::nullopt;
+  const auto which = io::find_plain_field(contents_->cloud, name);
+  if (!which) return std::nullopt;
   return io::field_values(contents_->cloud, *which, to_the_end(context));
 }
 

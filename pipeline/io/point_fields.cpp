@@ -59,11 +59,8 @@ std::vector<std::uint32_t> packed_colors(const Cloud& cloud, std::size_t field, 
 }
 
 std::vector<Rgb> colors_of(const Cloud& cloud, const Context& context) {
-  const auto plain = [&](const char* name) {
-    const auto field = find_field(cloud, name);
-    return field && cloud.points().fields[*field].is_plain() ? field : std::nullopt;
-  };
-  const std::array<std::optional<std::size_t>, 3> fields = {plain("red"), plain("green"), plain("blue")};
+  const std::array fields = {find_plain_field(cloud, "red"), find_plain_field(cloud, "green"),
+                             find_plain_field(cloud, "blue")};
   if (fields[0] && fields[1] && fields[2]) {
     std::array<std::vector<double>, 3> values;
     for (std::size_t k = 0; k < 3; ++k) values[k] = field_values(cloud, *fields[k], context);
@@ -74,7 +71,7 @@ std::vector<Rgb> colors_of(const Cloud& cloud, const Context& context) {
     return colors;
   }
   for (const char* name : {"rgb", "rgba"})
-    if (const auto field = plain(name)) return unpacked_colors(cloud, *field, context);
+    if (const auto field = find_plain_field(cloud, name)) return unpacked_colors(cloud, *field, context);
   return {};
 }
 
@@ -87,8 +84,8 @@ std::vector<double> normals_of(const Cloud& cloud, const Context& context) {
     std::vector<double> normals(3 * cloud.size());
     bool all = true;
     for (std::size_t axis = 0; axis < 3 && all; ++axis) {
-      const auto field = find_field(cloud, names[axis]);
-      all = field && cloud.points().fields[*field].is_plain();
+      const auto field = find_plain_field(cloud, names[axis]);
+      all = field.has_value();
       if (!all) break;
       const std::vector<double> values = field_values(cloud, *field, context);
       for (std::size_t i = 0; i < values.size(); ++i) normals[3 * i + axis] = values[i];

@@ -52,8 +52,8 @@ std::size_t read_points(const std::string& text) {
 
 /// The flags that `denoise --outliers mark` leaves; empty if there are none.
 std::vector<char> marked_outliers(const pipeline::io::Cloud& cloud, const Context& context) {
-  const auto field = pipeline::io::find_field(cloud, "outlier");
-  if (!field || !cloud.points().fields[*field].is_plain()) return {};
+  const auto field = pipeline::io::find_plain_field(cloud, "outlier");
+  if (!field) return {};
   std::vector<char> flags(cloud.size());
   const std::vector<double> values = pipeline::io::field_values(cloud, *field, context);
   for (std::size_t i = 0; i < flags.size(); ++i) flags[i] = char(values[i] != 0);

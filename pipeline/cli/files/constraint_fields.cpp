@@ -17,8 +17,8 @@ using Kind = HardConstraint::Kind;
 namespace {
 
 std::vector<double> values_of(const Cloud& cloud, const std::string& name, const Context& context) {
-  const auto field = pipeline::io::find_field(cloud, name);
-  if (!field || !cloud.points().fields[*field].is_plain()) {
+  const auto field = pipeline::io::find_plain_field(cloud, name);
+  if (!field) {
     std::vector<std::string> names;
     for (const auto& present : cloud.points().fields)
       if (present.is_plain()) names.push_back(present.name);

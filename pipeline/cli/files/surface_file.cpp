@@ -15,10 +15,8 @@ namespace {
 void unpack_colours(io::Cloud& cloud, const Context& context) {
   if (io::find_field(cloud, "red")) return;
   for (const char* name : {"rgb", "rgba"}) {
-    const auto field = io::find_field(cloud, name);
-    if (!field || !cloud.points().fields[*field].is_plain() ||
-        io::size_of(cloud.points().fields[*field].type) != 4)
-      continue;
+    const auto field = io::find_plain_field(cloud, name);
+    if (!field || io::size_of(cloud.points().fields[*field].type) != 4) continue;
     io::make_binary(cloud.points(), context);
     const std::vector<std::uint32_t> packed = io::packed_colors(cloud, *field, context);
     std::vector<double> part(packed.size());

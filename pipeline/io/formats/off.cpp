@@ -152,8 +152,7 @@ std::vector<std::size_t> off_fields(const Cloud& cloud) {
   const auto take = [&](std::initializer_list<const char*> names) {
     std::vector<std::size_t> found;
     for (const char* name : names)
-      if (const auto f = find_field(cloud, name); f && cloud.points().fields[*f].is_plain())
-        found.push_back(*f);
+      if (const auto f = find_plain_field(cloud, name)) found.push_back(*f);
     if (found.size() != names.size()) return false;
     fields.insert(fields.end(), found.begin(), found.end());
     return true;

@@ -133,6 +133,11 @@ std::optional<std::size_t> find_field(const Cloud& cloud, std::string_view name)
   return found ? found : colour_by_letter(cloud, name);
 }
 
+std::optional<std::size_t> find_plain_field(const Cloud& cloud, std::string_view name) {
+  const auto field = find_field(cloud, name);
+  return field && cloud.points().fields[*field].is_plain() ? field : std::nullopt;
+}
+
 std::vector<double> field_values(const Cloud& cloud, std::size_t field, const Context& context) {
   return gather(cloud.points(), {field}, context);
 }

@@ -108,6 +108,9 @@ void warn_of_rounding(const std::array<Field, 3>& fields, std::size_t beyond, co
 /// green and blue for R, G and B where all three are there.
 std::optional<std::size_t> find_field(const Cloud& cloud, std::string_view name);
 
+/// The same if that field is plain.
+std::optional<std::size_t> find_plain_field(const Cloud& cloud, std::string_view name);
+
 /// The values of a plain field, one double per point. \throw std::invalid_argument if it is a list or an
 /// array.
 std::vector<double> field_values(const Cloud& cloud, std::size_t field, const Context& context = {});
