@@ -189,9 +189,7 @@ Command reconstruct_command(std::vector<SurfaceMethod> methods) {
         [&](auto& cloud, const CloudTask& task) { return reconstruct_cloud(*options, method, cloud, task); },
         {},
         pipeline::io::Format::ply};
-    on_cloud.will_lose = [](const auto& cloud, Format format, Encoding encoding, const Context& context) {
-      return lost_in_surface(cloud, format, encoding, context);
-    };
+    on_cloud.will_lose = lost_in_surface;
     return run_cloud_jobs("reconstruct", options->job, typed, on_cloud);
   };
   return command;
