@@ -83,7 +83,7 @@ void alternate(Mesh& mesh, const Constraints& constraints, const DenoiseOptions&
     flow = value_or_throw(make_flow(mesh, options.flow, context, constraints));
   else if (options.flow.modifiers.any() || !constraints.strength.empty())
     flow = value_or_throw(
-        make_flow([&](auto&&...) { return smoothing::make_automatic(*automatic, found, &whole); }, mesh,
+        make_flow([&](auto&&...) { return smoothing::make_automatic(*automatic, found, whole); }, mesh,
                   options.flow, context, constraints));
   smoothing::Tracer tracer(options.flow.trace ? &report.trace : nullptr, mesh, context);
   for (int step = 0; step < steps; ++step) {

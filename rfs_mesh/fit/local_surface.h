@@ -80,8 +80,8 @@ double mean_spacing(const std::vector<double>& nearest, const Context& context);
 /// cloud over its calm quarter, 1 or more. \param understated whether narrow neighbourhoods cannot show it:
 /// of noise that neighbours share they show less, of depths in steps nothing. Then sigma is at least
 /// `measured`
-NoiseScale noise_scale(const SpatialIndex& index, const Context& context, double measured = 0,
-                       double louder = 1, bool understated = false);
+NoiseScale noise_scale(const SpatialIndex& index, const Context& context, double measured, double louder,
+                       bool understated);
 
 /// The shadow of each point. O(n), parallel.
 Positions shadows(const std::vector<LocalSurface>& surfaces, const Context& context);

@@ -144,8 +144,8 @@ std::optional<AutomaticReport> smooth_automatically(Mesh& mesh, const AutomaticO
 }
 
 std::unique_ptr<Flow> make_automatic(const AutomaticOptions& options, std::optional<AutomaticReport>& report,
-                                     Statistics* statistics) {
-  return std::make_unique<AutomaticFlow>(options, &report, statistics);
+                                     Statistics& statistics) {
+  return std::make_unique<AutomaticFlow>(options, &report, &statistics);
 }
 
 }  // namespace rfsmooth::smoothing

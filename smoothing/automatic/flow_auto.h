@@ -34,8 +34,8 @@ std::optional<AutomaticReport> smooth_automatically(Mesh& mesh, const AutomaticO
                                                     LearnedInput* for_training = nullptr);
 
 /// The same as the steps of a flow, for modifiers and constraints to go around. Each step writes `report`,
-/// which must outlive the flow.
+/// the first one alone takes and enters `statistics`; both must outlive the flow.
 std::unique_ptr<Flow> make_automatic(const AutomaticOptions& options, std::optional<AutomaticReport>& report,
-                                     Statistics* statistics = nullptr);
+                                     Statistics& statistics);
 
 }  // namespace rfsmooth::smoothing
