@@ -8,7 +8,7 @@
 
 #include <Eigen/Geometry>
 
-#include "base/disjoint_sets.h"
+#include "pipeline/surface/topology.h"
 #include "rfs_mesh/edge_faces.h"
 #include "rfs_mesh/measure.h"
 
@@ -53,9 +53,7 @@ std::vector<std::vector<Index>> rims_of(const Mesh& mesh) {
 
 /// The area of the piece, connected through vertices, that each vertex belongs to.
 std::vector<double> piece_areas(const Mesh& mesh) {
-  DisjointSets<Index> pieces(mesh.positions.size());
-  for (const Face& face : mesh.faces)
-    for (const std::size_t k : {1, 2}) pieces.join(face[0], face[k]);
+  DisjointSets<Index> pieces = pieces_of(mesh.positions.size(), mesh.faces);
   std::vector<double> areas(mesh.positions.size(), 0);
   for (const Face& face : mesh.faces)
     areas[pieces.of(face[0])] += 0.5 * rfs_mesh::face_cross(mesh.positions, face).norm();

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "base/disjoint_sets.h"
 #include "base/parallel.h"
+#include "pipeline/surface/topology.h"
 #include "rfs_mesh/search/neighbors.h"
 
 namespace rfsmooth::pipeline {
@@ -13,11 +13,7 @@ std::vector<Index> nearest_points(const Mesh& mesh, const Positions& points, con
 }
 
 void drop_specks(Mesh& mesh, std::size_t least, const Context& context) {
-  DisjointSets<Index> pieces(mesh.positions.size());
-  for (const Face& f : mesh.faces) {
-    pieces.join(f[0], f[1]);
-    pieces.join(f[1], f[2]);
-  }
+  DisjointSets<Index> pieces = pieces_of(mesh.positions.size(), mesh.faces);
   std::vector<std::size_t> size(mesh.positions.size(), 0);
   for (const Face& f : mesh.faces) ++size[pieces.of(f[0])];
   if (mesh.faces.empty() || *std::max_element(size.begin(), size.end()) < least) return;

@@ -1,21 +1,26 @@
 #include "pipeline/surface/topology.h"
 
-#include "base/disjoint_sets.h"
 #include "rfs_mesh/edge_faces.h"
 
 namespace rfsmooth::pipeline {
+
+DisjointSets<Index> pieces_of(std::size_t n, const std::vector<Face>& faces) {
+  DisjointSets<Index> pieces(n);
+  for (const Face& f : faces) {
+    pieces.join(f[0], f[1]);
+    pieces.join(f[1], f[2]);
+  }
+  return pieces;
+}
 
 Topology topology(std::size_t n, const std::vector<Face>& faces) {
   Topology found;
   found.faces = faces.size();
   const std::vector<rfs_mesh::EdgeFace> sides = rfs_mesh::edge_faces(faces);
-  DisjointSets<Index> pieces(n), rims(n);
+  DisjointSets<Index> pieces = pieces_of(n, faces), rims(n);
   std::vector<char> used(n, 0), on_rim(n, 0);
-  for (const Face& f : faces) {
+  for (const Face& f : faces)
     for (const Index v : f) used[v] = 1;
-    pieces.join(f[0], f[1]);
-    pieces.join(f[1], f[2]);
-  }
   // Two corners of a vertex belong to one fan if their faces share an edge at it.
   DisjointSets<Index> fans(3 * faces.size());
   rfs_mesh::for_each_edge(sides, [&](const rfs_mesh::EdgeFace* first, const rfs_mesh::EdgeFace* last) {

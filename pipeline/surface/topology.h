@@ -10,7 +10,13 @@
 
 #include <rfsmooth/reconstruct.h>
 
+#include "base/disjoint_sets.h"
+
 namespace rfsmooth::pipeline {
+
+/// The n vertices by the pieces that faces make of them, which hang together through vertices. O(m), one
+/// thread.
+DisjointSets<Index> pieces_of(std::size_t n, const std::vector<Face>& faces);
 
 /// The topology of faces over n vertices. Precondition: corners are distinct and < n. O(m log m), one thread.
 Topology topology(std::size_t n, const std::vector<Face>& faces);

@@ -10,7 +10,7 @@
 #include <boost/graph/adjacency_list.hpp>
 #include <boost/graph/boykov_kolmogorov_max_flow.hpp>
 
-#include "base/disjoint_sets.h"
+#include "pipeline/surface/topology.h"
 #include "rfs_mesh/edge_faces.h"
 
 namespace rfsmooth::cgal {
@@ -181,11 +181,7 @@ class Builder {
       if (longest_square(f) > longest * longest) far.push_back(f);
     });
     if (all > 0) solid.disagreeing /= all;
-    DisjointSets<Index> gaps(points_.size());
-    for (const Face& f : far) {
-      gaps.join(f[0], f[1]);
-      gaps.join(f[1], f[2]);
-    }
+    DisjointSets<Index> gaps = pipeline::pieces_of(points_.size(), far);
     std::unordered_map<Index, double> areas;
     for (const Face& f : far) solid.widest_gap = std::max(solid.widest_gap, areas[gaps.of(f[0])] += area(f));
     return solid;
