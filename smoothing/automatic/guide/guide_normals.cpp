@@ -7,6 +7,7 @@
 #include "rfs_mesh/fit/plane_normal.h"
 #include "rfs_mesh/levels.h"
 #include "rfs_mesh/normals/sides.h"
+#include "rfs_mesh/sample.h"
 #include "rfs_mesh/search/thinning.h"
 
 namespace rfsmooth::smoothing {
@@ -63,8 +64,7 @@ std::vector<Eigen::Vector3f> normals_across_lines(const Positions& guide, const 
   std::vector<Index> kept = rfs_mesh::thin_all(guide, near, context);
   for (double left = kLeft; left * double(across) > double(rfs_mesh::kNarrowestPatch); left *= kLeft)
     if (kept.size() > 2 * kRing) kept = rfs_mesh::thin(guide, kept, context);
-  Positions at(kept.size());
-  for_each_index(context, kept.size(), [&](std::size_t k) { at[k] = guide[kept[k]]; });
+  const Positions at = rfs_mesh::at_rows(guide, kept, context);
   const rfs_mesh::SpatialIndex index(at, context);
   const std::vector<Eigen::Vector3f> known =
       surface_normals(at, index.nearest(int(2 * kRing), context), context);
