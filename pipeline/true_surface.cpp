@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 
 #include "rfs_mesh/edge_faces.h"
+#include "rfs_mesh/measure.h"
 
 namespace rfsmooth::pipeline {
 
@@ -140,9 +141,8 @@ TrueSurface::TrueSurface(Positions vertices, std::vector<Face> faces)
   make_pseudo_normals();
   std::vector<Box> boxes(faces_.size());
   for (std::size_t f = 0; f < faces_.size(); ++f) {
-    const Triangle t = corners(f);
-    boxes[f] = box_of(t);
-    area_ += 0.5 * (t[1] - t[0]).cross(t[2] - t[0]).norm();
+    boxes[f] = box_of(corners(f));
+    area_ += 0.5 * rfs_mesh::face_cross(vertices_, faces_[f]).norm();
   }
   tree_ = BoxTree(boxes);
   if (!closed_) return;
@@ -202,8 +202,7 @@ Triangle TrueSurface::corners(std::size_t face) const {
 }
 
 Vector3d TrueSurface::face_normal(std::size_t face) const {
-  const Triangle t = corners(face);
-  const Vector3d normal = (t[1] - t[0]).cross(t[2] - t[0]);
+  const Vector3d normal = rfs_mesh::face_cross(vertices_, faces_[face]);
   const double length = normal.norm();
   return length > 0 ? Vector3d(normal / length) : Vector3d(Vector3d::Zero());
 }

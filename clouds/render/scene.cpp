@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Geometry>
-
 #include "base/fail.h"
 #include "base/linear/symmetric_eigen.h"
 #include "base/parallel.h"
@@ -13,6 +11,7 @@
 #include "pipeline/io/mesh_file.h"
 #include "pipeline/io/point_fields.h"
 #include "pipeline/outliers.h"
+#include "rfs_mesh/measure.h"
 #include "rfs_mesh/points.h"
 #include "rfs_mesh/search/neighbors.h"
 
@@ -122,8 +121,7 @@ Image draw(const Scene& scene, const Camera& camera, int width, int height, cons
     raster.line(at[a], at[b], kSuper, color);
   };
   for (const Face& f : scene.faces) {
-    const Vector3d normal =
-        (scene.points[f[1]] - scene.points[f[0]]).cross(scene.points[f[2]] - scene.points[f[0]]);
+    const Vector3d normal = rfs_mesh::face_cross(scene.points, f);
     if (normal.squaredNorm() == 0) continue;
     const Color color = (scene.colors[f[0]] + scene.colors[f[1]] + scene.colors[f[2]]) / 3;
     raster.triangle(at[f[0]], at[f[1]], at[f[2]], shade(color, camera.turn(normal.normalized())));

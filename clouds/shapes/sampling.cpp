@@ -4,10 +4,9 @@
 #include <cmath>
 #include <stdexcept>
 
-#include <Eigen/Geometry>
-
 #include "base/parallel.h"
 #include "rfs_mesh/fit/local_surface.h"
+#include "rfs_mesh/measure.h"
 #include "rfs_mesh/search/neighbors.h"
 
 namespace rfsmooth::clouds {
@@ -50,8 +49,7 @@ Positions sample(const Mesh& mesh, std::size_t n, std::uint64_t seed, Sampling s
   std::vector<double> until;  // area up to and including each face
   double area = 0;
   for (const Face& face : mesh.faces) {
-    const auto& a = mesh.positions[face[0]];
-    area += 0.5 * (mesh.positions[face[1]] - a).cross(mesh.positions[face[2]] - a).norm();
+    area += 0.5 * rfs_mesh::face_cross(mesh.positions, face).norm();
     until.push_back(area);
   }
   Random random(seed);

@@ -117,7 +117,7 @@ class Preserving : public WrappedFlow {
   /// The area of the faces seen from above.
   double flat_area(const Positions& x) const {
     double area = 0;
-    for (const Face& f : faces_) area += 0.5 * std::abs((x[f[1]] - x[f[0]]).cross(x[f[2]] - x[f[0]]).z());
+    for (const Face& f : faces_) area += 0.5 * std::abs(rfs_mesh::face_cross(x, f).z());
     return area;
   }
 

@@ -11,6 +11,7 @@
 #include "pipeline/adapters/cgal/solid.h"
 #include "pipeline/surface/pinches.h"
 #include "rfs_mesh/edge_faces.h"
+#include "rfs_mesh/measure.h"
 
 namespace rfsmooth::cgal {
 
@@ -93,7 +94,7 @@ void turn(std::vector<FrontFace>& front, const Positions& points, const Position
       continue;
     }
     agreement[pieces.of(a)] +=
-        (points[b] - points[a]).cross(points[c] - points[a]).dot(normals[a] + normals[b] + normals[c]);
+        rfs_mesh::face_cross(points, f.corners).dot(normals[a] + normals[b] + normals[c]);
   }
   for (FrontFace& f : front)
     if (agreement[pieces.of(f.corners[0])] < 0) std::swap(f.corners[1], f.corners[2]);
@@ -105,8 +106,7 @@ double least_invented(const std::vector<FrontFace>& front, const Positions& poin
   std::vector<Face> faces;
   double whole = 0;
   for (const FrontFace& f : front) {
-    const auto& [a, b, c] = f.corners;
-    whole += 0.5 * (points[b] - points[a]).cross(points[c] - points[a]).norm();
+    whole += 0.5 * rfs_mesh::face_cross(points, f.corners).norm();
     faces.push_back(f.corners);
   }
   DisjointSets<Index> rims(points.size());

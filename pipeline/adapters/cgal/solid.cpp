@@ -12,6 +12,7 @@
 
 #include "pipeline/surface/topology.h"
 #include "rfs_mesh/edge_faces.h"
+#include "rfs_mesh/measure.h"
 
 namespace rfsmooth::cgal {
 
@@ -105,9 +106,7 @@ class Builder {
     if (i % 2 == 1) std::swap(f[1], f[2]);
     return f;
   }
-  double area(const Face& f) const {
-    return 0.5 * (points_[f[1]] - points_[f[0]]).cross(points_[f[2]] - points_[f[0]]).norm();
-  }
+  double area(const Face& f) const { return 0.5 * rfs_mesh::face_cross(points_, f).norm(); }
 
   /// The two tetrahedra at a face of the front say which is inside.
   void vote(const FrontFace& face, Cut& cut) {
@@ -174,7 +173,7 @@ class Builder {
     std::vector<Face> far;
     for_each_face([&](const Face& f, bool of_front) {
       solid.faces.push_back(f);
-      const Eigen::Vector3d cross = (points_[f[1]] - points_[f[0]]).cross(points_[f[2]] - points_[f[0]]);
+      const Eigen::Vector3d cross = rfs_mesh::face_cross(points_, f);
       all += area(f);
       if (of_front) solid.kept += area(f) / whole;
       if (cross.dot(normals_[f[0]] + normals_[f[1]] + normals_[f[2]]) < 0) solid.disagreeing += area(f);
