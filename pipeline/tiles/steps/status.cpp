@@ -36,7 +36,7 @@ JobStatus job_status(const Job& job, const Context& context) {
 DenoiseReport report_of(const Job& job, const DenoiseOptions& options) {
   DenoiseReport report = settled_of(job).report;
   report.effective = options;
-  for (const JobInput& input : job.inputs) report.points += std::size_t(input.rows);
+  report.points = std::size_t(job.rows());
   report.finite = std::size_t(job.points);
   double squares = 0;
   for (std::size_t t = 0; t < job.tiles.size(); ++t) {
