@@ -36,19 +36,15 @@ const char* why_kept(const std::string& path) {
   return is_unreadable(path) ? "cannot be read and may be a cloud" : "is a cloud that rfsmooth did not write";
 }
 
-}  // namespace
-
-void mark_as_own(const std::string& path) {
-  const std::string state = state_of(path);
-  if (!state.empty()) static_cast<void>(setxattr(path.c_str(), kMark, state.data(), state.size(), 0));
-}
-
+/// Whether a file carries a valid mark.
 bool is_own(const std::string& path) {
   std::array<char, 100> mark{};
   const ssize_t size = getxattr(path.c_str(), kMark, mark.data(), mark.size());
   return size > 0 && std::string(mark.data(), std::size_t(size)) == state_of(path);
 }
 
+/// Whether a regular file is there that begins as a PLY, PCD, OFF or LAS file does, or that reads as points;
+/// or that cannot be opened, and so may.
 bool holds_cloud(const std::string& path) {
   std::error_code unknown;
   if (!std::filesystem::is_regular_file(path, unknown)) return false;
@@ -61,6 +57,13 @@ bool holds_cloud(const std::string& path) {
            value_or_throw(pipeline::io::read_cloud(path, {}, {})).size() > 0;
   });
   return holds.ok() ? holds.value() : holds.error().code == ErrorCode::out_of_memory;
+}
+
+}  // namespace
+
+void mark_as_own(const std::string& path) {
+  const std::string state = state_of(path);
+  if (!state.empty()) static_cast<void>(setxattr(path.c_str(), kMark, state.data(), state.size(), 0));
 }
 
 void need_own_target(const Job& job, const std::optional<std::string>& named) {

@@ -14,13 +14,6 @@ namespace rfsmooth::cli {
 /// nothing if the file system has no extended attributes.
 void mark_as_own(const std::string& path);
 
-/// Whether a file carries a valid mark.
-bool is_own(const std::string& path);
-
-/// Whether a regular file is there that begins as a PLY, PCD, OFF or LAS file does, or that reads as points;
-/// or that cannot be opened, and so may.
-bool holds_cloud(const std::string& path);
-
 /// Refuses an OUT that is a cloud without a valid mark, because `*.ply` in a folder with two scans passes the
 /// second one as OUT. `named`: the value of -o. OUT may be replaced if -o names it, or if it is spelled
 /// exactly as IN. In a folder named by -o only the inputs themselves are protected. \throw Failure

@@ -109,6 +109,19 @@ std::vector<Field> vertex_fields(const Kind& kind, std::size_t columns) {
   return fields;
 }
 
+// Everything before the first vertex, as we write it: prefixes by the points' fields.
+std::string off_header(const Cloud& cloud) {
+  const auto has = [&](const char* name) { return find_field(cloud, name).has_value(); };
+  std::string out;
+  if (has("s") && has("t")) out += "ST";
+  if (has("red")) out += "C";
+  if (has("nx")) out += "N";
+  out += "OFF" + cloud.newline;
+  for (const Note& note : cloud.notes) out += note.line + cloud.newline;
+  const Table* faces = cloud.element("face");
+  return out + fmt::format("{} {} 0{}", cloud.size(), faces == nullptr ? 0 : faces->count, cloud.newline);
+}
+
 }  // namespace
 
 bool is_off_word(std::string_view word) {
@@ -161,18 +174,6 @@ std::vector<std::size_t> off_fields(const Cloud& cloud) {
   if (take({"red", "green", "blue"})) take({"alpha"});
   take({"s", "t"});
   return fields;
-}
-
-std::string off_header(const Cloud& cloud) {
-  const auto has = [&](const char* name) { return find_field(cloud, name).has_value(); };
-  std::string out;
-  if (has("s") && has("t")) out += "ST";
-  if (has("red")) out += "C";
-  if (has("nx")) out += "N";
-  out += "OFF" + cloud.newline;
-  for (const Note& note : cloud.notes) out += note.line + cloud.newline;
-  const Table* faces = cloud.element("face");
-  return out + fmt::format("{} {} 0{}", cloud.size(), faces == nullptr ? 0 : faces->count, cloud.newline);
 }
 
 void write_off(const Cloud& cloud, Sink& sink, const Context& context) {

@@ -11,9 +11,6 @@ namespace rfsmooth::pipeline::io {
 /// the text). \throw Failure (input_unreadable) naming the line, what was expected and what was found.
 Cloud read_off(const Source& source, const Context& context);
 
-/// Everything before the first vertex, as we write it: prefixes by the points' fields.
-std::string off_header(const Cloud& cloud);
-
 /// Writes the whole file.
 void write_off(const Cloud& cloud, Sink& sink, const Context& context);
 
