@@ -65,8 +65,6 @@ struct NoiseField : NoiseModel {
   std::vector<double> local_shared;   ///< n: shared_at_sites near each point; empty: `shared` everywhere
   std::vector<double> local_told;     ///< n: told_at_sites near each point, 0 to 1; empty: 0 everywhere
 
-  /// is_shared, or at least at some places.
-  bool is_shared_somewhere() const { return is_shared(*this) || !local_shared.empty(); }
   /// points_as_one near point i.
   double as_one_near(std::size_t i) const {
     return local_shared.empty() ? points_as_one(*this) : std::max(points_as_one(*this), local_shared[i]);

@@ -131,7 +131,7 @@ std::optional<AutomaticReport> smooth_automatically(Mesh& mesh, const AutomaticO
   rfs_mesh::NeighborTable near = smooth.near.first(NearRows::kMost, context);
   smooth.near = {};
   if (!noise.on_lines) {  // along lines only the normals are known
-    if (options.equalize && !noise.is_shared_somewhere()) {
+    if (options.equalize && !is_shared(noise)) {
       const Equalized moved = equalize(mesh.positions, before, noise, std::move(near), context);
       report.equalized = moved.rms;
       report.equalized_most = moved.largest;

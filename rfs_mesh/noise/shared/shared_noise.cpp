@@ -112,9 +112,10 @@ SharedNoise find_shared_noise(Places& places, const NoiseStart& start, const Dep
   SharedNoise found;
   const Calm calm = look(places, start, steps, context);
   if (calm.m.empty()) return found;  // nothing scatters, or too few points to tell
-  // A neighbourhood within one terrace sees nothing of the steps, so the noise may grow steeply. The shells
-  // of a laser scanner are finer than its noise.
-  const bool terraces = steps != nullptr && !steps->on_shells();
+  // A neighbourhood within one terrace sees nothing of the steps, so the noise may grow steeply. Shells of a
+  // laser scanner that are finer than its noise are no terraces.
+  const bool terraces =
+      steps != nullptr && (!steps->on_shells() || are_two_depths(start.sigma * start.sigma, start.of_steps));
   // What a window from below saw much less of at the same m is the distance of two sheets.
   if (!terraces && kLouder * kLouder * start.sigma * start.sigma < calm.seen.front()) return found;
   double sill = 0, surely = 0;

@@ -100,7 +100,7 @@ void find_shared_around(const SiteGroups& groups, const std::vector<OpenFits>& o
     if (!(found[s].sigma > 0)) continue;
     views[s].floor = std::max(views[s].floor, found[s].sigma);
     views[s].told = true;
-    views[s].shared = found[s].points;
+    views[s].shared = std::max(views[s].shared, found[s].points);
   }
 }
 

@@ -18,7 +18,7 @@
 
 namespace rfsmooth::rfs_mesh {
 
-/// Sets `shared`, and raises `floor` and sets `told` there, but where two sheets are seen. O(sites).
+/// Raises `shared` and `floor` and sets `told` there, but where two sheets are seen. O(sites).
 /// Parallel, deterministic. \param open from kNeighbourhood points on, each of twice as many
 void find_shared_around(const SiteGroups& groups, const std::vector<OpenFits>& open,
                         std::vector<SiteView>& views, const Context& context);

@@ -28,7 +28,7 @@ struct SiteView {
   double plain = 0;      ///< noise of one sheet and no shape that is seen for sure; 0: none
   double sheet = kNone;  ///< what each of two sheets shows; kNone: there is one
   double floor = 0;      ///< what steps, shared noise or layers make sure of
-  double shared = 1;     ///< points that share the noise around it (shared_around.h)
+  double shared = 1;     ///< points that share the noise around it (site_views.h, shared_around.h)
   bool told = false;     ///< whether the scatter stops growing, and is no detail
 };
 

@@ -107,6 +107,19 @@ bool are_layers(const Around& around, double apart) {
   return squared_gap(of_sheet, lean) * around.variance() < nearest;
 }
 
+/// How many points share their noise where depths in steps are off by `rounding`: 1, or more by a difference.
+/// Their error is a saw tooth, of which the noise that points had before they were rounded, `own`, leaves
+/// exp(-pi^2 / 3 own^2 / rounding^2) of the variance, as of a sine as long as a step; the rest is their own.
+/// What lies within one step and is exact shows none of it. \param strip points of a disk as wide as the
+/// strip on one step. \param scatter of the points there, all of their noise
+double points_on_step(double strip, double scatter, double rounding) {
+  if (!(rounding > 0 && strip > 1)) return 1;
+  const double shown = scatter * scatter / (rounding * rounding), own = std::max(0.0, shown - 1),
+               saw = std::min(1.0, shown) * std::exp(-M_PI * M_PI / 3 * own) / (1 + own),
+               points = 1 + (strip - 1) * saw;
+  return points > kSameNoise ? points : 1;
+}
+
 /// The sites, and the depths in steps that they may have; null: they have none.
 struct Sites {
   const SiteGroups& groups;
@@ -172,10 +185,17 @@ struct Sites {
 
   /// Raises `floor` to what depths in steps make sure of, as far as the widest fits show it: those to fewer
   /// points may lie within a step. A stack of slices has few depths, too, and none of the scatter; a grid may
-  /// be exact.
-  void find_rounding(std::size_t s, const OpenFits& many, const OpenFits& widest, SiteView& view) const {
+  /// be exact. Sets `shared`. \param width of the strip on one step, at each site
+  void find_rounding(std::size_t s, const OpenFits& many, const OpenFits& widest,
+                     const std::vector<double>& width, SiteView& view) const {
     if (steps == nullptr || on_grid()) return;
-    view.floor = std::max(view.floor, std::min(scatter_around(s, widest), rounding_around(s, many)));
+    const double rounding = rounding_around(s, many);
+    view.floor = std::max(view.floor, std::min(scatter_around(s, widest), rounding));
+    const double radius =
+        quantile_of(groups[s], 0.5, [&](const Neighbor& q) { return many.all[q.index].radius; });
+    const double across = quantile_of(groups[s], 0.5, [&](const Neighbor& q) { return width[q.index]; });
+    view.shared = points_on_step(double(many.points) * std::pow(std::min(1.0, across / (2 * radius)), 2),
+                                 scatter_around(s, many), rounding);
   }
 };
 
@@ -268,12 +288,16 @@ std::vector<SiteView> look_without_windows(Places& places, const SiteGroups& gro
   const std::size_t many = open.size() - 1;
   for (; points <= std::min(kWidestView, widest_scatter(places.index())); points *= 2)
     open.push_back(fit_wide(places, points, context));
+  std::vector<double> width(steps != nullptr && plateau ? groups.size() : 0);
+  for_each_index(
+      context, width.size(),
+      [&](std::size_t s) { width[s] = steps->width(places.at()[s], open[many].all[s].normal); }, 64);
   if (plateau)
     for_each_index(
         context, groups.size(),
         [&](std::size_t s) {
           sites.find_floor(s, open.front(), open[many], views[s]);
-          sites.find_rounding(s, open[many], open.back(), views[s]);
+          sites.find_rounding(s, open[many], open.back(), width, views[s]);
         },
         64);
   if (plateau && !start.on_lines && !sites.on_grid()) find_shared_around(groups, open, views, context);

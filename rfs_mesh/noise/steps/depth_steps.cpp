@@ -226,7 +226,17 @@ bool DepthSteps::exceed(const DepthSteps& other) const {
 
 double DepthSteps::sigma(const Eigen::Vector3d& at, const Eigen::Vector3d& normal) const {
   if (on_grid()) return rounding_noise(typical_);
-  if (index_ == nullptr) return terraces_.front().sigma(at, normal);
+  const Terraces* const of = around(at);
+  return of != nullptr ? of->sigma(at, normal) : 0;
+}
+
+double DepthSteps::width(const Eigen::Vector3d& at, const Eigen::Vector3d& normal) const {
+  const Terraces* const of = on_grid() ? nullptr : around(at);
+  return of != nullptr ? of->width(at, normal) : 0;
+}
+
+const Terraces* DepthSteps::around(const Eigen::Vector3d& at) const {
+  if (index_ == nullptr) return &terraces_.front();
   std::vector<Neighbor> near;
   index_->nearest(at, int(std::min(kNeighbourhood, index_->points().size())), near);
   const Terraces* of = nullptr;
@@ -240,7 +250,7 @@ double DepthSteps::sigma(const Eigen::Vector3d& at, const Eigen::Vector3d& norma
     most = more;
     of = &terraces;
   }
-  return of != nullptr ? of->sigma(at, normal) : 0;
+  return of;
 }
 
 std::optional<DepthSteps> find_depth_steps(const SpatialIndex& index, double rounding, double nearest) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Geometry>
+
 #include "base/quantile.h"
 #include "rfs_mesh/levels.h"
 
@@ -84,6 +86,10 @@ Eigen::Vector3d Terraces::ray(const Eigen::Vector3d& at) const {
 
 double Terraces::sigma(const Eigen::Vector3d& at, const Eigen::Vector3d& normal) const {
   return rounding_noise(std::abs(normal.dot(ray(at))) * gap(depth(at)));
+}
+
+double Terraces::width(const Eigen::Vector3d& at, const Eigen::Vector3d& normal) const {
+  return gap(depth(at)) / normal.cross(ray(at)).norm();
 }
 
 bool fill_in(const Positions& some, Terraces& terraces) {

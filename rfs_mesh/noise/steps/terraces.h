@@ -40,6 +40,10 @@ struct Terraces {
 
   /// Standard deviation along the normal of a surface there.
   double sigma(const Eigen::Vector3d& at, const Eigen::Vector3d& normal) const;
+
+  /// How wide the strip of such a surface is that lies on one step; infinite where depth is the same all over
+  /// it.
+  double width(const Eigen::Vector3d& at, const Eigen::Vector3d& normal) const;
 };
 
 /// Fills in the depths at which there are few points, from the least to the largest of `some`. False if those

@@ -17,15 +17,15 @@ using namespace rfsmooth::noisy;
 
 namespace {
 
-/// What a laser at the origin sees of a room, in whole centimetres of range.
-Positions laser_room() {
+/// What a laser at the origin sees of a room, in steps of range, with noise of so many steps before.
+Positions laser_room(double step = 0.01, double noise = 0.6) {
   std::mt19937_64 engine(6);
   std::normal_distribution<double> normal;
   Positions points;
   for (int i = 0; i < 15000; ++i) {
     const Eigen::Vector3d ray = Eigen::Vector3d(normal(engine), normal(engine), normal(engine)).normalized();
     const double range = Eigen::Array3d(3, 2, 1.3).cwiseQuotient(ray.array().abs()).minCoeff();
-    points.push_back(0.01 * std::round(100 * (range + 0.006 * normal(engine))) * ray);
+    points.push_back(step * std::round(range / step + noise * normal(engine)) * ray);
   }
   return points;
 }
@@ -61,6 +61,35 @@ TEST(NoiseLaws, RangesInStepsAreSeenWhereverTheLaserStood) {
   EXPECT_NEAR(denoise(moved).measured.step, 0.01, 1e-4);
   for (Eigen::Vector3d& p : moved) p -= shift;
   EXPECT_LT(rms_off_walls(moved), 0.4 * rms_off_walls(room));
+}
+
+TEST(NoiseLaws, RangesInStepsThatAreWiderThanTheNoiseAreSmoothed) {
+  const double spacing = std::sqrt(8 * (3 * 2 + 3 * 1.3 + 2 * 1.3) / 15000);
+  for (const double step : {2 * spacing, 3 * spacing})
+    for (const double noise : {0.15, 0.35}) {
+      const Positions room = laser_room(step, noise);
+      EXPECT_LT(rms_off_walls(denoised(room)), 0.5 * rms_off_walls(room)) << step << ' ' << noise;
+    }
+}
+
+TEST(NoiseLaws, WhereASurfaceFacesTheCameraItsStepsAreSmoothedToo) {
+  constexpr std::size_t kPoints = 8000;
+  constexpr double kRim = 0.9;
+  const double spacing = std::sqrt(M_PI * kRim * kRim / double(kPoints));
+  for (const double step : {spacing, 2 * spacing})
+    for (const double noise : {0.0, 0.1, 0.2}) {  // steps
+      std::mt19937_64 engine(8);
+      std::uniform_real_distribution<double> uniform(0, 1);
+      std::normal_distribution<double> normal(0, noise);
+      Positions cap;  // of a sphere, seen along z
+      for (std::size_t i = 0; i < kPoints; ++i) {
+        const double off = kRim * std::sqrt(uniform(engine)), turn = 2 * M_PI * uniform(engine);
+        const double depth = std::sqrt(1 - off * off),
+                     told = step * std::round(depth / step + normal(engine));
+        cap.emplace_back(off * std::cos(turn), off * std::sin(turn), told);
+      }
+      EXPECT_LT(rms_off(denoised(cap), everywhere), 0.2 * rms_off(cap, everywhere)) << step << ' ' << noise;
+    }
 }
 
 TEST(NoiseLaws, AWallBeforeADepthCameraIsNotTorn) {
