@@ -103,8 +103,9 @@ Result<AnyFlow> find_flow(std::string_view name) {
 Result<FlowOptions> as_printed(FlowOptions options) {
   if (std::holds_alternative<AutomaticOptions>(options.flow))
     return Error{ErrorCode::usage, "the flow 'auto' is in no paper; name one that is"};
-  of_options(options.flow, Scheme::printed,
-             [](auto& o) -> decltype(o.scheme) { return o.scheme = Scheme::printed; });
+  Scheme* const scheme = of_options(options.flow, static_cast<Scheme*>(nullptr),
+                                    [](auto& o) -> decltype(&o.scheme) { return &o.scheme; });
+  if (scheme != nullptr) *scheme = Scheme::printed;
   return options;
 }
 

@@ -100,8 +100,8 @@ struct AutomaticOptions {
   int iterations = 1;           ///< steps, each with its own measurement
   double strength = 1;          ///< 0 = nothing, 1 = as the noise asks for, 2 = as for twice the noise
   std::optional<Length> noise;  ///< standard deviation along the normal; empty = measured
-  bool equalize = true;         ///< evens points out along the surface whose noise is their own, not on lines
-  bool learned = true;          ///< a trained network has the last word on heights (docs/FLOWS.md)
+  bool equalize = true;  ///< evens points out along the surface; not on lines, nor where all share noise
+  bool learned = true;   ///< a trained network has the last word on heights (docs/FLOWS.md)
 
   std::unique_ptr<Flow> start(const Mesh&, const Constraints&, const Context&) const;
   template <class Self, class Visit>

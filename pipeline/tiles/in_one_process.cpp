@@ -158,7 +158,9 @@ SmoothedInTiles smooth_in_tiles(const TiledRun& run, const Within& how, const De
     context.report("tiles", kSettled + each * double(t + 1));
   }
   done.report = report_of(job, options);
-  done.joined = join_job(job, {run.output}, run.join, part_of(context, kJoin, 1)).front();
+  JoinOptions join = run.join;
+  join.normals = normals.has_value();
+  done.joined = join_job(job, {run.output}, join, part_of(context, kJoin, 1)).front();
   return done;
 }
 

@@ -42,7 +42,7 @@ std::uint64_t finite_rows(const std::string& path, const Context& context);
 /// A file to smooth in tiles.
 struct TiledRun {
   std::string input, output;
-  JoinOptions join = {};  ///< its normals: whether there are some to write; its folder is made at once
+  JoinOptions join = {};  ///< its folder is made at once; its normals follow from those that are asked for
 };
 
 /// What there is to say of a cloud smoothed in tiles.

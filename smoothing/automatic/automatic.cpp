@@ -28,7 +28,7 @@ namespace {
 // Chosen on the development shapes (tests/bench/quality) at 10,000 and 50,000 points, noise of 1 to 3 %.
 constexpr double kGuide = 10;  // c = kGuide (sigma/h)^2, to the fourth power above h
 
-constexpr double kNearlySolved = 1e-3;  // of the noise: what the guide keeps of it no height tells from none
+constexpr double kNearlySolved = 1e-3;  // of the noise stays in the guide: less than any height can tell
 
 /// Rings of the nearest points along the lines that the cloud lies on, two to either side: an RFS-mesh has
 /// hardly a face there, and where it has one it leads to another line, far away.

@@ -32,6 +32,8 @@
 /// neighbours' noise. What such points have of their own beside it is noise for sure: in place of the data
 /// the patches of 16 points are the first candidate, so that where every wide patch is worse the points are
 /// left calm. Of points on few lines (NoiseModel::piece) the same is done, but no wider patches are tried.
+/// Where only places of the cloud share their noise (NoiseModel::shared_at_sites), there evidence and `own`
+/// count so, and the scales are those of the cloud.
 ///
 /// Where the nearest points lie along lines (NoiseModel::on_lines), as on the rings of a spinning laser, the
 /// guide is faired along them, over the nearest of each point in place of the mesh. Normals are those of

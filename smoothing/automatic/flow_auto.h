@@ -1,6 +1,6 @@
 /// The automatic smoother on a mesh: measures the noise, smooths as strongly as it asks for at every point
 /// (automatic.h), evens the points out along the surface (equalize.h), or, where neighbours share their
-/// noise, puts them back to where they were along it (slide_back.h).
+/// noise all over the cloud, puts them back to where they were along it (slide_back.h).
 ///
 /// How far a point may move in a step: at most kNoiseReach (levels.h) times the noise around it, measured or
 /// stated; strength times that where the strength is above one, and AutomaticReport::tail_times that where

@@ -89,7 +89,8 @@ class FairingSolve {
       r[i] = Vector4f(float(scaled[0]), float(scaled[1]), float(scaled[2]), 0);
     };
     double norm = residual(as_float);
-    if (options_.of_start) goal_ = options_.tolerance * norm;
+    if (options_.of_start)
+      goal_ = std::max(options_.tolerance * norm, rounding_of(largest_eigenvalue() * size_));
     report.by_polynomials = norm > goal_;
     while (norm > goal_ && std::isfinite(norm) && report.iterations < options_.max_iterations) {
       const double before = norm;

@@ -14,8 +14,8 @@
 ///     |A x - b| < tolerance |b|    in the inner product of M^-1 (l2), or per vertex over m_i (linf)
 ///
 /// What this asks for grows with the extent of the cloud. Relative to the residual of the start it does not:
-/// each part of the start's error, coarse or fine, is reduced by the tolerance or more where a polynomial
-/// (below) does it.
+/// each part of the start's error, coarse or fine, is reduced by the tolerance or more where one polynomial
+/// (below) does it, of a tolerance of 1e-4 or more.
 ///
 /// Corrections are computed in single precision, residuals and positions in double. Where single precision
 /// does not suffice, all is double. Second order with the umbrella and nothing else (Q = M, C = 1, no
@@ -38,7 +38,7 @@ namespace rfsmooth::smoothing {
 /// When to stop.
 struct SolverOptions {
   double tolerance = 1e-5;    ///< of the residual, relative to the centred right side
-  bool of_start = false;      ///< the tolerance is relative to the residual of the start instead
+  bool of_start = false;      ///< of solve(): relative to the residual of the start instead
   int max_iterations = 5000;  ///< then the last iterate is returned as it is
   bool linf = false;          ///< stop on the largest instead of the root mean square residual
 };
@@ -46,9 +46,9 @@ struct SolverOptions {
 /// How it ended.
 struct SolverReport {
   int iterations = 0;           ///< products with A in the iteration
-  double residual = 0;          ///< at the end; relative, in the norm of the options
+  double residual = 0;          ///< at the end; relative as the tolerance is, in the norm of the options
   bool converged = false;       ///< within the tolerance, or as near as rounding lets the residual come to 0
-  bool by_polynomials = false;  ///< and by nothing else
+  bool by_polynomials = false;  ///< and by nothing else; false if there was nothing to do
 };
 
 /// y = A x for a symmetric positive definite A; x and y are distinct, n rows. Returns x . y, summed in fixed

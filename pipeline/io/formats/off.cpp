@@ -109,7 +109,7 @@ std::vector<Field> vertex_fields(const Kind& kind, std::size_t columns) {
   return fields;
 }
 
-// Everything before the first vertex, as we write it: prefixes by the points' fields.
+/// Everything before the first vertex, as we write it: prefixes by the points' fields.
 std::string off_header(const Cloud& cloud) {
   const auto has = [&](const char* name) { return find_field(cloud, name).has_value(); };
   std::string out;

@@ -113,7 +113,8 @@ SharedNoise find_shared_noise(Places& places, const NoiseStart& start, const Dep
   const Calm calm = look(places, start, steps, context);
   if (calm.m.empty()) return found;  // nothing scatters, or too few points to tell
   // A neighbourhood within one terrace sees nothing of the steps, so the noise may grow steeply. Shells of a
-  // laser scanner that are finer than its noise are no terraces.
+  // laser scanner are terraces only where its noise does not reach from one to the next; where the search
+  // asks what a piece of the surface is (noise_search.h), that is not known yet, and they are none.
   const bool terraces =
       steps != nullptr && (!steps->on_shells() || are_two_depths(start.sigma * start.sigma, start.of_steps));
   // What a window from below saw much less of at the same m is the distance of two sheets.

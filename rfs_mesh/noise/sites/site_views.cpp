@@ -108,15 +108,19 @@ bool are_layers(const Around& around, double apart) {
 }
 
 /// How many points share their noise where depths in steps are off by `rounding`: 1, or more by a difference.
-/// Their error is a saw tooth, of which the noise that points had before they were rounded, `own`, leaves
-/// exp(-pi^2 / 3 own^2 / rounding^2) of the variance, as of a sine as long as a step; the rest is their own.
-/// What lies within one step and is exact shows none of it. \param strip points of a disk as wide as the
-/// strip on one step. \param scatter of the points there, all of their noise
-double points_on_step(double strip, double scatter, double rounding) {
-  if (!(rounding > 0 && strip > 1)) return 1;
-  const double shown = scatter * scatter / (rounding * rounding), own = std::max(0.0, shown - 1),
-               saw = std::min(1.0, shown) * std::exp(-M_PI * M_PI / 3 * own) / (1 + own),
-               points = 1 + (strip - 1) * saw;
+///
+///     1 + (on_strip - 1) min(1, v) exp(-pi^2 / 3 o) / (1 + o),   v = scatter^2 / rounding^2,  o = max(0, v -
+///     1)
+///
+/// What rounding adds is a saw tooth. The noise that points had before, o times as large in variance, leaves
+/// the exponential of it, as of a sine as long as a step, and that is one part in 1 + o of all noise. What
+/// lies exactly within one step shows less than there is: v. \param on_strip points of a disk as wide as the
+/// strip on one step. \param scatter of the points there
+double points_on_step(double on_strip, double scatter, double rounding) {
+  if (!(rounding > 0 && on_strip > 1)) return 1;
+  const double seen = scatter * scatter / (rounding * rounding), before = std::max(0.0, seen - 1),
+               saw = std::min(1.0, seen) * std::exp(-M_PI * M_PI / 3 * before) / (1 + before),
+               points = 1 + (on_strip - 1) * saw;
   return points > kSameNoise ? points : 1;
 }
 
@@ -185,12 +189,14 @@ struct Sites {
 
   /// Raises `floor` to what depths in steps make sure of, as far as the widest fits show it: those to fewer
   /// points may lie within a step. A stack of slices has few depths, too, and none of the scatter; a grid may
-  /// be exact. Sets `shared`. \param width of the strip on one step, at each site
+  /// be exact. Sets `shared`, but along lines, which are no disks. \param width of the strip on one step, at
+  /// each site
   void find_rounding(std::size_t s, const OpenFits& many, const OpenFits& widest,
                      const std::vector<double>& width, SiteView& view) const {
     if (steps == nullptr || on_grid()) return;
     const double rounding = rounding_around(s, many);
     view.floor = std::max(view.floor, std::min(scatter_around(s, widest), rounding));
+    if (on_lines) return;
     const double radius =
         quantile_of(groups[s], 0.5, [&](const Neighbor& q) { return many.all[q.index].radius; });
     const double across = quantile_of(groups[s], 0.5, [&](const Neighbor& q) { return width[q.index]; });

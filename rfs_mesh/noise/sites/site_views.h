@@ -30,11 +30,13 @@
 /// fades out. Equal scatter needs no such floor: it is plain noise, or two sheets. Where it is seen
 /// to have stopped, and neighbours err together, all of it is (shared_around.h). Counted steps
 /// (depth_steps.h) make sure of their rounding, as far as s(1,536) shows it: far from a camera a step is
-/// wide, and 192 points lie within it. Clouds of fewer than 384 points have none of this.
+/// wide, and 192 points lie within it.
 ///
 /// Shared: the points on one step are off the same way. Along a surface a step is a strip, the wider the more
 /// squarely it faces the camera: as many share their noise as lie on a disk as wide as the strip, as far as
-/// the noise that they had before they were rounded leaves of it.
+/// the noise that they had before they were rounded leaves of it. Not along lines, nor on a grid.
+///
+/// Clouds of fewer than 384 points have neither.
 #pragma once
 
 #include <vector>

@@ -226,16 +226,16 @@ bool DepthSteps::exceed(const DepthSteps& other) const {
 
 double DepthSteps::sigma(const Eigen::Vector3d& at, const Eigen::Vector3d& normal) const {
   if (on_grid()) return rounding_noise(typical_);
-  const Terraces* const of = around(at);
+  const Terraces* const of = terraces_at(at);
   return of != nullptr ? of->sigma(at, normal) : 0;
 }
 
 double DepthSteps::width(const Eigen::Vector3d& at, const Eigen::Vector3d& normal) const {
-  const Terraces* const of = on_grid() ? nullptr : around(at);
+  const Terraces* const of = on_grid() ? nullptr : terraces_at(at);
   return of != nullptr ? of->width(at, normal) : 0;
 }
 
-const Terraces* DepthSteps::around(const Eigen::Vector3d& at) const {
+const Terraces* DepthSteps::terraces_at(const Eigen::Vector3d& at) const {
   if (index_ == nullptr) return &terraces_.front();
   std::vector<Neighbor> near;
   index_->nearest(at, int(std::min(kNeighbourhood, index_->points().size())), near);

@@ -45,16 +45,17 @@ class DepthSteps {
   /// Whether they are larger than another's, by more than files round.
   bool exceed(const DepthSteps& other) const;
 
-  /// Standard deviation along the normal of a surface there, and how wide a strip of it is on one step: by
-  /// the first terraces where nine tenths of the cloud are on them (O(log steps)); else by those that hold
-  /// the most of the kNeighbourhood nearest points, 0 if none holds a tenth of them beyond chance (O(log n)).
-  /// The points of a grid are on no common step: 0.
+  /// Standard deviation along the normal of a surface there: by the first terraces where nine tenths of the
+  /// cloud are on them (O(log steps)); else by those that hold the most of the kNeighbourhood nearest points,
+  /// 0 if none holds a tenth of them beyond chance (O(log n)).
   double sigma(const Eigen::Vector3d& at, const Eigen::Vector3d& normal) const;
+
+  /// Terraces::width of the same terraces; 0 on a grid.
   double width(const Eigen::Vector3d& at, const Eigen::Vector3d& normal) const;
 
  private:
   /// Those that hold the points there; null if none does. Not of a grid.
-  const Terraces* around(const Eigen::Vector3d& at) const;
+  const Terraces* terraces_at(const Eigen::Vector3d& at) const;
 
   double typical_;
   std::vector<Terraces> terraces_;

@@ -42,7 +42,7 @@ struct Terraces {
   double sigma(const Eigen::Vector3d& at, const Eigen::Vector3d& normal) const;
 
   /// How wide the strip of such a surface is that lies on one step; infinite where depth is the same all over
-  /// it.
+  /// it, and for a normal of zero.
   double width(const Eigen::Vector3d& at, const Eigen::Vector3d& normal) const;
 };
 

@@ -115,7 +115,7 @@ class MovingGuide {
   std::vector<char> gone_;
   std::vector<Index> moved_;
   Positions places_;
-  std::optional<rfs_mesh::SpatialIndex> staying_, moved_index_;  // from set_moved on; an index takes no other
+  std::optional<rfs_mesh::SpatialIndex> staying_, moved_index_;  // there from set_moved on
 };
 
 std::vector<Index> find_stranded(const Adjacency& rings, const Positions& guide, const NeighborTable& near,

@@ -152,6 +152,14 @@ TEST(Solver, WarmStartFromTheSolutionNeedsNoIteration) {
   EXPECT_GT(solve(system, mesh.positions, x, {}, options, {}).iterations, 5);
   options.tolerance = 2e-6;
   EXPECT_EQ(solve(system, mesh.positions, x, {}, options, {}).iterations, 0);
+  // Solved to rounding, it is solved as well relative to the start.
+  options.tolerance = 1e-14;
+  solve(system, mesh.positions, x, {}, options, {});
+  options.tolerance = 1e-3;
+  options.of_start = true;
+  const SolverReport again = solve(system, mesh.positions, x, {}, options, {});
+  EXPECT_EQ(again.iterations, 0);
+  EXPECT_TRUE(again.converged);
 }
 
 TEST(Solver, RelativeToTheStartTheErrorIsReducedAsAskedForWhateverTheExtent) {

@@ -364,6 +364,9 @@ TEST(DepthSteps, TheirNoiseIsThatOfRoundingAlongTheNormal) {
   EXPECT_NEAR(steps->sigma(at, {0, 0, 1}), 0.05 / std::sqrt(12.0), 1e-12);
   EXPECT_NEAR(steps->sigma(at, slanted), 0.05 / std::sqrt(24.0), 1e-12);
   EXPECT_EQ(steps->sigma(at, {1, 0, 0}), 0);
+  const rfs_mesh::DepthSteps grid(0.05);
+  EXPECT_NEAR(grid.sigma(at, slanted), 0.05 / std::sqrt(12.0), 1e-12);
+  EXPECT_EQ(grid.width(at, slanted), 0);
 }
 
 TEST(DepthSteps, TheGapIsThatOfTheDepth) {

@@ -1,5 +1,7 @@
 #include "rfs_mesh/noise/steps/terraces.h"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 using namespace rfsmooth;
@@ -31,6 +33,19 @@ TEST(Terraces, AreFilledInWithStepsOfTheSizeThatTheFarthestTell) {
     EXPECT_NEAR(terraces.gap(terraces.depths[*at]), kStep, 1e-12);
   }
   EXPECT_FALSE(terraces.step_of({0, 0, 105.5 * kStep}));
+}
+
+TEST(Terraces, TheirStripsAreAsWideAsTheSlopeLeavesThem) {
+  Terraces planes = with_gaps();
+  ASSERT_TRUE(rfs_mesh::fill_in({{0, 0, kStep}}, planes));
+  Terraces shells = planes;
+  shells.scanner = Eigen::Vector3d(0, 0, -1);
+  const Eigen::Vector3d at(0, 0, 0), facing = Eigen::Vector3d::UnitZ(), along = Eigen::Vector3d::UnitX();
+  for (const Terraces& terraces : {planes, shells}) {
+    EXPECT_NEAR(terraces.width(at, (facing + along).normalized()), std::sqrt(2.0) * kStep, 1e-12);
+    EXPECT_NEAR(terraces.width(at, along), kStep, 1e-12);
+    EXPECT_TRUE(std::isinf(terraces.width(at, facing)));
+  }
 }
 
 TEST(Terraces, OfUnequalStepsAreNotFilledIn) {
