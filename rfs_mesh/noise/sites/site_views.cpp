@@ -109,8 +109,8 @@ bool are_layers(const Around& around, double apart) {
 
 /// How many points share their noise where depths in steps are off by `rounding`: 1, or more by a difference.
 ///
-///     1 + (on_strip - 1) min(1, v) exp(-pi^2 / 3 o) / (1 + o),   v = scatter^2 / rounding^2,  o = max(0, v -
-///     1)
+///     1 + (on_strip - 1) min(1, v) exp(-pi^2 / 3 o) / (1 + o)
+///     v = scatter^2 / rounding^2,   o = max(0, v - 1)
 ///
 /// What rounding adds is a saw tooth. The noise that points had before, o times as large in variance, leaves
 /// the exponential of it, as of a sine as long as a step, and that is one part in 1 + o of all noise. What
@@ -178,12 +178,16 @@ struct Sites {
         quantile_of(groups[s], kTypical, [&](const Neighbor& q) { return fits.all[q.index].variance; }));
   }
 
+  /// The median radius of their balls, world units.
+  double radius_around(std::size_t s, const OpenFits& fits) const {
+    return quantile_of(groups[s], 0.5, [&](const Neighbor& q) { return fits.all[q.index].radius; });
+  }
+
   /// Raises `floor`, sets `told`. What two sheets scatter does not grow, either.
   void find_floor(std::size_t s, const OpenFits& few, const OpenFits& many, SiteView& view) const {
-    const double radius =
-        quantile_of(groups[s], 0.5, [&](const Neighbor& q) { return few.all[q.index].radius; });
     const double less = scatter_around(s, few), seen = scatter_around(s, many);
-    if (view.sheet == SiteView::kNone) view.floor = std::max(view.floor, plateau(less, seen, radius));
+    if (view.sheet == SiteView::kNone)
+      view.floor = std::max(view.floor, plateau(less, seen, radius_around(s, few)));
     view.told = seen < kStops * less;
   }
 
@@ -197,11 +201,9 @@ struct Sites {
     const double rounding = rounding_around(s, many);
     view.floor = std::max(view.floor, std::min(scatter_around(s, widest), rounding));
     if (on_lines) return;
-    const double radius =
-        quantile_of(groups[s], 0.5, [&](const Neighbor& q) { return many.all[q.index].radius; });
     const double across = quantile_of(groups[s], 0.5, [&](const Neighbor& q) { return width[q.index]; });
-    view.shared = points_on_step(double(many.points) * std::pow(std::min(1.0, across / (2 * radius)), 2),
-                                 scatter_around(s, many), rounding);
+    const double share = std::min(1.0, across / (2 * radius_around(s, many)));
+    view.shared = points_on_step(double(many.points) * (share * share), scatter_around(s, many), rounding);
   }
 };
 
