@@ -6,6 +6,11 @@
 
 namespace rfsmooth::bench {
 
+/// What is printed beside a goal.
+inline const char* verdict(bool holds) {
+  return holds ? "holds" : "MISSED";
+}
+
 /// Ratios of means to the best peer's: all cells, without equalizing, along the ray, outliers, and at edges.
 void print_ratios(const Plan& plan, const Results& results, const std::string& ours,
                   const std::string& without_equalizing);

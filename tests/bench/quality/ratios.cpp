@@ -6,10 +6,6 @@
 namespace rfsmooth::bench {
 namespace {
 
-const char* verdict(bool holds) {
-  return holds ? "holds" : "MISSED";
-}
-
 /// Cells of one kind of noise and the limits of the mean ratio over them.
 struct Group {
   const char* name;

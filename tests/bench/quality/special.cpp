@@ -12,10 +12,6 @@ namespace {
 
 constexpr std::size_t kPoints = 10000;
 
-const char* verdict(bool holds) {
-  return holds ? "holds" : "MISSED";
-}
-
 bool same_bytes(const Positions& a, const Positions& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Eigen::Vector3d)) == 0;
 }

@@ -13,11 +13,11 @@ namespace {
 
 /// Of planted points, those that no rule could tell from noise are counted apart: within six standard
 /// deviations of the surface or four spacings.
-struct Tally {
+struct Strays {
   std::size_t surface = 0, wrong = 0, planted = 0, found = 0, away = 0, found_away = 0;
 };
 
-void add(const Case& one, const Truth& truth, int threads, Tally& tally) {
+void add(const Case& one, const Truth& truth, int threads, Strays& tally) {
   Context context;
   context.threads = threads;
   const auto cloud =
@@ -47,7 +47,7 @@ void print_outliers(const Plan& plan, Cases& cases) {
   noises.insert(noises.begin(), {NoiseKind::gaussian, 0, 0});
   for (const std::size_t size : plan.sizes)
     for (const auto& noise : noises) {
-      Tally tally;
+      Strays tally;
       for (const auto& shape : plan.shapes)
         add(cases.make(shape, size, noise), cases.truth(shape, size), plan.threads, tally);
       std::printf("  outliers, %zu points, %s: %zu of %zu points of the surface called one", size,
