@@ -46,7 +46,7 @@ T reduce_blocks(const Context& context, std::size_t n, T identity, Map&& map, Co
 
 /// The sum of `term(i)` over [0, n), starting from `zero` in every block. T needs +=.
 template <class T, class Term>
-T sum_over(const Context& context, std::size_t n, T zero, Term&& term) {
+T sum_over(const Context& context, std::size_t n, T zero, Term&& term, std::size_t grain = 4096) {
   return reduce_blocks(
       context, n, zero,
       [&](std::size_t begin, std::size_t end) {
@@ -54,7 +54,7 @@ T sum_over(const Context& context, std::size_t n, T zero, Term&& term) {
         for (std::size_t i = begin; i < end; ++i) s += term(i);
         return s;
       },
-      [](T a, const T& b) { return T(a += b); });
+      [](T a, const T& b) { return T(a += b); }, grain);
 }
 
 /// Replaces `kept` by `value` if that comes before it: the first of all values remains, in whatever order the

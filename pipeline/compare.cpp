@@ -95,15 +95,7 @@ std::optional<double> mean_angle(const std::vector<double>& angles) {
 }
 
 double mean_of(const Context& context, std::size_t n, const std::function<double(std::size_t)>& term) {
-  const double sum = reduce_blocks(
-      context, n, 0.0,
-      [&](std::size_t begin, std::size_t end) {
-        double s = 0;
-        for (std::size_t i = begin; i < end; ++i) s += term(i);
-        return s;
-      },
-      [](double a, double b) { return a + b; }, kGrain);
-  return sum / double(n);
+  return sum_over(context, n, 0.0, term, kGrain) / double(n);
 }
 
 /// \return the squared distances of the points.
