@@ -168,7 +168,6 @@ NB_MODULE(_rfsmooth, module) {
   nb::register_exception_translator(raise_error);
   module.attr("version") = rfsmooth::kVersion;
   module.attr("exit_codes") = exit_codes();
-  module.attr("reads_las") = rfsmooth::pipeline::io::format_by_name("las").has_value();
   bind_cloud(module);
   module.def("finest_needed", &rfsmooth::pipeline::io::finest_needed, nb::arg(), nb::arg().none());
   module.def("option_table", &option_table);

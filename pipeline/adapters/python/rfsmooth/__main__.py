@@ -7,11 +7,9 @@ from . import _rfsmooth
 from ._error import Error
 from ._options import python_name
 
-_OF_LASPY = (".laz",) if _rfsmooth.reads_las else (".laz", ".las")
-
 
 def _is_laspys(path):
-    return path.lower().endswith(_OF_LASPY)
+    return path.lower().endswith(".laz")
 
 
 def _counted(n, what):
