@@ -91,8 +91,10 @@ CommandOption describe_option(const OptionInfo& info) {
   return o;
 }
 
+}  // namespace
+
 template <class T>
-void add(std::vector<CommandOption>& out, const OptionInfo& info, T& field) {
+void OptionCollector::add(const OptionInfo& info, T& field) {
   CommandOption o = describe_option<T>(info);
   o.default_text = to_text(field);
   if constexpr (std::is_same_v<T, bool>) o.on_by_default = field;
@@ -100,29 +102,11 @@ void add(std::vector<CommandOption>& out, const OptionInfo& info, T& field) {
     field = parse_as<T>(option, info, text);
   };
   o.get = [&field] { return std::optional<std::string>(to_text(field)); };
-  out.push_back(std::move(o));
-}
-
-}  // namespace
-
-void OptionCollector::operator()(const OptionInfo& info, bool& field) {
-  add(out_, info, field);
-}
-void OptionCollector::operator()(const OptionInfo& info, int& field) {
-  add(out_, info, field);
-}
-void OptionCollector::operator()(const OptionInfo& info, double& field) {
-  add(out_, info, field);
-}
-void OptionCollector::operator()(const OptionInfo& info, Length& field) {
-  add(out_, info, field);
-}
-void OptionCollector::operator()(const OptionInfo& info, std::string& field) {
-  add(out_, info, field);
+  out_.push_back(std::move(o));
 }
 
 template <class T>
-void OptionCollector::operator()(const OptionInfo& info, std::optional<T>& field) {
+void OptionCollector::add(const OptionInfo& info, std::optional<T>& field) {
   CommandOption o = describe_option<T>(info);
   o.optional = true;
   const bool file = o.kind == ValueKind::file;
@@ -140,12 +124,17 @@ void OptionCollector::operator()(const OptionInfo& info, std::optional<T>& field
   out_.push_back(std::move(o));
 }
 
-template void OptionCollector::operator()(const OptionInfo&, std::optional<bool>&);
-template void OptionCollector::operator()(const OptionInfo&, std::optional<int>&);
-template void OptionCollector::operator()(const OptionInfo&, std::optional<double>&);
-template void OptionCollector::operator()(const OptionInfo&, std::optional<Length>&);
-template void OptionCollector::operator()(const OptionInfo&, std::optional<std::string>&);
-template void OptionCollector::operator()(const OptionInfo&, std::optional<Eigen::Vector3d>&);
+template void OptionCollector::add(const OptionInfo&, bool&);
+template void OptionCollector::add(const OptionInfo&, int&);
+template void OptionCollector::add(const OptionInfo&, double&);
+template void OptionCollector::add(const OptionInfo&, Length&);
+template void OptionCollector::add(const OptionInfo&, std::string&);
+template void OptionCollector::add(const OptionInfo&, std::optional<bool>&);
+template void OptionCollector::add(const OptionInfo&, std::optional<int>&);
+template void OptionCollector::add(const OptionInfo&, std::optional<double>&);
+template void OptionCollector::add(const OptionInfo&, std::optional<Length>&);
+template void OptionCollector::add(const OptionInfo&, std::optional<std::string>&);
+template void OptionCollector::add(const OptionInfo&, std::optional<Eigen::Vector3d>&);
 
 void OptionCollector::add_words(const OptionInfo& info, const std::function<std::size_t()>& get,
                                 const std::function<void(std::size_t)>& set) {

@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include <rfsmooth/flow_options.h>
@@ -53,22 +54,22 @@ std::vector<std::string> typed_names(const CommandOption& option);
 class OptionCollector {
  public:
   explicit OptionCollector(std::vector<CommandOption>& out) : out_(out) {}
-  void operator()(const OptionInfo& info, bool& field);
-  void operator()(const OptionInfo& info, int& field);
-  void operator()(const OptionInfo& info, double& field);
-  void operator()(const OptionInfo& info, Length& field);
-  void operator()(const OptionInfo& info, std::string& field);
   template <class T>
-  void operator()(const OptionInfo& info, std::optional<T>& field);
-  template <class Enumeration, std::enable_if_t<std::is_enum_v<Enumeration>, int> = 0>
-  void operator()(const OptionInfo& info, Enumeration& field) {
-    add_words(
-        info, [&field] { return std::size_t(field); }, [&field](std::size_t k) { field = Enumeration(k); });
+  void operator()(const OptionInfo& info, T& field) {
+    if constexpr (std::is_enum_v<T>)
+      add_words(
+          info, [&field] { return std::size_t(field); }, [&field](std::size_t k) { field = T(k); });
+    else
+      add(info, field);
   }
   /// --flow, and the options of every flow and modifier; all default to auto, the flow's own default.
   void operator()(FlowOptions& field);
 
  private:
+  template <class T>
+  void add(const OptionInfo& info, T& field);
+  template <class T>
+  void add(const OptionInfo& info, std::optional<T>& field);
   void add_words(const OptionInfo& info, const std::function<std::size_t()>& get,
                  const std::function<void(std::size_t)>& set);
 
