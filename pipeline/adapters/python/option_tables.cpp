@@ -24,24 +24,19 @@ using Defaults = std::map<std::string, std::set<std::optional<std::string>>>;
 /// What every flow that has an option, or every modifier, starts it with.
 Defaults defaults_of_flows() {
   Defaults defaults;
-  for (AnyFlow flow : rfsmooth::flows()) {
-    std::vector<cli::CommandOption> options;
-    std::visit([&](auto& fields) { cli::collect(fields, options); }, flow);
-    for (const cli::CommandOption& o : options) defaults[o.name].insert(o.get());
-  }
+  const auto enter = [&](auto& fields) {
+    for (const cli::CommandOption& o : cli::collect(fields)) defaults[o.name].insert(o.get());
+  };
+  for (AnyFlow flow : rfsmooth::flows()) std::visit(enter, flow);
   Modifiers modifiers;
-  std::vector<cli::CommandOption> options;
-  cli::collect(modifiers, options);
-  for (const cli::CommandOption& o : options) defaults[o.name].insert(o.get());
+  enter(modifiers);
   return defaults;
 }
 
 std::set<std::string> names_for_files() {
   cli::JobOptions job;
-  std::vector<cli::CommandOption> options;
-  cli::collect(job, options);
   std::set<std::string> names;
-  for (const cli::CommandOption& o : options) names.insert(o.name);
+  for (const cli::CommandOption& o : cli::collect(job)) names.insert(o.name);
   return names;
 }
 

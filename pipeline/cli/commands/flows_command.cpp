@@ -28,9 +28,7 @@ struct FlowsOptions {
 
 /// The flow's own options, with its values. They point into `flow`.
 std::vector<CommandOption> options_of(AnyFlow& flow) {
-  std::vector<CommandOption> options;
-  std::visit([&](auto& values) { collect(values, options); }, flow);
-  return options;
+  return std::visit([](auto& values) { return collect(values); }, flow);
 }
 
 /// The option with the flow's value, as it can be typed; of a flag what there is to type, in brackets.
@@ -80,7 +78,7 @@ Command flows_command() {
   command.description =
       "Prints every flow with its source and the options it uses, each with its value there; flags are in "
       "brackets.";
-  collect(*options, command.options);
+  command.options = collect(*options);
   command.run = [options](const Invocation& typed) {
     if (!typed.arguments.empty()) fail(ErrorCode::usage, "rfsmooth flows takes no arguments");
     if (options->json && options->markdown)

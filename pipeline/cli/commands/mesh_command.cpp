@@ -174,8 +174,7 @@ Command mesh_command() {
       "one; outliers, which denoise leaves out, stay in.\n\n"
       "Edges are lines in MeshLab, in Open3D (read_line_set) and for rfsmooth render; CloudCompare reads no "
       "edges from any PLY and shows the points only. Faces open everywhere.";
-  collect(options->mesh, command.options);
-  collect(options->job, command.options);
+  command.options = collect(options->mesh, options->job);
   command.everyday = {"stage", "output", "force", "threads", "report", "quiet", "verbose"};
   command.on_cloud = {
       [](const Invocation&) {},

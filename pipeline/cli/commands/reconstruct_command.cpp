@@ -45,9 +45,7 @@ std::map<std::string, std::string> without_effect(const SurfaceOptions& options,
   if (!method.closes_all) idle["trim"] = "--method " + method.name;
   if (options.denoise) return idle;
   DenoiseOptions unused;
-  std::vector<CommandOption> of_denoising;
-  collect(unused, of_denoising);
-  for (const CommandOption& option : of_denoising) idle[option.name] = "--no-denoise";
+  for (const CommandOption& option : collect(unused)) idle[option.name] = "--no-denoise";
   return idle;
 }
 
@@ -160,8 +158,7 @@ Command table(const std::shared_ptr<ReconstructCommandOptions>& options) {
       "the points go to the vertices.\n\n"
       "The work is done by the program rfsmooth-reconstruct, which links those libraries and may be "
       "installed or not; without it, or without the library that a method needs, the exit code is 127.";
-  collect(options->reconstruct, command.options);
-  collect(options->job, command.options);
+  command.options = collect(options->reconstruct, options->job);
   command.everyday = {"method", "denoise", "trim",   "fill-holes", "strength", "output",
                       "force",  "threads", "report", "quiet",      "verbose"};
   return command;

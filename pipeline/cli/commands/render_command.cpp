@@ -21,7 +21,7 @@ Command render_table(const std::shared_ptr<RenderOptions>& options) {
       "discs shaded by their neighbourhood, so that noise shows as grain, or faces, or edges. No screen is "
       "needed. rfsmooth render before.ply after.ply -o pair.png --labels before,after\n\n"
       "The work is done by the program rfsmooth-render; without it the exit code is 127.";
-  collect(*options, command.options);
+  command.options = collect(*options);
   command.everyday = {"output", "labels", "title",  "direction", "up",
                       "zoom",   "width",  "height", "color",     "force"};
   return command;

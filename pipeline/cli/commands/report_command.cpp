@@ -111,7 +111,7 @@ Command report_command() {
       "colours, by how far they moved or with the outliers marked, a cross-section, the figures, and a "
       "histogram of the displacements. A field 'outlier' of AFTER says which points are outliers; else they "
       "are searched for. rfsmooth denoise --html makes the same page on the way.";
-  collect(*options, command.options);
+  command.options = collect(*options);
   command.run = [options, known = command.options](const Invocation& typed) {
     return run_report(*options, typed, command_line("report", typed, known));
   };

@@ -232,8 +232,7 @@ Command smooth_mesh_command() {
       "Fields of the file can hold vertices back (--strength-field), fix them (--fixed-field) or let them "
       "slide (--axis-field, --plane-field). --refine puts a finer, fair mesh through the vertices "
       "(--iterations 0 refines without smoothing); --ridges marks ridges and ravines.";
-  collect(*options, command.options);
-  collect(options->job, command.options);
+  command.options = collect(*options, options->job);
   command.everyday = {"flow",  "iterations", "strength-field", "refine", "ridges", "output",
                       "force", "threads",    "report",         "quiet",  "verbose"};
   const auto trace = std::make_shared<std::vector<TraceRow>>();

@@ -36,9 +36,7 @@ using pipeline::io::value_or_fail;
 /// The options that were used, as the report shows them; --config takes them back.
 template <class Options>
 nlohmann::ordered_json effective_options(Options used, const FileOptions& files) {
-  std::vector<CommandOption> options;
-  collect(used, options);
-  nlohmann::ordered_json object = json_object(options);
+  nlohmann::ordered_json object = json_object(collect(used));
   object.update(bytes_options(files));
   return object;
 }

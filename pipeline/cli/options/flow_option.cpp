@@ -24,10 +24,8 @@ struct Given {
 
 /// The options of the flow that `fields` has chosen, bound to them; with its modifiers.
 std::vector<CommandOption> options_of(FlowOptions& fields, bool modifiers = true) {
-  std::vector<CommandOption> options;
-  std::visit([&](auto& flow) { collect(flow, options); }, fields.flow);
-  if (modifiers) collect(fields.modifiers, options);
-  return options;
+  return std::visit([&](auto& flow) { return modifiers ? collect(flow, fields.modifiers) : collect(flow); },
+                    fields.flow);
 }
 
 FlowOptions read_given(const Given& given) {

@@ -76,10 +76,12 @@ class OptionCollector {
   std::vector<CommandOption>& out_;
 };
 
-/// Appends the options of `fields`, which must outlive `out`.
-template <class Options>
-void collect(Options& fields, std::vector<CommandOption>& out) {
-  Options::describe(fields, OptionCollector(out));
+/// The options of all `fields`, which must outlive them.
+template <class... Options>
+std::vector<CommandOption> collect(Options&... fields) {
+  std::vector<CommandOption> out;
+  (Options::describe(fields, OptionCollector(out)), ...);
+  return out;
 }
 
 /// The option called `name`; null if there is none.

@@ -78,8 +78,7 @@ struct TilesOptions {
 /// The options that the plan was made with.
 PlannedOptions planned_options(const Job& job) {
   PlannedOptions planned;
-  std::vector<CommandOption> bound;
-  collect(planned, bound);
+  const std::vector<CommandOption> bound = collect(planned);
   for (const CommandOption& option : bound) {
     const auto value = job.options.find(option.name);
     if (value == job.options.end()) continue;
@@ -120,11 +119,9 @@ void plan_tiles(TilesOptions& options, const std::vector<std::string>& arguments
   if (normals.normals) need_room_for_normals(inputs, context);
   if (const auto how = normals_in_tiles(normals, inputs, context); how && how->viewpoint)
     normals.viewpoint = to_text(*how->viewpoint);
-  std::vector<CommandOption> bound;
-  collect(options.planned, bound);
   const Job job = pipeline::tiles::plan_job(
       inputs, arguments.back(), {std::uint64_t(options.tile_points), std::uint64_t(options.sample_points)},
-      json_object(bound), context);
+      json_object(collect(options.planned)), context);
   console.say(fmt::format("{}: {} in {}", arguments.back(), counted(job.points, "point"),
                           counted(job.tiles.size(), "tile")));
 }
@@ -224,9 +221,8 @@ int run_tiles(TilesOptions& options, const Invocation& typed) {
   if (std::find(steps.begin(), steps.end(), step) == steps.end())
     fail(ErrorCode::usage, "rfsmooth tiles takes one of {}", fmt::join(steps, ", "));
   if (step != "plan") {
-    std::vector<CommandOption> planned;
     PlannedOptions unused;
-    collect(unused, planned);
+    const std::vector<CommandOption> planned = collect(unused);
     for (const auto& [name, text] : typed.options)
       if (find_option(planned, name) != nullptr)
         fail(ErrorCode::usage, "--{} is for rfsmooth tiles plan; the other steps take it from there", name);
@@ -266,7 +262,7 @@ Command tiles_command() {
       "Tiles are numbered from 0; measure and run may go on in any order, in any number of processes, and "
       "again: what is there complete is not made again. The same inputs give the same bytes. On one machine "
       "'rfsmooth denoise --memory 8G IN OUT' does all of it.";
-  collect(*options, command.options);
+  command.options = collect(*options);
   command.first_words = steps_of_tiles();
   command.everyday = {"tile-points", "sample-points", "strength", "noise",
                       "threads",     "json",          "force",    "quiet"};

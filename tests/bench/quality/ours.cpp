@@ -10,8 +10,7 @@ namespace rfsmooth::bench {
 
 DenoiseOptions make_options(const std::vector<std::string>& words) {
   DenoiseOptions options;
-  std::vector<cli::CommandOption> known;
-  cli::collect(options, known);
+  const std::vector<cli::CommandOption> known = cli::collect(options);
   for (const auto& word : words) {
     const auto equals = word.find('=');
     const bool off = word.rfind("no-", 0) == 0;

@@ -149,7 +149,7 @@ Command compare_command() {
       "-o writes the cloud coloured by them. Then what papers compare by: against a mesh distances to the "
       "surface, P2M, shrinkage; against a cloud: Chamfer distance; evenness of the cloud; the error of its "
       "normals if it and the truth (a mesh always) have some. Points that are not finite are left out.";
-  collect(*options, command.options);
+  command.options = collect(*options);
   command.run = [options](const Invocation& typed) { return run_compare(*options, typed); };
   return command;
 }

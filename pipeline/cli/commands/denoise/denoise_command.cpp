@@ -86,8 +86,7 @@ Command denoise_command() {
       "and OUT; with -o every name is an input. Existing files are replaced only with --force. Ctrl-C stops "
       "within a second and leaves no file; of several inputs those stay that were done before. A report, a "
       "page or a trace is written once its cloud is there, and not without one.";
-  collect(*options, command.options);
-  collect(options->job, command.options);
+  command.options = collect(*options, options->job);
   command.everyday = {"strength", "noise",   "flow",   "outliers", "normals", "output",
                       "force",    "threads", "report", "quiet",    "verbose"};
   const auto beside = std::make_shared<Beside>();

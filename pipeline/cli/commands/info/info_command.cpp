@@ -131,7 +131,7 @@ Command info_command() {
       "rounded, and S is the typical distance from one to the next. 'points on a grid of S': most are S "
       "from their nearest, as the centres of voxels are. Of what smoothing left next to nothing is seen: "
       "there neighbours are off by the same, as if it were shape; denoise says how much that is.";
-  collect(*options, command.options);
+  command.options = collect(*options);
   command.run = [options](const Invocation& typed) { return run_info(*options, typed); };
   return command;
 }
