@@ -11,6 +11,7 @@
 #include "base/fail.h"
 #include "pipeline/io/detect.h"
 #include "pipeline/io/io.h"
+#include "pipeline/io/stream/atomic_file.h"
 
 namespace rfsmooth::cli {
 
@@ -97,10 +98,7 @@ void need_own_target(const std::vector<std::string>& inputs, const std::string& 
 void check_no_cloud_target(const std::string& path, bool force, const char* what) {
   if (path == "-")
     fail(ErrorCode::usage, "standard output (-) does not take the {}; it needs the name of a file", what);
-  pipeline::io::WriteOptions options;
-  options.force = force;
-  options.format = pipeline::io::Format::ply;  // any: the extension of a report stands for no cloud
-  value_or_throw(pipeline::io::check_output(path, options));
+  pipeline::io::check_target(path, force);
   if (holds_cloud(path))
     fail(ErrorCode::cannot_write, "{}: {}, which no {} replaces; remove it yourself", path,
          is_unreadable(path) ? "cannot be read and may be a cloud" : "is a cloud", what);
