@@ -61,18 +61,6 @@ void write(const Cloud& cloud, Format format, std::optional<Separators> cells, c
   write_as_is(convert(cloud, format, context), encoding, sink, context);
 }
 
-Format target_format(const Cloud& cloud, const std::filesystem::path& path, const WriteOptions& options) {
-  if (options.format) return *options.format;
-  if (const auto format = format_of_extension(path)) return *format;
-  if (!path.has_extension()) return cloud.format;
-  if (const OtherFormat* other = other_format_of_extension(path))
-    fail(ErrorCode::usage, "{}: {} is not written; {}", path.string(), other->name, other->instead);
-  fail(ErrorCode::usage,
-       "{}: the extension '{}' stands for no format we write (ply, pcd, xyz, off, las); choose one with "
-       "`format`",
-       path.string(), path.extension().string());
-}
-
 }  // namespace
 
 Result<Cloud> read_cloud(const std::filesystem::path& path, const ReadOptions& options,
@@ -104,17 +92,22 @@ Result<std::string> serialize_cloud(const Cloud& cloud, const WriteOptions& opti
   });
 }
 
+Format target_format(const Cloud& cloud, const std::filesystem::path& path, const WriteOptions& options) {
+  if (options.format) return *options.format;
+  if (const auto format = format_of_extension(path)) return *format;
+  if (!path.has_extension()) return cloud.format;
+  if (const OtherFormat* other = other_format_of_extension(path))
+    fail(ErrorCode::usage, "{}: {} is not written; {}", path.string(), other->name, other->instead);
+  fail(ErrorCode::usage,
+       "{}: the extension '{}' stands for no format we write (ply, pcd, xyz, off, las); choose one with "
+       "`format`",
+       path.string(), path.extension().string());
+}
+
 Result<Done> check_output(const std::filesystem::path& path, const WriteOptions& options) {
   return guarded([&] {
     target_format(Cloud{}, path, options);
     check_target(path, options.force);
-    return Done{};
-  });
-}
-
-Result<Done> check_output_name(const std::filesystem::path& path, const WriteOptions& options) {
-  return guarded([&] {
-    target_format(Cloud{}, path, options);
     return Done{};
   });
 }

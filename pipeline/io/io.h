@@ -47,8 +47,9 @@ Result<std::string> serialize_cloud(const Cloud& cloud, const WriteOptions& opti
 /// Reports in advance what write_cloud would refuse about the path; creates nothing.
 Result<Done> check_output(const std::filesystem::path& path, const WriteOptions& options);
 
-/// The same of the name alone, where the folder is still to be made.
-Result<Done> check_output_name(const std::filesystem::path& path, const WriteOptions& options);
+/// The format that write_cloud writes to that path. \throw Failure (usage) for an extension of no format that
+/// is written.
+Format target_format(const Cloud& cloud, const std::filesystem::path& path, const WriteOptions& options);
 
 /// Writes any bytes (a report, a picture) in the same way: complete or not at all.
 Result<Done> write_bytes(std::string_view bytes, const std::filesystem::path& path, bool force,

@@ -59,7 +59,7 @@ void check_target(const std::string& output, const FileOptions& options) {
 
 void check_target(const Job& job, const FileOptions& options) {
   if (!in_folder_to_come(job, job.output)) return check_target(job.output, options);
-  value_or_throw(io::check_output_name(job.output, write_options(options)));
+  io::target_format(io::Cloud{}, job.output, write_options(options));
 }
 
 bool in_folder_to_come(const Job& job, const std::string& path) {
@@ -141,8 +141,7 @@ Target target_of(const io::Cloud& cloud, const std::string& output, const FileOp
 }
 
 io::Format output_format(const io::Cloud& cloud, const std::string& output, const FileOptions& options) {
-  if (options.format) return io::format_by_name(*options.format).value_or(cloud.format);
-  return io::format_of_extension(output).value_or(cloud.format);
+  return io::target_format(cloud, output, write_options(options));
 }
 
 void warn_if_coarse(const io::Cloud& cloud, const std::vector<double>& xyz, double spacing,
