@@ -19,6 +19,7 @@
 #include "pipeline/io/formats/las/las_scale.h"
 #include "pipeline/io/point_fields.h"
 #include "pipeline/page/page.h"
+#include "pipeline/page/shown.h"
 #include "pipeline/tiles/files/statistics_json.h"
 #include "pipeline/tiles/steps/settle.h"
 
@@ -133,13 +134,9 @@ void add_rounding(const pipeline::io::Cloud& cloud, DenoiseReport& done) {
 /// for points that are not finite.
 void write_displacement(pipeline::io::Cloud& cloud, const std::vector<double>& before,
                         const Context& context) {
-  const std::vector<double> after = pipeline::io::positions(cloud, context);
-  std::vector<double> distance(cloud.size(), 0);
-  for (std::size_t i = 0; i < distance.size(); ++i) {
-    const double moved = std::hypot(after[3 * i] - before[3 * i], after[3 * i + 1] - before[3 * i + 1],
-                                    after[3 * i + 2] - before[3 * i + 2]);
-    if (std::isfinite(moved)) distance[i] = moved;
-  }
+  std::vector<double> distance = pipeline::displacements(before, pipeline::io::positions(cloud, context));
+  for (double& d : distance)
+    if (!std::isfinite(d)) d = 0;
   pipeline::io::set_field(cloud, kDisplacement, pipeline::io::Scalar::float32, distance, context);
 }
 
