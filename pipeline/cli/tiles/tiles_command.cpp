@@ -156,8 +156,9 @@ int join_tiles(const TilesOptions& options, const std::vector<std::string>& argu
   const bool to_reader = arguments[1] == "-" && !done.ok() && done.error().code == ErrorCode::cannot_write;
   if (to_reader && stdout_reader_is_gone()) return exit_code(ErrorCode::cannot_write);  // it has seen enough
   const auto joined = value_or_throw(std::move(done));
+  const DenoiseReport settled = pipeline::tiles::settled_of(job).report;
   for (std::size_t i = 0; i < outputs.size(); ++i) {
-    tell_scale(job.inputs[i].path, joined[i].scale, options.keep_scale, joined[i].noise, joined[i].noise_left,
+    tell_scale(job.inputs[i].path, joined[i].scale, options.keep_scale, settled.noise, settled.noise_left,
                console);
     if (joined[i].las) warn_of_index(outputs[i], console);
     mark_as_own(outputs[i]);

@@ -226,8 +226,6 @@ std::vector<Joined> join_job(const Job& job, const std::vector<std::string>& out
     if (how.normals) input.file.need_normals();
     Joined& done = joined.emplace_back();
     done.las = input.file.format() == io::Format::las;
-    done.noise = settled.noise;
-    done.noise_left = settled.noise_left;
     if (done.las) done.scale = prepare_las(job, input, how.keep_scale, settled, context);
     if (!how.folder.empty()) io::make_folder(how.folder);
     write_joined(job, input, outputs[i], how.force, patcher, context);

@@ -1,7 +1,6 @@
 /// The last step: copies the inputs with the new coordinates in them.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,9 +14,7 @@ namespace rfsmooth::pipeline::tiles {
 /// What there is to say of an output.
 struct Joined {
   bool las = false;
-  io::RefinedScale scale;            ///< of LAS; all zeros where it was not looked at
-  double noise = 0;                  ///< for which it was
-  std::optional<double> noise_left;  ///< as DenoiseReport's
+  io::RefinedScale scale;  ///< of LAS; all zeros where it was not looked at
 };
 
 /// How to join.
