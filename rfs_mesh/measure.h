@@ -4,8 +4,6 @@
 /// + m). Thread safe: no state is kept. Precondition of all functions: `check(mesh)` is empty.
 #pragma once
 
-#include <vector>
-
 #include <Eigen/Core>
 
 #include <rfsmooth/context.h>

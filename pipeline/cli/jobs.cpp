@@ -1,6 +1,5 @@
 #include "pipeline/cli/jobs.h"
 
-#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>

@@ -1,7 +1,6 @@
 #include "pipeline/page/text.h"
 
 #include <algorithm>
-#include <limits>
 #include <new>
 #include <stdexcept>
 

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstddef>
-#include <vector>
 
 #include <rfsmooth/context.h>
 #include <rfsmooth/denoise.h>

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "base/parallel.h"
-#include "rfs_mesh/levels.h"
 #include "rfs_mesh/noise/noise_levels.h"
 
 namespace rfsmooth::rfs_mesh {

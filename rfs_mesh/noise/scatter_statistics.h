@@ -7,8 +7,6 @@
 
 #include <vector>
 
-#include <rfsmooth/context.h>
-
 #include "base/quantile.h"
 #include "rfs_mesh/fit/scatter.h"
 

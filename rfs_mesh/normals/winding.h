@@ -16,7 +16,6 @@
 /// adds nothing to its own sum. Const functions are thread safe.
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include <rfsmooth/context.h>

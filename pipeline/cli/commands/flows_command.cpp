@@ -1,5 +1,4 @@
 /// rfsmooth flows: every way of smoothing, from the library's registry.
-#include <cstdio>
 #include <memory>
 
 #include <fmt/format.h>

@@ -1,6 +1,5 @@
 #include "pipeline/cli/console/console.h"
 
-#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 

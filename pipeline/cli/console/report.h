@@ -7,8 +7,6 @@
 
 #include <rfsmooth/denoise.h>
 
-#include "pipeline/cli/jobs.h"
-
 namespace rfsmooth::cli {
 
 class Report {

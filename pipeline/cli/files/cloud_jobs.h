@@ -1,8 +1,6 @@
 /// What sub-commands that turn a cloud into a file share: options, the loop over files, the report.
 #pragma once
 
-#include <functional>
-
 #include "pipeline/cli/commands/command.h"
 #include "pipeline/cli/console/console.h"
 #include "pipeline/cli/files/cloud_files.h"

@@ -1,6 +1,5 @@
 #include "pipeline/cli/files/cloud_normals.h"
 
-#include <array>
 #include <cmath>
 
 #include "base/fail.h"

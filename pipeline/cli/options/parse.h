@@ -1,7 +1,6 @@
 /// From argv to a sub-command, its options and arguments. The only user of CLI11.
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "pipeline/cli/commands/command.h"

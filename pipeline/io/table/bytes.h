@@ -1,7 +1,6 @@
 /// A growable buffer that does not initialise new bytes, so that files are read straight into it.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <utility>
 #include <vector>

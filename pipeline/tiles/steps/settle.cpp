@@ -17,7 +17,6 @@
 #include "pipeline/tiles/halo.h"
 #include "pipeline/tiles/steps/measure.h"
 #include "rfs_mesh/connect/umbrella.h"
-#include "rfs_mesh/levels.h"
 #include "rfs_mesh/points.h"
 
 namespace rfsmooth::pipeline::tiles {

@@ -25,8 +25,6 @@
 /// et al. 2009 (WLOP) without its attraction; the rest is ours. Thread safe: no state is kept.
 #pragma once
 
-#include <vector>
-
 #include <rfsmooth/context.h>
 
 #include "rfs_mesh/noise/noise.h"

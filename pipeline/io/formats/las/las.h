@@ -5,8 +5,6 @@
 /// longer agree with: box, numbers of points, scale, and places of what moved.
 #pragma once
 
-#include <optional>
-#include <string>
 #include <vector>
 
 #include "pipeline/io/formats/las/las_header.h"
