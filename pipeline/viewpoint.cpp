@@ -37,9 +37,9 @@ std::optional<Vector3d> recorded_viewpoint(const io::Cloud& cloud, const double*
                                            const Context& context) {
   constexpr std::array<double, 7> kDefault = {0, 0, 0, 1, 0, 0, 0};
   std::array<double, 7> values{};
-  const char* at = cloud.viewpoint.data();
+  std::string_view words = cloud.viewpoint;
   for (double& value : values) {
-    const auto parsed = io::parse_real(io::next_word(at, cloud.viewpoint.data() + cloud.viewpoint.size()));
+    const auto parsed = io::parse_real(io::next_word(words));
     if (!parsed || !std::isfinite(*parsed)) return std::nullopt;
     value = *parsed;
   }

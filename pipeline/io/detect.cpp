@@ -51,9 +51,8 @@ Format detect_format(const Source& source, const Context& context) {
     const std::string_view line = lines.next("a point");
     if (is_ply_line(line)) return Format::ply;
     if (line.substr(0, 6) == "# .PCD") return Format::pcd;
-    const char* p = line.data();
-    const char* end = p + line.size();
-    const std::string_view word = next_word(p, end, Separators::space);
+    std::string_view rest = line;
+    const std::string_view word = next_word(rest);
     if (is_off_word(word)) return Format::off;
     if (is_pcd_word(word)) return Format::pcd;
     // Words of text hold no control characters; anything else is not an XYZ file either.

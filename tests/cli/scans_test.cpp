@@ -39,13 +39,12 @@ bool is_coordinate(const io::Cloud& cloud, std::size_t field) {
 /// The parts of a row by field: words of text, or bytes.
 std::vector<std::string> parts(const io::Table& table, std::size_t row) {
   std::vector<std::string> out;
-  const std::string_view bytes = table.row(row);
+  std::string_view bytes = table.row(row);
   if (table.text) {
-    const char *p = bytes.data(), *end = p + bytes.size();
     for (const io::Field& field : table.fields) {
       std::string words;
       for (std::size_t k = 0; k < field.count; ++k)
-        words += std::string(io::next_word(p, end, table.separators)) + ' ';
+        words += std::string(io::next_word(bytes, table.separators)) + ' ';
       out.push_back(words);
     }
     return out;

@@ -45,10 +45,9 @@ bool has_ragged_values(const Table& table, const Context& context) {
   if (!table.ragged) return false;
   const std::vector<std::size_t> lengths = list_lengths(table, 0, context);
   for (std::size_t i = 0; i < table.count; ++i) {
-    const std::string_view row = table.row(i);
-    const char* p = row.data();
-    for (std::size_t k = 0; k <= lengths[i]; ++k) next_word(p, row.data() + row.size());
-    if (!next_word(p, row.data() + row.size()).empty()) return true;
+    std::string_view row = table.row(i);
+    for (std::size_t k = 0; k <= lengths[i]; ++k) next_word(row);
+    if (!next_word(row).empty()) return true;
   }
   return false;
 }

@@ -26,11 +26,9 @@ std::string_view without_keyword(std::string_view line) {
 
 // The value of "obj_info KEY VALUE", if the line is that.
 std::optional<std::string_view> info_value(std::string_view line, std::string_view key) {
-  const char* p = line.data();
-  const char* end = p + line.size();
-  if (next_word(p, end) != "obj_info" || next_word(p, end) != key) return std::nullopt;
-  while (p != end && *p == ' ') ++p;
-  return std::string_view(p, std::size_t(end - p));
+  if (next_word(line) != "obj_info" || next_word(line) != key) return std::nullopt;
+  line.remove_prefix(std::min(line.find_first_not_of(' '), line.size()));
+  return line;
 }
 
 bool is_viewpoint(std::string_view text) {

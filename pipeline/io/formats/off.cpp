@@ -56,27 +56,23 @@ std::string_view next_content(TextCursor& cursor, const char* expected, std::vec
 
 Counts read_header(TextCursor& cursor, Kind& kind, std::vector<Note>& notes) {
   std::string_view line = next_content(cursor, "'OFF'", notes);
-  const char* p = line.data();
-  const char* end = p + line.size();
-  const std::string_view word = next_word(p, end);
+  const std::string_view word = next_word(line);
   if (!parse_kind(word, kind))
     cursor.source.fail("line {}: expected 'OFF', found {}", cursor.lines, in_quotes(word));
   if (kind.other_dimension)
     cursor.source.fail("line {}: expected vertices of 3 coordinates, found {}", cursor.lines,
                        in_quotes(word));
-  std::string_view first = next_word(p, end);
+  std::string_view first = next_word(line);
   if (first == "BINARY")
     cursor.source.fail("line {}: expected an ascii OFF file, found BINARY", cursor.lines);
   if (first.empty()) {
     line = next_content(cursor, "the numbers of vertices, faces and edges", notes);
-    p = line.data();
-    end = p + line.size();
-    first = next_word(p, end);
+    first = next_word(line);
   }
   Counts counts;
   counts.vertices = element_count(first, cursor, "vertices");
-  counts.faces = element_count(next_word(p, end), cursor, "faces");
-  const std::string_view edges = next_word(p, end);  // often 0, sometimes missing, never used
+  counts.faces = element_count(next_word(line), cursor, "faces");
+  const std::string_view edges = next_word(line);  // often 0, sometimes missing, never used
   if (!edges.empty()) element_count(edges, cursor, "edges");
   return counts;
 }

@@ -37,39 +37,35 @@ Encoding parse_format(std::string_view word, const HeaderLines& lines) {
 }
 
 Table parse_element(std::string_view rest, const HeaderLines& lines) {
-  const char* p = rest.data();
-  const char* end = p + rest.size();
   Table table;
-  table.name = next_word(p, end);
-  const std::string_view count = next_word(p, end);
+  table.name = next_word(rest);
+  const std::string_view count = next_word(rest);
   const auto rows = parse_count(count);
   if (table.name.empty() || !rows)
     lines.fail("expected 'element NAME COUNT', found a count of {}", in_quotes(count));
   table.count = std::size_t(*rows);
-  if (!next_word(p, end).empty()) lines.fail("expected 'element NAME COUNT', found more words");
+  if (!next_word(rest).empty()) lines.fail("expected 'element NAME COUNT', found more words");
   return table;
 }
 
 Field parse_property(std::string_view rest, const HeaderLines& lines) {
-  const char* p = rest.data();
-  const char* end = p + rest.size();
   Field field;
-  const std::string_view word = next_word(p, end);
+  const std::string_view word = next_word(rest);
   if (word == "list") {
-    const std::string_view count = next_word(p, end);
+    const std::string_view count = next_word(rest);
     field.list_count = parse_type(count, lines);
     if (is_float(*field.list_count))
       lines.fail("expected a whole-number type for a list's length, found {}", in_quotes(count));
-    const std::string_view type = next_word(p, end);
+    const std::string_view type = next_word(rest);
     field.type = parse_type(type, lines);
     field.spelling = fmt::format("list {} {}", count, type);
   } else {
     field.type = parse_type(word, lines);
     field.spelling = word;
   }
-  field.name = next_word(p, end);
+  field.name = next_word(rest);
   if (field.name.empty()) lines.fail("expected 'property TYPE NAME', found no name");
-  if (!next_word(p, end).empty()) lines.fail("expected 'property TYPE NAME', found more words");
+  if (!next_word(rest).empty()) lines.fail("expected 'property TYPE NAME', found more words");
   return field;
 }
 
@@ -94,10 +90,8 @@ Cloud read_ply_header(HeaderLines& lines) {
   bool format_seen = false;
   for (;;) {
     const std::string_view line = lines.next("'end_header'");
-    const char* p = line.data();
-    const char* end = p + line.size();
-    const std::string_view keyword = next_word(p, end);
-    const std::string_view rest(p, std::size_t(end - p));
+    std::string_view rest = line;
+    const std::string_view keyword = next_word(rest);
     if (keyword == "end_header") break;
     if (keyword.empty()) continue;
     if (keyword == "comment" || keyword == "obj_info") {
@@ -112,7 +106,7 @@ Cloud read_ply_header(HeaderLines& lines) {
       cloud.notes.push_back(std::move(note));
     } else if (keyword == "format") {
       if (format_seen) lines.fail("expected one format line, found a second");
-      cloud.encoding = parse_format(next_word(p, end), lines);
+      cloud.encoding = parse_format(next_word(rest), lines);
       format_seen = true;
     } else if (keyword == "element") {
       cloud.elements.push_back(parse_element(rest, lines));

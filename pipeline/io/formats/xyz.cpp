@@ -94,10 +94,8 @@ std::size_t unit_columns(const Table& table) {
   std::vector<char> no(columns, 0);
   std::vector<double> values(columns);
   for (std::size_t i = 0; i < table.count; i += stride) {
-    const std::string_view row = table.row(i);
-    const char* p = row.data();
-    for (double& value : values)
-      value = parse_real(next_word(p, row.data() + row.size(), table.separators)).value_or(std::nan(""));
+    std::string_view row = table.row(i);
+    for (double& value : values) value = parse_real(next_word(row, table.separators)).value_or(std::nan(""));
     for (std::size_t k = 3; k + 3 <= columns; ++k) {
       const Says says = says_of_normal({values[k], values[k + 1], values[k + 2]});
       normal[k] += std::size_t(says == Says::normal);

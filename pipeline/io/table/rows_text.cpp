@@ -35,11 +35,10 @@ std::string problem_of_cells(const Table& table, std::string_view row) {
 // Empty if the row is what its fields ask for; else what was expected and found.
 std::string problem(const Table& table, std::string_view row) {
   if (cell_separator(table.separators) != '\0') return problem_of_cells(table, row);
-  const char* p = row.data();
-  const char* end = p + row.size();
+  const std::size_t size = row.size();
   std::size_t seen = 0, wanted = 0;
   const auto take = [&](const Field& f, Scalar type, const char* what) -> std::string {
-    const std::string_view word = next_word(p, end, table.separators);
+    const std::string_view word = next_word(row, table.separators);
     ++wanted;
     if (word.empty())
       return fmt::format("expected {} '{}' as value {}, found the end of the line", what, f.name, wanted);
@@ -50,18 +49,18 @@ std::string problem(const Table& table, std::string_view row) {
   for (const Field& f : table.fields) {
     std::size_t n = f.count;
     if (f.is_list()) {
-      const char* before = p;
+      std::string_view before = row;
       if (std::string bad = take(f, *f.list_count, "the length of list"); !bad.empty()) return bad;
-      const std::string_view word = next_word(before, end, table.separators);
+      const std::string_view word = next_word(before, table.separators);
       n = std::size_t(parse_integer(word, *f.list_count).value());
-      if (word.front() == '-' || n > row.size())
+      if (word.front() == '-' || n > size)
         return fmt::format("expected the length of list '{}', found {}", f.name, in_quotes(word));
     }
     for (std::size_t k = 0; k < n; ++k)
       if (std::string bad = take(f, f.type, "a value of"); !bad.empty()) return bad;
   }
   if (table.ragged) return {};
-  const std::string_view word = next_word(p, end, table.separators);
+  const std::string_view word = next_word(row, table.separators);
   if (word.empty()) return {};
   return fmt::format("expected {}, found more: {}", counted(seen, "value"), in_quotes(word));
 }
@@ -73,8 +72,7 @@ TextCursor::TextCursor(const Source& from, std::uint64_t offset, std::size_t lin
     : source(from), all(from.read(offset, std::size_t(from.size() - offset), context)), lines(lines_before) {}
 
 bool is_blank_or_comment(std::string_view line) {
-  const char* p = line.data();
-  const std::string_view word = next_word(p, p + line.size());
+  const std::string_view word = next_word(line);
   return word.empty() || word.front() == '#' || word.substr(0, 2) == "//";
 }
 

@@ -44,18 +44,16 @@ struct Locator {
 /// Calls body(field, words) for each field of a text row; the words of a list start with its count.
 template <class Body>
 void for_each_field(const Table& table, std::string_view row, Body&& body) {
-  const char* p = row.data();
-  const char* end = p + row.size();
   std::vector<std::string_view> words;
   for (std::size_t f = 0; f < table.fields.size(); ++f) {
     words.clear();
     const Field& field = table.fields[f];
     std::size_t n = field.count;
     if (field.is_list()) {
-      words.push_back(next_word(p, end, table.separators));
+      words.push_back(next_word(row, table.separators));
       n = std::size_t(parse_integer(words.back(), *field.list_count).value());
     }
-    for (std::size_t k = 0; k < n; ++k) words.push_back(next_word(p, end, table.separators));
+    for (std::size_t k = 0; k < n; ++k) words.push_back(next_word(row, table.separators));
     body(f, words);
   }
 }

@@ -74,28 +74,27 @@ int significant_digits(std::string_view word) {
   return digits;
 }
 
-// The first separator that is not between quotes, or the end.
-const char* end_of_cell(const char* p, const char* end, char separator) {
+// Where the first separator is that is not between quotes, or the end.
+std::size_t end_of_cell(std::string_view text, char separator) {
   bool quoted = false;
-  for (; p != end && (quoted || *p != separator); ++p) quoted = quoted != (*p == '"');
-  return p;
+  std::size_t at = 0;
+  for (; at < text.size() && (quoted || text[at] != separator); ++at) quoted = quoted != (text[at] == '"');
+  return at;
 }
 
-// The cell that begins at p, with its quotes. Moves p to the next one, or to the end.
-std::string_view next_as_written(const char*& p, const char* end, char separator) {
-  const char* const stop = end_of_cell(p, end, separator);
-  const std::string_view cell = without_blanks({p, std::size_t(stop - p)});
-  p = stop == end ? end : stop + 1;
+// Takes the first cell off `rest`, with its separator; returns it with its quotes.
+std::string_view next_as_written(std::string_view& rest, char separator) {
+  const std::size_t size = end_of_cell(rest, separator);
+  const std::string_view cell = without_blanks(rest.substr(0, size));
+  rest.remove_prefix(std::min(size + 1, rest.size()));
   return cell;
 }
 
 std::vector<std::string_view> cells_of(std::string_view line, char separator) {
   std::vector<std::string_view> cells;
-  const char* p = line.data();
-  const char* const end = p + line.size();
   for (bool more = true; more;) {
-    more = end_of_cell(p, end, separator) != end;
-    cells.push_back(next_as_written(p, end, separator));
+    more = end_of_cell(line, separator) < line.size();
+    cells.push_back(next_as_written(line, separator));
   }
   return cells;
 }
@@ -113,8 +112,8 @@ std::string_view without_quotes(std::string_view cell) {
   return without_blanks(cell.substr(1, cell.size() - 2));
 }
 
-std::string_view next_cell(const char*& p, const char* end, char separator) {
-  return without_quotes(next_as_written(p, end, separator));
+std::string_view next_cell(std::string_view& rest, char separator) {
+  return without_quotes(next_as_written(rest, separator));
 }
 
 std::vector<std::string_view> words_of(std::string_view line, Separators s) {
@@ -126,9 +125,7 @@ std::vector<std::string_view> words_of(std::string_view line, Separators s) {
 std::vector<std::string_view> words_as_written(std::string_view line, Separators s) {
   if (const char separator = cell_separator(s); separator != '\0') return cells_of(line, separator);
   std::vector<std::string_view> words;
-  const char* p = line.data();
-  const char* const end = p + line.size();
-  for (std::string_view word = next_word(p, end, s); !word.empty(); word = next_word(p, end, s))
+  for (std::string_view word = next_word(line, s); !word.empty(); word = next_word(line, s))
     words.push_back(word);
   return words;
 }

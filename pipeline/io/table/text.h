@@ -25,9 +25,9 @@ inline char cell_separator(Separators s) {
   return s == Separators::comma ? ',' : s == Separators::semicolon ? ';' : s == Separators::tab ? '\t' : '\0';
 }
 
-/// The cell that begins at `p`, without blanks and quotes around it; may be empty. Moves `p` to the next one,
-/// or to `end`.
-std::string_view next_cell(const char*& p, const char* end, char separator);
+/// Takes the first cell off `rest`, with its separator. Returns it without blanks and quotes around it; may
+/// be empty.
+std::string_view next_cell(std::string_view& rest, char separator);
 
 /// Whether c stands between two values.
 inline bool is_separator(char c, Separators s) {
@@ -41,13 +41,16 @@ std::string_view without_blanks(std::string_view text);
 /// A cell without the quotes around it, and without blanks inside these.
 std::string_view without_quotes(std::string_view cell);
 
-/// The next word at or after `p`; empty (at `end`) if there is none. Moves `p` behind the word. Of a row of
-/// cells: the cell that begins at `p`.
-inline std::string_view next_word(const char*& p, const char* end, Separators s = Separators::space) {
-  if (const char separator = cell_separator(s); separator != '\0') return next_cell(p, end, separator);
+/// Takes the first word off `rest`, with what is before it; returns an empty one, at its end, if there is
+/// none. Of a row of cells: the first cell.
+inline std::string_view next_word(std::string_view& rest, Separators s = Separators::space) {
+  if (const char separator = cell_separator(s); separator != '\0') return next_cell(rest, separator);
+  const char* p = rest.data();
+  const char* const end = p + rest.size();
   while (p != end && is_separator(*p, s)) ++p;
-  const char* first = p;
+  const char* const first = p;
   while (p != end && !is_separator(*p, s)) ++p;
+  rest = {p, std::size_t(end - p)};
   return {first, std::size_t(p - first)};
 }
 
