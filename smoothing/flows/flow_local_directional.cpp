@@ -93,11 +93,7 @@ class LocalDirectionalSpeed : public Speed {
     const Adjacency& around = known_.faces();
     const auto row = around[i];
     /// Whether face number f runs against the normal of its vertex v.
-    const auto opposed = [&](Index f, std::size_t v) {
-      const auto faces = around[v];
-      return against[around.start[v] +
-                     std::size_t(std::lower_bound(faces.begin(), faces.end(), f) - faces.begin())] != 0;
-    };
+    const auto opposed = [&](Index f, std::size_t v) { return against[item_of(around, v, f)] != 0; };
     Vector3d sum = integrand[i];
     for (const Index j : mesh.one_ring[i]) {
       // Its side is that of the first face that has both.

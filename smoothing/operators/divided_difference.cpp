@@ -130,12 +130,8 @@ DividedDifferences::DividedDifferences(const Mesh& mesh, Chart chart, const Cont
   for_each_index(context, n, [&](std::size_t i) {
     weight_[i] = op.mass[i] / (2 * op.unit);
     const auto row = rows_[i];
-    for (std::size_t k = 0; k < row.size(); ++k) {
-      const auto partner = rows_[row[k]];
-      reverse_[rows_.start[i] + k] =
-          rows_.start[row[k]] +
-          Index(std::lower_bound(partner.begin(), partner.end(), Index(i)) - partner.begin());
-    }
+    for (std::size_t k = 0; k < row.size(); ++k)
+      reverse_[rows_.start[i] + k] = item_of(rows_, row[k], Index(i));
     const std::vector<Vector2d> uv = chart_of(mesh, faces, normal[i], Index(i), chart);
     double size = 0;
     for (const Vector2d& p : uv) size += p.squaredNorm() / double(uv.size());

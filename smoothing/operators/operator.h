@@ -9,6 +9,7 @@
 /// OperatorSource is for one thread at a time.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <vector>
 
@@ -26,6 +27,12 @@ struct Operator {
 
   const Adjacency& rows(const Mesh& mesh) const { return own_rows ? *own_rows : mesh.one_ring; }
 };
+
+/// Where j is among the items of rows that are ascending, in row i, which has it. O(log degree).
+inline Index item_of(const Adjacency& rows, std::size_t i, Index j) {
+  const auto row = rows[i];
+  return rows.start[i] + Index(std::lower_bound(row.begin(), row.end(), j) - row.begin());
+}
 
 /// y = L x. All arrays n rows; x and y distinct. O(edges), parallel.
 void apply(const Adjacency& rows, const Operator& op, const Positions& x, Positions& y,

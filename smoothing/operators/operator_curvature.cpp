@@ -61,11 +61,7 @@ Operator curvature(const Mesh& mesh, const Adjacency& vertex_faces, const Contex
   for_each_index(context, shape.size(),
                  [&](std::size_t f) { shape[f] = shape_of(mesh, mesh.faces[f], scheme); });
   for_each_index(context, op.mass.size(), [&](std::size_t i) {
-    const auto row = rows[i];
-    const auto add = [&](Index j, double cot) {
-      op.weight[rows.start[i] + Index(std::lower_bound(row.begin(), row.end(), j) - row.begin())] +=
-          0.5 * cot;
-    };
+    const auto add = [&](Index j, double cot) { op.weight[item_of(rows, i, j)] += 0.5 * cot; };
     double area = 0;
     for (const Index f : vertex_faces[i]) {
       const Face& face = mesh.faces[f];

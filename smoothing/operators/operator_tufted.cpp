@@ -182,10 +182,7 @@ Operator tufted(const Mesh& mesh, const Context& context) {
   const Adjacency& rows = *op.own_rows;
   op.weight.assign(rows.items.size(), 0);
   std::vector<double> area(n, 0);
-  const auto add = [&](Index i, Index j, double w) {
-    const auto row = rows[i];
-    op.weight[rows.start[i] + Index(std::lower_bound(row.begin(), row.end(), j) - row.begin())] += w;
-  };
+  const auto add = [&](Index i, Index j, double w) { op.weight[item_of(rows, i, j)] += w; };
   for (Index t = 0; t < cover.size(); ++t)
     for (int s = 0; s < 3; ++s) {
       const Index i = cover.corner(t, s), j = cover.corner(t, s + 1);
