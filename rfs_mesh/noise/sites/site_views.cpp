@@ -183,27 +183,24 @@ struct Sites {
     return quantile_of(groups[s], 0.5, [&](const Neighbor& q) { return fits.all[q.index].radius; });
   }
 
-  /// Raises `floor`, sets `told`. What two sheets scatter does not grow, either.
-  void find_floor(std::size_t s, const OpenFits& few, const OpenFits& many, SiteView& view) const {
-    const double less = scatter_around(s, few), seen = scatter_around(s, many);
+  /// Raises `floor` and sets `told`: what two sheets scatter does not grow, either. Raises `floor` to what
+  /// depths in steps make sure of, too, as far as the widest fits show it: those to fewer points may lie
+  /// within a step. A stack of slices has few depths, too, and none of the scatter; a grid may be exact. Sets
+  /// `shared`, but along lines, which are no disks. \param open from the fewest points to the widest; `many`
+  /// of them to kPlateauTo points. \param width of the strip on one step, at each site
+  void find_floor(std::size_t s, const std::vector<OpenFits>& open, const OpenFits& many,
+                  const std::vector<double>& width, SiteView& view) const {
+    const double less = scatter_around(s, open.front()), seen = scatter_around(s, many);
     if (view.sheet == SiteView::kNone)
-      view.floor = std::max(view.floor, plateau(less, seen, radius_around(s, few)));
+      view.floor = std::max(view.floor, plateau(less, seen, radius_around(s, open.front())));
     view.told = seen < kStops * less;
-  }
-
-  /// Raises `floor` to what depths in steps make sure of, as far as the widest fits show it: those to fewer
-  /// points may lie within a step. A stack of slices has few depths, too, and none of the scatter; a grid may
-  /// be exact. Sets `shared`, but along lines, which are no disks. \param width of the strip on one step, at
-  /// each site
-  void find_rounding(std::size_t s, const OpenFits& many, const OpenFits& widest,
-                     const std::vector<double>& width, SiteView& view) const {
     if (steps == nullptr || on_grid()) return;
     const double rounding = rounding_around(s, many);
-    view.floor = std::max(view.floor, std::min(scatter_around(s, widest), rounding));
+    view.floor = std::max(view.floor, std::min(scatter_around(s, open.back()), rounding));
     if (on_lines) return;
     const double across = quantile_of(groups[s], 0.5, [&](const Neighbor& q) { return width[q.index]; });
     const double share = std::min(1.0, across / (2 * radius_around(s, many)));
-    view.shared = points_on_step(double(many.points) * (share * share), scatter_around(s, many), rounding);
+    view.shared = points_on_step(double(many.points) * (share * share), seen, rounding);
   }
 };
 
@@ -303,11 +300,7 @@ std::vector<SiteView> look_without_windows(Places& places, const SiteGroups& gro
   if (plateau)
     for_each_index(
         context, groups.size(),
-        [&](std::size_t s) {
-          sites.find_floor(s, open.front(), open[many], views[s]);
-          sites.find_rounding(s, open[many], open.back(), width, views[s]);
-        },
-        64);
+        [&](std::size_t s) { sites.find_floor(s, open, open[many], width, views[s]); }, 64);
   if (plateau && !start.on_lines && !sites.on_grid()) find_shared_around(groups, open, views, context);
   hold_slabs(places, groups, open, views, context);
   return views;
