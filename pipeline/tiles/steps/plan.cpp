@@ -48,16 +48,15 @@ std::uint64_t number_of(const Vector3d& p) {
   return hash;
 }
 
-/// Visits every finite row of every input, in order.
+/// Visits every finite row of every input, in order, as the part [from, to] of the stage "plan".
 template <class Visit>
-void for_each_point(const std::vector<JobInput>& inputs, const char* stage, double from, double to,
-                    const Context& context, Visit&& visit) {
-  std::uint64_t all = 0, row = 0;
-  for (const JobInput& input : inputs) all += input.rows;
-  for (const JobInput& input : inputs) {
+void for_each_point(const Job& job, double from, double to, const Context& context, Visit&& visit) {
+  const auto all = double(job.rows());
+  std::uint64_t row = 0;
+  for (const JobInput& input : job.inputs) {
     const RowFile file(input.path, context);
     file.for_each_piece(context, [&](std::uint64_t, std::size_t count, const io::Bytes& rows) {
-      context.report(stage, from + (to - from) * double(row) / double(all));
+      context.report("plan", from + (to - from) * double(row) / all);
       for (std::size_t i = 0; i < count; ++i, ++row) {
         const std::array<double, 3> xyz = file.get(rows, i);
         if (const Vector3d p(xyz[0], xyz[1], xyz[2]); p.allFinite()) visit(row, p);
@@ -195,7 +194,7 @@ class TileWriter {
   TileWriter(const Job& job, std::size_t tile, const Context& context) : writer_(job.cut(tile), context) {}
   void add(const Record& r) {
     writer_.add(r);
-    box_.extend(Vector3d(r.x, r.y, r.z));
+    box_.extend(place(r));
     ++tile_.points;
   }
   Tile commit() {
@@ -220,12 +219,11 @@ void cut_rows(Job& job, const Cuts& cuts, RepeatsWriter& repeats, const Context&
     for (std::size_t t = first; t < first + count; ++t)
       writers.push_back(std::make_unique<TileWriter>(job, t, context));
     const auto done = [&](std::size_t tiles) { return 0.5 + 0.5 * double(tiles) / double(cuts.tiles()); };
-    for_each_point(job.inputs, "plan", done(first), done(first + count), context,
-                   [&](std::uint64_t row, const Vector3d& p) {
-                     if (repeats.take(row, p)) return;
-                     const std::size_t t = cuts.tile_of(p);
-                     if (t >= first && t < first + count) writers[t - first]->add({row, p[0], p[1], p[2]});
-                   });
+    for_each_point(job, done(first), done(first + count), context, [&](std::uint64_t row, const Vector3d& p) {
+      if (repeats.take(row, p)) return;
+      const std::size_t t = cuts.tile_of(p);
+      if (t >= first && t < first + count) writers[t - first]->add({row, p[0], p[1], p[2]});
+    });
     for (std::size_t t = 0; t < count; ++t) job.tiles[first + t] = writers[t]->commit();
   }
 }
@@ -238,13 +236,14 @@ struct Survey {
   std::vector<Vector3d> shared;  // places that many rows are at
 };
 
-Survey survey_inputs(const std::vector<JobInput>& inputs, std::uint64_t rows, std::uint64_t one_in,
-                     const Context& context) {
+/// \param one_in of so many places, one is in the sample
+Survey survey_inputs(const Job& job, std::uint64_t one_in, const Context& context) {
   constexpr std::uint64_t kShared = 1000;  // one of so many rows: what fewer share makes no tile larger
+  const std::uint64_t rows = job.rows();
   Survey survey;
   DistinctPlaces sample(std::size_t(std::min(rows, 2 * kPlanned)));
   SharedPlaces places;
-  for_each_point(inputs, "plan", 0, 0.5, context, [&](std::uint64_t, const Vector3d& p) {
+  for_each_point(job, 0, 0.5, context, [&](std::uint64_t, const Vector3d& p) {
     survey.box.extend(p);
     ++survey.points;
     places.add(p);
@@ -266,9 +265,8 @@ Job plan_job(const std::vector<std::string>& inputs, const fs::path& folder, con
   if (fs::exists(plan_file(folder))) return same_job_there(job, how);
   need_own_folder(folder);
   make_folders(job);
-  const std::uint64_t rows = job.rows();
-  const std::uint64_t one_in = std::max<std::uint64_t>(1, rows / kPlanned);
-  Survey survey = survey_inputs(job.inputs, rows, one_in, context);
+  const std::uint64_t one_in = std::max<std::uint64_t>(1, job.rows() / kPlanned);
+  Survey survey = survey_inputs(job, one_in, context);
   if (survey.points == 0) fail(ErrorCode::no_usable_points, "none of the points is finite");
   job.points = survey.points;
   job.box = {survey.box.min(), survey.box.max()};
@@ -287,13 +285,12 @@ bool split_tile(Job& job, std::size_t tile, const Context& context) {
   const Statistics::Box& box = job.tiles[tile].box;
   Eigen::Index axis = 0;
   if (points.size() < 2 || !((box.high - box.low).maxCoeff(&axis) > 0)) return false;
-  const auto along = [axis](const Record& r) { return axis == 0 ? r.x : axis == 1 ? r.y : r.z; };
-  std::vector<double> places;
-  for (const Record& r : points) places.push_back(along(r));
-  double place = rfsmooth::median(places);
-  if (place == box.low[axis]) place = std::nextafter(place, box.high[axis]);
+  std::vector<double> along;
+  for (const Record& r : points) along.push_back(place(r)[axis]);
+  double cut = rfsmooth::median(along);
+  if (cut == box.low[axis]) cut = std::nextafter(cut, box.high[axis]);
   TileWriter low(job, tile, context), high(job, job.tiles.size(), context);
-  for (const Record& r : points) (along(r) < place ? low : high).add(r);
+  for (const Record& r : points) (place(r)[axis] < cut ? low : high).add(r);
   job.tiles[tile] = low.commit();
   job.tiles.push_back(high.commit());
   return true;
