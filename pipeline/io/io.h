@@ -70,7 +70,8 @@ T value_or_fail(Result<T> result, const std::string& file) {
   return std::move(result).value();
 }
 
-/// What `work` returns. \throw Failure with its error, which begins with the file's name unless it tells it.
+/// What `work` returns. \throw Failure with its error, and the file's name in front unless the message has
+/// it.
 template <class Work>
 auto naming(const std::string& file, Work&& work) {
   auto done = guarded(std::forward<Work>(work));

@@ -16,9 +16,10 @@ constexpr std::size_t kBars = 40;
 constexpr double kWidth = 640, kHeight = 260, kBase = 225, kBar = kWidth / (kBars + 4);
 
 /// One bar: `place` counts bars from the left, a gap apart from the neighbours if it is not a whole number.
-std::string bar(double place, double share, std::size_t count, std::string_view kind, std::string_view color,
-                const std::string& says) {
-  const double height = count == 0 ? 0 : std::max(1.0, share * (kBase - 10));
+/// \param most the count of the highest
+std::string bar(double place, std::size_t count, std::size_t most, std::string_view kind,
+                std::string_view color, const std::string& says) {
+  const double height = count == 0 ? 0 : std::max(1.0, double(count) / double(most) * (kBase - 10));
   return fmt::format(
       "<rect class=\"{}\" x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\" fill=\"{}\" "
       "data-count=\"{}\"><title>{}: {}</title></rect>\n",
@@ -68,18 +69,17 @@ Histogram histogram_of(const std::vector<double>& displacements) {
 std::string svg_of(const Histogram& histogram) {
   std::size_t most = std::max<std::size_t>({1, histogram.still, histogram.beyond});
   for (const std::size_t count : histogram.counts) most = std::max(most, count);
-  const auto share = [&](std::size_t count) { return double(count) / double(most); };
   std::string svg = fmt::format(
       "<svg id=\"histogram\" viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"how far the points moved\">\n",
       kWidth, kHeight);
-  svg += bar(0, share(histogram.still), histogram.still, "still", "#9a9a9a", "did not move");
+  svg += bar(0, histogram.still, most, "still", "#9a9a9a", "did not move");
   for (std::size_t k = 0; k < histogram.counts.size() && histogram.top > 0; ++k) {
     const double low = histogram.top * double(k) / kBars, high = histogram.top * double(k + 1) / kBars;
-    svg += bar(1.5 + double(k), share(histogram.counts[k]), histogram.counts[k], "moved",
-               color_at((double(k) + 0.5) / kBars), fmt::format("{:.3g} to {:.3g}", low, high));
+    svg += bar(1.5 + double(k), histogram.counts[k], most, "moved", color_at((double(k) + 0.5) / kBars),
+               fmt::format("{:.3g} to {:.3g}", low, high));
   }
   if (histogram.top > 0) {
-    svg += bar(2 + kBars, share(histogram.beyond), histogram.beyond, "beyond", color_at(1),
+    svg += bar(2 + kBars, histogram.beyond, most, "beyond", color_at(1),
                fmt::format("more than {:.3g}", histogram.top));
     svg += label(1.5, "start", "0") +
            label(1.5 + kBars / 2.0, "middle", fmt::format("{:.3g}", histogram.top / 2)) +

@@ -1,5 +1,6 @@
 #include "pipeline/tiles/tile_normals.h"
 
+#include <array>
 #include <cmath>
 #include <map>
 #include <utility>
@@ -54,19 +55,13 @@ ordered_json json_of_piece(const Piece& p) {
 }
 
 Piece piece_of(const ordered_json& json) {
-  Piece p;
-  const auto number = [&](std::size_t k) { return json.at(k).get<double>(); };
-  p.at = {number(0), number(1), number(2)};
-  p.normal = {number(3), number(4), number(5)};
-  p.points = number(6);
-  p.square = number(7);
-  p.outward = number(8);
-  p.vote = number(9);
-  return p;
+  const auto n = json.get<std::array<double, 10>>();
+  return {{n[0], n[1], n[2]}, {n[3], n[4], n[5]}, n[6], n[7], n[8], n[9]};
 }
 
-ordered_json read_pieces(const Job& job, std::size_t tile) {
-  ordered_json cost = read_cost(job, tile);
+/// What write_normals returned. \throw Failure if the tile was run without normals.
+ordered_json read_normals(const Job& job, std::size_t tile) {
+  ordered_json cost = read_cost(job, tile);  // of which it is a part
   if (!cost.contains("pieces"))
     fail(ErrorCode::input_unreadable, "{}: tells nothing of normals", job.cost(tile).string());
   return cost;
@@ -129,13 +124,13 @@ ordered_json write_normals(const Job& job, std::size_t tile, const Gathered& poi
     if (options.viewpoint) piece.vote += normal.dot((*options.viewpoint - p).normalized());
     inside.add(r);
   }
-  ordered_json met = ordered_json::array();
+  std::vector<std::pair<std::size_t, std::uint64_t>> met;  // tiles, and how many of their points
   for (std::size_t k = 0; k < around.size(); ++k) {
     const std::size_t i = own.size() + k;
     if (own.empty() || box.squaredExteriorDistance(row_of(xyz, i)) > reach * reach) continue;
     outside.add(record(i, around[k].row));
-    if (met.empty() || met.back()[0] != around[k].tile) met.push_back({around[k].tile, 0});
-    met.back()[1] = met.back()[1].get<std::uint64_t>() + 1;
+    if (met.empty() || met.back().first != around[k].tile) met.emplace_back(around[k].tile, 0);
+    ++met.back().second;
   }
   inside.commit();
   outside.commit();
@@ -155,7 +150,7 @@ std::vector<std::vector<char>> find_sides(const Job& job, const Context& context
   std::vector<Index> first;
   std::vector<ordered_json> met;
   for (std::size_t t = 0; t < job.tiles.size(); ++t) {
-    const ordered_json of_tile = read_pieces(job, t);
+    const ordered_json of_tile = read_normals(job, t);
     first.push_back(Index(pieces.size()));
     met.push_back(of_tile.at("met"));
     for (const ordered_json& piece : of_tile.at("pieces")) pieces.push_back(piece_of(piece));

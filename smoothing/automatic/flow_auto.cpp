@@ -28,9 +28,9 @@ double measured(const rfs_mesh::NoiseField& noise) {
   return !sites.empty() && quantile(sites, 0.9) > rfs_mesh::kLouder * detail ? noise.sigma : 0;
 }
 
-/// Noise of the size `sigma`, that varies over the cloud as `noise` does, times `strength`. What cannot be
-/// told from detail stays, and all of a cloud without noise that could be wherever it is. A strength above 1
-/// acts everywhere, where next to nothing was measured on as much as may be hidden there.
+/// Noise of the size `sigma`, that varies over the cloud as `noise` does, times `strength`. Places whose
+/// noise cannot be told from detail stay; so does all of a cloud of which that is true even where points are
+/// densest. A strength above 1 acts everywhere: where less was measured than detail may hide, on that much.
 rfs_mesh::NoiseField scaled(rfs_mesh::NoiseField noise, double sigma, double strength) {
   const auto of = [&](double s, double hidden) {
     if (strength > 1) return strength * std::max(s, hidden);
@@ -42,8 +42,8 @@ rfs_mesh::NoiseField scaled(rfs_mesh::NoiseField noise, double sigma, double str
            (noise.local_spacing.empty() ? noise.spacing : noise.local_spacing[i]);
   };
   const double measured = noise.sigma;
-  const std::vector<double>& denser = noise.spacing_at_sites;
-  const double least = denser.empty() ? noise.spacing : *std::min_element(denser.begin(), denser.end());
+  const std::vector<double>& spacings = noise.spacing_at_sites;
+  const double least = spacings.empty() ? noise.spacing : *std::min_element(spacings.begin(), spacings.end());
   noise.sigma = of(sigma, rfs_mesh::kNoNoise * least);
   for (std::size_t i = 0; i < noise.local.size(); ++i)
     noise.local[i] = std::max(of(measured > 0 ? noise.local[i] * sigma / measured : sigma, hidden_at(i)),
