@@ -90,22 +90,6 @@ std::optional<DepthSteps> without_strays(Terraces terraces, const Positions& som
   return DepthSteps({std::move(terraces)}, index);
 }
 
-/// Terraces that know along what, and nothing else.
-Terraces along(const Eigen::Vector3d& direction, double same) {
-  Terraces terraces;
-  terraces.direction = direction;
-  terraces.same = same;
-  return terraces;
-}
-
-/// Shells that know around what, and nothing else.
-Terraces around(const Eigen::Vector3d& scanner, double same) {
-  Terraces terraces;
-  terraces.scanner = scanner;
-  terraces.same = same;
-  return terraces;
-}
-
 /// Those of these that have steps, the largest first. \param all that know along what.
 std::vector<Terraces> with_steps(const std::vector<Terraces>& all, const Positions& some, Steps steps) {
   std::vector<Terraces> found;
@@ -257,7 +241,7 @@ std::optional<DepthSteps> find_depth_steps(const SpatialIndex& index, double rou
   const Positions some = sample(index.points(), kSampleOfCloud);
   const Positions axes = {Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ()};
   std::vector<Terraces> planes, shells;
-  for (const Eigen::Vector3d& axis : axes) planes.push_back(along(axis, 0));
+  for (const Eigen::Vector3d& axis : axes) planes.push_back({axis, {}, {}, 0, 0});
   planes = with_steps(planes, some, Steps::of_all);
   // Steps of less are those of decimals, or cannot be told from detail. Decimals no finer than points are
   // from each other put them on a grid.
@@ -273,12 +257,12 @@ std::optional<DepthSteps> find_depth_steps(const SpatialIndex& index, double rou
   // looked for with once as much: most neighbours keep to it, and fewer are level by chance.
   const double same = 2 * rounding;
   for (const Eigen::Vector3d& scanner : scanner_places(index, same))
-    shells.push_back(around(scanner, std::max(same, seven_digits(some, scanner))));
+    shells.push_back({Eigen::Vector3d::Zero(), scanner, {}, std::max(same, seven_digits(some, scanner)), 0});
   shells = with_steps(shells, some, Steps::of_part);
   shells.erase(std::remove_if(shells.begin(), shells.end(), [&](auto& of) { return !fill_in(some, of); }),
                shells.end());
   for (const Eigen::Vector3d& direction : step_directions(index, rounding))
-    planes.push_back(along(direction, same));
+    planes.push_back({direction, {}, {}, same, 0});
   planes = with_steps(planes, some, Steps::of_part);
   for (std::size_t k = 0; k < planes.size(); ++k)
     if (are_of_grid(some, planes, k, least)) planes.clear();
