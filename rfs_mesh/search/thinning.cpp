@@ -124,12 +124,6 @@ std::vector<Index> thin_all(const Positions& points, const NeighborTable& near, 
   return Thinning(points, near, k, context).run();
 }
 
-std::vector<Index> thin_dense(const SpatialIndex& index, const NeighborTable& near,
-                              const std::vector<Index>& subset, const Context& context) {
-  const auto copy_row = [&](Index i, Index* row) { std::copy(near[i].begin(), near[i].end(), row); };
-  return thin_dense(index, std::size_t(near.k), copy_row, subset, context);
-}
-
 std::vector<Index> thin_dense(const SpatialIndex& index, std::size_t width,
                               const std::function<void(Index i, Index* row)>& near,
                               const std::vector<Index>& subset, const Context& context) {

@@ -29,11 +29,8 @@ std::vector<Index> thin_all(const Positions& points, const NeighborTable& near, 
                             std::size_t k = kThinNear);
 
 /// thin() of a subset that is not much sparser than the points: the nearest of the subset are found among the
-/// nearest of all, and searched only where too few of them belong to it.
-std::vector<Index> thin_dense(const SpatialIndex& index, const NeighborTable& near,
-                              const std::vector<Index>& subset, const Context& context);
-
-/// The same of rows that are no table. \param near writes the `width` nearest of a point to `row`
+/// nearest of all, and searched only where too few of them belong to it. \param near writes the `width`
+/// nearest of a point to `row`
 std::vector<Index> thin_dense(const SpatialIndex& index, std::size_t width,
                               const std::function<void(Index i, Index* row)>& near,
                               const std::vector<Index>& subset, const Context& context);

@@ -23,8 +23,12 @@ TEST(Thinning, OfASubsetIsTheSameWhereverTheNearestComeFrom) {
   const SpatialIndex index(points, {});
   const NeighborTable near = index.nearest(3, {}), wide = index.nearest(32, {});
   EXPECT_EQ(thin_all(points, near, {}), kept);
-  EXPECT_EQ(thin_dense(index, wide, kept, {}), thin(points, kept, {}));
-  EXPECT_EQ(thin_dense(index, near, kept, {}), thin(points, kept, {})) << "too few in the rows";
+  const auto dense = [&](const NeighborTable& of) {
+    const auto copy_row = [&of](Index i, Index* row) { std::copy(of[i].begin(), of[i].end(), row); };
+    return thin_dense(index, std::size_t(of.k), copy_row, kept, {});
+  };
+  EXPECT_EQ(dense(wide), thin(points, kept, {}));
+  EXPECT_EQ(dense(near), thin(points, kept, {})) << "too few in the rows";
   EXPECT_TRUE(thin(points, {}, {}).empty());
   EXPECT_EQ(thin(points, {4}, {}), std::vector<Index>{4});
 }
