@@ -34,12 +34,16 @@ using Triples = nb::ndarray<const std::uint32_t, nb::shape<-1, 3>, nb::c_contig,
 using Coordinates = nb::ndarray<const double, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
 using FieldText = std::tuple<std::string, std::string, std::size_t>;  ///< name, numpy's type, values per row
 
-/// A numpy array that owns what `values` held.
-template <class T, class... Options, class Values>
-nb::ndarray<nb::numpy, T, Options...> array_of(Values&& values, std::initializer_list<std::size_t> shape) {
-  auto* held = new std::decay_t<Values>(std::forward<Values>(values));
-  nb::capsule owner(held, [](void* p) noexcept { delete static_cast<std::decay_t<Values>*>(p); });
-  return nb::ndarray<nb::numpy, T, Options...>(reinterpret_cast<T*>(held->data()), shape, owner);
+template <class T, int... Width>
+using Array = nb::ndarray<nb::numpy, T, nb::shape<-1, Width...>>;
+
+/// A numpy array that owns what `values` held, in rows of that width.
+template <class T, int... Width, class Values>
+Array<T, Width...> array_of(Values values) {
+  auto* held = new Values(std::move(values));
+  nb::capsule owner(held, [](void* p) noexcept { delete static_cast<Values*>(p); });
+  const std::size_t rows = held->size() * sizeof(*held->data()) / (sizeof(T) * (1 * ... * Width));
+  return Array<T, Width...>(reinterpret_cast<T*>(held->data()), {rows, std::size_t(Width)...}, owner);
 }
 
 io::Scalar scalar_of(const std::string& name) {
@@ -95,10 +99,8 @@ io::Table fixed_part(io::Table table) {
 }
 
 /// Those fields of the points as bytes, row after row.
-nb::ndarray<nb::numpy, std::uint8_t, nb::ndim<1>> rows_of(const io::Cloud& cloud) {
-  io::Table table = fixed_part(cloud.points());
-  const std::size_t size = table.data.size();
-  return array_of<std::uint8_t, nb::ndim<1>>(std::move(table.data), {size});
+Array<std::uint8_t> rows_of(const io::Cloud& cloud) {
+  return array_of<std::uint8_t>(fixed_part(cloud.points()).data);
 }
 
 io::Cloud cloud_of(const std::vector<FieldText>& fields, const Rows& rows, std::size_t count,
@@ -168,10 +170,6 @@ void put_rows(io::Cloud& cloud, const std::vector<FieldText>& fields, const Rows
   }
 }
 
-nb::ndarray<nb::numpy, double, nb::shape<-1, 3>> positions_of(const io::Cloud& cloud) {
-  return array_of<double, nb::shape<-1, 3>>(io::positions(cloud), {cloud.size(), 3});
-}
-
 /// n x 3 coordinates in world units, each written in the file's own type; of LAS in its scale, which is
 /// refined first where it is coarser than `scale`.
 void put_positions(io::Cloud& cloud, const Coordinates& xyz, const std::optional<double>& scale) {
@@ -182,26 +180,12 @@ void put_positions(io::Cloud& cloud, const Coordinates& xyz, const std::optional
   });
 }
 
-nb::ndarray<nb::numpy, std::uint32_t, nb::shape<-1, 3>> faces_array(const io::Cloud& cloud) {
-  std::vector<Face> faces = io::faces_of(cloud);
-  const std::size_t count = faces.size();
-  return array_of<std::uint32_t, nb::shape<-1, 3>>(std::move(faces), {count, 3});
-}
-
-nb::ndarray<nb::numpy, std::uint32_t, nb::shape<-1, 2>> edges_array(const io::Cloud& cloud) {
-  std::vector<Edge> edges = io::edges_of(cloud);
-  const std::size_t count = edges.size();
-  return array_of<std::uint32_t, nb::shape<-1, 2>>(std::move(edges), {count, 2});
-}
-
 /// The kind of each edge, where the edges have one.
-std::optional<nb::ndarray<nb::numpy, std::uint8_t, nb::ndim<1>>> edge_kinds(const io::Cloud& cloud) {
+std::optional<Array<std::uint8_t>> edge_kinds(const io::Cloud& cloud) {
   const io::Table* const edges = cloud.element("edge");
   if (edges == nullptr || edges->fields.size() < 3) return std::nullopt;
   const std::vector<double> values = io::gather(*edges, {2}, {});
-  std::vector<std::uint8_t> kinds(values.begin(), values.end());
-  const std::size_t count = kinds.size();
-  return array_of<std::uint8_t, nb::ndim<1>>(std::move(kinds), {count});
+  return array_of<std::uint8_t>(std::vector<std::uint8_t>(values.begin(), values.end()));
 }
 
 /// Triangles whose corners are points there are.
@@ -250,11 +234,11 @@ void bind_cloud(nb::module_& module) {
       .def("__len__", &io::Cloud::size)
       .def("rows", &rows_of)
       .def("put_rows", &put_rows, nb::arg("fields"), nb::arg("rows"), nb::arg("known"))
-      .def("positions", &positions_of)
+      .def("positions", [](const io::Cloud& cloud) { return array_of<double, 3>(io::positions(cloud)); })
       .def("put_positions", &put_positions, nb::arg("xyz"), nb::arg("scale").none())
-      .def("faces", &faces_array)
+      .def("faces", [](const io::Cloud& cloud) { return array_of<std::uint32_t, 3>(io::faces_of(cloud)); })
       .def("put_faces", &put_faces)
-      .def("edges", &edges_array)
+      .def("edges", [](const io::Cloud& cloud) { return array_of<std::uint32_t, 2>(io::edges_of(cloud)); })
       .def("edge_kinds", &edge_kinds);
   module.def("read_file", &read_file);
   module.def("write_file", &write_file);
