@@ -200,25 +200,18 @@ void keep_tree(Ground& ground, Connection& c, const Context& context) {
   parallel_sort(context, c.tree, std::less<Edge>());
 }
 
-/// The tree of the points and nothing else.
-Connection connect_tree(const Positions& points, std::optional<Cloud> known, const ConnectOptions& options,
-                        const Context& context) {
-  Connection c;
-  Stages stages(c.seconds, context);
-  if (!known) known.emplace(search(points, options, context, stages));
-  c.noise.spacing = mean_spacing(known->index.points(), known->near, context);
-  c.emst = stages.run("emst", 0.2, [&] { return emst(known->index, known->near, context); });
-  return c;
-}
-
 /// `known`: the caller's search, or none. `whole`: what is there is taken, the rest entered.
 Connection connect_all(const Positions& points, std::optional<Cloud> known, const ConnectOptions& options,
                        const Wanted& wanted, const Context& context, Statistics& whole) {
-  if (wanted.up_to == ConnectUpTo::emst) return connect_tree(points, std::move(known), options, context);
   Connection c;
   Stages stages(c.seconds, context);
   const std::size_t n = points.size();
   if (!known) known.emplace(search(points, options, context, stages));
+  if (wanted.up_to == ConnectUpTo::emst) {
+    c.noise.spacing = mean_spacing(points, known->near, context);
+    c.emst = stages.run("emst", 0.2, [&] { return emst(known->index, known->near, context); });
+    return c;
+  }
   Ground ground = survey(std::move(*known), options, wanted, context, whole, c, stages);
   known.reset();
   const double noise = c.on_shadow ? kNoiseLeft * c.noise.sigma : c.noise.sigma;
