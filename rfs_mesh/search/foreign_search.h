@@ -140,8 +140,7 @@ class ForeignSearch {
   void scan(const Cursor& c, const Eigen::Vector3d& q, Index own, Neighbor& best) const {
     const KdTree::Leaf& leaf = tree_.leaf(c.first);
     for (std::uint32_t i = 0; i < KdTree::kLeaf; ++i) {
-      const Neighbor candidate = {leaf.id[i],
-                                  squared_distance(q, Eigen::Vector3d(leaf.x[i], leaf.y[i], leaf.z[i]))};
+      const Neighbor candidate = {leaf.id[i], squared_distance(q, leaf.point(i))};
       if (candidate < best && component_[leaf.id[i]] != own) best = candidate;
     }
   }

@@ -121,20 +121,14 @@ class Builder {
     KdTree::Leaf& leaf = leaves_[c.first];
     KdTree::Node& node = nodes_[c.node];
     const std::size_t count = count_of(c);
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    node.low = node.high = Eigen::Vector3d(items[0].at[0], items[0].at[1], items[0].at[2]);
+    const auto point = [&](std::size_t i) { return Eigen::Map<const Eigen::Vector3d>(items[i].at); };
+    node.low = node.high = point(0);
     node.least_id = items[0].id;
-    for (std::size_t i = 0; i < KdTree::kLeaf; ++i) {
-      const bool there = i < count;
-      leaf.x[i] = there ? items[i].at[0] : kInfinity;
-      leaf.y[i] = there ? items[i].at[1] : kInfinity;
-      leaf.z[i] = there ? items[i].at[2] : kInfinity;
-      leaf.id[i] = there ? items[i].id : kNone;
-      if (!there) continue;
-      const Eigen::Vector3d p(items[i].at[0], items[i].at[1], items[i].at[2]);
-      node.low = node.low.cwiseMin(p);
-      node.high = node.high.cwiseMax(p);
+    for (std::size_t i = 0; i < count; ++i) {
+      leaf.put(i, point(i), items[i].id);
+      node.extend(point(i));
     }
+    leaf.end_at(count);
   }
 
   const Positions& points_;
@@ -156,12 +150,8 @@ KdTree::KdTree(const Positions& points, const Context& context) {
 KdTree::KdTree(const std::vector<Index>& order) : leaves_((order.size() + kLeaf - 1) / kLeaf) {
   if (order.empty()) return;
   nodes_.resize(2 * leaves_.size() - 1);
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < kLeaf * leaves_.size(); ++i) {
-    Leaf& leaf = leaves_[i / kLeaf];
-    leaf.x[i % kLeaf] = leaf.y[i % kLeaf] = leaf.z[i % kLeaf] = kInfinity;
-    leaf.id[i % kLeaf] = i < order.size() ? order[i] : kNone;
-  }
+  for (Leaf& leaf : leaves_) leaf.end_at(0);
+  for (std::size_t i = 0; i < order.size(); ++i) leaves_[i / kLeaf].id[i % kLeaf] = order[i];
 }
 
 std::vector<Index> KdTree::order() const {
@@ -191,11 +181,8 @@ void KdTree::follow(const Positions& points, const Context& context) {
     for (std::size_t i = 0; i < kLeaf && leaf.id[i] != kNone; ++i) {
       const Eigen::Vector3d& p = points[leaf.id[i]];
       check_size(p);
-      leaf.x[i] = p[0];
-      leaf.y[i] = p[1];
-      leaf.z[i] = p[2];
-      box.low = box.low.cwiseMin(p);
-      box.high = box.high.cwiseMax(p);
+      leaf.put(i, p, leaf.id[i]);
+      box.extend(p);
     }
   });
 }
@@ -208,18 +195,10 @@ void KdTree::leave_out(const std::vector<char>& gone, const Context& context) {
     std::size_t to = 0;
     for (std::size_t i = 0; i < kLeaf && leaf.id[i] != kNone; ++i) {
       if (gone[leaf.id[i]] != 0) continue;
-      const Eigen::Vector3d p(leaf.x[i], leaf.y[i], leaf.z[i]);
-      box.low = box.low.cwiseMin(p);
-      box.high = box.high.cwiseMax(p);
-      leaf.x[to] = p[0];
-      leaf.y[to] = p[1];
-      leaf.z[to] = p[2];
-      leaf.id[to++] = leaf.id[i];
+      box.extend(leaf.point(i));
+      leaf.put(to++, leaf.point(i), leaf.id[i]);
     }
-    for (; to < kLeaf; ++to) {
-      leaf.x[to] = leaf.y[to] = leaf.z[to] = kInfinity;
-      leaf.id[to] = kNone;
-    }
+    leaf.end_at(to);
   });
 }
 

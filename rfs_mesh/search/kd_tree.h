@@ -14,6 +14,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include <rfsmooth/context.h>
@@ -34,12 +35,28 @@ class KdTree {
   struct Leaf {
     double x[kLeaf], y[kLeaf], z[kLeaf];
     Index id[kLeaf];
+    Eigen::Vector3d point(std::size_t i) const { return {x[i], y[i], z[i]}; }
+    void put(std::size_t i, const Eigen::Vector3d& p, Index of) {
+      x[i] = p[0];
+      y[i] = p[1];
+      z[i] = p[2];
+      id[i] = of;
+    }
+    /// Leaves the places from i on without points.
+    void end_at(std::size_t i) {
+      for (; i < kLeaf; ++i)
+        put(i, Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity()), kNone);
+    }
   };
 
   /// A summary of the points below a node.
   struct Node {
     Eigen::Vector3d low, high;  ///< tight box
     Index least_id;             ///< smallest id in the node: breaks ties of distance
+    void extend(const Eigen::Vector3d& p) {
+      low = low.cwiseMin(p);
+      high = high.cwiseMax(p);
+    }
   };
 
   /// A node and the leaves [first, last) that it covers.

@@ -125,11 +125,9 @@ LeafNeighbors::LeafNeighbors(const KdTree& tree, std::size_t k) : tree_(tree), k
 bool LeafNeighbors::prepare(std::uint32_t leaf) {
   leaf_ = &tree_.leaf(leaf);
   KdTree::Node box;
-  box.low = box.high = point(0);
-  for (std::uint32_t slot = 1; slot < kLeaf && leaf_->id[slot] != kNone; ++slot) {
-    box.low = box.low.cwiseMin(point(slot));
-    box.high = box.high.cwiseMax(point(slot));
-  }
+  box.low = box.high = leaf_->point(0);
+  for (std::uint32_t slot = 1; slot < kLeaf && leaf_->id[slot] != kNone; ++slot)
+    box.extend(leaf_->point(slot));
   list_bound_ = guess_ * widen_list_;
   if (!(list_bound_ > kLeastBound)) return false;  // nothing is known yet, or all points coincide
   list_leaves(box, list_bound_);
@@ -167,9 +165,7 @@ void LeafNeighbors::load_listed(const KdTree::Node& box) {
 }
 
 double LeafNeighbors::squared_distance_to(std::uint32_t slot, std::uint32_t place) const {
-  const KdTree::Leaf& leaf = tree_.leaf(list_[place / kLeaf]);
-  const std::uint32_t i = place % kLeaf;
-  return squared_distance(point(slot), Vector3d(leaf.x[i], leaf.y[i], leaf.z[i]));
+  return squared_distance(leaf_->point(slot), tree_.leaf(list_[place / kLeaf]).point(place % kLeaf));
 }
 
 Index LeafNeighbors::id_at(std::uint32_t place) const {

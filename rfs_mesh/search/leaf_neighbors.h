@@ -45,7 +45,6 @@ class LeafNeighbors {
   void load_listed(const KdTree::Node& box);
   double squared_distance_to(std::uint32_t slot, std::uint32_t place) const;
   Index id_at(std::uint32_t place) const;
-  Eigen::Vector3d point(std::uint32_t slot) const { return {leaf_->x[slot], leaf_->y[slot], leaf_->z[slot]}; }
 
   const KdTree& tree_;
   std::size_t k_;
