@@ -23,15 +23,11 @@ constexpr double kShortest = 1e-150;  // world units: what is shorter has a squa
 constexpr double kWidestTails = 1e4;
 
 /// What is wrong, one line each.
-class Wrong {
- public:
+struct Wrong {
+  std::vector<std::string> lines;
   void expect(bool right, std::string what) {
-    if (!right) lines_.push_back(std::move(what));
+    if (!right) lines.push_back(std::move(what));
   }
-  std::vector<std::string> take() { return std::move(lines_); }
-
- private:
-  std::vector<std::string> lines_;
 };
 
 /// NaN is not.
@@ -154,7 +150,7 @@ std::vector<std::string> check(const Statistics& statistics) {
     wrong.expect(sheets->variance > 0 && is_amount(sheets->variance),
                  "sheets: variance is no number above 0");
   }
-  return wrong.take();
+  return wrong.lines;
 }
 
 }  // namespace rfsmooth
