@@ -65,7 +65,7 @@ void Tracer::add(const Mesh& mesh, const Context& context) {
   row.step = int(rows_->size());
   row.volume = volume(mesh, context);
   row.area = rfs_mesh::surface_area(mesh, context);
-  row.energy = thin_plate_energy(mesh.one_ring, umbrella(mesh, context), mesh.positions, context);
+  row.energy = thin_plate_energy(mesh.one_ring, umbrella(mesh.one_ring, context), mesh.positions, context);
   row.roughness = roughness(mesh);
   row.largest_move = largest_move(before_, mesh.positions, context);
   before_ = mesh.positions;

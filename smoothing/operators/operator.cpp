@@ -57,10 +57,6 @@ double length_unit(const Mesh& mesh, const Context& context) {
   return sum[0] > 0 ? sum[0] / sum[1] : 1;
 }
 
-Operator umbrella(const Mesh& mesh, const Context& context) {
-  return umbrella(mesh.one_ring, context);
-}
-
 Operator umbrella(const Adjacency& rows, const Context& context) {
   Operator op;
   op.mass.resize(rows.size());
@@ -127,7 +123,7 @@ const Operator& OperatorSource::on(const Mesh& mesh, const Context& context) {
   const bool fixed_weights = frozen_ || kind_ == OperatorKind::umbrella;
   if (ready_ && fixed_weights) return op_;
   if (kind_ == OperatorKind::umbrella) {
-    op_ = umbrella(mesh, context);
+    op_ = umbrella(mesh.one_ring, context);
   } else if (kind_ == OperatorKind::inverse_distance) {
     op_ = inverse_distance(mesh, context);
   } else if (kind_ == OperatorKind::scale_dependent) {

@@ -47,9 +47,6 @@ std::vector<double> weight_sums(const Adjacency& rows, const Operator& op, const
 double length_unit(const Mesh& mesh, const Context& context);
 
 /// Umbrella, L = I - T: w = 1, m = degree. Vollmer 3.1, Ohtake (3), Desbrun (7) with the sign turned. Unit 1.
-Operator umbrella(const Mesh& mesh, const Context& context);
-
-/// The same of the graph that the rows are, one for each vertex.
 Operator umbrella(const Adjacency& rows, const Context& context);
 
 /// Umbrella with w = 1 / |e|, m = sum of w. Ohtake (4). Edges of length zero get no weight. Unit 1.

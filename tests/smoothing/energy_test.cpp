@@ -36,7 +36,7 @@ void falls(AnyFlow flow, int steps, Energy&& energy) {
 }
 
 double thin_plate_of(const Mesh& mesh) {
-  return thin_plate_energy(mesh.one_ring, umbrella(mesh, {}), mesh.positions, {});
+  return thin_plate_energy(mesh.one_ring, umbrella(mesh.one_ring, {}), mesh.positions, {});
 }
 
 double membrane(const Mesh& mesh) {

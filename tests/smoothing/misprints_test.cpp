@@ -33,14 +33,14 @@ Mesh noisy_unit_sphere() {
 /// L x of the umbrella.
 Positions umbrella_of(const Mesh& mesh, const Positions& x) {
   Positions y;
-  apply(mesh.one_ring, umbrella(mesh, {}), x, y, {});
+  apply(mesh.one_ring, umbrella(mesh.one_ring, {}), x, y, {});
   return y;
 }
 
 TEST(Bilaplacian, ThePrintedPlusAmplifiesOursDamps) {
   const Mesh noisy = noisy_unit_sphere();
   const auto energy = [&](const Positions& x) {
-    return thin_plate_energy(noisy.one_ring, umbrella(noisy, {}), x, {});
+    return thin_plate_energy(noisy.one_ring, umbrella(noisy.one_ring, {}), x, {});
   };
   const Positions second = umbrella_of(noisy, umbrella_of(noisy, noisy.positions));
   Positions printed = noisy.positions;
@@ -77,7 +77,7 @@ TEST(Taubin, IsOhtakesSixNotDesbrunsSign) {
   const Mesh ours = after(noisy, o);
   EXPECT_LT(support::rms_distance(ours.positions, six), 1e-14);
   const auto energy = [&](const Positions& x) {
-    return thin_plate_energy(noisy.one_ring, umbrella(noisy, {}), x, {});
+    return thin_plate_energy(noisy.one_ring, umbrella(noisy.one_ring, {}), x, {});
   };
   EXPECT_GT(energy(turned), energy(noisy.positions));
 }

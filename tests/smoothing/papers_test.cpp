@@ -38,7 +38,7 @@ Mesh noisy_sphere(int levels, double sigma_over_edge) {
 }
 
 double thin_plate(const Mesh& mesh) {
-  return thin_plate_energy(mesh.one_ring, umbrella(mesh, {}), mesh.positions, {});
+  return thin_plate_energy(mesh.one_ring, umbrella(mesh.one_ring, {}), mesh.positions, {});
 }
 
 /// Relative spread of the distances from the true centre.

@@ -112,7 +112,7 @@ void steps() {
   const auto laplacian = make_flow(moving, {LaplacianOptions()}, context);
   laplacian.value()->step(moving, context);
   const double step = least(21, [&] { laplacian.value()->step(moving, context); });
-  const Operator op = umbrella(mesh, context);
+  const Operator op = umbrella(mesh.one_ring, context);
   for (const int order : {1, 2}) {
     Fairing system{rows, op};
     system.a[std::size_t(order) - 1] = 10;
@@ -131,7 +131,7 @@ void desbrun() {
   fmt::print("  {:>8} {:>10} {:>8} {:>8}\n", "faces", "tolerance", "dt 10", "dt 100");
   for (const auto& [around, along] : {std::pair(175, 120), std::pair(220, 150), std::pair(500, 290)}) {
     const Mesh mesh = noisy(support::torus(around, along, 0.4));
-    const Operator op = umbrella(mesh, {});
+    const Operator op = umbrella(mesh.one_ring, {});
     for (const double tolerance : {1e-2, 1e-3, 1e-4, 1e-5}) {
       int iterations[2];
       for (int k = 0; k < 2; ++k) {

@@ -117,7 +117,7 @@ TEST(Solver, EdgeWeightsDataAndStrengthPerVertexEnterAsWritten) {
 TEST(Solver, HardConstraintsAreKeptAndTheRestIsOptimal) {
   Mesh mesh = support::icosphere(2);
   support::add_noise(mesh, 0.05, 1);
-  const Operator op = umbrella(mesh, {});
+  const Operator op = umbrella(mesh.one_ring, {});
   Fairing system{mesh.one_ring, op};
   system.a = {0, 10, 0, 0};
   const Vector3d direction(1, 2, 2);
@@ -143,7 +143,7 @@ TEST(Solver, HardConstraintsAreKeptAndTheRestIsOptimal) {
 TEST(Solver, WarmStartFromTheSolutionNeedsNoIteration) {
   Mesh mesh = support::icosphere(3);
   support::add_noise(mesh, 0.05, 1);
-  const Operator op = umbrella(mesh, {});
+  const Operator op = umbrella(mesh.one_ring, {});
   Fairing system{mesh.one_ring, op};
   system.a = {0, 100, 0, 0};
   Positions x;
@@ -166,7 +166,7 @@ TEST(Solver, RelativeToTheStartTheErrorIsReducedAsAskedForWhateverTheExtent) {
   Mesh mesh = support::icosphere(2);
   support::add_noise(mesh, 0.05, 1);
   const std::array<double, 4> a = {0, 100, 0, 0};
-  const Operator op = umbrella(mesh, {});
+  const Operator op = umbrella(mesh.one_ring, {});
   const Dense d = dense(mesh, op);
   const MatrixXd start = rows_of(mesh.positions), A = d.M + a[1] * d.S * d.M.inverse() * d.S,
                  exact = A.ldlt().solve(d.M * start), masses = d.M.cwiseSqrt();
@@ -178,7 +178,7 @@ TEST(Solver, RelativeToTheStartTheErrorIsReducedAsAskedForWhateverTheExtent) {
   }
   for (const Vector3d& p : mesh.positions) apart.positions.emplace_back(p + Vector3d(1000, 0, 0));
   rebuild_adjacency(apart, {});
-  const Operator op_apart = umbrella(apart, {});
+  const Operator op_apart = umbrella(apart.one_ring, {});
   for (const double tolerance : {0.1, 1e-3}) {
     SolverOptions options;
     options.tolerance = tolerance;
@@ -195,7 +195,7 @@ TEST(Solver, RelativeToTheStartTheErrorIsReducedAsAskedForWhateverTheExtent) {
 TEST(Solver, SameBitsForAnyNumberOfThreadsAndAnyOriginOfTheStoppingTest) {
   Mesh mesh = support::icosphere(5);
   support::add_noise(mesh, 0.01, 1);
-  const Operator op = umbrella(mesh, {});
+  const Operator op = umbrella(mesh.one_ring, {});
   Fairing system{mesh.one_ring, op};
   system.a = {10, 0, 0, 0};
   Positions one, four, far;
@@ -214,7 +214,7 @@ TEST(Solver, SameBitsForAnyNumberOfThreadsAndAnyOriginOfTheStoppingTest) {
 TEST(Solver, AnIndefiniteSystemStopsFiniteAndSaysSo) {
   Mesh mesh = support::icosphere(2);
   support::add_noise(mesh, 0.05, 1);
-  const Operator op = umbrella(mesh, {});
+  const Operator op = umbrella(mesh.one_ring, {});
   Fairing system{mesh.one_ring, op};
   system.a = {-3, 0, 0, 0};
   Positions x;
@@ -225,7 +225,7 @@ TEST(Solver, AnIndefiniteSystemStopsFiniteAndSaysSo) {
 
 TEST(Solver, ArraysOfTheWrongSizeThrow) {
   const Mesh mesh = support::icosphere(1);
-  const Operator op = umbrella(mesh, {});
+  const Operator op = umbrella(mesh.one_ring, {});
   Fairing system{mesh.one_ring, op};
   system.strength = {1, 2};
   Positions x;

@@ -35,7 +35,8 @@ INSTANTIATE_TEST_SUITE_P(EveryWeight, UmbrellaSpeeds,
 
 TEST_P(UmbrellaSpeeds, AreTheOperatorsWithTheOtherSignAlsoWhereVerticesCoincide) {
   const Mesh mesh = with_coincident_vertices();
-  const Operator op = GetParam() == UmbrellaWeights::equal ? umbrella(mesh, {}) : inverse_distance(mesh, {});
+  const Operator op =
+      GetParam() == UmbrellaWeights::equal ? umbrella(mesh.one_ring, {}) : inverse_distance(mesh, {});
   Positions outward;
   apply(mesh.one_ring, op, mesh.positions, outward, {});
   const Positions found = speed(mesh);
