@@ -19,7 +19,8 @@ class BilaplacianSpeed : public Speed {
  public:
   void evaluate(const Mesh& mesh, Positions& speed, const Context& context) override {
     const Operator& op = source_.on(mesh, context);
-    apply_thin_plate(op.rows(mesh), op, mesh.positions, speed, scratch_, context);
+    apply(op.rows(mesh), op, mesh.positions, once_, context);
+    apply(op.rows(mesh), op, once_, speed, context);
     for_each_index(context, speed.size(), [&](std::size_t i) { speed[i] = -speed[i]; });
   }
 
@@ -27,7 +28,7 @@ class BilaplacianSpeed : public Speed {
 
  private:
   OperatorSource source_{OperatorKind::umbrella, false};
-  Positions scratch_;
+  Positions once_;  ///< the operator applied once
 };
 
 }  // namespace

@@ -103,12 +103,6 @@ Operator scale_dependent(const Mesh& mesh, const Context& context) {
   return op;
 }
 
-void apply_thin_plate(const Adjacency& rows, const Operator& op, const Positions& x, Positions& y,
-                      Positions& scratch, const Context& context) {
-  apply(rows, op, x, scratch, context);
-  apply(rows, op, scratch, y, context);
-}
-
 double thin_plate_energy(const Adjacency& rows, const Operator& op, const Positions& x,
                          const Context& context) {
   Positions first;

@@ -84,12 +84,8 @@ Operator tufted(const Mesh& mesh, const Context& context);
 /// vertex by its own limit (operator_speed.h). Unit 1.
 Operator normalised(const Adjacency& rows, Operator op, const Context& context);
 
-/// y = L (L x): the gradient of the discrete thin-plate energy (Kobbelt et al. 1998, Desbrun 2.6). `scratch`
-/// is overwritten.
-void apply_thin_plate(const Adjacency& rows, const Operator& op, const Positions& x, Positions& y,
-                      Positions& scratch, const Context& context);
-
-/// sum_i m_i |(L x)_i|^2: the discrete thin-plate energy of an operator.
+/// sum_i m_i |(L x)_i|^2: the discrete thin-plate energy of an operator. Its gradient is along L (L x)
+/// (Kobbelt et al. 1998, Desbrun 2.6).
 double thin_plate_energy(const Adjacency& rows, const Operator& op, const Positions& x,
                          const Context& context);
 
