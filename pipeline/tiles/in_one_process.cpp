@@ -8,7 +8,6 @@
 
 #include "base/fail.h"
 #include "pipeline/io/stream/atomic_file.h"
-#include "pipeline/io/table/cloud.h"
 #include "pipeline/tiles/allowed.h"
 #include "pipeline/tiles/files/row_file.h"
 #include "pipeline/tiles/halo.h"
@@ -127,7 +126,7 @@ std::uint64_t finite_rows(const std::string& path, const Context& context) {
   const RowFile file(path, context);
   std::uint64_t finite = 0;
   file.for_each_piece(context, [&](std::uint64_t, std::size_t count, const io::Bytes& rows) {
-    for (std::size_t i = 0; i < count; ++i) finite += std::uint64_t(io::finite_row(file.get(rows, i).data()));
+    for (std::size_t i = 0; i < count; ++i) finite += std::uint64_t(file.get(rows, i).allFinite());
   });
   return finite;
 }

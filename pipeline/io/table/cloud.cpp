@@ -103,7 +103,7 @@ std::size_t finite_rows(const std::vector<double>& xyz, const Context& context) 
                   [&](std::size_t i) { return std::size_t(finite_row(&xyz[3 * i])); });
 }
 
-bool can_hold(const std::array<Field, 3>& fields, const std::array<double, 3>& xyz) {
+bool can_hold(const std::array<Field, 3>& fields, const Eigen::Vector3d& xyz) {
   return can_hold(fields[0], xyz[0]) && can_hold(fields[1], xyz[1]) && can_hold(fields[2], xyz[2]);
 }
 

@@ -97,7 +97,7 @@ std::size_t finite_rows(const std::vector<double>& xyz, const Context& context =
 void set_positions(Cloud& cloud, const double* xyz, const Context& context = {});
 
 /// Whether the fields x, y, z of a row can say a place, but for rounding.
-bool can_hold(const std::array<Field, 3>& fields, const std::array<double, 3>& xyz);
+bool can_hold(const std::array<Field, 3>& fields, const Eigen::Vector3d& xyz);
 
 /// The warnings of set_positions: that whole numbers are rounded, and that so many points are `beyond` what
 /// scaled fields can say.

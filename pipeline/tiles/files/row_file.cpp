@@ -138,10 +138,11 @@ void RowFile::need_normals() {
                 pcd ? io::pcd_header(header_, header_.encoding) : io::ply_header(header_, header_.encoding));
 }
 
-void RowFile::put_normal(io::Bytes& rows, std::size_t i, const std::array<double, 3>& normal) const {
+void RowFile::put_normal(io::Bytes& rows, std::size_t i, const Eigen::Vector3d& normal) const {
   for (const auto& fields : normals_)
     for (std::size_t axis = 0; axis < 3; ++axis)
-      io::store(fields[axis].field, rows.data() + i * (row_ + added_) + fields[axis].offset, normal[axis]);
+      io::store(fields[axis].field, rows.data() + i * (row_ + added_) + fields[axis].offset,
+                normal[Eigen::Index(axis)]);
 }
 
 io::RefinedScale RowFile::refine_scale(double step, const Eigen::AlignedBox3d& box) {
@@ -176,17 +177,17 @@ io::Bytes RowFile::read(std::uint64_t first, std::size_t count, const Context& c
   return wide;
 }
 
-std::array<double, 3> RowFile::get(const io::Bytes& rows, std::size_t i) const {
-  std::array<double, 3> xyz{};
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    xyz[axis] = io::load(field_[axis], rows.data() + i * (row_ + added_) + offset_[axis]);
-  return xyz;
+Eigen::Vector3d RowFile::get(const io::Bytes& rows, std::size_t i) const {
+  const char* const row = rows.data() + i * (row_ + added_);
+  const auto of_axis = [&](std::size_t axis) { return io::load(field_[axis], row + offset_[axis]); };
+  return {of_axis(0), of_axis(1), of_axis(2)};
 }
 
-void RowFile::put(io::Bytes& rows, std::size_t i, const std::array<double, 3>& xyz) const {
+void RowFile::put(io::Bytes& rows, std::size_t i, const Eigen::Vector3d& xyz) const {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     char* const at = rows.data() + i * (row_ + added_) + offset_[axis];
-    if (io::load(field_[axis], at) != xyz[axis]) io::store(field_[axis], at, xyz[axis]);
+    const double x = xyz[Eigen::Index(axis)];
+    if (io::load(field_[axis], at) != x) io::store(field_[axis], at, x);
   }
 }
 

@@ -47,12 +47,12 @@ class RowFile {
   /// Failure (usage) for LAS, and for fields that cannot take them.
   void need_normals();
   /// Sets the normal of row i of the bytes of some.
-  void put_normal(io::Bytes& rows, std::size_t i, const std::array<double, 3>& normal) const;
+  void put_normal(io::Bytes& rows, std::size_t i, const Eigen::Vector3d& normal) const;
 
   /// The coordinates of row i of the bytes of some.
-  std::array<double, 3> get(const io::Bytes& rows, std::size_t i) const;
+  Eigen::Vector3d get(const io::Bytes& rows, std::size_t i) const;
   /// Sets them; a coordinate equal to the present one keeps its bytes.
-  void put(io::Bytes& rows, std::size_t i, const std::array<double, 3>& xyz) const;
+  void put(io::Bytes& rows, std::size_t i, const Eigen::Vector3d& xyz) const;
 
   /// Calls `visit(first, count, rows)` for all rows in order, with the bytes of some at once.
   template <class Visit>

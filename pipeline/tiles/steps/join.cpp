@@ -1,7 +1,6 @@
 #include "pipeline/tiles/steps/join.h"
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -107,15 +106,14 @@ class Patcher {
   std::size_t patch(const RowFile& file, std::uint64_t first, std::uint64_t count, io::Bytes& rows) {
     std::size_t beyond = 0;
     places_.visit(first, count, [&](std::size_t row, const Record& r, std::size_t) {
-      const std::array<double, 3> xyz = {r.x, r.y, r.z};
-      file.put(rows, row, xyz);
-      beyond += std::size_t(!io::can_hold(file.coordinates(), xyz));
+      file.put(rows, row, place(r));
+      beyond += std::size_t(!io::can_hold(file.coordinates(), place(r)));
       ++patched_;
     });
     if (!normals_) return beyond;
     normals_->visit(first, count, [&](std::size_t row, const NormalRecord& r, std::size_t tile) {
       const double sign = reversed_[tile][std::size_t(r.piece)] != 0 ? -1 : 1;
-      file.put_normal(rows, row, {sign * r.x, sign * r.y, sign * r.z});
+      file.put_normal(rows, row, sign * Vector3d(r.x, r.y, r.z));
     });
     return beyond;
   }
@@ -127,11 +125,6 @@ class Patcher {
   std::vector<std::vector<char>> reversed_;  ///< by tile and piece
   std::uint64_t patched_ = 0;
 };
-
-/// Makes a box hold a place.
-void extend(AlignedBox3d& box, const std::array<double, 3>& xyz) {
-  box.extend(Vector3d(xyz[0], xyz[1], xyz[2]));
-}
 
 /// An input, open, and its first row's number in the cloud.
 struct OpenInput {
@@ -146,11 +139,10 @@ io::RefinedScale refine_moved(const Job& job, OpenInput& input, double step, con
   bool moved = false;
   const RowFile& file = input.file;
   file.for_each_piece(context, [&](std::uint64_t first, std::size_t count, const io::Bytes& rows) {
-    for (std::size_t i = 0; i < count; ++i) extend(box, file.get(rows, i));
+    for (std::size_t i = 0; i < count; ++i) box.extend(file.get(rows, i));
     places.visit(input.before + first, count, [&](std::size_t row, const Record& r, std::size_t) {
-      const std::array<double, 3> now = {r.x, r.y, r.z};
-      moved = moved || now != file.get(rows, row);
-      extend(box, now);
+      moved = moved || place(r) != file.get(rows, row);
+      box.extend(place(r));
     });
   });
   return moved ? input.file.refine_scale(step, box) : io::RefinedScale();
@@ -163,9 +155,9 @@ void find_box(const Job& job, OpenInput& input, const Context& context) {
   AlignedBox3d before, after;
   const RowFile& file = input.file;
   file.for_each_piece(context, [&](std::uint64_t first, std::size_t count, io::Bytes& rows) {
-    for (std::size_t i = 0; i < count; ++i) extend(before, file.get(rows, i));
+    for (std::size_t i = 0; i < count; ++i) before.extend(file.get(rows, i));
     patcher.patch(file, input.before + first, count, rows);
-    for (std::size_t i = 0; i < count; ++i) extend(after, file.get(rows, i));
+    for (std::size_t i = 0; i < count; ++i) after.extend(file.get(rows, i));
   });
   if (before.min() != after.min() || before.max() != after.max()) input.file.set_box(after);
 }

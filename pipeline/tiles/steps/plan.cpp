@@ -1,7 +1,6 @@
 #include "pipeline/tiles/steps/plan.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstring>
 #include <iterator>
@@ -57,10 +56,8 @@ void for_each_point(const Job& job, double from, double to, const Context& conte
     const RowFile file(input.path, context);
     file.for_each_piece(context, [&](std::uint64_t, std::size_t count, const io::Bytes& rows) {
       context.report("plan", from + (to - from) * double(row) / all);
-      for (std::size_t i = 0; i < count; ++i, ++row) {
-        const std::array<double, 3> xyz = file.get(rows, i);
-        if (const Vector3d p(xyz[0], xyz[1], xyz[2]); p.allFinite()) visit(row, p);
-      }
+      for (std::size_t i = 0; i < count; ++i, ++row)
+        if (const Vector3d p = file.get(rows, i); p.allFinite()) visit(row, p);
     });
   }
 }
