@@ -110,11 +110,7 @@ Table points_of(const Entries& e, const HeaderLines& lines) {
 
 void set_size(Cloud& cloud, const Entries& e, const HeaderLines& lines) {
   if (!e.points && !e.width) lines.fail("expected POINTS or WIDTH and HEIGHT before DATA, found neither");
-  std::uint64_t width = e.width.value_or(0), height = e.height.value_or(1);
-  if (!e.width) {
-    width = *e.points;
-    height = 1;
-  }
+  const std::uint64_t width = e.width ? *e.width : *e.points, height = e.width ? e.height.value_or(1) : 1;
   if (width != 0 && height > std::uint64_t(-1) / width)
     lines.fail("expected WIDTH x HEIGHT points, found {} x {}", width, height);
   if (e.points && *e.points != width * height)
