@@ -190,20 +190,16 @@ void make_text(Table& table, const Context& context) {
   rebuild(table, context, [&](std::size_t i, std::string& out) {
     const char* p = old.row(i).data();
     bool first = true;
+    const auto take = [&](Scalar type) {
+      if (!first) out += ' ';
+      first = false;
+      append_stored(out, p, type);
+      p += size_of(type);
+    };
     for (const Field& field : old.fields) {
-      std::size_t n = field.count;
-      if (field.is_list()) {
-        n = list_size(*field.list_count, p);
-        if (!first) out += ' ';
-        first = false;
-        append_stored(out, p, *field.list_count);
-        p += size_of(*field.list_count);
-      }
-      for (std::size_t k = 0; k < n; ++k, p += size_of(field.type)) {
-        if (!first) out += ' ';
-        first = false;
-        append_stored(out, p, field.type);
-      }
+      const std::size_t n = field.is_list() ? list_size(*field.list_count, p) : field.count;
+      if (field.is_list()) take(*field.list_count);
+      for (std::size_t k = 0; k < n; ++k) take(field.type);
     }
     out += '\n';
   });
