@@ -45,12 +45,9 @@ NoiseModel noise_of(const ordered_json& json) {
   noise.piece = json.at("piece");
   noise.on_lines = json.at("on_lines");
   noise.at_sites = json.at("at_sites").get<std::vector<double>>();
-  if (json.contains("spacing_at_sites"))
-    noise.spacing_at_sites = json.at("spacing_at_sites").get<std::vector<double>>();
-  if (json.contains("told_at_sites"))
-    noise.told_at_sites = json.at("told_at_sites").get<std::vector<double>>();
-  if (json.contains("shared_at_sites"))
-    noise.shared_at_sites = json.at("shared_at_sites").get<std::vector<double>>();
+  noise.spacing_at_sites = json.value("spacing_at_sites", noise.spacing_at_sites);
+  noise.told_at_sites = json.value("told_at_sites", noise.told_at_sites);
+  noise.shared_at_sites = json.value("shared_at_sites", noise.shared_at_sites);
   for (const auto& p : json.at("sites")) noise.sites.push_back(place_of(p));
   return noise;
 }
