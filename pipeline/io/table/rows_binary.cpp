@@ -9,13 +9,9 @@ namespace {
 
 constexpr std::size_t kBinaryRowsPerBlock = 8192;
 
-void swap_value(char* p, std::size_t size) {
-  std::reverse(p, p + size);
-}
-
 void swap_values(char* p, std::size_t size, std::size_t n) {
   if (size == 1) return;
-  for (std::size_t k = 0; k < n; ++k) swap_value(p + k * size, size);
+  for (std::size_t k = 0; k < n; ++k) std::reverse(p + k * size, p + (k + 1) * size);
 }
 
 // Reverses the bytes of every value in rows of fixed size.
@@ -72,7 +68,7 @@ void read_lists(Table& table, BinaryCursor& cursor, const Context& context) {
       if (f.is_list()) {
         const std::size_t size = size_of(*f.list_count);
         if (std::size_t(end - p) < size) short_of(i, f, size);
-        if (cursor.big_endian) swap_value(p, size);
+        if (cursor.big_endian) swap_values(p, size, 1);
         const double length = load(*f.list_count, p);
         if (!(length >= 0) || length > double(std::uint64_t{1} << 40))
           cursor.source.fail("byte {}: expected the length of list '{}' in row {} of element '{}', found {}",
@@ -102,7 +98,7 @@ void swap_lists(Table& table) {
       std::size_t n = f.count;
       if (f.is_list()) {
         n = std::size_t(load(*f.list_count, p));
-        swap_value(p, size_of(*f.list_count));
+        swap_values(p, size_of(*f.list_count), 1);
         p += size_of(*f.list_count);
       }
       swap_values(p, size_of(f.type), n);
