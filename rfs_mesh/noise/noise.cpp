@@ -5,6 +5,8 @@
 #include <optional>
 #include <utility>
 
+#include <Eigen/Geometry>
+
 #include "base/parallel.h"
 #include "rfs_mesh/fit/local_surface.h"
 #include "rfs_mesh/levels.h"
@@ -50,16 +52,13 @@ class SitesAround {
 
   /// Finds those that may be among the `kBlend` nearest of any of the points.
   void prepare(const Eigen::Vector3d* points, std::size_t count) {
-    Eigen::Vector3d low = points[0], high = points[0];
-    for (std::size_t i = 1; i < count; ++i) {
-      low = low.cwiseMin(points[i]);
-      high = high.cwiseMax(points[i]);
-    }
-    const Eigen::Vector3d centre = (low + high) / 2;
+    Eigen::AlignedBox3d box;
+    for (std::size_t i = 0; i < count; ++i) box.extend(points[i]);
+    const Eigen::Vector3d centre = box.center();
     sites_.nearest(centre, int(kBlend), around_);
     // A point is at most half a diagonal from the centre, and so much farther from each of its nearest.
     constexpr double kRounding = 1 + 1e-9;
-    const double reach = std::sqrt(around_.back().squared_distance) + (high - low).norm();
+    const double reach = std::sqrt(around_.back().squared_distance) + box.diagonal().norm();
     sites_.within_unsorted(centre, kRounding * reach, around_);
   }
 
