@@ -208,40 +208,37 @@ struct Landing {
 
   /// Moves the points (stranded.h) and returns which. Once.
   std::vector<Index> move_stranded(const Positions& points, const Adjacency& rings,
-                                   const std::vector<double>& most, Positions& guide, const Context& context);
+                                   const std::vector<double>& most, Positions& guide,
+                                   const Context& context) {
+    std::vector<Index> moved;
+    if (near.k < HeightField::kNear) return moved;
+    for (int round = 0; round < kStrandedRounds; ++round) {
+      const std::vector<Index> stranded = find_stranded(rings, guide, near, context);
+      if (round == 0) found = stranded.size();
+      if (stranded.empty() || guide.size() - stranded.size() <= std::size_t(HeightField::kNear)) break;
+      // None of them is part of the surface that they are put onto, wherever it was put before.
+      std::vector<Index> others;
+      std::set_difference(moved.begin(), moved.end(), stranded.begin(), stranded.end(),
+                          std::back_inserter(others));
+      for (const Index i : stranded) surface.set_gone(i, true);
+      surface.set_moved(others, guide, context);
+      const std::vector<Index> landed = land(points, stranded, most, near, surface, guide, context);
+      for (const Index i : stranded)
+        if (!std::binary_search(moved.begin(), moved.end(), i)) surface.set_gone(i, false);
+      std::vector<Index> all;
+      std::set_union(moved.begin(), moved.end(), landed.begin(), landed.end(), std::back_inserter(all));
+      for (const Index i : landed) surface.set_gone(i, true);
+      moved = std::move(all);
+      if (round + 1 == kStrandedRounds) break;
+      surface.renew_rows(moved, guide, near, context);
+    }
+    return moved;
+  }
 
   MovingGuide surface;
   NeighborTable near;     ///< of where the guide was; rows of moved points are no longer right
   std::size_t found = 0;  ///< stranded points at first
 };
-
-std::vector<Index> Landing::move_stranded(const Positions& points, const Adjacency& rings,
-                                          const std::vector<double>& most, Positions& guide,
-                                          const Context& context) {
-  std::vector<Index> moved;
-  if (near.k < HeightField::kNear) return moved;
-  for (int round = 0; round < kStrandedRounds; ++round) {
-    const std::vector<Index> stranded = find_stranded(rings, guide, near, context);
-    if (round == 0) found = stranded.size();
-    if (stranded.empty() || guide.size() - stranded.size() <= std::size_t(HeightField::kNear)) break;
-    // None of them is part of the surface that they are put onto, wherever it was put before.
-    std::vector<Index> others;
-    std::set_difference(moved.begin(), moved.end(), stranded.begin(), stranded.end(),
-                        std::back_inserter(others));
-    for (const Index i : stranded) surface.set_gone(i, true);
-    surface.set_moved(others, guide, context);
-    const std::vector<Index> landed = land(points, stranded, most, near, surface, guide, context);
-    for (const Index i : stranded)
-      if (!std::binary_search(moved.begin(), moved.end(), i)) surface.set_gone(i, false);
-    std::vector<Index> all;
-    std::set_union(moved.begin(), moved.end(), landed.begin(), landed.end(), std::back_inserter(all));
-    for (const Index i : landed) surface.set_gone(i, true);
-    moved = std::move(all);
-    if (round + 1 == kStrandedRounds) break;
-    surface.renew_rows(moved, guide, near, context);
-  }
-  return moved;
-}
 
 }  // namespace
 
