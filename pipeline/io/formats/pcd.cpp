@@ -56,12 +56,6 @@ void transpose(const Table& table, Direction direction, const char* in, char* ou
   });
 }
 
-std::uint32_t read_uint32(const char* p) {
-  std::uint32_t v;
-  std::memcpy(&v, p, sizeof v);
-  return v;
-}
-
 void read_compressed(Table& table, BinaryCursor& cursor, const Context& context) {
   const Source& source = cursor.source;
   const std::uint64_t at = cursor.offset, left = source.size() - at;
@@ -73,8 +67,9 @@ void read_compressed(Table& table, BinaryCursor& cursor, const Context& context)
   if (left < 8)
     source.fail("byte {}: expected the sizes of the compressed data (8 bytes), found {}", at,
                 counted(left, "byte"));
-  const Bytes sizes = source.read(at, 8, context);
-  const std::uint64_t packed = read_uint32(sizes.data()), unpacked = read_uint32(sizes.data() + 4);
+  std::uint32_t sizes[2];
+  source.read(at, reinterpret_cast<char*>(sizes), sizeof sizes, context);
+  const std::uint64_t packed = sizes[0], unpacked = sizes[1];
   if (packed > left - 8)
     source.fail("byte {}: expected {} of compressed data, found {}", at + 8, counted(packed, "byte"),
                 left - 8);
