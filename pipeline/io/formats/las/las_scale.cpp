@@ -65,12 +65,6 @@ ScaleChange finer_scale(const Field& field, double step, const Span& span) {
   return finest(span, std::clamp(power, 0, kMostPowers));
 }
 
-void change_integers(Table& points, std::size_t axis, const ScaleChange& change, const Context& context) {
-  const std::size_t size = points.row_size();
-  for_each_index(context, points.count,
-                 [&](std::size_t i) { change_integer(points.data.data() + i * size + 4 * axis, change); });
-}
-
 }  // namespace
 }  // namespace las
 
@@ -138,6 +132,7 @@ RefinedScale refine_scale(Cloud& las, double step, const double* xyz, const Cont
   using namespace las;  // NOLINT(google-build-using-namespace)
   RefinedScale done;
   Table& points = las.points();
+  const std::size_t size = points.row_size();
   Context to_the_end = context;  // in place: all rows or none
   to_the_end.stop = nullptr;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -146,7 +141,10 @@ RefinedScale refine_scale(Cloud& las, double step, const double* xyz, const Cont
         step > 0 && std::abs(field.scale) > step ? span_in_steps(points, axis, xyz, context) : Span{};
     context.check_stop();
     const ScaleChange change = refine_axis(field, axis, step, span.low, span.high, done);
-    if (change.power > 0) change_integers(points, axis, change, to_the_end);
+    if (change.power > 0)
+      for_each_index(to_the_end, points.count, [&](std::size_t i) {
+        change_integer(points.data.data() + i * size + 4 * axis, change);
+      });
   }
   return done;
 }
