@@ -1,4 +1,3 @@
-#include <stdexcept>
 #include <utility>
 
 #include <rfsmooth/cloud_file.h>
@@ -99,9 +98,7 @@ std::optional<std::vector<double>> CloudFile::field(std::string_view name, const
 
 Result<Done> CloudFile::set_field(const std::string& name, const std::vector<double>& values,
                                   const Context& context) {
-  if (values.size() != size()) throw std::invalid_argument("set_field: not one value per point");
   return guarded([&] {
-    io::check_field(contents_->cloud, name, io::Scalar::float32);
     io::set_field(contents_->cloud, name, io::Scalar::float32, values, to_the_end(context));
     return Done{};
   });
