@@ -1,6 +1,5 @@
 #include "smoothing/integrators/explicit.h"
 
-#include <optional>
 #include <utility>
 
 #include "base/parallel.h"
@@ -68,11 +67,8 @@ class SequentialFlow : public Flow {
 
 }  // namespace
 
-std::unique_ptr<Flow> make_explicit(std::unique_ptr<Speed> speed, double lambda) {
-  return std::make_unique<SimultaneousFlow>(std::move(speed), lambda, std::nullopt);
-}
-
-std::unique_ptr<Flow> make_explicit(std::unique_ptr<Speed> speed, double lambda, AllowedMoves allowed) {
+std::unique_ptr<Flow> make_explicit(std::unique_ptr<Speed> speed, double lambda,
+                                    std::optional<AllowedMoves> allowed) {
   return std::make_unique<SimultaneousFlow>(std::move(speed), lambda, std::move(allowed));
 }
 

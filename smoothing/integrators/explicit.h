@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include <rfsmooth/flow.h>
 
@@ -31,13 +32,12 @@ class VertexSpeed : public Speed {
   virtual Eigen::Vector3d at(const Mesh& mesh, Index i) const = 0;
 };
 
-/// A flow that adds lambda F, simultaneously. A vertex whose new position would not be finite stays.
-std::unique_ptr<Flow> make_explicit(std::unique_ptr<Speed> speed, double lambda);
-
-/// The same with every move constrained at once. For flows of several part steps and for sequential ones,
+/// A flow that adds lambda F, simultaneously. A vertex whose new position would not be finite stays. With
+/// `allowed` every move is constrained at once: for flows of several part steps and for sequential ones,
 /// where others see a vertex before the step is over. A fixed vertex never moves (Vollmer 2, V_fix), and a
 /// vertex's strength scales lambda (Desbrun 2.7).
-std::unique_ptr<Flow> make_explicit(std::unique_ptr<Speed> speed, double lambda, AllowedMoves allowed);
+std::unique_ptr<Flow> make_explicit(std::unique_ptr<Speed> speed, double lambda,
+                                    std::optional<AllowedMoves> allowed = std::nullopt);
 
 /// The same, simultaneously or vertex by vertex.
 std::unique_ptr<Flow> make_explicit(std::unique_ptr<VertexSpeed> speed, double lambda, Update update,
