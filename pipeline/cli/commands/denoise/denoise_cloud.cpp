@@ -130,23 +130,17 @@ void add_rounding(const pipeline::io::Cloud& cloud, DenoiseReport& done) {
   done.noise_left = pipeline::io::with_rounding(*done.noise_left, step);
 }
 
-/// Adds how far each point is from `before`, as the file now has it: rounded to the coordinates' own type. 0
-/// for points that are not finite.
-void write_displacement(pipeline::io::Cloud& cloud, const std::vector<double>& before,
-                        const Context& context) {
+/// Gives the points new positions and, if asked for, the field of how far that moved them, as the file now
+/// has them: rounded to the coordinates' own type. 0 for points that are not finite.
+void move_points(const DenoiseCommandOptions& options, pipeline::io::Cloud& cloud,
+                 const std::vector<double>& xyz, const Context& context) {
+  if (!options.write_displacement) return pipeline::io::set_positions(cloud, xyz.data(), context);
+  const std::vector<double> before = pipeline::io::positions(cloud, context);
+  pipeline::io::set_positions(cloud, xyz.data(), context);
   std::vector<double> distance = pipeline::displacements(before, pipeline::io::positions(cloud, context));
   for (double& d : distance)
     if (!std::isfinite(d)) d = 0;
   pipeline::io::set_field(cloud, kDisplacement, pipeline::io::Scalar::float32, distance, context);
-}
-
-/// Gives the points new positions and, if asked for, the field of how far that moved them.
-void move_points(const DenoiseCommandOptions& options, pipeline::io::Cloud& cloud,
-                 const std::vector<double>& xyz, const Context& context) {
-  std::vector<double> before;
-  if (options.write_displacement) before = pipeline::io::positions(cloud, context);
-  pipeline::io::set_positions(cloud, xyz.data(), context);
-  if (options.write_displacement) write_displacement(cloud, before, context);
 }
 
 /// Adds the field of outliers. `outlier`: one for each point, or empty.
@@ -230,8 +224,7 @@ void page_after(const DenoiseReport& done, const DenoiseCommandOptions& options,
   contents.after = pipeline::page_side(job.output, cloud, context);
   if (!options.normals.normals) contents.after.normals.clear();
   contents.outlier = done.outlier;
-  for (std::size_t i = 0; options.removes() && i < done.outlier.size(); ++i)
-    if (done.outlier[i] != 0) std::fill_n(&contents.after.xyz[3 * i], 3, std::nan(""));
+  if (options.removes()) contents.after.xyz = without_outliers(std::move(contents.after.xyz), done.outlier);
   contents.figures = {{"outliers", std::to_string(done.outliers)},
                       {"spacing", fmt::format("{:.4g}", done.spacing)},
                       {"noise", fmt::format("{:.3g}", done.noise)}};
