@@ -60,12 +60,6 @@ std::string needs_whole_cloud(const DenoiseCommandOptions& options, pipeline::io
   return "";
 }
 
-/// What --memory says, else what the machine has, if that is known. \throw Failure (usage).
-std::optional<std::uint64_t> memory_to_use(const DenoiseCommandOptions& options) {
-  if (options.memory) return bytes_of(*options.memory);
-  return available_memory();
-}
-
 /// A file that needs more memory than there is.
 struct LargeFile {
   std::uint64_t finite = 0;  ///< points
@@ -130,7 +124,7 @@ void check_memory(const DenoiseCommandOptions& options, const Job& job, const st
 
 std::optional<std::uint64_t> memory_of_tiles(const DenoiseCommandOptions& options, const Job& job,
                                              const Context& context) {
-  const auto most = memory_to_use(options);
+  const std::optional<std::uint64_t> most = options.memory ? bytes_of(*options.memory) : available_memory();
   if (!most || job.input == "-" || !goes_into_file(job)) return std::nullopt;
   const auto large = too_large(job.input, *most, options.normals.normals, context);
   if (!large) return std::nullopt;
