@@ -59,16 +59,12 @@ void check_options(const SurfaceOptions& options, const SurfaceMethod& method, c
 }
 
 /// Checked before the work: the output must be able to hold faces.
-void check_format(const Job& job, const FileOptions& options) {
-  std::optional<pipeline::io::Format> format;
-  if (options.format)
-    format = pipeline::io::format_by_name(*options.format);
-  else if (job.output != "-")
-    format = pipeline::io::format_of_extension(job.output);
+void check_format(const Job& job, const FileOptions& options, const pipeline::io::Cloud& cloud) {
   using pipeline::io::Format;
-  if (format && *format != Format::ply && *format != Format::off)
+  const Format format = target_of(cloud, job.output, options, Format::ply).format;
+  if (format != Format::ply && format != Format::off)
     fail(ErrorCode::usage, "{}: {} cannot hold a surface; use PLY or OFF", job.output,
-         pipeline::io::name_of(*format));
+         pipeline::io::name_of(format));
 }
 
 std::string text_of(const Topology& found) {
@@ -109,7 +105,7 @@ void enter(const Reconstruction& made, const ReconstructCommandOptions& options,
 std::string reconstruct_cloud(const ReconstructCommandOptions& options, const SurfaceMethod& method,
                               pipeline::io::Cloud& cloud, const CloudTask& task) {
   const auto& [job, context, console, stages, entry] = task;
-  check_format(job, options.job.files);
+  check_format(job, options.job.files, cloud);
   need_memory(job.input, rfsmooth::denoise_memory(cloud.size()));
   const std::vector<double> xyz = pipeline::io::positions(cloud, context);
   ReconstructOptions how = options.reconstruct;
