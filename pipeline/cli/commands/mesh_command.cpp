@@ -18,6 +18,7 @@
 #include "pipeline/prepare.h"
 #include "pipeline/row_order.h"
 #include "rfs_mesh/connect/connect.h"
+#include "rfs_mesh/corners.h"
 
 namespace rfsmooth::cli {
 
@@ -46,11 +47,6 @@ struct MeshCommandOptions {
   MeshOptions mesh;
   JobOptions job;
 };
-
-std::vector<Edge> renumbered(std::vector<Edge> edges, const std::vector<Index>& rank) {
-  for (auto& e : edges) e = {std::min(rank[e[0]], rank[e[1]]), std::max(rank[e[0]], rank[e[1]])};
-  return edges;
-}
 
 /// What a stage needs: what only later ones need is not made.
 rfs_mesh::Wanted wanted_for(const std::string& stage) {
@@ -128,13 +124,13 @@ std::string connect_cloud(const MeshCommandOptions& options, pipeline::io::Cloud
   Positions points;  // at the file's own coordinates
   for (const std::size_t i : order.row) points.emplace_back(&xyz[3 * i]);
   Graph graph = graph_of(stage, connection);
-  const auto edges = renumbered(std::move(graph.edges), order.rank);
+  for (Edge& e : graph.edges) e = rfs_mesh::edge_between(order.rank[e[0]], order.rank[e[1]]);
   std::vector<Face> faces;
   if (stage == "rfs") faces = connection.mesh.faces;
   for (auto& face : faces)
     for (Index& corner : face) corner = order.rank[corner];
   const pipeline::io::Encoding encoding = cloud.encoding;
-  cloud = pipeline::io::make_mesh_file(points, faces, edges, graph.kind);
+  cloud = pipeline::io::make_mesh_file(points, faces, graph.edges, graph.kind);
   if (encoding != pipeline::io::Encoding::binary_compressed) cloud.encoding = encoding;  // PLY has none
 
   entry["options"] = effective_options(options.mesh, options.job.files);
@@ -143,7 +139,7 @@ std::string connect_cloud(const MeshCommandOptions& options, pipeline::io::Cloud
   entry["spacing"] = connection.noise.spacing;
   if (needs_noise) entry["noise"] = connection.noise.sigma;
   return fmt::format("{}: {}, {}, {}", stage, counted(points.size(), "vertex", "vertices"),
-                     counted(edges.size(), "edge"), counted(faces.size(), "face"));
+                     counted(graph.edges.size(), "edge"), counted(faces.size(), "face"));
 }
 
 /// What is reported until the stage that was asked for is made.
