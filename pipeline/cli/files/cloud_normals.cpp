@@ -1,5 +1,6 @@
 #include "pipeline/cli/files/cloud_normals.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/fail.h"
@@ -17,12 +18,6 @@ using Eigen::Vector3d;
 using Names = io::NormalNames;
 
 namespace {
-
-bool complete(const io::Cloud& cloud, const Names& names) {
-  for (const char* name : names)
-    if (!io::find_field(cloud, name)) return false;
-  return true;
-}
 
 /// Writes n x 3 normals into the fields; rows of NaN keep what is there.
 void put(io::Cloud& cloud, const Names& names, const std::vector<double>& normals, const Context& context) {
@@ -85,9 +80,10 @@ void write_normals(const NormalsFields& options, io::Cloud& cloud, const double*
   const NormalsOptions wanted = normals_facing(options.viewpoint, cloud, xyz, task);
   std::vector<double> normals(3 * cloud.size());
   value_or_throw(rfsmooth::estimate_normals(xyz, cloud.size(), wanted, context, normals.data()));
+  const auto there = [&](const char* name) { return io::find_field(cloud, name).has_value(); };
   bool written = false;
   for (const Names& names : {io::kPlyNormal, io::kPcdNormal}) {
-    if (!complete(cloud, names)) continue;
+    if (!std::all_of(names.begin(), names.end(), there)) continue;
     put(cloud, names, normals, context);
     written = true;
   }
