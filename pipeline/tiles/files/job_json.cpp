@@ -8,15 +8,7 @@
 
 namespace rfsmooth::pipeline::tiles {
 
-namespace {
-
 using nlohmann::ordered_json;
-
-[[noreturn]] void refuse_plan(const std::filesystem::path& folder, const nlohmann::json::exception& error) {
-  fail(ErrorCode::input_unreadable, "{}: is no plan: {}", plan_file(folder).string(), io::said_of(error));
-}
-
-}  // namespace
 
 std::filesystem::path plan_file(const std::filesystem::path& folder) {
   return folder / "job.json";
@@ -63,7 +55,7 @@ Job job_of(const ordered_json& json, const std::filesystem::path& folder) {
     for (const auto& place : json.at("repeated"))
       job.repeated.push_back({place_of(place.at("at")), place.at("first"), place.at("others")});
   } catch (const nlohmann::json::exception& error) {
-    refuse_plan(folder, error);
+    fail(ErrorCode::input_unreadable, "{}: is no plan: {}", plan_file(folder).string(), io::said_of(error));
   }
   return job;
 }

@@ -11,14 +11,6 @@ using nlohmann::ordered_json;
 constexpr std::array<const char*, 4> kNotSmoothed = {"no-iterations", "no-strength", "too-few-points",
                                                      "too-little-noise"};  // in the order of NotSmoothed
 
-ordered_json json_of_scale(const NoiseScale& scale) {
-  return {{"sigma", scale.sigma}, {"neighbours", scale.neighbours}, {"radius", scale.radius}};
-}
-
-NoiseScale scale_of(const ordered_json& json) {
-  return {json.at("sigma"), json.at("neighbours"), json.at("radius")};
-}
-
 ordered_json json_of_noise(const NoiseModel& noise) {
   ordered_json json = {{"sigma", noise.sigma},       {"shape", noise.shape},      {"spacing", noise.spacing},
                        {"apart", noise.apart},       {"shared_by", noise.shared}, {"piece", noise.piece},
@@ -99,7 +91,8 @@ ordered_json json_of(const Statistics& all) {
   if (all.box) json["box"] = json_of(*all.box);
   if (all.points) json["points"] = *all.points;
   if (all.reach) json["reach"] = *all.reach;
-  if (all.scale) json["scale"] = json_of_scale(*all.scale);
+  if (const auto& scale = all.scale)
+    json["scale"] = {{"sigma", scale->sigma}, {"neighbours", scale->neighbours}, {"radius", scale->radius}};
   if (all.spacing) json["spacing"] = *all.spacing;
   if (all.noise) json["noise"] = json_of_noise(*all.noise);
   if (all.tails)
@@ -119,7 +112,10 @@ Statistics statistics_of(const ordered_json& json) {
   if (json.contains("box")) all.box = box_of(json.at("box"));
   if (json.contains("points")) all.points = json.at("points").get<std::size_t>();
   if (json.contains("reach")) all.reach = json.at("reach").get<double>();
-  if (json.contains("scale")) all.scale = scale_of(json.at("scale"));
+  if (json.contains("scale")) {
+    const auto& scale = json.at("scale");
+    all.scale = NoiseScale{scale.at("sigma"), scale.at("neighbours"), scale.at("radius")};
+  }
   if (json.contains("spacing")) all.spacing = json.at("spacing").get<double>();
   if (json.contains("noise")) all.noise = noise_of(json.at("noise"));
   if (json.contains("tails")) {
