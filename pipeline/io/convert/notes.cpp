@@ -60,14 +60,11 @@ void take_grid_and_viewpoint(Cloud& cloud) {
 void take_interludes(Cloud& cloud) {
   for (Table& table : cloud.elements) {
     for (const Interlude& between : table.interludes) {
-      const char* p = between.text.data();
-      const char* end = p + between.text.size();
-      while (p != end) {
-        const char* newline = std::find(p, end, '\n');
-        std::string_view line(p, std::size_t(newline - p));
+      for (std::string_view rest = between.text; !rest.empty();) {
+        std::string_view line = rest.substr(0, rest.find('\n'));
+        rest.remove_prefix(std::min(line.size() + 1, rest.size()));
         while (!line.empty() && is_separator(line.back(), Separators::space)) line.remove_suffix(1);
         if (!line.empty()) cloud.notes.push_back({std::string(line)});
-        p = newline == end ? end : newline + 1;
       }
     }
     table.interludes.clear();
