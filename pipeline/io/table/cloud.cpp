@@ -60,14 +60,6 @@ std::optional<std::size_t> colour_by_letter(const Cloud& cloud, std::string_view
   return first_field(cloud, name.substr(0, 1), same_but_for_case);
 }
 
-// How many points are beyond the range of scaled whole numbers, which has no NaN.
-std::size_t count_beyond(const Cloud& cloud, const std::array<Field, 3>& fields, const double* xyz,
-                         const Context& context) {
-  return sum_over(context, cloud.size(), std::size_t{0}, [&](std::size_t i) {
-    return std::size_t(!can_hold(fields, {xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]}));
-  });
-}
-
 }  // namespace
 
 std::string_view name_of(Format format) {
@@ -122,7 +114,10 @@ void warn_of_rounding(const std::array<Field, 3>& fields, std::size_t beyond, co
 void set_positions(Cloud& cloud, const double* xyz, const Context& context) {
   const std::vector<Field>& fields = cloud.points().fields;
   const std::array<Field, 3> of_xyz = {fields[cloud.xyz[0]], fields[cloud.xyz[1]], fields[cloud.xyz[2]]};
-  warn_of_rounding(of_xyz, count_beyond(cloud, of_xyz, xyz, context), context);
+  const auto beyond = [&](std::size_t i) {
+    return std::size_t(!can_hold(of_xyz, Eigen::Vector3d(xyz + 3 * i)));
+  };
+  warn_of_rounding(of_xyz, sum_over(context, cloud.size(), std::size_t{0}, beyond), context);
   scatter(cloud.points(), {cloud.xyz.begin(), cloud.xyz.end()}, xyz, context);
 }
 
