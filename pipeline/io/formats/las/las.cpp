@@ -83,11 +83,6 @@ Facts facts_of(const Table& points, int point_format, const Context& context) {
   return facts;
 }
 
-// Facts as bytes: what Cloud keeps to tell whether the header still agrees.
-std::string remembered(const Facts& facts) {
-  return {reinterpret_cast<const char*>(&facts), sizeof facts};
-}
-
 template <class T, std::size_t n>
 bool same_bytes(const std::array<T, n>& a, const std::array<T, n>& b) {
   return std::memcmp(a.data(), b.data(), sizeof a) == 0;  // NOLINT(bugprone-suspicious-memory-comparison)
@@ -167,7 +162,9 @@ Cloud read_las(const Source& source, const Context& context) {
   const Bytes tail = source.read(cursor.offset, std::size_t(source.size() - cursor.offset), context);
   cloud.tail.assign(tail.data(), tail.size());
   check_extended(source, header, cloud.tail);
-  cloud.original_canonical = remembered(facts_of(points, header.point_format, context));
+  // As bytes: what tells write_las whether the header still agrees.
+  const Facts facts = facts_of(points, header.point_format, context);
+  cloud.original_canonical.assign(reinterpret_cast<const char*>(&facts), sizeof facts);
   cloud.xyz = {0, 1, 2};
   cloud.width = points.count;
   cloud.elements.push_back(std::move(points));
