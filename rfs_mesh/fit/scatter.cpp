@@ -1,6 +1,7 @@
 #include "rfs_mesh/fit/scatter.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -45,16 +46,47 @@ void ScatterFit::find_residuals(const Vector6& c) {
   for (std::size_t i = 0; i < u_.size(); ++i) residual_[i] = z_[i] - heights(u_[i], v_[i]);
 }
 
-double ScatterFit::err_together() {
+void ScatterFit::find_nearest() {
   // Along the patch, not in space: beside a point far above the others its nearest are above, too.
   nearest_.clear();
-  for (std::size_t i = 0; i < u_.size(); ++i)
-    nearest_.emplace_back(u_[i] * u_[i] + v_[i] * v_[i], residual_[i] > 0);
-  std::nth_element(nearest_.begin(), nearest_.begin() + kRing, nearest_.end(),
-                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  for (std::size_t i = 0; i < u_.size(); ++i) nearest_.emplace_back(u_[i] * u_[i] + v_[i] * v_[i], i);
+  if (nearest_.size() > kNeighbourhood)
+    std::nth_element(nearest_.begin(), nearest_.begin() + kNeighbourhood, nearest_.end());
+}
+
+double ScatterFit::err_together() {
+  const auto end = nearest_.begin() + std::ptrdiff_t(std::min(kNeighbourhood, nearest_.size()));
+  std::nth_element(nearest_.begin(), nearest_.begin() + kRing, end);
   int sum = 0;
-  for (std::size_t i = 0; i < kRing; ++i) sum += nearest_[i].second ? 1 : -1;
+  for (std::size_t k = 0; k < kRing; ++k) sum += residual_[nearest_[k].second] > 0 ? 1 : -1;
   return double(sum * sum) / double(kRing);
+}
+
+double ScatterFit::err_in_rows() const {
+  struct Sign {
+    double u, v, off;
+  };
+  std::array<Sign, kNeighbourhood> signs;
+  const std::size_t count = std::min(kNeighbourhood, nearest_.size());
+  double mean = 0;
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t i = nearest_[k].second;
+    signs[k] = {u_[i], v_[i], residual_[i] > 0 ? 1.0 : -1.0};
+    mean += signs[k].off / double(count);
+  }
+  const double variance = 1 - mean * mean;
+  if (!(variance > 0)) return 1;
+  double along = 0, aside = 0, pairs = 0;
+  for (std::size_t k = 0; k < count; ++k)
+    for (std::size_t l = 0; l < k; ++l) {
+      const double u = signs[k].u - signs[l].u, v = signs[k].v - signs[l].v, square = u * u + v * v;
+      if (!(square > 0)) continue;
+      const double alike = (signs[k].off - mean) * (signs[l].off - mean) / (variance * square);
+      along += alike * (u * u - v * v);
+      aside += alike * 2 * u * v;
+      ++pairs;
+    }
+  return pairs > 0 ? (along * along + aside * aside) / pairs : 1;
 }
 
 void ScatterFit::look_at_residuals(Scatter& s) const {
@@ -217,7 +249,9 @@ Scatter ScatterFit::operator()(const SpatialIndex& index, const Eigen::Vector3d&
     if (!(left > 0.02 * sums.kept) || !std::isfinite(squares)) return s;
     if (!(sigma > 0) && u_.size() > kRing) {
       find_residuals(c);
+      find_nearest();
       s.together = err_together();
+      s.in_rows = err_in_rows();
       look_at_residuals(s);
     }
     s.variance = r * r * std::max(0.0, squares) / left / (round > 0 ? kInside : 1);

@@ -42,6 +42,11 @@ struct Scatter {
   double together = 1;  ///< of the kRing nearest points, those above the quadric count 1, those below -1:
                         ///< the sum's square over kRing. Its mean is 1 where every point errs by itself,
                         ///< kRing where they err the same way. Without window
+  /// The same along rows. Of every two of the kNeighbourhood nearest points the product of their signs, less
+  /// what all have in common, as a vector in twice the angle of the direction from one to the other: the
+  /// sum's square over the number of pairs. Its mean is 1 where every point errs by itself, more where those
+  /// along one direction err the same way and those beside them another. Without window
+  double in_rows = 1;
   /// Fourth moment of the residuals over the square of the second: 3 of a normal distribution, 1.8 of an even
   /// one, 1 of two sheets. Without window.
   double flatness = kNormalFlatness;
@@ -86,7 +91,9 @@ class ScatterFit {
   };
 
   void find_residuals(const Vector6& c);     ///< from a quadric
-  double err_together();                     ///< Scatter::together of the residuals
+  void find_nearest();                       ///< sets `nearest_`, of the residuals
+  double err_together();                     ///< Scatter::together of these
+  double err_in_rows() const;                ///< Scatter::in_rows of these
   void look_at_residuals(Scatter& s) const;  ///< Scatter::flatness to middle
   /// Fills `x_`, `y_` and `z_` with the points of `near_` from the place, over r.
   void scale(const Positions& points, const Eigen::Vector3d& place, double r);
@@ -105,7 +112,8 @@ class ScatterFit {
   std::vector<double> x_, y_, z_;  ///< of each point, over the ball's radius; then z_ is along the normal
   std::vector<double> u_, v_;      ///< along the patch, over its radius
   std::vector<double> weight_, residual_;
-  std::vector<std::pair<double, bool>> nearest_;  ///< squared distance along the patch, whether it lies above
+  /// Squared distance along the patch, of all points, and which; the kNeighbourhood nearest are in front.
+  std::vector<std::pair<double, std::size_t>> nearest_;
 };
 
 }  // namespace rfsmooth::rfs_mesh

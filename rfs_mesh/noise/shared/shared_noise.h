@@ -15,7 +15,8 @@
 ///   of: bumps and folds of a statue grow hardly faster, and are no noise;
 /// - nearest points lie off the same way there: Scatter::together above that of points on their own, which is
 ///   what patches of m points do not follow of it, m / (m + 45), about m as about 2 m. (Loud points among
-///   calm ones make s(m) grow, too.)
+///   calm ones make s(m) grow, too.) Or they do so along rows, and those beside them another way: lines of a
+///   scanner that are each off by itself (Scatter::in_rows).
 ///
 /// or if depths in steps (depth_steps.h) make sure of it. Terraces are such steps, but of a laser's ranges
 /// only those that points scatter no farther than (are_two_depths). Its variance is then the largest S with p

@@ -19,7 +19,8 @@ namespace {
 constexpr double kLeanOfRelief = 0.05;  // a skewness of 0.22
 constexpr double kTogether = 0.4;       // above that of points on their own: two standard deviations
 // Patches of m points follow noise of their own so that m / (m + kFollows) of 1 is left of `together`: 0.43,
-// 0.58, 0.75, 0.82, 0.91 for 32, 64, ... 512 on a plane.
+// 0.58, 0.75, 0.82, 0.91 for 32, 64, ... 512 on a plane. Of `in_rows` they leave about as much: 0.3, 0.6,
+// 0.8.
 constexpr double kFollows = 45;
 constexpr double kFastest = 0.25;         // k / m at which g(k / 2 m) / g(k / m) is greatest
 constexpr std::size_t kDiskPoints = 300;  // of the disk on which g is computed
@@ -92,7 +93,11 @@ double left_by_quadric(double points, double m) {
 }
 
 bool SignsOfSharing::err_together(double m) const {
-  return together > m / (m + kFollows) + kTogether;
+  return together > m / (m + kFollows) + kTogether || err_in_rows(m);
+}
+
+bool SignsOfSharing::err_in_rows(double m) const {
+  return in_rows > m / (m + kFollows) + kTogether;
 }
 
 bool SignsOfSharing::of_two_sheets(double own) const {
@@ -109,10 +114,12 @@ SignsOfSharing signs_of(const std::vector<const Scatter*>& fits) {
   std::vector<double> flatness, lean;
   for (const Scatter* const fit : fits) {
     signs.together += fit->together;
+    signs.in_rows += fit->in_rows;
     flatness.push_back(fit->flatness);
     lean.push_back(fit->lean_in_common);
   }
   signs.together /= double(fits.size());
+  signs.in_rows /= double(fits.size());
   signs.flatness = median(flatness);
   signs.lean = median(lean);
   return signs;

@@ -17,12 +17,17 @@ struct SignsOfSharing {
   /// Mean of Scatter::together: 1, less what patches follow of it, of noise that points have of their own, up
   /// to kRing where they share it.
   double together = 0;
+  double in_rows =
+      0;  ///< mean of Scatter::in_rows: the same of lines of a scanner that are each off by itself
   /// Medians of Scatter::flatness and lean_in_common, since that of a few rocks on a sea floor is large.
   double flatness = 0, lean = 0;
 
   /// Whether nearest points lie off patches of m points the same way: `together` is above that of points on
   /// their own, which is what patches do not follow of it, m / (m + 45).
+  /// Or they do so along rows.
   bool err_together(double m) const;
+  /// Whether points in a row lie off the same way, beyond what chance and patches of m points make of it.
+  bool err_in_rows(double m) const;
   /// Whether they are as flat as those of two sheets, beyond the noise that points have of their own, `own`
   /// of the variance.
   bool of_two_sheets(double own) const;

@@ -48,9 +48,9 @@ std::size_t stops_at(const std::vector<SharingShown>& shown) {
   const double narrow = shown.front().scatter;
   for (std::size_t i = 0; i + 2 < shown.size(); ++i) {
     const SharingShown &here = shown[i], &next = shown[i + 1];
-    if (here.holds_slab() && next.of_one_smooth_sheet(narrow * narrow) &&
-        next.scatter > kGrowthOfNoise * narrow && shown[i + 2].scatter <= kGrowthOfNoise * here.scatter &&
-        here.signs.err_together(here.points))
+    const bool grew = next.scatter > kGrowthOfNoise * narrow || here.signs.err_in_rows(here.points);
+    if (here.holds_slab() && next.of_one_smooth_sheet(narrow * narrow) && grew &&
+        shown[i + 2].scatter <= kGrowthOfNoise * here.scatter && here.signs.err_together(here.points))
       return i;
     if (next.scatter * next.scatter > kLeastGrowthOfShape * here.scatter * here.scatter) break;
   }

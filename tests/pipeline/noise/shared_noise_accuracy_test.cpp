@@ -233,4 +233,32 @@ TEST(NoiseLaws, GroundIsNoNoiseThatNeighboursShare) {
   EXPECT_LT(report.rms_move, 0.1 * relief);  // it was a half
 }
 
+// Of a line laser over hills: each line is off by itself, as a whole. Hills between a dozen and forty lines
+// wide leave few neighbourhoods that are wide enough to show it and still flat.
+TEST(NoiseLaws, LinesThatAreEachOffByThemselvesAreSmoothed) {
+  constexpr int kSide = 90;  // one point a square unit
+  constexpr double kOff = 0.27, kOwn = 0.13;
+  const auto hills = [](double x, double y) {
+    return 3.6 * std::sin(x / 9) * std::cos(y / 11) + 0.9 * std::sin(x / 2.7 + y / 15);
+  };
+  for (const unsigned seed : {1U, 2U, 3U}) {
+    std::mt19937_64 engine(seed);
+    std::normal_distribution<double> normal;
+    Positions points;
+    for (int x = 0; x < kSide; ++x) {
+      const double off = kOff * normal(engine);
+      for (int y = 0; y < kSide; ++y) points.emplace_back(x, y, hills(x, y) + off + kOwn * normal(engine));
+    }
+    const auto error = [&] {
+      double sum = 0;
+      for (const Eigen::Vector3d& p : points) sum += std::pow(p.z() - hills(p.x(), p.y()), 2);
+      return std::sqrt(sum / double(points.size()));
+    };
+    const double raw = error();
+    const DenoiseReport report = denoise(points);
+    EXPECT_GT(report.statistics.noise->shared, 1) << seed;
+    EXPECT_LT(error(), 0.65 * raw) << seed;  // it was 0.8
+  }
+}
+
 }  // namespace

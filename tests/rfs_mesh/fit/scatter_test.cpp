@@ -3,6 +3,7 @@
 #include <cmath>
 #include <functional>
 #include <random>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -76,6 +77,26 @@ TEST(Scatter, NearestPointsErrTogetherWhereTheyShareTheNoise) {
   }
   EXPECT_NEAR(alone, 1, 0.3);
   EXPECT_GT(shared, 2 * alone);
+}
+
+// The lines of a scanner, each off by itself, whichever way they run; not what points have of their own.
+TEST(Scatter, PointsErrInRowsWhereLinesAreOff) {
+  std::mt19937_64 engine(7);
+  std::normal_distribution<double> normal(0, 0.01);
+  constexpr int kRounds = 200;
+  double alone = 0, along_y = 0, aslant = 0;
+  for (int round = 0; round < kRounds; ++round) {
+    alone += middle_fit(100, [&](const auto&) { return normal(engine); }).in_rows / kRounds;
+    std::vector<double> off(400);
+    for (double& o : off) o = normal(engine);
+    const auto line = [&](double across) { return off[std::size_t(200 + 25 * across)]; };
+    along_y += middle_fit(100, [&](const auto& p) { return line(p.x()); }).in_rows / kRounds;
+    aslant +=
+        middle_fit(100, [&](const auto& p) { return line(0.6 * p.x() + 0.8 * p.y()); }).in_rows / kRounds;
+  }
+  EXPECT_NEAR(alone, 1, 0.4);  // less what the patch follows
+  EXPECT_GT(along_y, 5 * alone);
+  EXPECT_GT(aslant, 5 * alone);
 }
 
 TEST(Scatter, VarianceIsThatOffAQuadric) {
