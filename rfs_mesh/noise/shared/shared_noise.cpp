@@ -7,6 +7,7 @@
 #include "rfs_mesh/levels.h"
 #include "rfs_mesh/noise/noise_levels.h"
 #include "rfs_mesh/noise/shared/signs_of_sharing.h"
+#include "rfs_mesh/noise/steps/terraces.h"
 #include "rfs_mesh/sample.h"
 
 namespace rfsmooth::rfs_mesh {
@@ -112,11 +113,11 @@ SharedNoise find_shared_noise(Places& places, const NoiseStart& start, const Dep
   SharedNoise found;
   const Calm calm = look(places, start, steps, context);
   if (calm.m.empty()) return found;  // nothing scatters, or too few points to tell
-  // A neighbourhood within one terrace sees nothing of the steps, so the noise may grow steeply. Shells of a
-  // laser scanner are terraces only where its noise does not reach from one to the next; where the search
-  // asks what a piece of the surface is (noise_search.h), that is not known yet, and they are none.
+  // A neighbourhood within one terrace sees nothing of the steps, so the noise may grow steeply. Where what
+  // points err by on their own reaches from one step to the next, it does not: ground in whole metres grows
+  // as it would without.
   const bool terraces =
-      steps != nullptr && (!steps->on_shells() || are_two_depths(start.sigma * start.sigma, start.of_steps));
+      steps != nullptr && are_two_depths(start.sigma * start.sigma, rounding_noise(steps->typical()));
   // What a window from below saw much less of at the same m is the distance of two sheets.
   if (!terraces && kLouder * kLouder * start.sigma * start.sigma < calm.seen.front()) return found;
   double sill = 0, surely = 0;

@@ -18,8 +18,8 @@
 ///   calm ones make s(m) grow, too.) Or they do so along rows, and those beside them another way: lines of a
 ///   scanner that are each off by itself (Scatter::in_rows).
 ///
-/// or if depths in steps (depth_steps.h) make sure of it. Terraces are such steps, but of a laser's ranges
-/// only those that points scatter no farther than (are_two_depths). Its variance is then the largest S with p
+/// or if depths in steps (depth_steps.h) make sure of it. Terraces are such steps that points, where calm,
+/// scatter no farther than (are_two_depths). Its variance is then the largest S with p
 /// = 3, or that of the steps as far as it is seen. Of noise, s^2 grows at most 1.8 times from m to 2 m (2 on
 /// terraces). An m counts from the first growth as slow as that; off terraces, after a faster one, from the
 /// second in a row, since one may be the end of a bump, and only once it is less than 1.41: ground, hills

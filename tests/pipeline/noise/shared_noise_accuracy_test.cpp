@@ -210,9 +210,8 @@ TEST(NoiseLaws, GravelIsNoNoiseThatNeighboursShare) {
   EXPECT_LT(report.noise, 1.2 * kNoise);  // it was 1.8 times
 }
 
-// Hills, and hills on these: the finer the lower. They never stop growing with the neighbourhood as noise
-// does, only ever slower.
-TEST(NoiseLaws, GroundIsNoNoiseThatNeighboursShare) {
+/// Hills, and hills on these: the finer the lower. Points on a square grid.
+Positions ground() {
   constexpr int kSide = 160;
   std::mt19937_64 engine(1);
   std::uniform_real_distribution<double> turn(0, 2 * M_PI);
@@ -226,11 +225,34 @@ TEST(NoiseLaws, GroundIsNoNoiseThatNeighboursShare) {
         p.z() +=
             high * std::cos(2 * M_PI / length * (std::cos(along) * p.x() + std::sin(along) * p.y()) + from);
     }
+  return points;
+}
+
+// They never stop growing with the neighbourhood as noise does, only ever slower.
+TEST(NoiseLaws, GroundIsNoNoiseThatNeighboursShare) {
+  Positions points = ground();
   const double relief = rms_height(points, 0);
   const DenoiseReport report = denoise(points);
   EXPECT_EQ(report.statistics.noise->shared, 1);
   EXPECT_TRUE(report.statistics.noise->shared_at_sites.empty());
   EXPECT_LT(report.rms_move, 0.1 * relief);  // it was a half
+}
+
+// A radar's map in whole metres, brought into other coordinates: its heights come in steps far finer than the
+// relief, and are no terraces.
+TEST(NoiseLaws, NorIsGroundInHeightsThatWereRounded) {
+  for (const double step : {0.02, 0.1, 0.5}) {
+    Positions points = ground();
+    for (Eigen::Vector3d& p : points) {
+      p.z() = step * std::round(p.z() / step);
+      p = Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitZ()) * p;
+    }
+    const double relief = rms_height(points, 0);
+    const DenoiseReport report = denoise(points);
+    EXPECT_GT(report.statistics.noise->step, 0) << step;
+    EXPECT_EQ(report.statistics.noise->shared, 1) << step;
+    EXPECT_LT(report.rms_move, 0.1 * relief) << step;  // it was two thirds
+  }
 }
 
 // Of a line laser over hills: each line is off by itself, as a whole. Hills between a dozen and forty lines
