@@ -6,6 +6,7 @@
 #include "base/parallel.h"
 #include "base/quantile.h"
 #include "rfs_mesh/levels.h"
+#include "rfs_mesh/noise/noise_levels.h"
 #include "rfs_mesh/noise/shared/signs_of_sharing.h"
 
 namespace rfsmooth::rfs_mesh {
@@ -48,7 +49,8 @@ std::size_t stops_at(const std::vector<SharingShown>& shown) {
   const double narrow = shown.front().scatter;
   for (std::size_t i = 0; i + 2 < shown.size(); ++i) {
     const SharingShown &here = shown[i], &next = shown[i + 1];
-    const bool grew = next.scatter > kGrowthOfNoise * narrow || here.signs.err_in_rows(here.points);
+    const double least = here.signs.err_in_rows(here.points) ? kSameNoise : kGrowthOfNoise;
+    const bool grew = next.scatter > least * narrow;
     if (here.holds_slab() && next.of_one_smooth_sheet(narrow * narrow) && grew &&
         shown[i + 2].scatter <= kGrowthOfNoise * here.scatter && here.signs.err_together(here.points))
       return i;

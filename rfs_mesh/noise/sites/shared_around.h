@@ -2,8 +2,8 @@
 /// rings of a laser that are each a little off, where they are near each other.
 ///
 /// Around a site the scatter s(m) about a quadric stops growing where the neighbourhood is wider than such
-/// noise reaches, if it grew at all: 1.26 times from the narrowest that holds the slab, or where points err
-/// alike along rows, of which a narrow ball, too, sees several. What is left of it,
+/// noise reaches, if it grew at all: 1.26 times from the narrowest that holds the slab, or 1.1 times where
+/// points err alike along rows, of which a narrow ball, too, sees several. What is left of it,
 /// s(2 m) of the first m from which s(4 m) < 1.26 s(m), is noise, all of it, under the conditions that
 /// shared_noise.h asks of m and 2 m for: the ball holds the slab, the nearest points err together, the
 /// residuals are neither of two sheets nor of waves in rows nor of stones. (Shape that a quadric does not

@@ -283,4 +283,22 @@ TEST(NoiseLaws, LinesThatAreEachOffByThemselvesAreSmoothed) {
   }
 }
 
+// Of fits to one strip after the other some err in rows by chance.
+TEST(NoiseLaws, NoiseOfEachPointIsSharedNowhere) {
+  constexpr int kLong = 900, kWide = 24;
+  for (const double noise : {1.3, 2.0}) {
+    std::mt19937_64 engine(5);
+    std::normal_distribution<double> normal;
+    Positions points;
+    for (int x = 0; x < kLong; ++x)
+      for (int y = 0; y < kWide; ++y)
+        points.emplace_back(x + 0.2 * normal(engine), y + 0.2 * normal(engine),
+                            6 * std::sin(x / 40.0) + noise * normal(engine));
+    const rfsmooth::NoiseModel model = rfs_mesh::measure_noise(rfs_mesh::SpatialIndex(points, {}), {});
+    EXPECT_EQ(model.shared, 1) << noise;
+    EXPECT_TRUE(model.shared_at_sites.empty()) << noise;
+    EXPECT_NEAR(model.sigma, noise, 0.1 * noise);
+  }
+}
+
 }  // namespace
