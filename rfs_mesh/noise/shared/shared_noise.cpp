@@ -17,10 +17,9 @@ namespace {
 // Chosen on the laws of tests/bench/quality (six shapes, 10,000 points) and on the raw scans of
 // tests/bench/scans.
 constexpr std::size_t kPointsLooked = 500000;  // at each m: of wide places fewer say as much
-// Of the variance, from m to 2 m: second sheets and detail grow faster than noise.
+constexpr std::size_t kSlowInARow = 2;         // the least that is a row
+// Of the variance, from m to 2 m: noise that no other shape overtakes begins no faster.
 constexpr double kMostGrowthOfNoise = 1.8;
-constexpr double kGrowthAcrossEdges = 2;  // 2^p of shape
-constexpr std::size_t kSlowInARow = 2;    // the least that is a row
 // The same of ground, whose roughness has no scale of its own: 2^H, H from 0.5 on (Mandelbrot 1982).
 constexpr double kLeastGrowthOfGround = 1.414;
 
@@ -128,7 +127,8 @@ SharedNoise find_shared_noise(Places& places, const NoiseStart& start, const Dep
     at = i;
   };
   bool held = false, wide = false, fast = false;
-  std::size_t slow = 0;  // growths in a row that noise may have
+  bool grew = false, stopped = false, overtaken = false;  // ground grows, and does neither
+  std::size_t slow = 0;                                   // growths in a row that noise may have
   for (std::size_t i = 0; i < calm.m.size(); ++i) {
     if (!terraces && !hold_slab(calm, i)) {
       if (held) break;
@@ -138,7 +138,10 @@ SharedNoise find_shared_noise(Places& places, const NoiseStart& start, const Dep
     make_sure(i, std::min(calm.steps, calm.seen[i]));
     if (i + 1 == calm.m.size() || calm.m[i + 1] != 2 * calm.m[i] || calm.m[i] < 2 * double(start.m)) continue;
     const double growth = calm.seen[i + 1] / calm.seen[i];
-    slow = growth > (terraces ? kGrowthAcrossEdges : kMostGrowthOfNoise) ? 0 : slow + 1;
+    slow = growth > kLeastGrowthOfShape ? 0 : slow + 1;
+    stopped = stopped || growth < (grew ? kLeastGrowthOfGround : kMostGrowthOfNoise);
+    grew = true;
+    overtaken = overtaken || (slow == 0 && wide);
     if (slow == 0 && wide && (terraces || surely > 0)) break;
     fast = fast || slow == 0;
     // After it grew as shape does, one slow growth may be the end of a bump, and ground never stops growing.
@@ -154,6 +157,7 @@ SharedNoise find_shared_noise(Places& places, const NoiseStart& start, const Dep
       surely = std::max(surely, without_shape(calm.seen[i], calm.seen[i + 1], kLeastGrowthOfShape));
     make_sure(i, without_shape(calm.seen[i], calm.seen[i + 1], kGrowthOfSmoothShape));
   }
+  if (!terraces && !stopped && !overtaken) return found;
   // Compared as variances, for both are lower bounds: with the square of kSameNoise, noise that points share
   // beside their own is missed on a cube.
   if (!(std::max(surely, calm.steps) > kSameNoise * start.sigma * start.sigma)) return found;

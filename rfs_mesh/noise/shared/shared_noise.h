@@ -19,21 +19,22 @@
 ///   scanner that are each off by itself (Scatter::in_rows).
 ///
 /// or if depths in steps (depth_steps.h) make sure of it. Terraces are such steps that points, where calm,
-/// scatter no farther than (are_two_depths). Its variance is then the largest S with p
-/// = 3, or that of the steps as far as it is seen. Of noise, s^2 grows at most 1.8 times from m to 2 m (2 on
-/// terraces). An m counts from the first growth as slow as that; off terraces, after a faster one, from the
-/// second in a row, since one may be the end of a bump, and only once it is less than 1.41: ground, hills
-/// upon hills, never stops growing. (Few points follow noise all of which neighbours share, as of cameras
-/// that match windows, and s^2 grows as fast as that of shape at first.) The first fast growth after an m
-/// that counted ends the search (off terraces only once some noise is sure). Neighbourhoods whose residuals
-/// (off terraces: beyond the noise that points have of their own) are flatter than kFlatnessOfSheets
-/// (two_sheets.h) are of two sheets or of waves in rows (a sine has 1.5, threads and ripples measured under
-/// noise 1.6 to 2.1, noise that points share 2.9 and more), and tell nothing; but not those at two depths
-/// that follow each other, between which noise carries the points of one wall. Nor do those that lean off
-/// terraces (Scatter::lean_in_common): noise is as often above as below, stones are round above and end in
-/// clefts. Those that do not hold a slab as thick as they scatter (kFlatSlab) tell nothing while they are
-/// narrow, and wider ones than some that do are the last, too: leaves and twigs fill them. k is the number
-/// for which
+/// scatter no farther than (are_two_depths). Its variance is then the largest S with p = 3, or that of the
+/// steps as far as it is seen. An m counts from the first growth of s^2, from m to 2 m,
+/// that is less than shape's with p = 1.25, 2.38 times; off terraces, after a faster one, from the second in
+/// a row, since one may be the end of a bump, and only once it is less than 1.41. (Few points follow noise
+/// all of which neighbours share, as of cameras that match windows, and s^2 grows as fast as that of shape at
+/// first.) The first faster growth after an m that counted ends the search (off terraces only once some noise
+/// is sure). Ground, hills upon hills, never stops growing and is not overtaken by other shape: off terraces
+/// there is no noise where s^2 grows 1.8 times and more at first, never less than 1.41 times later, and never
+/// faster than what counts. Neighbourhoods whose residuals (off terraces: beyond the noise that points have
+/// of their own) are flatter than kFlatnessOfSheets (two_sheets.h) are of two sheets or of waves in rows (a
+/// sine has 1.5, threads and ripples measured under noise 1.6 to 2.1, noise that points share 2.9 and more),
+/// and tell nothing; but not those at two depths that follow each other, between which noise carries the
+/// points of one wall. Nor do those that lean off terraces (Scatter::lean_in_common): noise is as often above
+/// as below, stones are round above and end in clefts. Those that do not hold a slab as thick as they scatter
+/// (kFlatSlab) tell nothing while they are narrow, and wider ones than some that do are the last, too: leaves
+/// and twigs fill them. k is the number for which
 ///
 ///     s^2(m) = sigma^2 g(k / m)
 ///
