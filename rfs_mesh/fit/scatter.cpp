@@ -50,13 +50,12 @@ void ScatterFit::find_nearest() {
   // Along the patch, not in space: beside a point far above the others its nearest are above, too.
   nearest_.clear();
   for (std::size_t i = 0; i < u_.size(); ++i) nearest_.emplace_back(u_[i] * u_[i] + v_[i] * v_[i], i);
-  if (nearest_.size() > kNeighbourhood)
-    std::nth_element(nearest_.begin(), nearest_.begin() + kNeighbourhood, nearest_.end());
+  const auto near = nearest_.begin() + std::ptrdiff_t(std::min(kNeighbourhood, nearest_.size()));
+  std::nth_element(nearest_.begin(), near, nearest_.end());
+  std::nth_element(nearest_.begin(), nearest_.begin() + kRing, near);
 }
 
-double ScatterFit::err_together() {
-  const auto end = nearest_.begin() + std::ptrdiff_t(std::min(kNeighbourhood, nearest_.size()));
-  std::nth_element(nearest_.begin(), nearest_.begin() + kRing, end);
+double ScatterFit::err_together() const {
   int sum = 0;
   for (std::size_t k = 0; k < kRing; ++k) sum += residual_[nearest_[k].second] > 0 ? 1 : -1;
   return double(sum * sum) / double(kRing);

@@ -91,8 +91,8 @@ class ScatterFit {
   };
 
   void find_residuals(const Vector6& c);     ///< from a quadric
-  void find_nearest();                       ///< sets `nearest_`, of the residuals
-  double err_together();                     ///< Scatter::together of these
+  void find_nearest();                       ///< sets `nearest_`
+  double err_together() const;               ///< Scatter::together of these
   double err_in_rows() const;                ///< Scatter::in_rows of these
   void look_at_residuals(Scatter& s) const;  ///< Scatter::flatness to middle
   /// Fills `x_`, `y_` and `z_` with the points of `near_` from the place, over r.
@@ -112,7 +112,8 @@ class ScatterFit {
   std::vector<double> x_, y_, z_;  ///< of each point, over the ball's radius; then z_ is along the normal
   std::vector<double> u_, v_;      ///< along the patch, over its radius
   std::vector<double> weight_, residual_;
-  /// Squared distance along the patch, of all points, and which; the kNeighbourhood nearest are in front.
+  /// Squared distance along the patch, of all points, and which; the kRing nearest are in front, then the
+  /// rest of the kNeighbourhood nearest.
   std::vector<std::pair<double, std::size_t>> nearest_;
 };
 

@@ -105,6 +105,35 @@ void agree(const Calm& calm, std::size_t at, double sill, SharedNoise& found) {
   found.sigma = std::sqrt(all(found.points));
 }
 
+/// How the variance grows from each m that is looked at to 2 m, one after the other.
+class Growths {
+ public:
+  explicit Growths(bool terraces) : terraces_(terraces) {}
+
+  /// Returns whether other shape overtakes what counted until then.
+  bool enter(double growth) {
+    slow_ = growth > kLeastGrowthOfShape ? 0 : slow_ + 1;
+    stopped_ = stopped_ || growth < (first_ ? kMostGrowthOfNoise : kLeastGrowthOfGround);
+    first_ = false;
+    const bool overtakes = slow_ == 0 && counts_;
+    overtaken_ = overtaken_ || overtakes;
+    fast_ = fast_ || slow_ == 0;
+    // After it grew as shape does, one slow growth may be the end of a bump, and ground never stops growing.
+    const bool stops = !fast_ || (slow_ >= kSlowInARow && (counts_ || growth < kLeastGrowthOfGround));
+    counts_ = terraces_ ? counts_ || slow_ > 0 : slow_ > 0 && stops;
+    return overtakes;
+  }
+
+  /// Whether the last m counts.
+  bool counts() const { return counts_; }
+  /// Whether they are those of ground, which does not stop growing and is not overtaken.
+  bool of_ground() const { return !terraces_ && !stopped_ && !overtaken_; }
+
+ private:
+  bool terraces_, first_ = true, counts_ = false, fast_ = false, stopped_ = false, overtaken_ = false;
+  std::size_t slow_ = 0;  ///< growths in a row that noise may have
+};
+
 }  // namespace
 
 SharedNoise find_shared_noise(Places& places, const NoiseStart& start, const DepthSteps* steps,
@@ -126,9 +155,8 @@ SharedNoise find_shared_noise(Places& places, const NoiseStart& start, const Dep
     sill = sure;
     at = i;
   };
-  bool held = false, wide = false, fast = false;
-  bool grew = false, stopped = false, overtaken = false;  // ground grows, and does neither
-  std::size_t slow = 0;                                   // growths in a row that noise may have
+  Growths growths(terraces);
+  bool held = false;
   for (std::size_t i = 0; i < calm.m.size(); ++i) {
     if (!terraces && !hold_slab(calm, i)) {
       if (held) break;
@@ -137,17 +165,8 @@ SharedNoise find_shared_noise(Places& places, const NoiseStart& start, const Dep
     held = true;
     make_sure(i, std::min(calm.steps, calm.seen[i]));
     if (i + 1 == calm.m.size() || calm.m[i + 1] != 2 * calm.m[i] || calm.m[i] < 2 * double(start.m)) continue;
-    const double growth = calm.seen[i + 1] / calm.seen[i];
-    slow = growth > kLeastGrowthOfShape ? 0 : slow + 1;
-    stopped = stopped || growth < (grew ? kLeastGrowthOfGround : kMostGrowthOfNoise);
-    grew = true;
-    overtaken = overtaken || (slow == 0 && wide);
-    if (slow == 0 && wide && (terraces || surely > 0)) break;
-    fast = fast || slow == 0;
-    // After it grew as shape does, one slow growth may be the end of a bump, and ground never stops growing.
-    const bool stops = !fast || (slow >= kSlowInARow && (wide || growth < kLeastGrowthOfGround));
-    wide = terraces ? wide || slow > 0 : slow > 0 && stops;
-    if (!wide) continue;
+    if (growths.enter(calm.seen[i + 1] / calm.seen[i]) && (terraces || surely > 0)) break;
+    if (!growths.counts()) continue;
     const SignsOfSharing &here = calm.signs[i], &next = calm.signs[i + 1];
     // Within terraces no noise is normal.
     const double own = terraces ? 0 : start.sigma * start.sigma / calm.seen[i + 1];
@@ -157,7 +176,7 @@ SharedNoise find_shared_noise(Places& places, const NoiseStart& start, const Dep
       surely = std::max(surely, without_shape(calm.seen[i], calm.seen[i + 1], kLeastGrowthOfShape));
     make_sure(i, without_shape(calm.seen[i], calm.seen[i + 1], kGrowthOfSmoothShape));
   }
-  if (!terraces && !stopped && !overtaken) return found;
+  if (growths.of_ground()) return found;
   // Compared as variances, for both are lower bounds: with the square of kSameNoise, noise that points share
   // beside their own is missed on a cube.
   if (!(std::max(surely, calm.steps) > kSameNoise * start.sigma * start.sigma)) return found;

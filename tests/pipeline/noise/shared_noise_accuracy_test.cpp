@@ -2,6 +2,7 @@
 #include <cmath>
 #include <random>
 
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include <rfsmooth/denoise.h>
