@@ -16,18 +16,6 @@ namespace rfsmooth::smoothing {
 
 namespace {
 
-/// Where most of the scatter is shape, noise of less than detail() cannot be told from it either: better
-/// leave a clean cloud alone, unless a part of it is clearly louder than that.
-/// The loudest tenth is of the sites, not of the points as in `summary_of`: the sites are those of the whole
-/// cloud in each of its tiles, too, so that all tiles decide alike.
-double measured(const rfs_mesh::NoiseField& noise) {
-  constexpr double kMostlyShape = 0.4;  // of the development shapes, clean and with noise of 0.1 spacings
-  const double detail = rfs_mesh::detail(noise.spacing);
-  if (!(noise.sigma < detail && noise.shape > kMostlyShape)) return noise.sigma;
-  std::vector<double> sites = noise.at_sites;
-  return !sites.empty() && quantile(sites, 0.9) > rfs_mesh::kLouder * detail ? noise.sigma : 0;
-}
-
 /// Noise of the size `sigma`, that varies over the cloud as `noise` does, times `strength`. Places whose
 /// noise cannot be told from detail stay; so does all of a cloud of which that is true even where points are
 /// densest. A strength above 1 acts everywhere: where less was measured than detail may hide, on that much.
@@ -95,6 +83,14 @@ class AutomaticFlow : public Flow {
 
 }  // namespace
 
+double told_noise(const rfs_mesh::NoiseField& noise) {
+  constexpr double kMostlyShape = 0.4;  // of the development shapes, clean and with noise of 0.1 spacings
+  const double detail = rfs_mesh::detail(noise.spacing);
+  if (!(noise.sigma < detail && noise.shape > kMostlyShape)) return noise.sigma;
+  std::vector<double> sites = noise.at_sites;
+  return !sites.empty() && quantile(sites, 0.9) > rfs_mesh::kLouder * detail ? noise.sigma : 0;
+}
+
 NoiseSummary summary_of(const rfs_mesh::NoiseField& noise) {
   NoiseSummary summary{noise.sigma, noise.sigma,   noise.shared,
                        noise.step,  noise.on_grid, noise.piece > rfs_mesh::kNarrowestPatch};
@@ -115,7 +111,7 @@ std::optional<AutomaticReport> smooth_automatically(Mesh& mesh, const AutomaticO
   if (!whole.noise) rfs_mesh::known_noise(rfs_mesh::SpatialIndex(mesh.positions, context), whole, context);
   rfs_mesh::NoiseField noise = rfs_mesh::spread_noise(*whole.noise, mesh.positions, context);
   const NoiseSummary summary = summary_of(noise);
-  const double sigma = options.noise ? options.noise->resolve(noise.spacing) : measured(noise);
+  const double sigma = options.noise ? options.noise->resolve(noise.spacing) : told_noise(noise);
   noise = scaled(std::move(noise), sigma, options.strength);
   AutomaticReport report;
   report.noise = sigma;

@@ -16,6 +16,13 @@
 
 namespace rfsmooth::smoothing {
 
+/// The noise of the cloud as far as it can be told from shape, world units: its figure, or 0. Where most of
+/// the scatter is shape, noise of less than detail() cannot be told from it either: better leave a clean
+/// cloud alone, unless a part of it is clearly louder than that. The loudest tenth is of the sites, not of
+/// the points as in `summary_of`: the sites are those of the whole cloud in each of its tiles, too, so that
+/// all tiles decide alike. O(sites).
+double told_noise(const rfs_mesh::NoiseField& noise);
+
 /// The measured noise in a few figures. O(n).
 NoiseSummary summary_of(const rfs_mesh::NoiseField& noise);
 

@@ -44,4 +44,13 @@ std::string in_words(const NoiseSummary& noise) {
   return words;
 }
 
+std::string beside_shape(double told, double measured, double spacing) {
+  if (told > 0 || nearly_exact(measured, spacing)) return "";
+  return fmt::format("beside {:.3g} that looks like small shape", measured);
+}
+
+bool nearly_exact(double noise, double spacing) {
+  return noise < 0.002 * spacing;
+}
+
 }  // namespace rfsmooth::cli

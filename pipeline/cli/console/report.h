@@ -35,4 +35,11 @@ nlohmann::ordered_json json_of(const std::vector<StageTime>& stages);
 /// by 4 neighbours, depth in steps". Nothing for even noise that each point has of its own.
 std::string in_words(const NoiseSummary& noise);
 
+/// "beside 1.99 that looks like small shape", if no noise could be told from as much; else nothing.
+/// \param told what could be, \param measured with what could not
+std::string beside_shape(double told, double measured, double spacing);
+
+/// Whether points with such noise are as good as exact: there is nothing to say of it.
+bool nearly_exact(double noise, double spacing);
+
 }  // namespace rfsmooth::cli

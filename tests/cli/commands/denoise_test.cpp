@@ -122,6 +122,8 @@ TEST_F(DenoiseCommand, WhatLooksLikeShapeIsNamedAndMoreStrengthAdvised) {
   const std::string err = run({"denoise", "in.ply", "out.ply"}).err;
   EXPECT_THAT(err, HasSubstr("noise 0, beside 0.0"));
   EXPECT_THAT(err, HasSubstr(" that looks like small shape, too little to smooth (--strength 2 does it all"));
+  EXPECT_THAT(run({"info", "in.ply"}).out, HasSubstr("  noise     0, beside 0.0")) << "as denoise says";
+  EXPECT_EQ(nlohmann::json::parse(run({"info", "--json", "in.ply"}).out)["noise"], 0);
   for (const char* none : {"0", "-0"}) {
     const Ran stated =
         run({"denoise", "in.ply", "out.ply", "--force", "--noise", none, "--report", "r.json"});

@@ -32,12 +32,10 @@ std::string why_not(const DenoiseReport& done, bool stated) {
       return "too few points to smooth";
     case NotSmoothed::too_little_noise: {
       if (stated && done.noise == 0) return "nothing to smooth";
-      const double with_shape = done.noise > 0 ? done.noise : done.measured.typical;
-      constexpr double kExact = 0.002;  // spacings
-      if (with_shape < kExact * done.spacing) return "too little to smooth";
-      return fmt::format(
-          "{}too little to smooth (--strength 2 does it all the same)",
-          done.noise > 0 ? "" : fmt::format("beside {:.3g} that looks like small shape, ", with_shape));
+      const std::string shape = beside_shape(done.noise, done.measured.typical, done.spacing);
+      if (shape.empty() && nearly_exact(done.noise, done.spacing)) return "too little to smooth";
+      return fmt::format("{}{}too little to smooth (--strength 2 does it all the same)", shape,
+                         shape.empty() ? "" : ", ");
     }
   }
   throw std::invalid_argument("why_not: not a NotSmoothed");

@@ -64,11 +64,15 @@ void print_text(const ordered_json& info) {
   if (!info["spacing"].is_null())
     fmt::print("  spacing   {:.6g} (mean distance to the nearest other point; {} from dense to sparse)\n",
                info["spacing"].get<double>(), vector_text(info["spacing_field"], 6));
-  if (!info["noise"].is_null())
+  if (!info["noise"].is_null()) {
+    const NoiseSummary measured = pipeline::tiles::summary_of(info["noise_measured"]);
+    const double noise = info["noise"];
+    const std::string shape = beside_shape(noise, measured.typical, info["spacing"]);
     fmt::print(
-        "  noise     {:.6g}{} (standard deviation along the normal; over the cloud {} from calm to loud)\n",
-        info["noise"].get<double>(), in_words(pipeline::tiles::summary_of(info["noise_measured"])),
-        vector_text(info["noise_field"], 6));
+        "  noise     {:.6g}{}{}{} (standard deviation along the normal; over the cloud {} from calm to "
+        "loud)\n",
+        noise, shape.empty() ? "" : ", ", shape, in_words(measured), vector_text(info["noise_field"], 6));
+  }
   fmt::print("  fields   ");
   for (const auto& field : info["fields"]) {
     fmt::print(" {}:{}", field["name"].get<std::string>(), field["type"].get<std::string>());
@@ -123,8 +127,9 @@ Command info_command() {
       "Prints format, fields with their types, points (finite, distinct), whether they are "
       "organised, extent, spacing and noise. - stands for standard input.\n\n"
       "Spacing and noise are measured as denoise does: outliers have no part in them, and twins are one. "
-      "The noise is that of the typical place. Where there is more to say, it follows: 'S in the loudest "
-      "tenth' is the noise that a tenth of the points exceed. 'shared by N neighbours': neighbours err "
+      "The noise is that of the typical place, 0 where all that is measured could as well be small shape, "
+      "which is then named beside it. Where there is more to say, it follows: 'S in the loudest tenth' is "
+      "the noise that a tenth of the points exceed. 'shared by N neighbours': neighbours err "
       "together, as in the blotches of depth cameras, and N of them tell no more than one; smoothing takes "
       "so many points more together. 'points along lines': the nearest of a point are on one line, as on "
       "the rings of a spinning laser; smoothing follows the lines. 'depth in steps of S': depths are "

@@ -49,10 +49,10 @@ ordered_json measure(const pipeline::io::Cloud& cloud, const Context& context) {
   json["high"] = {high[0], high[1], high[2]};
   if (found.distinct < 2) return json;
   json["spacing"] = *whole.spacing;
-  json["noise"] = whole.noise->sigma;
   in_arena(context, [&] {
     json["spacing_field"] = tenths(rfs_mesh::measure_spacing({found.points, context}, context));
     rfs_mesh::NoiseField noise = rfs_mesh::spread_noise(*whole.noise, found.points, context);
+    json["noise"] = smoothing::told_noise(noise);
     json["noise_measured"] = pipeline::tiles::json_of(smoothing::summary_of(noise));
     json["noise_field"] = tenths(std::move(noise.local));
   });
