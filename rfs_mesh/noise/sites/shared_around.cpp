@@ -28,9 +28,15 @@ struct SharingShown {
     if (saying.empty()) return;
     scatter = std::sqrt(quantile(variance, kTypical));
     radius = median(radii);
+    // Across an edge all residuals of a side are alike, and a few such fits would speak for the others.
+    const double loud = kLouder * kLouder * scatter * scatter;
+    saying.erase(std::remove_if(saying.begin(), saying.end(),
+                                [&](const Scatter* fit) { return fit->variance > loud; }),
+                 saying.end());
     signs = signs_of(saying);
   }
 
+  bool in_rows() const { return signs.err_in_rows(points); }
   bool holds_slab() const { return scatter < kFlatSlab * radius; }
   /// \param own variance that points have of their own, or more
   bool of_one_smooth_sheet(double own) const {
@@ -49,14 +55,20 @@ std::size_t stops_at(const std::vector<SharingShown>& shown) {
   const double narrow = shown.front().scatter;
   for (std::size_t i = 0; i + 2 < shown.size(); ++i) {
     const SharingShown &here = shown[i], &next = shown[i + 1];
-    const double least = here.signs.err_in_rows(here.points) ? kSameNoise : kGrowthOfNoise;
-    const bool grew = next.scatter > least * narrow;
-    if (here.holds_slab() && next.of_one_smooth_sheet(narrow * narrow) && grew &&
+    const bool grew = next.scatter > (here.in_rows() ? kSameNoise : kGrowthOfNoise) * narrow;
+    const double own = here.in_rows() ? 0 : narrow;  // the narrowest see several rows, and so their noise
+    if (here.holds_slab() && next.of_one_smooth_sheet(own * own) && grew &&
         shown[i + 2].scatter <= kGrowthOfNoise * here.scatter && here.signs.err_together(here.points))
       return i;
     if (next.scatter * next.scatter > kLeastGrowthOfShape * here.scatter * here.scatter) break;
   }
   return shown.size();
+}
+
+/// The variance of noise that rows share, from what a quadric leaves of it among m and among 4 m points. Of L
+/// rows it follows as three coefficients do, and L grows with the root of m: 1 - c / sqrt(m) is left.
+double variance_of_rows(const SharingShown& at_m, const SharingShown& at_4m) {
+  return 2 * at_4m.scatter * at_4m.scatter - at_m.scatter * at_m.scatter;
 }
 
 /// What is found at a site.
@@ -75,7 +87,9 @@ SharedAround look_around(const std::vector<Neighbor>& group, const std::vector<O
   if (shown.empty()) return {};
   const std::size_t stop = stops_at(shown);
   if (stop == shown.size()) return {};
-  const double sigma = shown[stop + 1].scatter;
+  double sigma = shown[stop + 1].scatter;
+  if (shown[stop].in_rows())
+    sigma = std::sqrt(std::max(sigma * sigma, variance_of_rows(shown[stop], shown[stop + 2])));
   std::vector<double> m, left;
   for (std::size_t i = 0; i <= stop + 1; ++i) {
     const double share = shown[i].scatter / sigma;

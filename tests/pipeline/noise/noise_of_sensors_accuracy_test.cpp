@@ -8,6 +8,7 @@
 #include <rfsmooth/denoise.h>
 
 #include "clouds/scanner/sensors.h"
+#include "rfs_mesh/noise/noise.h"
 
 using namespace rfsmooth;
 
@@ -74,6 +75,18 @@ TEST(NoiseOfSensors, PiecesOfAKinectsWallAreSmoothedAlike) {
     ASSERT_TRUE(rfsmooth::denoise(points.front().data(), points.size(), {}, {}));
     EXPECT_LT(rms_off_room(sensor, points), 0.2 * before) << count;
   }
+}
+
+// Fits across the edges of a room err alike on either side of them, and a few of these must not speak for all
+// around. At half of the sites of this scan, whose points all err by themselves, they did.
+TEST(NoiseOfSensors, EdgesAreNoNoiseThatNeighboursShare) {
+  const Positions points = clouds::look(*clouds::find_sensor("half_degree"), 31).measured;
+  const NoiseModel model = rfs_mesh::measure_noise(rfs_mesh::SpatialIndex(points, {}), {});
+  const auto sharing = std::count_if(model.shared_at_sites.begin(), model.shared_at_sites.end(),
+                                     [](double k) { return k > 1; });
+  EXPECT_EQ(model.shared, 1);
+  ASSERT_GT(model.sites.size(), 1000U);
+  EXPECT_LT(double(sharing), 0.2 * double(model.sites.size()));
 }
 
 // Small round things with few rings on them, most of whose points have no face.
