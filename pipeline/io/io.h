@@ -70,12 +70,11 @@ T value_or_fail(Result<T> result, const std::string& file) {
   return std::move(result).value();
 }
 
-/// What `work` returns. \throw Failure with its error, and the file's name in front unless the message has
-/// it.
+/// What `work` returns. \throw Failure with its error, and the file's name in front unless it stands there.
 template <class Work>
 auto naming(const std::string& file, Work&& work) {
   auto done = guarded(std::forward<Work>(work));
-  if (!done.ok() && done.error().message.find(file) != std::string::npos) throw Failure(done.error());
+  if (!done.ok() && done.error().message.rfind(file + ": ", 0) == 0) throw Failure(done.error());
   return value_or_fail(std::move(done), file);
 }
 

@@ -30,6 +30,7 @@
 #include "pipeline/cli/options/parse.h"
 #include "pipeline/cli/program.h"
 #include "pipeline/io/formats/las/las_scale.h"
+#include "pipeline/io/io.h"
 #include "pipeline/normals/normal_sides.h"
 
 namespace rfsmooth::python {
@@ -56,10 +57,10 @@ std::string run_on_cloud(const std::string& name, const OptionTexts& options, pi
   ordered_json report = {{"rfsmooth", kVersion}, {"command", name}, {"input", cli::describe(cloud)}};
   released(progress, threads, command.on_cloud.stages(), [&](const Context& context, cli::Console& console) {
     std::vector<StageTime> stages;
-    value_or_throw(guarded([&] {
+    pipeline::io::naming(input, [&] {
       command.on_cloud.work(cloud, {{input, ""}, context, console, stages, report});
       return Done{};
-    }));
+    });
     report["threads"] = threads > 0 ? ordered_json(threads) : ordered_json(nullptr);
     report["seconds"] = cli::json_of(stages);
   });

@@ -99,10 +99,10 @@ std::string connect_cloud(const MeshCommandOptions& options, pipeline::io::Cloud
   const auto& [job, context, console, stages, entry] = task;
   const std::string& stage = options.mesh.stage;
   const bool needs_noise = stage != "emst-points";
-  need_memory(job.input, rfsmooth::denoise_memory(cloud.size()));
+  need_memory(rfsmooth::denoise_memory(cloud.size()));
   const std::vector<double> xyz = pipeline::io::positions(cloud, context);
   rfs_mesh::WorkingCloud working =
-      value_or_fail(rfs_mesh::make_working_cloud(xyz.data(), cloud.size(), context), job.input);
+      value_or_throw(rfs_mesh::make_working_cloud(xyz.data(), cloud.size(), context));
   Connection connection;
   Statistics whole;
   in_arena(context, [&] {

@@ -106,11 +106,11 @@ std::string reconstruct_cloud(const ReconstructCommandOptions& options, const Su
                               pipeline::io::Cloud& cloud, const CloudTask& task) {
   const auto& [job, context, console, stages, entry] = task;
   check_format(job, options.job.files, cloud);
-  need_memory(job.input, rfsmooth::denoise_memory(cloud.size()));
+  need_memory(rfsmooth::denoise_memory(cloud.size()));
   const std::vector<double> xyz = pipeline::io::positions(cloud, context);
   ReconstructOptions how = options.reconstruct;
   how.normals = normals_facing(options.reconstruct.viewpoint, cloud, xyz.data(), task);
-  const Reconstruction made = value_or_fail(rfsmooth::reconstruct(xyz, how, method, context), job.input);
+  const Reconstruction made = value_or_throw(rfsmooth::reconstruct(xyz, how, method, context));
   warn_if_coarse(cloud, xyz, made.report.spacing, job.input, console);
   cloud = surface_file(std::move(cloud), made, context);
   stages.insert(stages.end(), made.report.seconds.begin(), made.report.seconds.end());

@@ -128,7 +128,7 @@ void make_agree(Mesh& mesh) {
 void refine_file(const After& after, pipeline::io::Cloud& cloud, FileMesh& file,
                  const std::vector<double>& rows, const CloudTask& task) {
   const auto sharp = after.sharp_angle ? sharp_edges(file.mesh, *after.sharp_angle) : std::vector<Edge>{};
-  Mesh fine = value_or_fail(smoothing::refine(file.mesh, after.refine, task.context, sharp), task.job.input);
+  Mesh fine = value_or_throw(smoothing::refine(file.mesh, after.refine, task.context, sharp));
   const std::vector<std::string> lost = lost_in_refined(cloud);
   const auto& fields = cloud.points().fields;
   pipeline::io::warn_of_rounding({fields[cloud.xyz[0]], fields[cloud.xyz[1]], fields[cloud.xyz[2]]}, 0,
@@ -166,16 +166,13 @@ std::string smooth_file(const SmoothMeshCommandOptions& options, std::vector<Tra
       file_mesh(cloud, job.input, context, options.flow.modifiers.preserve == Preserve::height_field);
   // The last mesh of a refinement takes, for each of its vertices, what a point of a cloud takes.
   if (const int levels = options.after.refine.levels; levels > 0)
-    need_memory(job.input, rfsmooth::denoise_memory(smoothing::refined_vertices(file.mesh, levels)));
-  const auto constraints = value_or_fail(guarded([&] {
-                                           return constraints_of(options.constraints, cloud, file.of_row,
-                                                                 file.before.size(), task.context);
-                                         }),
-                                         job.input);
+    need_memory(rfsmooth::denoise_memory(smoothing::refined_vertices(file.mesh, levels)));
+  const auto constraints =
+      constraints_of(options.constraints, cloud, file.of_row, file.before.size(), task.context);
   watch.next("smooth");
   FlowOptions flow = options.flow;
   flow.trace = options.trace.trace.has_value();
-  auto done = value_or_fail(rfsmooth::smooth(file.mesh, flow, context, constraints), job.input);
+  auto done = value_or_throw(rfsmooth::smooth(file.mesh, flow, context, constraints));
   trace = std::move(done.trace);
   tell_solver(job.input, done.solver, console);
   bool moved = false;

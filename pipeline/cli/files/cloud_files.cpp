@@ -104,7 +104,10 @@ io::Cloud load_cloud(const std::string& input, const Context& context) {
   std::error_code unknown;
   // The file's own size is the least that reading it takes.
   if (const auto bytes = std::filesystem::file_size(path, unknown); !unknown)
-    need_memory(name_of_input(input), bytes);
+    io::naming(name_of_input(input), [&] {
+      need_memory(bytes);
+      return Done{};
+    });
   auto cloud = io::read_cloud(path, {}, context);
   if (input != "-" || cloud.ok()) return value_or_throw(std::move(cloud));
   Error error = cloud.error();
@@ -124,7 +127,7 @@ std::vector<std::string> store_cloud(const io::Cloud& cloud, const std::string& 
   if (output == "-") {
     const std::string bytes = value_or_throw(io::serialize_cloud(cloud, write_options(options), context));
     if (std::fwrite(bytes.data(), 1, bytes.size(), stdout) != bytes.size() || std::fflush(stdout) != 0)
-      fail(ErrorCode::cannot_write, "cannot write to standard output");
+      fail(ErrorCode::cannot_write, "standard output: cannot write");
   } else {
     value_or_throw(io::write_cloud(cloud, output, write_options(options), context));
     mark_as_own(output);

@@ -29,8 +29,6 @@ void tell_summary(const Job& job, const std::string& summary, bool one_of_many, 
 int run_cloud_jobs(const std::string& command, const JobOptions& options, const Invocation& typed,
                    const OnCloud& on_cloud);
 
-using pipeline::io::value_or_fail;
-
 /// The options that were used, as the report shows them; --config takes them back.
 template <class Options>
 nlohmann::ordered_json effective_options(Options used, const FileOptions& files) {

@@ -14,11 +14,9 @@ using Eigen::Vector3d;
 
 FileMesh file_mesh(const io::Cloud& cloud, const std::string& name, const Context& context,
                    bool own_heights) {
-  const std::vector<Face> faces =
-      io::value_or_fail(guarded([&] { return io::faces_of(cloud, context); }), name);
+  const std::vector<Face> faces = io::faces_of(cloud, context);
   if (faces.empty())
-    fail(ErrorCode::input_unreadable, "{}: has no faces; expected a mesh (for clouds use: rfsmooth denoise)",
-         name);
+    fail(ErrorCode::input_unreadable, "has no faces; expected a mesh (for clouds use: rfsmooth denoise)");
   FileMesh out;
   out.xyz = io::positions(cloud, context);
   out.of_row.assign(cloud.size(), kNone);
@@ -29,7 +27,7 @@ FileMesh file_mesh(const io::Cloud& cloud, const std::string& name, const Contex
     out.of_row[i] = Index(points.size());
     points.push_back(p);
   }
-  if (points.empty()) fail(ErrorCode::no_usable_points, "{}: no vertex is finite", name);
+  if (points.empty()) fail(ErrorCode::no_usable_points, "no vertex is finite");
   out.origin = points.front();
   if (own_heights) out.origin.z() = 0;
   for (Vector3d& p : points) p -= out.origin;

@@ -24,8 +24,8 @@ struct FileMesh {
 };
 
 /// Makes the mesh. With `own_heights` the origin lies in the file's plane z = 0, for flows that measure
-/// heights above it. \throw Failure naming the file if it has no faces, no finite vertex, or a face with a
-/// point that does not exist.
+/// heights above it. \param name of the file, for a warning. \throw Failure if the file has no faces, no
+/// finite vertex, or a face with a point that does not exist.
 FileMesh file_mesh(const pipeline::io::Cloud& cloud, const std::string& name, const Context& context,
                    bool own_heights);
 

@@ -58,10 +58,10 @@ std::optional<std::size_t> available_memory() {
   return least;
 }
 
-void need_memory(std::string_view input, std::size_t needed) {
+void need_memory(std::size_t needed) {
   const auto available = available_memory();
   if (!available || needed <= *available) return;
-  fail(ErrorCode::out_of_memory, "{}: needs about {} of memory, {} are available; nothing was started", input,
+  fail(ErrorCode::out_of_memory, "needs about {} of memory, {} are available; nothing was started",
        in_gb(needed), in_gb(*available));
 }
 

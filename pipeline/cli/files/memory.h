@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <optional>
-#include <string_view>
 
 namespace rfsmooth::cli {
 
@@ -11,8 +10,9 @@ namespace rfsmooth::cli {
 /// control group and the limit of its address space. None if none of them is known.
 std::optional<std::size_t> available_memory();
 
-/// \throw Failure (out_of_memory) with both figures if fewer than `needed` bytes are available.
-void need_memory(std::string_view input, std::size_t needed);
+/// \throw Failure (out_of_memory) with both figures if fewer than `needed` bytes are available. It names no
+/// file (io::naming does).
+void need_memory(std::size_t needed);
 
 /// From now on freed arrays return to the system at once. Call it before anything large is allocated.
 void give_memory_back();

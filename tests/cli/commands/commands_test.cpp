@@ -235,6 +235,19 @@ TEST_F(Commands, ErrorsNameTheFile) {
     EXPECT_THAT(run(words).err, ::testing::StartsWith("rfsmooth: error: " + says));
 }
 
+TEST_F(Commands, ErrorsNameAFileWhoseNameIsPartOfWhatTheySay) {
+  for (const char* name : {"a", "field"}) {
+    put(name, "0 0 0\n1 0 0\n0 1 0\n");
+    EXPECT_THAT(
+        run({"denoise", name, "out.xyz", "--strength-field", "nope"}).err,
+        ::testing::StartsWith(std::string("rfsmooth: error: ") + name + ": the points have no field"));
+  }
+  RunSetup setup;
+  setup.input = "0 0 0\n1 0 0\n0 1 0\n";
+  EXPECT_THAT(run({"smooth-mesh", "-", "out.ply"}, setup).err,
+              ::testing::StartsWith("rfsmooth: error: standard input: has no faces"));
+}
+
 TEST_F(Commands, OptionsThatDoNothingBesideTheOthersAreRefused) {
   put("in.ply", noisy_plane(20).bytes());
   const std::pair<std::vector<std::string>, std::string> cases[] = {

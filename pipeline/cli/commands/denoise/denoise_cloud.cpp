@@ -90,8 +90,7 @@ Smoothed smooth(const DenoiseCommandOptions& options, const pipeline::io::Cloud&
     how.statistics = pipeline::tiles::read_settled(*options.statistics).report.statistics;
   Smoothed smoothed;
   const auto again = [&] { return pipeline::io::positions(cloud, task.context); };
-  smoothed.report =
-      value_or_fail(pipeline::denoise_lean(xyz, again, how, task.context, strength), task.job.input);
+  smoothed.report = value_or_throw(pipeline::denoise_lean(xyz, again, how, task.context, strength));
   smoothed.xyz = std::move(xyz);
   smoothed.leaving = way_out(options, smoothed.report, cloud);
   if (smoothed.leaving != Leaving::none)
@@ -245,7 +244,7 @@ std::string denoise_cloud(const DenoiseCommandOptions& options, Beside& beside, 
                           const CloudTask& task) {
   const auto& [job, context, console, stages, entry] = task;
   check_fields(options, cloud);
-  need_memory(job.input, rfsmooth::denoise_memory(cloud.size()));
+  need_memory(rfsmooth::denoise_memory(cloud.size()));
   std::vector<double> xyz = pipeline::io::positions(cloud, context);
   check_memory(options, job, xyz, context);
   Smoothed smoothed = smooth(options, cloud, std::move(xyz), task);
