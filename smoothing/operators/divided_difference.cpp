@@ -208,11 +208,4 @@ std::vector<double> DividedDifferences::diagonal(const Context& context) const {
   return d;
 }
 
-double DividedDifferences::energy(const Positions& x, const Context& context) const {
-  return sum_over(context, x.size(), 0.0, [&](std::size_t i) {
-    const Second s = second(x, i);
-    return weight_[i] * (s.uu.squaredNorm() + s.uv.squaredNorm() + s.vv.squaredNorm());
-  });
-}
-
 }  // namespace rfsmooth::smoothing

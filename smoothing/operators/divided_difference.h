@@ -32,8 +32,6 @@ class DividedDifferences {
   /// A's diagonal.
   std::vector<double> diagonal(const Context& context) const;
 
-  double energy(const Positions& x, const Context& context) const;
-
   /// n: w_i > 0.
   const std::vector<double>& weights() const { return weight_; }
 
