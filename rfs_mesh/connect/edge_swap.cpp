@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <cstring>
 #include <functional>
 #include <optional>
 
@@ -11,6 +10,7 @@
 
 #include "base/collect.h"
 #include "base/parallel.h"
+#include "rfs_mesh/connect/ordered_bits.h"
 #include "rfs_mesh/corners.h"
 #include "rfs_mesh/measure.h"
 
@@ -30,9 +30,7 @@ struct Swap {
 
 /// Exactly ordered by gain, then by the lower edge number; larger wins.
 std::uint64_t priority(float gain, std::size_t candidate) {
-  std::uint32_t bits = 0;  // positive floats compare like their bits
-  std::memcpy(&bits, &gain, sizeof bits);
-  return std::uint64_t(bits) << 32 | (0xffffffffu - std::uint32_t(candidate));
+  return std::uint64_t(ordered_bits(gain)) << 32 | (0xffffffffu - std::uint32_t(candidate));
 }
 
 class Swapper {

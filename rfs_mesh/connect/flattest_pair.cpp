@@ -4,7 +4,6 @@
 #include <array>
 #include <atomic>
 #include <cmath>
-#include <cstring>
 #include <functional>
 #include <memory>
 
@@ -12,6 +11,7 @@
 
 #include "base/collect.h"
 #include "base/parallel.h"
+#include "rfs_mesh/connect/ordered_bits.h"
 #include "rfs_mesh/corners.h"
 #include "rfs_mesh/fit/tangent_plane.h"
 #include "rfs_mesh/measure.h"
@@ -195,9 +195,7 @@ class Chooser {
     const int steps = fold(x.normal, y.normal, cosines_);
     const int votes = proposed_.votes[x.face] + proposed_.votes[y.face];
     const float quality = quality_[x.face] + quality_[y.face];
-    std::uint32_t bits = 0;  // non-negative numbers order like their bits
-    std::memcpy(&bits, &quality, sizeof bits);
-    return std::uint64_t(0xffff - steps) << 40 | std::uint64_t(votes) << 32 | bits;
+    return std::uint64_t(0xffff - steps) << 40 | std::uint64_t(votes) << 32 | ordered_bits(quality);
   }
 
   /// The best pair so far: of equal ones the first.

@@ -9,6 +9,7 @@
 
 #include "base/collect.h"
 #include "base/parallel.h"
+#include "rfs_mesh/connect/ordered_bits.h"
 #include "rfs_mesh/search/foreign_search.h"
 
 namespace rfsmooth::rfs_mesh {
@@ -23,12 +24,7 @@ constexpr std::uint32_t kWorthAsking = 8;  // leaves of the nodes that are first
 
 constexpr std::uint64_t kNothing = std::numeric_limits<std::uint64_t>::max();
 
-/// Non-negative doubles order like their bits, so lengths can be minimised by an atomic integer.
-std::uint64_t to_bits(double d2) {
-  std::uint64_t bits = 0;
-  std::memcpy(&bits, &d2, sizeof bits);
-  return bits;
-}
+/// The squared length of these ordered_bits, of which an atomic integer keeps the least; infinite if none.
 double to_length(std::uint64_t bits) {
   if (bits == kNothing) return std::numeric_limits<double>::infinity();
   double d2 = 0;
@@ -93,7 +89,7 @@ class Boruvka {
   /// The first round: every point is a component, and its nearest is known.
   void choose_nearest() {
     for_each_index(context_, n_, [&](std::size_t i) {
-      best_length_[i].store(to_bits(reach_[i]), std::memory_order_relaxed);
+      best_length_[i].store(ordered_bits(reach_[i]), std::memory_order_relaxed);
       best_pair_[i].store(pair_of(Index(i), candidate_[i]), std::memory_order_relaxed);
     });
   }
@@ -115,7 +111,7 @@ class Boruvka {
         reach_[i] = length(Index(i), list[std::min(at, k - 1)]);
         if (at == k) return;
       }
-      lower(best_length_[own], to_bits(reach_[i]));
+      lower(best_length_[own], ordered_bits(reach_[i]));
     });
   }
 
@@ -163,7 +159,7 @@ class Boruvka {
           listed ? foreign_.nearest_in(near, i, own, bound) : foreign_.nearest(i, component_[i], bound);
       candidate_[i] = found.index;
       reach_[i] = found.squared_distance;
-      if (found.index != kNone) lower(best_length_[component_[i]], to_bits(found.squared_distance));
+      if (found.index != kNone) lower(best_length_[component_[i]], ordered_bits(found.squared_distance));
     }
   }
 
@@ -172,7 +168,7 @@ class Boruvka {
     for_each_index(context_, n_, [&](std::size_t i) {
       if (candidate_[i] == kNone) return;
       const Index own = component_[i];
-      if (to_bits(reach_[i]) == best_length_[own].load(std::memory_order_relaxed))
+      if (ordered_bits(reach_[i]) == best_length_[own].load(std::memory_order_relaxed))
         lower(best_pair_[own], pair_of(Index(i), candidate_[i]));
     });
   }

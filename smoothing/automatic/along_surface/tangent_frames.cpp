@@ -12,6 +12,7 @@
 #include "base/avx2.h"
 #include "base/linear/small_cholesky.h"
 #include "base/parallel.h"
+#include "rfs_mesh/connect/ordered_bits.h"
 #include "rfs_mesh/fit/plane_normal.h"
 
 namespace rfsmooth::smoothing {
@@ -38,14 +39,13 @@ RFSMOOTH_AVX2 void rank(const std::int32_t* key, const Index* old, std::size_t w
 /// Brings the nearest to the front of the row, nearer ones first; those equally far up to 1e-5 as they
 /// were.
 void pick(const Positions& points, const Eigen::Vector3d& p, Index* row, std::size_t width) {
-  // The bits of positive numbers are in the order of the numbers. The place in the row takes the last
-  // eight, so no two are equal and counting the smaller ones gives every one a place of its own.
+  // The place in the row takes the last eight bits, so no two are equal and counting the smaller ones gives
+  // every one a place of its own.
   std::array<std::int32_t, kMostRanked> key;
   std::array<Index, kMostRanked> old;
   for (std::size_t k = 0; k < width; ++k) {
     const auto square = float((points[row[k]] - p).squaredNorm());
-    std::memcpy(&key[k], &square, sizeof square);
-    key[k] = std::int32_t(std::uint32_t(key[k]) & 0xffffff00U) | std::int32_t(k);
+    key[k] = std::int32_t(rfs_mesh::ordered_bits(square) & 0xffffff00U) | std::int32_t(k);
     old[k] = row[k];
   }
   for (std::size_t k = width; k % kPadded != 0; ++k) key[k] = std::numeric_limits<std::int32_t>::max();
