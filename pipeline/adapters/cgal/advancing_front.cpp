@@ -10,6 +10,7 @@
 #include "pipeline/adapters/cgal/front_types.h"
 #include "pipeline/adapters/cgal/solid.h"
 #include "pipeline/surface/pinches.h"
+#include "pipeline/surface/topology.h"
 #include "rfs_mesh/edge_faces.h"
 #include "rfs_mesh/measure.h"
 
@@ -73,14 +74,16 @@ void drop_long(std::vector<FrontFace>& front, const Positions& points, double lo
       front.end());
 }
 
+std::vector<Face> corners_of(const std::vector<FrontFace>& front) {
+  std::vector<Face> corners;
+  for (const FrontFace& f : front) corners.push_back(f.corners);
+  return corners;
+}
+
 /// Turns each piece of the front to the side of the normals; without normals, so that the least of its faces
 /// (by sorted corners) has its corners ascending: CGAL's side depends on where its nodes lie in memory.
 void turn(std::vector<FrontFace>& front, const Positions& points, const Positions& normals) {
-  DisjointSets<Index> pieces(points.size());
-  for (const FrontFace& f : front) {
-    pieces.join(f.corners[0], f.corners[1]);
-    pieces.join(f.corners[1], f.corners[2]);
-  }
+  DisjointSets<Index> pieces = pipeline::pieces_of(points.size(), corners_of(front));
   std::vector<double> agreement(points.size(), 0);
   std::vector<Edge> least(normals.empty() ? points.size() : 0, {kNone, kNone});
   for (const FrontFace& f : front) {
@@ -103,12 +106,9 @@ void turn(std::vector<FrontFace>& front, const Positions& points, const Position
 /// What closing every rim by itself takes at least, as a share of the front's area: no surface in a rim is
 /// smaller than the rim's vector area, half the sum of p x q along it.
 double least_invented(const std::vector<FrontFace>& front, const Positions& points) {
-  std::vector<Face> faces;
+  const std::vector<Face> faces = corners_of(front);
   double whole = 0;
-  for (const FrontFace& f : front) {
-    whole += 0.5 * rfs_mesh::face_cross(points, f.corners).norm();
-    faces.push_back(f.corners);
-  }
+  for (const Face& f : faces) whole += 0.5 * rfs_mesh::face_cross(points, f).norm();
   DisjointSets<Index> rims(points.size());
   std::vector<rfs_mesh::EdgeFace> sides;
   rfs_mesh::for_each_edge(rfs_mesh::edge_faces(faces),
@@ -162,8 +162,7 @@ Mesh surface_of(const Positions& points, const Positions& normals, double longes
   if (!normals.empty() && in_space)
     mesh.faces = closed(tetrahedra, points, normals, front,
                         longest_edge > 0 ? longest_edge : std::numeric_limits<double>::infinity(), context);
-  if (mesh.faces.empty())
-    for (const FrontFace& f : front) mesh.faces.push_back(f.corners);
+  if (mesh.faces.empty()) mesh.faces = corners_of(front);
   for (Face& f : mesh.faces) f = least_first(f);
   std::sort(mesh.faces.begin(), mesh.faces.end());
   rebuild_adjacency(mesh, context);
