@@ -28,10 +28,8 @@ std::vector<std::size_t> coordinates_first(const Cloud& cloud) {
   return {cloud.xyz.begin(), cloud.xyz.end()};
 }
 
-/// PLY has no whole numbers of 64 bits.
 bool has_ply_type(const Cloud& cloud, std::size_t field, const Context&) {
-  const Scalar type = cloud.points().fields[field].type;
-  return type != Scalar::int64 && type != Scalar::uint64;
+  return !cloud.points().fields[field].is_wide();
 }
 
 /// PCD has arrays, whose length is the same in every row.

@@ -26,12 +26,10 @@ bool is_unnamed(const Field& f) {
   return f.name.rfind("column_", 0) == 0;
 }
 
-// PLY has no arrays, and no whole numbers of 64 bits but those of a file that has some.
+// PLY has no arrays. A type that it does not have stays where it came from a PLY file, as its spelling tells.
 bool has_ply_types(const Table& points) {
-  return std::all_of(points.fields.begin(), points.fields.end(), [](const Field& f) {
-    const bool wide = f.type == Scalar::int64 || f.type == Scalar::uint64;
-    return f.count == 1 && (!wide || !f.spelling.empty());
-  });
+  return std::all_of(points.fields.begin(), points.fields.end(),
+                     [](const Field& f) { return f.count == 1 && (!f.is_wide() || !f.spelling.empty()); });
 }
 
 bool float_digits_lost(const Table& table, std::size_t field, const Context& context) {
@@ -85,11 +83,11 @@ void add_lost_elements(const Cloud& cloud, Format format, const Context& context
   }
 }
 
-// PLY has no 64-bit whole numbers; coordinates of that type, which cannot be left out, become doubles.
+// Coordinates cannot be left out: those of a type that PLY does not have become doubles.
 void widen_coordinates(Table& table, const Context& context) {
   const bool text = table.text;
   for (Field& field : table.fields) {
-    if (field.type != Scalar::int64 && field.type != Scalar::uint64) continue;
+    if (!field.is_wide()) continue;
     make_text(table, context);
     field.type = Scalar::float64;
   }

@@ -71,6 +71,8 @@ struct Field {
   bool is_plain() const { return !is_list() && count == 1; }  ///< one value per row
   bool is_scaled() const { return scale != 1 || offset != 0; }
   bool is_whole() const { return !is_float(type) && !is_scaled(); }  ///< its values are whole numbers
+  /// Whether they are stored as whole numbers of 64 bits, which PLY does not have.
+  bool is_wide() const { return type == Scalar::int64 || type == Scalar::uint64; }
   double step() const {
     return is_float(type) ? 0 : scale < 0 ? -scale : scale;
   }  ///< to the next value, or 0
