@@ -26,8 +26,7 @@ struct RenderOptions {
   int levels = 256;
   bool without_outliers = false;
   bool force = false;
-  std::optional<int> threads;
-  TalkOptions talk;
+  ConsoleOptions console;
 
   template <class Self, class Visit>
   static void describe(Self& self, Visit&& visit) {
@@ -60,8 +59,7 @@ struct RenderOptions {
     visit(OptionInfo{"without-outliers", "leave out points of clouds with no surface near them", ""},
           self.without_outliers);
     visit(OptionInfo{"force", "replace an existing file", ""}, self.force);
-    visit(threads_option(), self.threads);
-    TalkOptions::describe(self.talk, visit);
+    ConsoleOptions::describe(self.console, visit);
   }
 };
 

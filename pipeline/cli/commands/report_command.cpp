@@ -23,8 +23,7 @@ struct ReportCommandOptions {
   std::optional<std::string> output;
   std::string points = "300000";
   bool force = false;
-  std::optional<int> threads;
-  TalkOptions talk;
+  ConsoleOptions console;
 
   template <class Self, class Visit>
   static void describe(Self& self, Visit&& visit) {
@@ -36,8 +35,7 @@ struct ReportCommandOptions {
             ""},
         self.points);
     visit(OptionInfo{"force", "replace an existing file", ""}, self.force);
-    visit(threads_option(), self.threads);
-    TalkOptions::describe(self.talk, visit);
+    ConsoleOptions::describe(self.console, visit);
   }
 };
 
@@ -83,8 +81,8 @@ int run_report(const ReportCommandOptions& options, const Invocation& typed, con
   if (!options.output) fail(ErrorCode::usage, "no page named: -o OUT.html");
   const std::size_t points = read_points(options.points);
   check_no_cloud_target(*options.output, options.force, "page");
-  Console console(options.talk);
-  const Context context = console.context({{"read", 1}}, options.threads);
+  Console console(options.console);
+  const Context context = console.context({{"read", 1}});
   const auto before = load_cloud(typed.arguments[0], context),
              after = load_cloud(typed.arguments[1], context);
   pipeline::need_same_size(typed.arguments[0], before.size(), typed.arguments[1], after.size());

@@ -26,8 +26,11 @@ void to_stderr(const std::string& text) {
   std::fflush(stderr);
 }
 
-Console::Console(const TalkOptions& options, std::function<void(LogLevel, const std::string&)> listener)
-    : listener_(std::move(listener)), quiet_(options.quiet), verbose_(options.verbose && !options.quiet) {
+Console::Console(const ConsoleOptions& options, std::function<void(LogLevel, const std::string&)> listener)
+    : listener_(std::move(listener)),
+      threads_(options.threads),
+      quiet_(options.quiet),
+      verbose_(options.verbose && !options.quiet) {
   const bool terminal = isatty(STDERR_FILENO) == 1;
   const char* type = std::getenv("TERM");
   const bool dumb = type != nullptr && std::string_view(type) == "dumb";
@@ -64,11 +67,11 @@ void Console::error(const std::string& line) {
   print("\x1b[31m", "error: ", line);
 }
 
-Context Console::context(std::vector<StageShare> stages, std::optional<int> threads) {
+Context Console::context(std::vector<StageShare> stages) {
   progress_.plan(std::move(stages));
-  if (threads) limit_.emplace(*threads);
+  if (threads_) limit_.emplace(*threads_);
   Context context;
-  context.threads = threads.value_or(0);
+  context.threads = threads_.value_or(0);
   context.stop = &stop_flag();
   context.progress = [this](std::string_view stage, double fraction) {
     draw(stage, fraction);

@@ -18,12 +18,16 @@
 namespace rfsmooth::cli {
 
 /// Options that every working sub-command has.
-struct TalkOptions {
+struct ConsoleOptions {
+  std::optional<int> threads;
   bool quiet = false;
   bool verbose = false;
 
   template <class Self, class Visit>
   static void describe(Self& self, Visit&& visit) {
+    visit(OptionInfo{"threads", "threads to use, also by libraries; auto: all cores; the result is the same",
+                     "", 1, 1024},
+          self.threads);
     visit(OptionInfo{"quiet", "only errors on stderr; no warnings, summary or progress", ""}, self.quiet);
     visit(OptionInfo{"verbose", "say more on stderr about what is done", ""}, self.verbose);
   }
@@ -41,7 +45,7 @@ class Console {
   /// A bar is drawn, and colours are used, only if stderr is a terminal; NO_COLOR turns colours off.
   /// With a `listener` everything goes there instead: warnings and errors as LogLevel::warning, details as
   /// debug, the rest as info.
-  explicit Console(const TalkOptions& options,
+  explicit Console(const ConsoleOptions& options,
                    std::function<void(LogLevel, const std::string&)> listener = {});
   ~Console();
   Console(const Console&) = delete;
@@ -58,9 +62,9 @@ class Console {
   /// The progress that the bar shows.
   Progress& progress() { return progress_; }
 
-  /// A Context that logs to this console, reports these stages to its bar and stops on Ctrl-C. `threads`
-  /// (none: all cores) limits the whole process while the console exists.
-  Context context(std::vector<StageShare> stages, std::optional<int> threads = {});
+  /// A Context that logs to this console, reports these stages to its bar and stops on Ctrl-C. From
+  /// now on ConsoleOptions::threads limits the whole process, while the console exists.
+  Context context(std::vector<StageShare> stages);
 
  private:
   void draw(std::string_view stage, double fraction);
@@ -68,6 +72,7 @@ class Console {
   void print(const char* colour, const char* label, const std::string& line);
 
   std::function<void(LogLevel, const std::string&)> listener_;
+  std::optional<int> threads_;  ///< none: all cores
   bool quiet_, verbose_, bar_, colour_;
   bool drawn_ = false;
   std::size_t points_ = 0;

@@ -110,7 +110,7 @@ void run_one(const Job& job, const JobOptions& options, const OnCloud& on_cloud,
     console.say(fmt::format("{}: has no names: {}", job.output, added));
   if (on_cloud.beside) on_cloud.beside(console);
   console.detail("seconds: " + text_of(stages));
-  entry["threads"] = options.run.threads ? ordered_json(*options.run.threads) : ordered_json(nullptr);
+  entry["threads"] = options.console.threads ? ordered_json(*options.console.threads) : ordered_json(nullptr);
   entry["seconds"] = json_of(stages);
 }
 
@@ -150,8 +150,8 @@ int run_cloud_jobs(const std::string& command, const JobOptions& options, const 
   const std::vector<Job> jobs = plan_cloud_jobs(typed.arguments, options.files, on_cloud.makes);
   check_outputs(jobs, options, on_cloud);
   Report report(command, options.run.report, options.files.force);
-  Console console(options.talk);
-  const Context context = console.context(on_cloud.stages(), options.run.threads);
+  Console console(options.console);
+  const Context context = console.context(on_cloud.stages());
   bool any_done = false;
   const int code = run_jobs(jobs, console, [&](const Job& job) {
     ordered_json entry = {{"input", {{"path", job.input}}}, {"output", {{"path", job.output}}}};

@@ -11,13 +11,13 @@ namespace rfsmooth::cli {
 struct JobOptions {
   FileOptions files;
   RunOptions run;
-  TalkOptions talk;
+  ConsoleOptions console;
 
   template <class Self, class Visit>
   static void describe(Self& self, Visit&& visit) {
     FileOptions::describe(self.files, visit);
     RunOptions::describe(self.run, visit);
-    TalkOptions::describe(self.talk, visit);
+    ConsoleOptions::describe(self.console, visit);
   }
 };
 

@@ -1,4 +1,4 @@
-/// Options of every sub-command with files: the output, threads, report, config.
+/// Options of every sub-command with files: the output, report, config.
 #pragma once
 
 #include <optional>
@@ -7,12 +7,6 @@
 #include <rfsmooth/options.h>
 
 namespace rfsmooth::cli {
-
-/// Of every sub-command that works on clouds.
-inline OptionInfo threads_option() {
-  return {"threads", "threads to use, also by libraries; auto: all cores; the result is the same", "", 1,
-          1024};
-}
 
 struct FileOptions {
   std::optional<std::string> output;
@@ -38,13 +32,11 @@ struct FileOptions {
 };
 
 struct RunOptions {
-  std::optional<int> threads;
   std::optional<std::string> report;
   std::optional<std::string> config;
 
   template <class Self, class Visit>
   static void describe(Self& self, Visit&& visit) {
-    visit(threads_option(), self.threads);
     visit(OptionInfo{"report", "write what was done as JSON (- for standard output)", "file"}, self.report);
     visit(OptionInfo{"config",
                      "take options (and files, if none are given) from a report or a JSON object of "

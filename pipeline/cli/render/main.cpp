@@ -60,8 +60,8 @@ rfsmooth::render::PictureOptions picture_options(const RenderOptions& options,
 }
 
 void draw(const RenderOptions& options, const std::vector<std::string>& inputs) {
-  rfsmooth::cli::Console console(options.talk);
-  const rfsmooth::Context context = console.context({{"read", 1}}, options.threads);
+  rfsmooth::cli::Console console(options.console);
+  const rfsmooth::Context context = console.context({{"read", 1}});
   const auto made = rfsmooth::render::make_picture(picture_options(options, inputs), context);
   value_or_throw(rfsmooth::pipeline::io::write_bytes(made.png, *options.output, options.force, context));
   console.say(*options.output);

@@ -50,8 +50,7 @@ struct TilesOptions {
   PlannedOptions planned;
   int tile_points = 5'000'000, sample_points = 1'000'000;
   bool json = false, force = false, keep_scale = false;
-  std::optional<int> threads;
-  TalkOptions talk;
+  ConsoleOptions console;
 
   template <class Self, class Visit>
   static void describe(Self& self, Visit&& visit) {
@@ -69,8 +68,7 @@ struct TilesOptions {
                    "noise left",
                    ""},
         self.keep_scale);
-    visit(threads_option(), self.threads);
-    TalkOptions::describe(self.talk, visit);
+    ConsoleOptions::describe(self.console, visit);
     PlannedOptions::describe(self.planned, visit);
   }
 };
@@ -229,11 +227,11 @@ int run_tiles(TilesOptions& options, const Invocation& typed) {
         fail(ErrorCode::usage, "--{} is for rfsmooth tiles plan; the other steps take it from there", name);
   }
   const std::vector<std::string> arguments(typed.arguments.begin() + 1, typed.arguments.end());
-  Console console(options.talk);
+  Console console(options.console);
   std::vector<StageShare> stages = denoising_stages(false);
   if (step == "plan") stages = {{"plan", 1}};
   if (step == "join") stages = {{"join", 1}};
-  const Context context = console.context(stages, options.threads);
+  const Context context = console.context(stages);
   if (step == "plan")
     plan_tiles(options, arguments, context, console);
   else if (step == "join")

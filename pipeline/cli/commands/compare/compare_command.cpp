@@ -24,10 +24,9 @@ using nlohmann::ordered_json;
 struct CompareCommandOptions {
   bool signed_normals = false;
   bool json = false;
-  std::optional<int> threads;
   FileOptions files;  // only where the coloured cloud goes
   std::optional<double> red_from;
-  TalkOptions talk;
+  ConsoleOptions console;
 
   template <class Self, class Visit>
   static void describe(Self& self, Visit&& visit) {
@@ -43,8 +42,7 @@ struct CompareCommandOptions {
                      "units of the file", 0, 1e300},
           self.red_from);
     visit(OptionInfo{"force", "replace an existing file", ""}, self.files.force);
-    visit(threads_option(), self.threads);
-    TalkOptions::describe(self.talk, visit);
+    ConsoleOptions::describe(self.console, visit);
   }
 };
 
@@ -104,8 +102,8 @@ int run_compare(const CompareCommandOptions& options, const Invocation& typed) {
   if (options.files.output == "-")
     fail(ErrorCode::usage, "-o needs the name of a file: standard output takes the figures");
   if (options.files.output) check_target(*options.files.output, options.files);
-  Console console(options.talk);
-  const Context context = console.context({{"read", 1}, {"compare", 10}}, options.threads);
+  Console console(options.console);
+  const Context context = console.context({{"read", 1}, {"compare", 10}});
   auto cloud = load_cloud(typed.arguments[0], context);
   const TruthFile truth(typed.arguments[1], context);
   const std::vector<double> xyz = pipeline::io::positions(cloud, context),

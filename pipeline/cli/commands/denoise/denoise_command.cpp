@@ -39,8 +39,8 @@ std::optional<int> denoise_in_tiles(const DenoiseCommandOptions& options, const 
   const std::vector<Job> jobs = plan_cloud_jobs(typed.arguments, options.job.files);
   if (jobs.size() != 1) return std::nullopt;
   const Job& job = jobs.front();
-  Console console(options.job.talk);
-  const Context context = console.context({{"tiles", 1}}, options.job.run.threads);
+  Console console(options.job.console);
+  const Context context = console.context({{"tiles", 1}});
   const auto memory = memory_of_tiles(options, job, context);
   if (!memory) return std::nullopt;
   need_own_target(job, options.job.files.output);

@@ -19,14 +19,12 @@ using nlohmann::ordered_json;
 
 struct InfoCommandOptions {
   bool json = false;
-  std::optional<int> threads;
-  TalkOptions talk;
+  ConsoleOptions console;
 
   template <class Self, class Visit>
   static void describe(Self& self, Visit&& visit) {
     visit(OptionInfo{"json", "print JSON", ""}, self.json);
-    visit(threads_option(), self.threads);
-    TalkOptions::describe(self.talk, visit);
+    ConsoleOptions::describe(self.console, visit);
   }
 };
 
@@ -90,8 +88,8 @@ void print_text(const ordered_json& info) {
 int run_info(const InfoCommandOptions& options, const Invocation& typed) {
   if (typed.arguments.empty()) fail(ErrorCode::usage, "no input given");
   need_one_standard_input(typed.arguments);
-  Console console(options.talk);
-  const Context context = console.context({{"read", 1}}, options.threads);
+  Console console(options.console);
+  const Context context = console.context({{"read", 1}});
   auto all = ordered_json::array();
   std::vector<Job> jobs;
   for (const std::string& input : typed.arguments) jobs.push_back({input, ""});
