@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "clouds/render/scene.h"
+#include "pipeline/cli/render/picture_style.h"
 
 namespace rfsmooth::render {
 
@@ -15,15 +16,7 @@ struct PictureOptions {
   std::string title;
   std::optional<Eigen::Vector3d> direction, up;  ///< see CameraOptions
   std::optional<Eigen::Vector3d> zoom;           ///< x, y: shares of the full frame; magnification
-  int width = 700, height = 560;                 ///< of each input's, pixels
-  int neighbors = 8;                             ///< a normal is estimated from
-  double splat = 1;                              ///< size of the points, x what covers the surface
-  bool edges = false;                            ///< of faces too
-  std::string color = "plain";                   ///< plain, rgb, height, field, displacement
-  std::string field;                             ///< for color "field"
-  std::optional<double> low, high;               ///< values at the ends of the colours; empty: from the data
-  int levels = 256;                              ///< of brightness per colour
-  bool without_outliers = false;                 ///< leave out strays and mixed pixels of clouds
+  PictureStyle style;
 };
 
 struct Picture {

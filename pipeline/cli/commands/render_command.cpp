@@ -29,12 +29,12 @@ Command render_table(const std::shared_ptr<RenderOptions>& options) {
 
 /// Refuses options that were typed and do nothing. \throw Failure (usage).
 void check_colours(const RenderOptions& options, const Invocation& typed) {
-  const bool by_value = options.color != "plain" && options.color != "rgb";
+  const bool by_value = options.style.color != "plain" && options.style.color != "rgb";
   for (const auto& [name, text] : typed.options) {
-    if (name == "field" && options.color != "field")
+    if (name == "field" && options.style.color != "field")
       fail(ErrorCode::usage, "--field has no effect without --color field");
     if ((name == "low" || name == "high") && !by_value)
-      fail(ErrorCode::usage, "--{} has no effect with --color {}", name, options.color);
+      fail(ErrorCode::usage, "--{} has no effect with --color {}", name, options.style.color);
   }
 }
 
@@ -42,7 +42,7 @@ void check_colours(const RenderOptions& options, const Invocation& typed) {
 void check_request(const RenderOptions& options, const Invocation& typed) {
   if (typed.arguments.empty()) fail(ErrorCode::usage, "no input given");
   if (!options.output) fail(ErrorCode::usage, "no picture named: -o OUT.png");
-  if (options.color == "field" && options.field.empty())
+  if (options.style.color == "field" && options.style.field.empty())
     fail(ErrorCode::usage,
          "--color field needs the name of a field: --field NAME (rfsmooth info lists them)");
   check_colours(options, typed);

@@ -8,7 +8,7 @@
 
 #include "pipeline/cli/commands/command.h"
 #include "pipeline/cli/console/console.h"
-#include "pipeline/cli/files/file_options.h"
+#include "pipeline/cli/render/picture_style.h"
 
 namespace rfsmooth::cli {
 
@@ -16,15 +16,7 @@ namespace rfsmooth::cli {
 struct RenderOptions {
   std::optional<std::string> output, title, labels;
   std::optional<std::string> direction, up, zoom;  // three numbers each
-  int width = 700, height = 560;
-  int neighbors = 8;
-  double splat = 1;
-  bool edges = false;
-  std::string color = "plain";
-  std::string field;
-  std::optional<double> low, high;
-  int levels = 256;
-  bool without_outliers = false;
+  render::PictureStyle style;
   bool force = false;
   ConsoleOptions console;
 
@@ -42,22 +34,7 @@ struct RenderOptions {
                    "x,y,magnification: what is enlarged, as shares of the full picture from its left and top",
                    ""},
         self.zoom);
-    visit(OptionInfo{"width", "of each picture", "pixels", 16, 10000}, self.width);
-    visit(OptionInfo{"height", "of each picture", "pixels", 16, 10000}, self.height);
-    OptionInfo color{"color", "what colours the points", ""};
-    color.choices = {"plain", "rgb", "height", "field", "displacement"};
-    visit(color, self.color);
-    visit(OptionInfo{"field", "with --color field: which", ""}, self.field);
-    visit(OptionInfo{"low", "value at the dark blue end; auto: from the data", ""}, self.low);
-    visit(OptionInfo{"high", "value at the yellow end; auto: from the data", ""}, self.high);
-    visit(OptionInfo{"neighbors", "points a normal is estimated from; few show the noise", "points", 3, 200},
-          self.neighbors);
-    visit(OptionInfo{"splat", "size of the points", "x what covers the surface", 0.01, 20}, self.splat);
-    visit(OptionInfo{"edges", "draw the edges of faces", ""}, self.edges);
-    visit(OptionInfo{"levels", "of brightness per colour; fewer make a smaller file", "", 2, 256},
-          self.levels);
-    visit(OptionInfo{"without-outliers", "leave out points of clouds with no surface near them", ""},
-          self.without_outliers);
+    render::PictureStyle::describe(self.style, visit);
     visit(OptionInfo{"force", "replace an existing file", ""}, self.force);
     ConsoleOptions::describe(self.console, visit);
   }

@@ -16,9 +16,8 @@ std::optional<Eigen::Vector3d> three(const char* option, const std::optional<std
   if (!text) return std::nullopt;
   auto values = rfsmooth::cli::read_point(*text);
   if (!values)
-    throw rfsmooth::Failure(
-        {rfsmooth::ErrorCode::usage,
-         fmt::format("--{}: expected three numbers as 1,0,0; found '{}'", option, *text)});
+    rfsmooth::fail(rfsmooth::ErrorCode::usage, "--{}: expected three numbers as 1,0,0; found '{}'", option,
+                   *text);
   return values;
 }
 
@@ -45,17 +44,7 @@ rfsmooth::render::PictureOptions picture_options(const RenderOptions& options,
   out.direction = three("direction", options.direction);
   out.up = three("up", options.up);
   out.zoom = three("zoom", options.zoom);
-  out.width = options.width;
-  out.height = options.height;
-  out.neighbors = options.neighbors;
-  out.splat = options.splat;
-  out.edges = options.edges;
-  out.color = options.color;
-  out.field = options.field;
-  out.low = options.low;
-  out.high = options.high;
-  out.levels = options.levels;
-  out.without_outliers = options.without_outliers;
+  out.style = options.style;
   return out;
 }
 
