@@ -211,7 +211,7 @@ void land_tails(const double* xyz, const std::vector<double>& strength, const De
   Positions added;  // only after all have landed: the surface must not change under them
   for (std::size_t i = 0; i < report.outlier.size(); ++i) {
     if (report.outlier[i] == 0) continue;
-    const Eigen::Vector3d was = Eigen::Vector3d(xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]) - cloud.origin;
+    const Eigen::Vector3d was = Eigen::Vector3d(&xyz[3 * i]) - cloud.origin;
     Eigen::Vector3d landed = was;
     if (!land(surface, most, landed)) continue;
     if (!strength.empty()) landed = was + strength[i] * (landed - was);

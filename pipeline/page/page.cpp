@@ -24,14 +24,10 @@ using nlohmann::ordered_json;
 
 namespace {
 
-Vector3d row_of(const std::vector<double>& xyz, std::size_t row) {
-  return {xyz[3 * row], xyz[3 * row + 1], xyz[3 * row + 2]};
-}
-
 /// Middle of the box around the rows, from which float32 is fine enough for a picture.
 Vector3d middle_of(const std::vector<double>& xyz, const std::vector<std::size_t>& rows) {
   Eigen::AlignedBox3d box;
-  for (const std::size_t row : rows) box.extend(row_of(xyz, row));
+  for (const std::size_t row : rows) box.extend(Vector3d(&xyz[3 * row]));
   return box.min() + box.sizes() / 2;
 }
 
@@ -39,7 +35,7 @@ std::vector<Eigen::Vector3f> normals_shown(const std::vector<double>& normals,
                                            const std::vector<std::size_t>& rows) {
   std::vector<Eigen::Vector3f> shown;
   for (std::size_t i = 0; i < rows.size() && !normals.empty(); ++i)
-    shown.emplace_back(row_of(normals, rows[i]).cast<float>());
+    shown.emplace_back(Vector3d(&normals[3 * rows[i]]).cast<float>());
   return shown;
 }
 
@@ -47,10 +43,10 @@ ShownPoints points_shown(const PageContents& contents, const std::vector<RowKind
                          const std::vector<std::size_t>& rows, const Vector3d& centre) {
   ShownPoints shown;
   for (const std::size_t row : rows) {
-    shown.before.emplace_back(row_of(contents.before.xyz, row) - centre);
+    shown.before.emplace_back(Vector3d(&contents.before.xyz[3 * row]) - centre);
     shown.after.emplace_back(kinds[row] == RowKind::removed
                                  ? shown.before.back()
-                                 : Vector3d(row_of(contents.after.xyz, row) - centre));
+                                 : Vector3d(Vector3d(&contents.after.xyz[3 * row]) - centre));
     shown.kinds.push_back(kinds[row]);
     if (!contents.colors.empty()) shown.colors.push_back(contents.colors[row]);
   }

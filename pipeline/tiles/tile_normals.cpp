@@ -103,22 +103,19 @@ ordered_json write_normals(const Job& job, std::size_t tile, const Gathered& poi
   const Vector3d middle = 0.5 * (job.box.low + job.box.high);
   const Eigen::AlignedBox3d box(job.tiles[tile].box.low, job.tiles[tile].box.high);
   std::vector<Piece> pieces;
-  const auto row_of = [](const std::vector<double>& values, std::size_t i) {
-    return Vector3d(values[3 * i], values[3 * i + 1], values[3 * i + 2]);
-  };
   const auto record = [&](std::size_t i, std::uint64_t row) {
     Index& piece = number[part[i]];
     if (piece == kNone) {
       piece = Index(pieces.size());
       pieces.emplace_back();
     }
-    const Vector3d normal = row_of(normals, i);
+    const double* const normal = &normals[3 * i];
     return NormalRecord{row, normal[0], normal[1], normal[2], piece};
   };
   WriterOf<NormalRecord> inside(job.normals(tile), context), outside(job.around(tile), context);
   for (std::size_t i = 0; i < own.size(); ++i) {
     const NormalRecord r = record(i, own[i].row);
-    const Vector3d p = row_of(xyz, i), normal(r.x, r.y, r.z);
+    const Vector3d p(&xyz[3 * i]), normal(r.x, r.y, r.z);
     Piece& piece = pieces[r.piece];
     piece.add(p - middle, normal);
     if (options.viewpoint) piece.vote += normal.dot((*options.viewpoint - p).normalized());
@@ -127,7 +124,7 @@ ordered_json write_normals(const Job& job, std::size_t tile, const Gathered& poi
   std::vector<std::pair<std::size_t, std::uint64_t>> met;  // tiles, and how many of their points
   for (std::size_t k = 0; k < around.size(); ++k) {
     const std::size_t i = own.size() + k;
-    if (own.empty() || box.squaredExteriorDistance(row_of(xyz, i)) > reach * reach) continue;
+    if (own.empty() || box.squaredExteriorDistance(Vector3d(&xyz[3 * i])) > reach * reach) continue;
     outside.add(record(i, around[k].row));
     if (met.empty() || met.back().first != around[k].tile) met.emplace_back(around[k].tile, 0);
     ++met.back().second;

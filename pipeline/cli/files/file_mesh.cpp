@@ -22,7 +22,7 @@ FileMesh file_mesh(const io::Cloud& cloud, const std::string& name, const Contex
   out.of_row.assign(cloud.size(), kNone);
   Positions& points = out.mesh.positions;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const Vector3d p(out.xyz[3 * i], out.xyz[3 * i + 1], out.xyz[3 * i + 2]);
+    const Vector3d p(&out.xyz[3 * i]);
     if (!p.allFinite()) continue;
     out.of_row[i] = Index(points.size());
     points.push_back(p);

@@ -120,7 +120,7 @@ ordered_json moves_of(const Job& job, const std::vector<Record>& own, const std:
   std::uint64_t moved = 0, strays = 0;
   double squares = 0, largest = 0;
   for (std::size_t i = 0; i < own.size(); ++i) {
-    const Vector3d move = Vector3d(now[3 * i], now[3 * i + 1], now[3 * i + 2]) - place(own[i]);
+    const Vector3d move = Vector3d(&now[3 * i]) - place(own[i]);
     const std::uint64_t rows = job.rows_with(own[i].row);
     moved += move.squaredNorm() > 0 ? rows : 0;
     strays += !outlier.empty() && outlier[i] != 0 ? rows : 0;
