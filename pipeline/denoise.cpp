@@ -59,7 +59,7 @@ class Rows {
 
 /// Takes over what the automatic smoother measured of the cloud and did in its first step: later ones
 /// measure only what that left, and of it too little, for neighbours share it.
-void enter(const smoothing::AutomaticReport& first, DenoiseReport& report) {
+void enter(const smoothing::AutomaticFindings& first, DenoiseReport& report) {
   report.noise = first.noise;
   report.measured = first.measured;
   report.not_smoothed = first.not_smoothed;
@@ -77,7 +77,7 @@ void alternate(Mesh& mesh, const Constraints& constraints, const DenoiseOptions&
   const int steps = iterations(options.flow.flow);
   const bool swap = options.swap && steps > 1;
   const auto* automatic = std::get_if<AutomaticOptions>(&options.flow.flow);
-  std::optional<smoothing::AutomaticReport> found, first;
+  std::optional<smoothing::AutomaticFindings> found, first;
   std::unique_ptr<Flow> flow;  // none where the automatic smoother has nothing around it
   if (automatic == nullptr)
     flow = value_or_throw(make_flow(mesh, options.flow, context, constraints));

@@ -53,11 +53,11 @@ Positions fair(const Positions& points, const Adjacency& rings, double strength,
 
 /// The guide of the points, faired over their rings, and the heights over it.
 std::unique_ptr<HeightField> raise_field(const Positions& points, const Adjacency& rings,
-                                         const rfs_mesh::NoiseField& noise, AutomaticReport& report,
+                                         const rfs_mesh::NoiseField& noise, AutomaticFindings& found,
                                          const Context& context) {
-  Positions guide = fair(points, rings, report.guide_strength, context);
+  Positions guide = fair(points, rings, found.guide_strength, context);
   Landed landed = land_stranded(points, rings, noise.strays_beyond(1, context), guide, context);
-  report.stranded = landed.stranded;
+  found.stranded = landed.stranded;
   return std::make_unique<HeightField>(std::move(guide), std::move(landed.tree), landed.near, points, noise,
                                        context);
 }
@@ -78,7 +78,7 @@ struct Mixed {
 };
 
 /// Steps 1 to 3, twice where there are tails: then the noise is as tamed.
-Mixed mix_scales(const AutomaticTask& task, AutomaticReport& report, Statistics& whole,
+Mixed mix_scales(const AutomaticTask& task, AutomaticFindings& found, Statistics& whole,
                  const Context& context) {
   Mesh& mesh = task.mesh;
   std::optional<Adjacency> lines;
@@ -87,9 +87,9 @@ Mixed mix_scales(const AutomaticTask& task, AutomaticReport& report, Statistics&
   Mixed mixed;
   const auto smooth = [&](const Positions& points, const rfs_mesh::NoiseField& noise, std::size_t pass) {
     whole.passes.resize(std::max(pass + 1, whole.passes.size()));
-    report.guide_strength = strength_of_guide(noise);
+    found.guide_strength = strength_of_guide(noise);
     mixed.field.reset();
-    mixed.field = raise_field(points, rings, noise, report, context);
+    mixed.field = raise_field(points, rings, noise, found, context);
     context.report("smooth", 0.1);
     std::optional<RingsAtRest> rest;  // only with tails will they be read again
     if (!task.keep_rings) rest.emplace(std::move(mesh.one_ring), context);
@@ -99,7 +99,7 @@ Mixed mix_scales(const AutomaticTask& task, AutomaticReport& report, Statistics&
   smooth(mesh.positions, task.noise, 0);
   mixed.tails = tame(*mixed.field, mixed.heights, mesh, task.noise, whole.tails, mixed.tamed, context);
   if (mixed.tails.share > 0) {
-    report.tail_times = mixed.tails.times;
+    found.tail_times = mixed.tails.times;
     mixed.tamed_noise = tamed(task.noise, mixed.tails);
     smooth(mixed.tamed, *mixed.tamed_noise, 1);
   }
@@ -139,11 +139,11 @@ Eigen::Vector3d place_at(const HeightField& field, std::size_t i, const Eigen::V
 
 }  // namespace
 
-AutomaticResult automatic_smoothing(const AutomaticTask& task, AutomaticReport& report, Statistics& whole,
+AutomaticResult automatic_smoothing(const AutomaticTask& task, AutomaticFindings& found, Statistics& whole,
                                     const Context& context) {
   Mesh& mesh = task.mesh;
   const std::size_t n = mesh.positions.size();
-  Mixed mixed = mix_scales(task, report, whole, context);
+  Mixed mixed = mix_scales(task, found, whole, context);
   const rfs_mesh::NoiseField& noise = mixed.tamed_noise ? *mixed.tamed_noise : task.noise;
   const double untamed = task.noise.sigma, farther = mixed.tails.share > 0 ? mixed.tails.times : 1;
   HeightField& field = *mixed.field;
@@ -187,7 +187,7 @@ AutomaticResult automatic_smoothing(const AutomaticTask& task, AutomaticReport& 
       take_learned_step(field, data, smoothed, noise, may_go, smooth, context);
   }
   // What is left is left of the cloud's own noise, whatever it was smoothed as.
-  report.left = std::sqrt(heights.left.own / (task.strength * task.strength) + heights.left.wider);
+  found.left = std::sqrt(heights.left.own / (task.strength * task.strength) + heights.left.wider);
   return {std::move(smooth), field.release_neighbors()};
 }
 

@@ -74,8 +74,8 @@ struct AutomaticTask {
   LearnedInput* for_training = nullptr;
 };
 
-/// What the automatic flow measured and chose.
-struct AutomaticReport {
+/// What the automatic flow measured and chose in a step; a DenoiseReport tells that of the first.
+struct AutomaticFindings {
   NoiseSummary measured;
   std::optional<NotSmoothed> not_smoothed;  ///< why not; none: there was something to smooth
   double noise = 0;           ///< measured or stated, standard deviation along the normal, world units
@@ -93,10 +93,10 @@ struct AutomaticResult {
   NearRows near;     ///< the nearest of every point on the guide (height_field.h)
 };
 
-/// O(n log n); about 350 bytes a point beside the mesh. Parallel, the same bits for any number of threads. Of
-/// the report, what was measured and what was equalized are the flow's to enter (flow_auto.cpp).
-/// \param whole what is there is taken, the rest entered.
-AutomaticResult automatic_smoothing(const AutomaticTask& task, AutomaticReport& report, Statistics& whole,
+/// O(n log n); about 350 bytes a point beside the mesh. Parallel, the same bits for any number of threads.
+/// \param found what was measured and what was equalized are the flow's to enter (flow_auto.cpp). \param
+/// whole what is there is taken, the rest entered.
+AutomaticResult automatic_smoothing(const AutomaticTask& task, AutomaticFindings& found, Statistics& whole,
                                     const Context& context);
 
 }  // namespace rfsmooth::smoothing

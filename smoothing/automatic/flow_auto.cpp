@@ -65,19 +65,19 @@ void limit(const Positions& before, const rfs_mesh::NoiseField& noise, double st
 
 class AutomaticFlow : public Flow {
  public:
-  AutomaticFlow(const AutomaticOptions& options, std::optional<AutomaticReport>* report,
+  AutomaticFlow(const AutomaticOptions& options, std::optional<AutomaticFindings>* found,
                 Statistics* statistics)
-      : options_(options), report_(report), statistics_(statistics) {}
+      : options_(options), found_(found), statistics_(statistics) {}
 
   void step(Mesh& mesh, const Context& context) override {
-    const auto report = smooth_automatically(mesh, options_, context, Connectivity::kept, statistics_);
+    const auto found = smooth_automatically(mesh, options_, context, Connectivity::kept, statistics_);
     statistics_ = nullptr;  // what a step leaves is another cloud
-    if (report_ != nullptr) *report_ = report;
+    if (found_ != nullptr) *found_ = found;
   }
 
  private:
   AutomaticOptions options_;
-  std::optional<AutomaticReport>* report_;
+  std::optional<AutomaticFindings>* found_;
   Statistics* statistics_;
 };
 
@@ -102,9 +102,9 @@ NoiseSummary summary_of(const rfs_mesh::NoiseField& noise) {
   return summary;
 }
 
-std::optional<AutomaticReport> smooth_automatically(Mesh& mesh, const AutomaticOptions& options,
-                                                    const Context& context, Connectivity connectivity,
-                                                    Statistics* statistics, LearnedInput* for_training) {
+std::optional<AutomaticFindings> smooth_automatically(Mesh& mesh, const AutomaticOptions& options,
+                                                      const Context& context, Connectivity connectivity,
+                                                      Statistics* statistics, LearnedInput* for_training) {
   if (connectivity == Connectivity::used_up) std::vector<Face>().swap(mesh.faces);
   if (mesh.positions.size() < 2) return {};
   Statistics own, &whole = statistics != nullptr ? *statistics : own;
@@ -113,15 +113,15 @@ std::optional<AutomaticReport> smooth_automatically(Mesh& mesh, const AutomaticO
   const NoiseSummary summary = summary_of(noise);
   const double sigma = options.noise ? options.noise->resolve(noise.spacing) : told_noise(noise);
   noise = scaled(std::move(noise), sigma, options.strength);
-  AutomaticReport report;
-  report.noise = sigma;
-  report.measured = summary;
-  report.left = sigma;
-  report.not_smoothed = why_not(mesh.positions.size(), options.strength, noise.sigma);
-  if (report.not_smoothed) return report;
+  AutomaticFindings found;
+  found.noise = sigma;
+  found.measured = summary;
+  found.left = sigma;
+  found.not_smoothed = why_not(mesh.positions.size(), options.strength, noise.sigma);
+  if (found.not_smoothed) return found;
   AutomaticResult smooth = automatic_smoothing(
       {mesh, noise, options.learned, connectivity == Connectivity::kept, options.strength, for_training},
-      report, whole, context);
+      found, whole, context);
   mesh.positions.swap(smooth.points);
   const Positions before = std::move(smooth.points);
   rfs_mesh::NeighborTable near = smooth.near.first(NearRows::kMost, context);
@@ -129,19 +129,19 @@ std::optional<AutomaticReport> smooth_automatically(Mesh& mesh, const AutomaticO
   if (!noise.on_lines) {  // along lines only the normals are known
     if (options.equalize && !is_shared(noise)) {
       const Equalized moved = equalize(mesh.positions, before, noise, std::move(near), context);
-      report.equalized = moved.rms;
-      report.equalized_most = moved.largest;
+      found.equalized = moved.rms;
+      found.equalized_most = moved.largest;
     } else {
       slide_back(mesh.positions, before, std::move(near), context);
     }
   }
-  limit(before, noise, options.strength, report.tail_times, mesh.positions, context);
-  return report;
+  limit(before, noise, options.strength, found.tail_times, mesh.positions, context);
+  return found;
 }
 
-std::unique_ptr<Flow> make_automatic(const AutomaticOptions& options, std::optional<AutomaticReport>& report,
+std::unique_ptr<Flow> make_automatic(const AutomaticOptions& options, std::optional<AutomaticFindings>& found,
                                      Statistics& statistics) {
-  return std::make_unique<AutomaticFlow>(options, &report, &statistics);
+  return std::make_unique<AutomaticFlow>(options, &found, &statistics);
 }
 
 }  // namespace rfsmooth::smoothing

@@ -3,7 +3,7 @@
 /// noise all over the cloud, puts them back to where they were along it (slide_back.h).
 ///
 /// How far a point may move in a step: at most kNoiseReach (levels.h) times the noise around it, measured or
-/// stated; strength times that where the strength is above one, and AutomaticReport::tail_times that where
+/// stated; strength times that where the strength is above one, and AutomaticFindings::tail_times that where
 /// some points are much noisier than the others. Strays, which would go farther still (automatic.h), stay.
 #pragma once
 
@@ -34,15 +34,15 @@ enum class Connectivity { kept, used_up };
 /// stay. `options.iterations` is the caller's loop. `statistics`: what is there is taken, the rest entered.
 /// O(n log n), about 350 bytes a point. Parallel, the same bits for any number of threads. Thread safe on
 /// distinct meshes.
-std::optional<AutomaticReport> smooth_automatically(Mesh& mesh, const AutomaticOptions& options,
-                                                    const Context& context,
-                                                    Connectivity connectivity = Connectivity::kept,
-                                                    Statistics* statistics = nullptr,
-                                                    LearnedInput* for_training = nullptr);
+std::optional<AutomaticFindings> smooth_automatically(Mesh& mesh, const AutomaticOptions& options,
+                                                      const Context& context,
+                                                      Connectivity connectivity = Connectivity::kept,
+                                                      Statistics* statistics = nullptr,
+                                                      LearnedInput* for_training = nullptr);
 
-/// The same as the steps of a flow, for modifiers and constraints to go around. Each step writes `report`,
+/// The same as the steps of a flow, for modifiers and constraints to go around. Each step writes `found`,
 /// the first one alone takes and enters `statistics`; both must outlive the flow.
-std::unique_ptr<Flow> make_automatic(const AutomaticOptions& options, std::optional<AutomaticReport>& report,
+std::unique_ptr<Flow> make_automatic(const AutomaticOptions& options, std::optional<AutomaticFindings>& found,
                                      Statistics& statistics);
 
 }  // namespace rfsmooth::smoothing

@@ -39,45 +39,45 @@ rfs_mesh::NoiseField even(double sigma, std::size_t n) {
   return noise;
 }
 
-Positions smoothed(Mesh mesh, rfs_mesh::NoiseField noise, AutomaticReport& report) {
+Positions smoothed(Mesh mesh, rfs_mesh::NoiseField noise, AutomaticFindings& found) {
   Statistics whole;
   noise.spacing = spacing(mesh.positions);
-  return automatic_smoothing({mesh, std::move(noise)}, report, whole, {}).points;
+  return automatic_smoothing({mesh, std::move(noise)}, found, whole, {}).points;
 }
 
-Positions smoothed(const Mesh& mesh, double sigma, AutomaticReport& report) {
-  return smoothed(mesh, even(sigma, mesh.positions.size()), report);
+Positions smoothed(const Mesh& mesh, double sigma, AutomaticFindings& found) {
+  return smoothed(mesh, even(sigma, mesh.positions.size()), found);
 }
 
 TEST(Automatic, LeavesATenthOfTheErrorOfANoisySphereAndKnowsWhatIsLeft) {
   for (const double share : {0.2, 0.5, 1.0}) {
     double sigma = 0;
     const Mesh mesh = noisy_sphere(share, sigma);
-    AutomaticReport report;
-    const Positions smooth = smoothed(mesh, sigma, report);
+    AutomaticFindings found;
+    const Positions smooth = smoothed(mesh, sigma, found);
     const double left = support::rms_off_unit_sphere(smooth);
     EXPECT_LT(left, 0.33 * support::rms_off_unit_sphere(mesh.positions)) << share;  // of the square: a tenth
-    EXPECT_LT(report.left, 0.5 * sigma) << share;
-    EXPECT_GT(report.guide_strength, 0);
+    EXPECT_LT(found.left, 0.5 * sigma) << share;
+    EXPECT_GT(found.guide_strength, 0);
   }
 }
 
 TEST(Automatic, WhatIsLeftIsNearTheTruthAndStraysAreNotPartOfIt) {
   double sigma = 0;
   Mesh mesh = noisy_sphere(0.5, sigma);
-  AutomaticReport report;
+  AutomaticFindings found;
   for (const double stated : {0.9, 1.0, 1.1}) {  // as well as noise is measured
-    const double truth = support::rms_off_unit_sphere(smoothed(mesh, stated * sigma, report));
-    EXPECT_GT(report.left, 0.8 * truth) << stated;
-    EXPECT_LT(report.left, 1.5 * truth) << stated;
+    const double truth = support::rms_off_unit_sphere(smoothed(mesh, stated * sigma, found));
+    EXPECT_GT(found.left, 0.8 * truth) << stated;
+    EXPECT_LT(found.left, 1.5 * truth) << stated;
   }
   // One point in five hundred thirty sigma off.
   for (std::size_t i = 0; i < mesh.positions.size(); i += 500) mesh.positions[i] *= 1 + 30 * sigma;
-  const Positions smooth = smoothed(mesh, sigma, report);
+  const Positions smooth = smoothed(mesh, sigma, found);
   Positions others;
   for (std::size_t i = 0; i < smooth.size(); ++i)
     if (i % 500 != 0) others.push_back(smooth[i]);
-  EXPECT_LT(report.left, 1.5 * support::rms_off_unit_sphere(others));
+  EXPECT_LT(found.left, 1.5 * support::rms_off_unit_sphere(others));
 }
 
 TEST(Automatic, NoiseThatVariesIsSmoothedAwayWhereItIsLoud) {
@@ -91,16 +91,16 @@ TEST(Automatic, NoiseThatVariesIsSmoothedAwayWhereItIsLoud) {
     mesh.positions[i] += (loud ? 4 : 1) * (noise.positions[i] - mesh.positions[i]);
     if (loud) field.local[i] *= 4;
   }
-  AutomaticReport report;
+  AutomaticFindings found;
   const auto loud_half = [&](const Positions& points) {
     Positions half;
     for (std::size_t i = 0; i < points.size(); ++i)
       if (field.local[i] > quiet) half.push_back(points[i]);
     return support::rms_off_unit_sphere(half);
   };
-  const double with_field = loud_half(smoothed(mesh, field, report));
+  const double with_field = loud_half(smoothed(mesh, field, found));
   EXPECT_LT(with_field, 0.3 * loud_half(mesh.positions));
-  EXPECT_LT(with_field, 0.7 * loud_half(smoothed(mesh, quiet, report)));
+  EXPECT_LT(with_field, 0.7 * loud_half(smoothed(mesh, quiet, found)));
 }
 
 TEST(Automatic, ALoudPartOfACloudThatIsMostlyDetailIsSmoothed) {
@@ -159,9 +159,9 @@ TEST(Automatic, NoNoiseIsTheIdentity) {
   Mesh smooth = mesh;
   AutomaticOptions options;
   options.noise = Length{0, false};
-  const auto report = smooth_automatically(smooth, options, {});
+  const auto found = smooth_automatically(smooth, options, {});
   EXPECT_EQ(smooth.positions, mesh.positions);
-  EXPECT_EQ(report->not_smoothed, NotSmoothed::too_little_noise);
+  EXPECT_EQ(found->not_smoothed, NotSmoothed::too_little_noise);
 }
 
 TEST(Automatic, NoPointMovesFartherThanItsShareOfTheNoiseAroundIt) {
@@ -181,9 +181,9 @@ TEST(Automatic, NoPointMovesFartherThanItsShareOfTheNoiseAroundIt) {
     AutomaticOptions options;
     options.strength = strength;
     Mesh smooth = mesh;
-    const auto report = smooth_automatically(smooth, options, {});
-    ASSERT_TRUE(report.has_value());
-    const double most = rfs_mesh::kNoiseReach * std::max(1.0, strength) * report->tail_times;
+    const auto found = smooth_automatically(smooth, options, {});
+    ASSERT_TRUE(found.has_value());
+    const double most = rfs_mesh::kNoiseReach * std::max(1.0, strength) * found->tail_times;
     double largest = 0;
     for (std::size_t i = 0; i < mesh.positions.size(); ++i)
       largest = std::max(largest, (smooth.positions[i] - mesh.positions[i]).norm() / field.local[i]);
