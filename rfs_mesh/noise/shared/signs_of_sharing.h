@@ -12,19 +12,21 @@ namespace rfsmooth::rfs_mesh {
 /// Of the variance about a quadric, from m points to 2 m: shape that it does not follow grows at least so.
 constexpr double kLeastGrowthOfShape = 2.38;
 
-/// How the residuals of some fits lie, taken together.
+/// How the residuals of some fits lie, taken together. Who is about to believe what 2 m points show asks the
+/// fits to 2 m whether they are of two sheets or of relief. Whether they err together a site asks those to m,
+/// a cloud those to 2 m, and those to m before it is sure; it asks neither that nor for relief on terraces,
+/// and of two sheets not between two depths. In which order does not matter.
 struct SignsOfSharing {
   /// Mean of Scatter::together: 1, less what patches follow of it, of noise that points have of their own, up
   /// to kRing where they share it.
   double together = 0;
-  double in_rows =
-      0;  ///< mean of Scatter::in_rows: the same of lines of a scanner that are each off by itself
+  /// Mean of Scatter::in_rows: the same of lines of a scanner that are each off by itself.
+  double in_rows = 0;
   /// Medians of Scatter::flatness and lean_in_common, since that of a few rocks on a sea floor is large.
   double flatness = 0, lean = 0;
 
   /// Whether nearest points lie off patches of m points the same way: `together` is above that of points on
-  /// their own, which is what patches do not follow of it, m / (m + 45).
-  /// Or they do so along rows.
+  /// their own, which is what patches do not follow of it, m / (m + 45). Or they do so along rows.
   bool err_together(double m) const;
   /// Whether points in a row lie off the same way, beyond what chance and patches of m points make of it.
   bool err_in_rows(double m) const;
