@@ -15,21 +15,21 @@ namespace {
 
 constexpr float kItself = 0.008F;         // a point's share in its own v: 0.0064 to 0.0088 on average
 constexpr float kLouderPlace = 1.3F;      // v / c from which a place counts
-constexpr float kLoudest = 4;             // v: beyond, one sees two sheets
+constexpr float kLoudest = 4;             // v beyond which the sheets are not hidden
 constexpr double kMostSheetShare = 0.75;  // more is another kind of noise; rotor's walls are at most 0.62
 constexpr float kMostOwn = 0.25F;         // beyond, hardly smoothed, little of c is left: they say nothing
 constexpr double kPrior = 0.15;           // standard deviation of ln c: how wrongly the noise may be measured
-constexpr int kSheetRounds = 4;           // of as many local means in all 16, over some 500 points
+constexpr int kSheetRounds = 4;           // each of as many local means: all 16 are over some 500 points
 constexpr float kEmptyLane = 1e9F;        // in lanes without a point: its values count as too large
 
 /// So many points are weighed side by side.
 using Lanes = Eigen::Array<float, 16, 1>;
 
 struct Sum {
-  double evidence = 0;
+  double evidence = 0;     // of those counted in `points`, nats
   std::size_t louder = 0;  // points that may be of two sheets
   std::size_t points = 0;  // those of them that are no layers
-  double area = 0;         // of these points, as `squares`
+  double area = 0;         // of these points: the sum of their squares
   Sum& operator+=(const Sum& other) {
     evidence += other.evidence;
     louder += other.louder;
@@ -68,40 +68,50 @@ bool is_denser(const Sum& sum, const std::vector<float>& squares, const Context&
   return sum.area * others < (1 - rfs_mesh::kLeastPart / 2) * (all - sum.area) * points;
 }
 
-/// Over all c; `v` are the squares' local means.
-HiddenSheets best_evidence(const Residuals& left, const std::vector<float>& own, const std::vector<float>& v,
-                           const std::vector<float>& squares, double whole, const Context& context) {
-  const std::size_t n = v.size();
+/// What the evidence is of, by point.
+struct ByPoint {
+  const Residuals& left;
+  const std::vector<float>& own;
+  const std::vector<float>& v;        ///< local means of the squared residuals
+  const std::vector<float>& squares;  ///< squares_of_points
+};
+
+/// Of points begin to end, if noise has the variance c.
+Sum evidence_in(const ByPoint& of, float c, std::size_t begin, std::size_t end) {
+  Sum part;
+  for (std::size_t i = begin; i < end; i += Lanes::SizeAtCompileTime) {
+    const auto there = Eigen::Index(std::min(end - i, std::size_t(Lanes::SizeAtCompileTime)));
+    const auto lanes = [&](const std::vector<float>& values) {
+      Lanes all = Lanes::Constant(kEmptyLane);
+      all.head(there) = Eigen::Map<const Eigen::ArrayXf>(values.data() + i, there);
+      return all;
+    };
+    const Lanes mean = lanes(of.v), share = lanes(of.own), square = lanes(of.squares),
+                least = squared_of_layers(square, of.left);
+    const Lanes squared = rfs_mesh::squared_apart(mean, c);
+    const auto loud = share <= kMostOwn && mean >= kLouderPlace * c && mean <= kLoudest;
+    part.louder += std::size_t(loud.count());
+    const auto counts = loud && squared >= least;
+    const auto counted = std::size_t(counts.count());
+    if (counted == 0) continue;
+    const Lanes variance = c * (1 - 2 * share),
+                evidence = rfs_mesh::evidence_of_two(lanes(of.left.scores), squared, variance);
+    part.evidence += double(counts.select(evidence, 0).sum());
+    part.points += counted;
+    part.area += double(counts.select(square, 0).sum());
+  }
+  return part;
+}
+
+/// Over all c. \param whole as of split_hidden_sheets
+HiddenSheets best_evidence(const ByPoint& of, double whole, const Context& context) {
+  const std::size_t n = of.v.size();
   HiddenSheets best;
   Sum at_best;
   for (double c = 1.1; c > 0.55; c *= 0.9) {
     const Sum sum = reduce_blocks(
         context, n, Sum(),
-        [&](std::size_t begin, std::size_t end) {
-          Sum part;
-          for (std::size_t i = begin; i < end; i += Lanes::SizeAtCompileTime) {
-            const auto there = Eigen::Index(std::min(end - i, std::size_t(Lanes::SizeAtCompileTime)));
-            const auto lanes = [&](const std::vector<float>& values) {
-              Lanes all = Lanes::Constant(kEmptyLane);
-              all.head(there) = Eigen::Map<const Eigen::ArrayXf>(values.data() + i, there);
-              return all;
-            };
-            const Lanes mean = lanes(v), share = lanes(own), square = lanes(squares),
-                        least = squared_of_layers(square, left);
-            const Lanes squared = rfs_mesh::squared_apart(mean, float(c));
-            const auto loud = share <= kMostOwn && mean >= kLouderPlace * float(c) && mean <= kLoudest;
-            part.louder += std::size_t(loud.count());
-            const auto counts = loud && squared >= least;
-            const auto counted = std::size_t(counts.count());
-            if (counted == 0) continue;
-            const Lanes variance = float(c) * (1 - 2 * share),
-                        evidence = rfs_mesh::evidence_of_two(lanes(left.scores), squared, variance);
-            part.evidence += double(counts.select(evidence, 0).sum());
-            part.points += counted;
-            part.area += double(counts.select(square, 0).sum());
-          }
-          return part;
-        },
+        [&](std::size_t begin, std::size_t end) { return evidence_in(of, float(c), begin, end); },
         [](Sum a, const Sum& b) { return a += b; });
     const double unlikely = std::log(c) / kPrior, evidence = whole * sum.evidence - unlikely * unlikely / 2;
     if (double(sum.points) < kLeastSheetShare * double(n) || evidence <= best.evidence) continue;
@@ -110,7 +120,7 @@ HiddenSheets best_evidence(const Residuals& left, const std::vector<float>& own,
     at_best = sum;
   }
   const bool everywhere = double(at_best.louder) > kMostSheetShare * double(n);
-  const bool believed = everywhere ? left.with_tails : is_denser(at_best, squares, context);
+  const bool believed = everywhere ? of.left.with_tails : is_denser(at_best, of.squares, context);
   if (!believed) best.evidence = 0;
   return best;
 }
@@ -130,20 +140,23 @@ HiddenSheets split_hidden_sheets(const HeightField& field, const Residuals& left
   const std::size_t n = field.size();
   const std::vector<float> squares = squares_of_points(field, left, context);
   std::vector<float> v(n);
+  const ByPoint of{left, own, v, squares};
   const std::vector<float>& residual = left.scores;
-  const auto square = [&](std::size_t i) { return residual[i] * residual[i] + 2 * own[i]; };
-  for_each_index(context, n, [&](std::size_t i) { v[i] = square(i); });
+  // Smoothing left 1 - 2 own of the noise's variance, which is about 1: what it took is added.
+  const auto variance_at = [&](std::size_t i) { return residual[i] * residual[i] + 2 * own[i]; };
+  for_each_index(context, n, [&](std::size_t i) { v[i] = variance_at(i); });
   // Each round averages v over more points. A mean over few follows each of them, and that makes any noise
   // look like two sheets: where it does not even so, wider means will not, and the rounds end.
   for (int round = 0; round < kSheetRounds; ++round) {
     for (int again = 0; again < kSheetRounds; ++again) v = field.local_mean(v, context);
     if (known) continue;
-    found = best_evidence(left, own, v, squares, whole, context);
+    found = best_evidence(of, whole, context);
     if (!found.there()) break;
   }
   if (found.there()) {  // of the other points
-    for_each_index(context, n, [&](std::size_t i) { v[i] = (v[i] - kItself * square(i)) / (1 - kItself); });
-    if (!known) found = best_evidence(left, own, v, squares, whole, context);
+    for_each_index(context, n,
+                   [&](std::size_t i) { v[i] = (v[i] - kItself * variance_at(i)) / (1 - kItself); });
+    if (!known) found = best_evidence(of, whole, context);
   }
   known = found;
   if (!found.there()) return found;

@@ -12,10 +12,10 @@
 ///
 /// Noise that is louder in some places has a larger v as well, and no neighbourhood has the points to tell
 /// (one nat takes some 500 of them); the cloud as a whole does. The evidence of two sheets against one sheet
-/// with louder noise (two_sheets.h) is added up over all points with v > 1.3 c, in noise of variance
-/// c (1 - 2 own), which is what smoothing left of c. From it (ln c)^2 / 2 (0.15)^2 is taken off for a noise
-/// that was measured wrongly, and the c is taken where the rest is largest. Walls make the measured noise too
-/// high themselves, so c must be found.
+/// with louder noise, a likelihood ratio of two simple hypotheses (two_sheets.h), is added up over all points
+/// with v > 1.3 c, in noise of variance c (1 - 2 own), which is what smoothing left of c. From it
+/// (ln c)^2 / 2 (0.15)^2 is taken off for a noise that was measured wrongly, and the c is taken where the
+/// rest is largest. Walls make the measured noise too high themselves, so c must be found.
 ///
 /// v is the mean of the other points around: one that holds a share w of the point itself adds w r^2 nats,
 /// with r = d^2 / v, to what two sheets would bring, about r^4 / 12 (1 - r). For thin walls, where r is 0.3,
@@ -28,7 +28,6 @@
 /// others: two sheets have twice as many, and even if only a tenth of these places had two, they would be 5 %
 /// denser. Several scans that do not meet have as many everywhere (1.5 to 3 % more; rotor 10 to 70 %).
 ///
-/// Source: a likelihood ratio of two simple hypotheses.
 /// Residuals in steps (depths of a sensor) look a little like two sheets in some places, so walls are
 /// believed only if they take at least a twentieth of the cloud. Uniform noise looks like two sheets
 /// everywhere, so they are not believed if they take more than three quarters of it, unless the noise is
