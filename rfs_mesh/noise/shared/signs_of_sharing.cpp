@@ -40,8 +40,14 @@ double overlap(double d, double r) {
   return 2 / M_PI * (std::acos(x) - x * std::sqrt(1 - x * x));
 }
 
-/// What a quadric takes of noise shared over a share of the points, q(share) = tr(A^-1 F^T W S W F) / tr W:
-/// for shares of 2^-kShares to 1 in powers of two.
+/// What a least squares fit of a quadric takes of noise shared over a share of the points of a disk, of its
+/// variance,
+///
+///     q(share) = tr(A^-1 F^T W S W F) / tr W,   A = F^T W F
+///
+/// for shares of 2^-kShares to 1 in powers of two. F are the terms of the quadric at the points, W their
+/// weights (scatter.h), S the correlations of their noise: the noise of a point is the mean of what lies in a
+/// disk of that share around it, so two are as alike as their disks overlap.
 constexpr std::size_t kShares = 5;
 std::array<double, kShares + 1> taken_shares() {
   using Vector6 = Eigen::Matrix<double, 6, 1>;
@@ -77,8 +83,9 @@ std::array<double, kShares + 1> taken_shares() {
 
 double left_by_quadric(double points, double m) {
   static const std::array<double, kShares + 1> taken = taken_shares();
+  // Small shares are taken in proportion. `own`: of noise that each point has of its own, the share 1 / m.
   const double least = std::pow(0.5, double(kShares)), own = std::min(0.9, taken[0] / least / m);
-  if (points <= 1) return 1;
+  if (points <= 1) return 1;  // what is left of noise of their own is the unit
   const double share = points / m;
   double q = 0;
   if (share <= least) {
@@ -87,7 +94,8 @@ double left_by_quadric(double points, double m) {
     const double place = std::min(double(kShares), std::log2(share) + double(kShares));
     const auto below = std::min(kShares - 1, std::size_t(place));
     q = taken[below] + (place - double(below)) * (taken[below + 1] - taken[below]);
-    if (share > 1) q = 1 - (1 - q) / (share * share);  // a quadric follows all but what is left of the edge
+    // Noise that reaches beyond the disk looks ever more like a quadric in it.
+    if (share > 1) q = 1 - (1 - q) / (share * share);
   }
   return std::max(1e-3, (1 - q) / (1 - own));
 }

@@ -55,15 +55,15 @@ double greatest_below(double most, const Below& below) {
 double left_by_quadric(double points, double m);
 
 /// k, the points that share the noise: the greatest that is told by the neighbourhood that sees half of its
-/// variance, or by a wider one. Of noise that is a sum of parts, narrow patches see the part that fewest
-/// share; wide ones follow it as noise that their mean k share. If the narrowest sees more than half, only it
-/// and wider ones are there: what follows such noise is what k is asked for. \param m points of the
-/// neighbourhoods, ascending, at least one. \param left what a quadric leaves of the noise there, over its
-/// variance, at most 1: g(k / m). At least 1, at most the last m.
+/// variance, between two of these m where none sees just that, or by a wider one. Of noise that is a sum of
+/// parts, narrow patches see the part that fewest share; wide ones follow it as noise that their mean k
+/// share, and smoothing takes wide ones. If the narrowest sees more than half, it and wider ones tell. \param
+/// m points of the neighbourhoods, ascending, at least one. \param left what a quadric leaves of the noise
+/// there, over its variance, at most 1: g(k / m). At least 1, at most the last m.
 double points_sharing(const std::vector<double>& m, const std::vector<double>& left);
 
-/// The k of noise whose variance about a quadric grows so from m to 2 m points: by more noise grows faster,
-/// up to m / 4, which it is at most.
+/// The k of noise whose variance about a quadric grows so from m to 2 m points: the more points share it, the
+/// faster, up to a k of m / 4, which is the most that is returned.
 double points_by_growth(double m, double growth);
 
 }  // namespace rfsmooth::rfs_mesh
