@@ -14,7 +14,6 @@
 namespace rfsmooth::pipeline {
 
 using Eigen::Vector3d;
-using Triangle = std::array<Vector3d, 3>;
 
 namespace {
 

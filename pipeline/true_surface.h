@@ -1,9 +1,10 @@
 /// Exact distances to a triangle mesh and to a cloud, as `compare` measures them.
 ///
-/// Both use one tree of axis-aligned boxes, searched best first, and are exact up to rounding. The sign of a
-/// distance comes from angle-weighted pseudo-normals (Baerentzen & Aanaes 2005, "Signed distance computation
-/// using the angle weighted pseudonormal"), which are right at edges and corners too. O(n log n) to build,
-/// typically O(log n) a query. Queries are const and may run in parallel.
+/// Both use one tree of axis-aligned boxes, of which the nearer half is searched first, and are exact up to
+/// rounding. (The trees of rfs_mesh/search hold points only, and know no distance from a triangle.) The sign
+/// of a distance comes from angle-weighted pseudo-normals (Baerentzen & Aanaes 2005, "Signed distance
+/// computation using the angle weighted pseudonormal"), which are right at edges and corners too. O(n log n)
+/// to build, typically O(log n) a query. Queries are const and may run in parallel.
 #pragma once
 
 #include <array>
@@ -21,6 +22,8 @@ namespace rfsmooth::pipeline {
 
 /// An axis-aligned box.
 using Box = Eigen::AlignedBox3d;
+/// A triangle, by its corners.
+using Triangle = std::array<Eigen::Vector3d, 3>;
 
 /// Boxes of items, halved along the longest axis. The same tree for the same items, whatever the machine.
 class BoxTree {
@@ -60,7 +63,7 @@ class PointTree {
   Hit nearest(const Eigen::Vector3d& query, Index skip = kNone) const;
 
   /// Squared distance from a triangle (filled) to the nearest point.
-  double squared_distance_from(const std::array<Eigen::Vector3d, 3>& triangle) const;
+  double squared_distance_from(const Triangle& triangle) const;
 
  private:
   Positions points_;
@@ -74,8 +77,7 @@ struct TrianglePoint {
   int feature = 0;
 };
 /// The point of the triangle nearest to `query`. A degenerate triangle is its longest edge, or a point.
-TrianglePoint nearest_on_triangle(const Eigen::Vector3d& query,
-                                  const std::array<Eigen::Vector3d, 3>& triangle);
+TrianglePoint nearest_on_triangle(const Eigen::Vector3d& query, const Triangle& triangle);
 
 /// A triangle mesh to measure against. Corners at bit-equal positions count as one vertex, so an unindexed
 /// soup works.
@@ -102,7 +104,7 @@ class TrueSurface {
   double signed_distance(const Eigen::Vector3d& query, const Hit& hit) const;  ///< `hit` = nearest(query)
 
   std::size_t face_count() const { return faces_.size(); }
-  std::array<Eigen::Vector3d, 3> corners(std::size_t face) const;
+  Triangle corners(std::size_t face) const;
   /// Unit length; zero for a degenerate face. Points out of a closed surface whatever the orientation of its
   /// faces.
   Eigen::Vector3d outward_normal(std::size_t face) const { return side_ * face_normal(face); }
