@@ -6,6 +6,7 @@
 
 #include "base/parallel.h"
 #include "base/quantile.h"
+#include "pipeline/io/table/cloud.h"
 #include "rfs_mesh/points.h"
 
 namespace rfsmooth::pipeline {
@@ -25,8 +26,7 @@ double half_width(const double* xyz, std::size_t n) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     values.clear();
     for (std::size_t i = 0; i < n; ++i)
-      if (std::isfinite(xyz[3 * i]) && std::isfinite(xyz[3 * i + 1]) && std::isfinite(xyz[3 * i + 2]))
-        values.push_back(xyz[3 * i + axis]);
+      if (io::finite_row(&xyz[3 * i])) values.push_back(xyz[3 * i + axis]);
     const double middle = median(values);
     for (double& v : values) v = std::abs(v - middle);
     width = std::max(width, median(values));

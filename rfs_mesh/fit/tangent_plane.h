@@ -1,4 +1,4 @@
-/// Directions around a point in its tangent plane; internal to the connection stage. Thread safe.
+/// Directions around a point in its tangent plane, as angles in radians. Thread safe: no state is kept.
 #pragma once
 
 #include <algorithm>
@@ -28,10 +28,11 @@ inline double direction(double x, double y) {
   return y < 0 ? -angle : angle;
 }
 
-/// A right-handed frame (t1, t2, normal).
+/// A right-handed frame (t1, t2, normal) of unit vectors.
 struct TangentPlane {
   Eigen::Vector3d t1, t2;
 
+  /// \param normal unit
   explicit TangentPlane(const Eigen::Vector3d& normal) : t1(normal.unitOrthogonal()), t2(normal.cross(t1)) {}
 
   Eigen::Vector2d project(const Eigen::Vector3d& d) const { return {t1.dot(d), t2.dot(d)}; }

@@ -4,7 +4,6 @@
 
 #include "base/fail.h"
 #include "pipeline/io/convert/capacity.h"
-#include "pipeline/io/io.h"
 #include "pipeline/io/mesh_file.h"
 
 namespace rfsmooth::cli {

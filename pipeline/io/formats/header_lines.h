@@ -1,5 +1,5 @@
 /// The lines of a file's header, read piece by piece so that a header may be of any length and the data
-/// behind it is not read twice.
+/// behind it is not read twice. One thread at a time.
 #pragma once
 
 #include <cstdint>
@@ -15,16 +15,15 @@ class HeaderLines {
  public:
   HeaderLines(const Source& source, const Context& context) : source_(source), context_(context) {}
 
-  /// The next line without its line end (LF or CR LF). \throw Failure at the end of the file: "line N:
-  /// expected `expected`, found the end of the file".
+  /// The next line without its line end (LF or CR LF), good until the next one is asked for. \throw Failure
+  /// at the end of the file: "line N: expected `expected`, found the end of the file".
   std::string_view next(std::string_view expected);
 
   std::size_t line() const { return line_; }        ///< number of the line last returned, from 1
   std::uint64_t offset() const { return offset_; }  ///< first byte behind it
-  std::string_view text() const {
-    return {held_.data(), std::size_t(offset_)};
-  }                                    ///< all lines so far, verbatim
-  bool crlf() const { return crlf_; }  ///< whether the first line ended in CR LF
+  bool crlf() const { return crlf_; }               ///< whether the first line ended in CR LF
+  /// All lines so far, verbatim; good until the next one is asked for.
+  std::string_view text() const { return {held_.data(), std::size_t(offset_)}; }
   bool at_end() const { return offset_ == source_.size(); }
 
   /// \throw Failure, "NAME: line N: message", put together as in base/fail.h.
