@@ -17,11 +17,12 @@ namespace {
 // Chosen on the laws of tests/bench/quality (six shapes, 10,000 points) and on the raw scans of
 // tests/bench/scans.
 constexpr std::size_t kPointsLooked = 500000;  // at each m: of wide places fewer say as much
-constexpr std::size_t kSlowInARow = 2;         // the least that is a row
-// Of the variance, from m to 2 m: noise that no other shape overtakes begins no faster.
-constexpr double kMostGrowthOfNoise = 1.8;
+constexpr std::size_t kInARow = 2;             // the least that is a row
+// Of the variance, from m to 2 m: noise that no other shape overtakes grows slower than m.
+constexpr double kMostGrowthOfNoise = 2;
 // The same of ground, whose roughness has no scale of its own: 2^H, H from 0.5 on (Mandelbrot 1982).
 constexpr double kLeastGrowthOfGround = 1.414;
+constexpr double kMostlyOwn = 0.5;  // of a variance
 
 /// What calm places show, by the number of neighbours, ascending.
 struct Calm {
@@ -110,16 +111,17 @@ class Growths {
  public:
   explicit Growths(bool terraces) : terraces_(terraces) {}
 
-  /// Returns whether other shape overtakes what counted until then.
-  bool enter(double growth) {
+  /// Returns whether other shape overtakes what counted until then. \param own the variance that points have
+  /// of their own, about
+  bool enter(double at_m, double at_2m, double own) {
+    const double growth = at_2m / at_m;
     slow_ = growth > kLeastGrowthOfShape ? 0 : slow_ + 1;
-    stopped_ = stopped_ || growth < (first_ ? kMostGrowthOfNoise : kLeastGrowthOfGround);
-    first_ = false;
+    if (own < kMostlyOwn * at_m) enter_ground((at_2m - own) / (at_m - own));
     const bool overtakes = slow_ == 0 && counts_;
     overtaken_ = overtaken_ || overtakes;
     fast_ = fast_ || slow_ == 0;
     // After it grew as shape does, one slow growth may be the end of a bump, and ground never stops growing.
-    const bool stops = !fast_ || (slow_ >= kSlowInARow && (counts_ || growth < kLeastGrowthOfGround));
+    const bool stops = !fast_ || (slow_ >= kInARow && (counts_ || growth < kLeastGrowthOfGround));
     counts_ = terraces_ ? counts_ || slow_ > 0 : slow_ > 0 && stops;
     return overtakes;
   }
@@ -127,11 +129,17 @@ class Growths {
   /// Whether the last m counts.
   bool counts() const { return counts_; }
   /// Whether they are those of ground, which does not stop growing and is not overtaken.
-  bool of_ground() const { return !terraces_ && !stopped_ && !overtaken_; }
+  bool of_ground() const { return !terraces_ && hills_ >= kInARow && !stopped_ && !overtaken_; }
 
  private:
-  bool terraces_, first_ = true, counts_ = false, fast_ = false, stopped_ = false, overtaken_ = false;
-  std::size_t slow_ = 0;  ///< growths in a row that noise may have
+  void enter_ground(double growth) {
+    stopped_ = stopped_ || growth < (hills_ == 0 ? kMostGrowthOfNoise : kLeastGrowthOfGround);
+    ++hills_;
+  }
+
+  bool terraces_, counts_ = false, fast_ = false, stopped_ = false, overtaken_ = false;
+  std::size_t slow_ = 0;   ///< growths in a row that noise may have
+  std::size_t hills_ = 0;  ///< growths that ground was looked for in
 };
 
 }  // namespace
@@ -157,6 +165,7 @@ SharedNoise find_shared_noise(Places& places, const NoiseStart& start, const Dep
   };
   Growths growths(terraces);
   bool held = false;
+  const double normal = start.sigma * start.sigma;
   for (std::size_t i = 0; i < calm.m.size(); ++i) {
     if (!terraces && !hold_slab(calm, i)) {
       if (held) break;
@@ -165,11 +174,11 @@ SharedNoise find_shared_noise(Places& places, const NoiseStart& start, const Dep
     held = true;
     make_sure(i, std::min(calm.steps, calm.seen[i]));
     if (i + 1 == calm.m.size() || calm.m[i + 1] != 2 * calm.m[i] || calm.m[i] < 2 * double(start.m)) continue;
-    if (growths.enter(calm.seen[i + 1] / calm.seen[i]) && (terraces || surely > 0)) break;
+    if (growths.enter(calm.seen[i], calm.seen[i + 1], normal) && (terraces || surely > 0)) break;
     if (!growths.counts()) continue;
     const SignsOfSharing &here = calm.signs[i], &next = calm.signs[i + 1];
     // Within terraces no noise is normal.
-    const double own = terraces ? 0 : start.sigma * start.sigma / calm.seen[i + 1];
+    const double own = terraces ? 0 : normal / calm.seen[i + 1];
     if (next.of_two_sheets(own) && calm.two_depths[i + 1] == 0) continue;
     if (!terraces && (next.of_relief() || !next.err_together(calm.m[i + 1]))) continue;
     if (terraces || here.err_together(calm.m[i]))

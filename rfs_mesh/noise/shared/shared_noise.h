@@ -26,15 +26,17 @@
 /// all of which neighbours share, as of cameras that match windows, and s^2 grows as fast as that of shape at
 /// first.) The first faster growth after an m that counted ends the search (off terraces only once some noise
 /// is sure). Ground, hills upon hills, never stops growing and is not overtaken by other shape: off terraces
-/// there is no noise where s^2 grows 1.8 times and more at first, never less than 1.41 times later, and never
-/// faster than what counts. Neighbourhoods whose residuals (off terraces: beyond the noise that points have
-/// of their own) are flatter than kFlatnessOfSheets (two_sheets.h) are of two sheets or of waves in rows (a
-/// sine has 1.5, threads and ripples measured under noise 1.6 to 2.1, noise that points share 2.9 and more),
-/// and tell nothing; but not those at two depths that follow each other, between which noise carries the
-/// points of one wall. Nor do those that lean off terraces (Scatter::lean_in_common): noise is as often above
-/// as below, stones are round above and end in clefts. Those that do not hold a slab as thick as they scatter
-/// (kFlatSlab) tell nothing while they are narrow, and wider ones than some that do are the last, too: leaves
-/// and twigs fill them. k is the number for which
+/// there is no noise where s^2, less what points have of their own, doubles and more at first, never
+/// less than 1.41 times later, and never faster than what counts, at two m or more of which less than half is
+/// of points on their own. Neighbourhoods
+/// whose residuals (off terraces: beyond the noise that points have of their own) are flatter than
+/// kFlatnessOfSheets (two_sheets.h) are of two sheets or of waves in rows (a sine has 1.5, threads and
+/// ripples measured under noise 1.6 to 2.1, noise that points share 2.9 and more), and tell nothing; but not
+/// those at two depths that follow each other, between which noise carries the points of one wall. Nor do
+/// those that lean off terraces (Scatter::lean_in_common): noise is as often above as below, stones are round
+/// above and end in clefts. Those that do not hold a slab as thick as they scatter (kFlatSlab) tell nothing
+/// while they are narrow, and wider ones than some that do are the last, too: leaves and twigs fill them. k
+/// is the number for which
 ///
 ///     s^2(m) = sigma^2 g(k / m)
 ///

@@ -49,6 +49,12 @@ struct SharingShown {
   SignsOfSharing signs;
 };
 
+/// Whether the fits to m points show rows, and those to the fewest, or to twice as many, do already: a wave
+/// that points resolve is wider than their balls, and only wider ones show that it has crests.
+bool in_narrow_rows(const std::vector<SharingShown>& shown, const SharingShown& at_m) {
+  return at_m.in_rows() && (shown[0].in_rows() || shown[1].in_rows());
+}
+
 /// The first of these from which the scatter has stopped growing, and is of noise that neighbours share, if
 /// it never grew as shape does before; or how many there are. \param shown the narrowest holds the slab
 std::size_t stops_at(const std::vector<SharingShown>& shown) {
@@ -56,7 +62,8 @@ std::size_t stops_at(const std::vector<SharingShown>& shown) {
   for (std::size_t i = 0; i + 2 < shown.size(); ++i) {
     const SharingShown &here = shown[i], &next = shown[i + 1];
     const bool grew = next.scatter > (here.in_rows() ? kSameNoise : kGrowthOfNoise) * narrow;
-    const double own = here.in_rows() ? 0 : narrow;  // the narrowest see several rows, and so their noise
+    // Where the narrowest see several rows, they see their noise, too.
+    const double own = in_narrow_rows(shown, here) ? 0 : narrow;
     if (here.holds_slab() && next.of_one_smooth_sheet(own * own) && grew &&
         shown[i + 2].scatter <= kGrowthOfNoise * here.scatter && here.signs.err_together(here.points))
       return i;
@@ -88,7 +95,7 @@ SharedAround look_around(const std::vector<Neighbor>& group, const std::vector<O
   const std::size_t stop = stops_at(shown);
   if (stop == shown.size()) return {};
   double sigma = shown[stop + 1].scatter;
-  if (shown[stop].in_rows())
+  if (in_narrow_rows(shown, shown[stop]))
     sigma = std::sqrt(std::max(sigma * sigma, variance_of_rows(shown[stop], shown[stop + 2])));
   std::vector<double> m, left;
   for (std::size_t i = 0; i <= stop + 1; ++i) {

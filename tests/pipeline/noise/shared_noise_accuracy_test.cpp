@@ -239,6 +239,22 @@ TEST(NoiseLaws, GroundIsNoNoiseThatNeighboursShare) {
   EXPECT_LT(report.rms_move, 0.1 * relief);  // it was a half
 }
 
+// The noise that points of it have of their own hides how fast its finest hills grow.
+TEST(NoiseLaws, NorIsGroundThatIsNoisy) {
+  const Positions truth = ground();
+  for (const double noise : {0.2, 0.3, 0.4}) {
+    std::mt19937_64 engine(3);
+    std::normal_distribution<double> normal(0, noise);
+    Positions points = truth;
+    for (Eigen::Vector3d& p : points) p.z() += normal(engine);
+    const DenoiseReport report = denoise(points);
+    double sum = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) sum += (points[i] - truth[i]).squaredNorm();
+    EXPECT_EQ(report.statistics.noise->shared, 1) << noise;
+    EXPECT_LT(std::sqrt(sum / double(points.size())), noise) << noise;  // taken for shared noise it was 7 times
+  }
+}
+
 // A radar's map in whole metres, brought into other coordinates: its heights come in steps far finer than the
 // relief, and are no terraces.
 TEST(NoiseLaws, NorIsGroundInHeightsThatWereRounded) {
