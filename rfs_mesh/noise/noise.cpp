@@ -14,6 +14,7 @@
 #include "rfs_mesh/noise/noise_field.h"
 #include "rfs_mesh/noise/noise_levels.h"
 #include "rfs_mesh/noise/shared/shared_noise.h"
+#include "rfs_mesh/noise/sites/loud_places.h"
 #include "rfs_mesh/noise/steps/rounding.h"
 #include "rfs_mesh/noise/steps/voxels.h"
 #include "rfs_mesh/sample.h"
@@ -220,6 +221,18 @@ NoiseStart find_start(const SpatialIndex& index, const DepthSteps* steps, double
   return start;
 }
 
+/// Makes sites of these places, whose noise is of their own.
+void enter(LoudPlaces loud, NoiseSites& sites, std::vector<double>& spacing, NoiseModel& noise) {
+  noise.at_sites = std::move(loud.at_sites);
+  for (std::size_t i = 0; i < loud.at.size(); ++i) {
+    sites.at.push_back(loud.at[i]);
+    noise.at_sites.push_back(loud.sigma[i]);
+    sites.told.push_back(1);
+    sites.shared.push_back(1);
+    spacing.push_back(spacing[loud.site[i]]);
+  }
+}
+
 /// Fills the model's figures and sites.
 void measure(const SpatialIndex& index, const DepthSteps* steps, double rounding, NoiseModel& noise,
              const Context& context) {
@@ -246,6 +259,8 @@ void measure(const SpatialIndex& index, const DepthSteps* steps, double rounding
   }
   noise.at_sites = relative_noise(sites, noise.sigma, context);
   for (double& v : noise.at_sites) v = noise.sigma * std::max(v, kStays);
+  if (!noise.on_grid && noise.piece <= kNarrowestPatch)  // on lines the nearest points tell nothing
+    enter(find_loud_places(index, sites, std::move(noise.at_sites), context), sites, spacing, noise);
   noise.sites = std::move(sites.at);
   if (std::find(sites.told.begin(), sites.told.end(), 1) != sites.told.end())
     noise.told_at_sites.assign(sites.told.begin(), sites.told.end());

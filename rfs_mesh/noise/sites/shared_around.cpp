@@ -4,68 +4,36 @@
 #include <cmath>
 
 #include "base/parallel.h"
-#include "base/quantile.h"
 #include "rfs_mesh/levels.h"
 #include "rfs_mesh/noise/noise_levels.h"
-#include "rfs_mesh/noise/shared/signs_of_sharing.h"
+#include "rfs_mesh/noise/sites/fits_around.h"
 
 namespace rfsmooth::rfs_mesh {
 
 namespace {
 
-/// What the fits around a site show of sharing, to so many points.
-struct SharingShown {
-  SharingShown(const std::vector<Neighbor>& group, const OpenFits& open) : points(double(open.points)) {
-    std::vector<const Scatter*> saying;
-    std::vector<double> variance, radii;
-    for (const Neighbor& q : group) {
-      const Scatter& fit = open.all[q.index];
-      if (!says(fit)) continue;
-      saying.push_back(&fit);
-      variance.push_back(fit.variance);
-      radii.push_back(fit.radius);
-    }
-    if (saying.empty()) return;
-    scatter = std::sqrt(quantile(variance, kTypical));
-    radius = median(radii);
-    // Across an edge all residuals of a side are alike, and a few such fits would speak for the others.
-    const double loud = kLouder * kLouder * scatter * scatter;
-    saying.erase(std::remove_if(saying.begin(), saying.end(),
-                                [&](const Scatter* fit) { return fit->variance > loud; }),
-                 saying.end());
-    signs = signs_of(saying);
-  }
-
-  bool in_rows() const { return signs.err_in_rows(points); }
-  bool holds_slab() const { return scatter < kFlatSlab * radius; }
-  /// \param own variance that points have of their own, or more
-  bool of_one_smooth_sheet(double own) const {
-    return !signs.of_two_sheets(own / (scatter * scatter)) && !signs.of_relief();
-  }
-
-  double points;
-  double scatter = 0;  ///< world units; 0: no fit says a thing
-  double radius = 0;   ///< the median of their balls', world units
-  SignsOfSharing signs;
-};
+/// \param own variance that points have of their own, or more
+bool of_one_smooth_sheet(const FitsAround& fits, double own) {
+  return !fits.signs.of_two_sheets(own / (fits.scatter * fits.scatter)) && !fits.signs.of_relief();
+}
 
 /// Whether the fits to m points show rows, and those to the fewest, or to twice as many, do already: a wave
 /// that points resolve is wider than their balls, and only wider ones show that it has crests.
-bool in_narrow_rows(const std::vector<SharingShown>& shown, const SharingShown& at_m) {
+bool in_narrow_rows(const std::vector<FitsAround>& shown, const FitsAround& at_m) {
   return at_m.in_rows() && (shown[0].in_rows() || shown[1].in_rows());
 }
 
 /// The first of these from which the scatter has stopped growing, and is of noise that neighbours share, if
 /// it never grew as shape does before; or how many there are. \param shown the narrowest holds the slab
-std::size_t stops_at(const std::vector<SharingShown>& shown) {
+std::size_t stops_at(const std::vector<FitsAround>& shown) {
   const double narrow = shown.front().scatter;
   for (std::size_t i = 0; i + 2 < shown.size(); ++i) {
-    const SharingShown &here = shown[i], &next = shown[i + 1];
+    const FitsAround &here = shown[i], &next = shown[i + 1];
     const bool grew = next.scatter > (here.in_rows() ? kSameNoise : kGrowthOfNoise) * narrow;
     // Where the narrowest see several rows, they see their noise, too.
     const double own = in_narrow_rows(shown, here) ? 0 : narrow;
-    if (here.holds_slab() && next.of_one_smooth_sheet(own * own) && grew &&
-        shown[i + 2].scatter <= kGrowthOfNoise * here.scatter && here.signs.err_together(here.points))
+    if (here.holds_slab() && of_one_smooth_sheet(next, own * own) && grew &&
+        shown[i + 2].scatter <= kGrowthOfNoise * here.scatter && here.err_together())
       return i;
     if (next.scatter * next.scatter > kLeastGrowthOfShape * here.scatter * here.scatter) break;
   }
@@ -74,7 +42,7 @@ std::size_t stops_at(const std::vector<SharingShown>& shown) {
 
 /// The variance of noise that rows share, from what a quadric leaves of it among m and among 4 m points. Of L
 /// rows it follows as three coefficients do, and L grows with the root of m: 1 - c / sqrt(m) is left.
-double variance_of_rows(const SharingShown& at_m, const SharingShown& at_4m) {
+double variance_of_rows(const FitsAround& at_m, const FitsAround& at_4m) {
   return 2 * at_4m.scatter * at_4m.scatter - at_m.scatter * at_m.scatter;
 }
 
@@ -85,9 +53,9 @@ struct SharedAround {
 };
 
 SharedAround look_around(const std::vector<Neighbor>& group, const std::vector<OpenFits>& open) {
-  std::vector<SharingShown> shown;
+  std::vector<FitsAround> shown;
   for (const OpenFits& fits : open) {
-    const SharingShown next(group, fits);
+    const FitsAround next(group, fits);
     // Narrower balls are inside of the slab, and see the less of the noise the narrower they are.
     if (!shown.empty() || (next.scatter > 0 && next.holds_slab())) shown.push_back(next);
   }

@@ -20,7 +20,8 @@ inline constexpr double kTypical = 0.35, kTypicalDeviate = -0.385;
 struct SiteView {
   static constexpr double kNone = std::numeric_limits<double>::infinity();
 
-  double open = 0;       ///< what the 24 points around it show
+  double own = 0;        ///< what the 24 points around it show
+  double open = 0;       ///< what those around it and its group show
   double most = kNone;   ///< what nearly all of the dozen nearest sites show; kNone: not known
   double slab = kNone;   ///< open, a bound that grows as the ball does; kNone: none, as in layers and where
                          ///< the noise fills the 24 points

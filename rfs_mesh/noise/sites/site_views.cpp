@@ -282,6 +282,7 @@ std::vector<SiteView> look_without_windows(Places& places, const SiteGroups& gro
       context, groups.size(),
       [&](std::size_t s) {
         SiteView& view = views[s];
+        view.own = std::sqrt(few[s].variance);
         view.open = std::sqrt(mean_variance(around(groups[s], open.front().said), kTypical));
         if (!deep) view.slab = view.open;
         view.most = bound(groups[s], deep ? wide : few);

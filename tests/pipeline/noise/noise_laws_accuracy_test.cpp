@@ -164,6 +164,33 @@ TEST(NoiseLaws, WallsOfACornerAreSmoothedWhateverTheNoiseOfTheOthers) {
   }
 }
 
+// Dark spots before a laser, which measures them five times as loud: however many points a cloud has, the
+// noise of most places is that of the bright ones.
+TEST(NoiseLaws, SmallLoudSpotsAreSmoothed) {
+  for (const int side : {120, 300}) {
+    std::mt19937_64 engine(5);
+    std::normal_distribution<double> normal(0, 0.1);
+    Positions points;
+    std::vector<char> dark;
+    for (int x = 0; x < side; ++x)
+      for (int y = 0; y < side; ++y) {
+        const double from_spot = std::hypot(x % 60 - 30, y % 60 - 30);
+        dark.push_back(char(from_spot < 15));
+        points.emplace_back(x, y, (dark.back() != 0 ? 5 : 1) * normal(engine));
+      }
+    const auto off = [&](char which) {
+      double sum = 0, count = 0;
+      for (std::size_t i = 0; i < points.size(); ++i)
+        if (dark[i] == which) sum += points[i].z() * points[i].z(), ++count;
+      return std::sqrt(sum / count);
+    };
+    const double dark_before = off(1), bright_before = off(0);
+    ASSERT_TRUE(denoise(points.front().data(), points.size(), {}, {}));
+    EXPECT_LT(off(1), 0.5 * dark_before) << side;
+    EXPECT_LT(off(0), 0.4 * bright_before) << side;
+  }
+}
+
 // As hand-held scanners leave it: the neighbourhoods that tell what is a surface must be as wide as the
 // noise.
 TEST(NoiseLaws, NoiseOfSixSpacingsIsSmoothedToATwelfth) {
