@@ -30,7 +30,8 @@ SiteGroups dozens_around(const SpatialIndex& places, const Context& context) {
 std::vector<char> are_near_loud_ones(const SpatialIndex& index, const NoiseSites& sites,
                                      const std::vector<double>& at_sites, const Context& context) {
   std::vector<char> loud(at_sites.size());
-  for (std::size_t s = 0; s < loud.size(); ++s) loud[s] = char(sites.open[s] > kLouder * at_sites[s]);
+  for (std::size_t s = 0; s < loud.size(); ++s)
+    loud[s] = char(sites.two_sheets[s] == 0 && sites.open[s] > kLouder * at_sites[s]);
   if (std::find(loud.begin(), loud.end(), 1) == loud.end()) return {};
   const SiteGroups groups = dozens_around(index, context);
   std::vector<char> near(loud.size());
@@ -81,7 +82,7 @@ LoudPlaces find_loud_places(const SpatialIndex& cloud, const NoiseSites& sites, 
     const Positions every = sample(cloud.points(), cloud.points().size() / kPointsAPlace);
     const std::vector<Index> nearest = nearest_points(index, every, context);
     for (std::size_t i = 0; i < every.size(); ++i) {
-      if (near[nearest[i]] == 0) continue;
+      if (near[nearest[i]] == 0 || sites.two_sheets[nearest[i]] != 0) continue;
       at.push_back(every[i]);
       site.push_back(nearest[i]);
     }

@@ -2,11 +2,11 @@
 /// the sites of a cloud to hear: the noise at a site is that of dozens around it (noise_sites.h), which are
 /// as many whether the cloud has ten thousand points or a million.
 ///
-/// Where a site's own fit scatters twice as far as the noise there, the points around it are looked at more
-/// closely, every eighth of them. Its dozen nearest alike say what noise there is if it is twice what was
-/// found, too, and noise that points have of their own: their balls hold the slab of it, twice as many
-/// points show hardly more, which shape would, residuals are not of two sheets, and nearest points do not err
-/// together. Thread safe: no state is kept.
+/// Where a site sees no second sheet, and its own fit scatters twice as far as the noise there, the points
+/// around it are looked at more closely, every eighth of them. Its dozen nearest alike say what noise there
+/// is if it is twice what was found, too, and noise that points have of their own: their balls hold the slab
+/// of it, twice as many points show hardly more, which shape would, residuals are not of two sheets, and
+/// nearest points do not err together. Thread safe: no state is kept.
 #pragma once
 
 #include <vector>

@@ -310,6 +310,7 @@ NoiseSites listen(const SpatialIndex& index, Positions at, const NoiseStart& sta
   sites.speaks = listener.speaks;
   sites.floor = listener.floor;
   for (const SiteView& view : listener.views) {
+    sites.two_sheets.push_back(char(view.sheet != SiteView::kNone));
     sites.open.push_back(view.own);
     sites.most.push_back(view.most);
     sites.told.push_back(char(view.told));

@@ -56,6 +56,7 @@ struct NoiseSites {
   std::vector<double> volume;    ///< scatter of points that fill a ball around it as leaves do, world units,
                                  ///< which was not believed; 0: there was none
   std::vector<char> full;        ///< whether the site's own fit fills a window as wide as its group has noise
+  std::vector<char> two_sheets;  ///< whether these are seen there
   std::vector<double> open;      ///< what the 24 points around it show without a window, world units
   std::vector<double> most;      ///< what is seen without windows around it, world units; infinite: not known
   std::vector<double> floor;     ///< least noise, of steps, shared noise or layers, or of each of two sheets
