@@ -150,6 +150,13 @@ std::vector<std::string> check(const Statistics& statistics) {
     wrong.expect(sheets->variance > 0 && is_amount(sheets->variance),
                  "sheets: variance is no number above 0");
   }
+  double from = 0;
+  for (const Statistics::Part& part : statistics.parts) {
+    wrong.expect(is_length(part.from) && part.from >= from, "parts: they are not the densest first");
+    wrong.expect(part.own.noise && part.own.parts.empty(), "parts: one has no noise, or parts");
+    from = part.from;
+    for (std::string& line : check(part.own)) wrong.lines.push_back("parts: " + std::move(line));
+  }
   return wrong.lines;
 }
 

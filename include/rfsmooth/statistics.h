@@ -101,6 +101,20 @@ struct Statistics {
   std::vector<Pass> passes;
   std::optional<Sheets> sheets;
   std::optional<bool> thin_walls;  ///< whether walls of a few sigma are parted
+
+  struct Part;
+  /// Of a cloud in which some points are ten times as dense as the others and more, and hardly any in
+  /// between: its parts, which are smoothed each by itself, the densest first. None: it is one. They are
+  /// measured with the noise.
+  std::vector<Part> parts;
+};
+
+/// The points of a part of a cloud, and what was measured on these.
+struct Statistics::Part {
+  /// Radius of the ball of the 24 nearest points around one of these, itself included: at least this, and
+  /// less than that of the next part; a length.
+  double from = 0;
+  Statistics own;  ///< of points, noise, tails, passes, sheets and thin_walls; no parts
 };
 
 /// Why these cannot be statistics of any cloud, one line each; empty if they can.

@@ -83,6 +83,10 @@ void change_units(Statistics& statistics, double unit) {
     statistics.scale->radius *= unit;
   }
   if (statistics.noise) scale(unit, *statistics.noise);
+  for (Statistics::Part& part : statistics.parts) {
+    part.from *= unit;
+    change_units(part.own, unit);
+  }
 }
 
 void change_units(DenoiseOptions& options, double unit) {

@@ -502,6 +502,14 @@ TEST(Denoise, StatisticsThatNoCloudHasAreRefused) {
   expect_refused([](Statistics& s) { s.tails = {1, 3, 1, 1}; }, "tails: share");
   expect_refused([](Statistics& s) { s.tails = {0.5, 3, 1, -1}; }, "tails: together");
   expect_refused([](Statistics& s) { s.sheets = {8, 0}; }, "sheets: variance");
+  expect_refused([&](Statistics& s) { s.parts = {{1, right}, {0, right}}; }, "the densest first");
+  expect_refused([](Statistics& s) { s.parts = {{0, Statistics()}}; }, "parts: one has no noise");
+  expect_refused(
+      [&](Statistics& s) {
+        s.parts = {{0, right}};
+        s.parts[0].own.tails = {0.5, 0, 1, 1};
+      },
+      "parts: tails: times");
   expect_refused([](Statistics& s) { s.sheets = {std::nan(""), 1}; }, "sheets: evidence");
   expect_refused([](Statistics& s) { s.scale = {0.1, 0, 0.1}; }, "scale: neighbours");
   expect_refused([](Statistics& s) { s.scale = {0.1, 20, std::nan("")}; }, "scale: sigma or radius");

@@ -104,6 +104,8 @@ ordered_json json_of(const Statistics& all) {
   for (const auto& pass : all.passes) json["passes"].push_back(json_of_pass(pass));
   if (all.sheets) json["sheets"] = {{"evidence", all.sheets->evidence}, {"variance", all.sheets->variance}};
   if (all.thin_walls) json["thin_walls"] = *all.thin_walls;
+  for (const auto& part : all.parts)
+    json["parts"].push_back({{"from", part.from}, {"statistics", json_of(part.own)}});
   return json;
 }
 
@@ -128,6 +130,9 @@ Statistics statistics_of(const ordered_json& json) {
     all.sheets = {json.at("sheets").at("evidence").get<double>(),
                   json.at("sheets").at("variance").get<double>()};
   if (json.contains("thin_walls")) all.thin_walls = json.at("thin_walls").get<bool>();
+  if (json.contains("parts"))
+    for (const auto& part : json.at("parts"))
+      all.parts.push_back({part.at("from"), statistics_of(part.at("statistics"))});
   return all;
 }
 

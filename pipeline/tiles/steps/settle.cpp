@@ -54,6 +54,7 @@ std::size_t widest_patch(const DenoiseOptions& options, const Statistics& found)
   if (found.noise) widest = std::max(widest, found.noise->piece);
   for (const auto& pass : found.passes)
     for (const auto& scale : pass.scales) widest = std::max(widest, scale.members);
+  for (const auto& part : found.parts) widest = std::max(widest, widest_patch(options, part.own));
   return widest;
 }
 

@@ -35,6 +35,8 @@ Statistics full() {
   all.passes[0].shares = {0.25, 0.75};
   all.sheets = {2.5, 0.8};
   all.thin_walls = true;
+  const Statistics own = all;
+  all.parts = {{0, own}, {1.0 / 3, own}};
   return all;
 }
 
@@ -54,6 +56,9 @@ TEST(StatisticsJson, IsTheSameWhenReadAgain) {
   EXPECT_EQ(again.noise->shared_at_sites, full().noise->shared_at_sites);
   EXPECT_EQ(again.passes.at(0).shares, full().passes[0].shares);
   EXPECT_EQ(again.spacing, full().spacing);
+  ASSERT_EQ(again.parts.size(), 2U);
+  EXPECT_EQ(again.parts[1].from, 1.0 / 3);
+  EXPECT_EQ(again.parts[1].own.passes.at(0).shares, full().passes[0].shares);
 }
 
 TEST(StatisticsJson, WhatIsNotThereStaysOut) {
