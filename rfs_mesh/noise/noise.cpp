@@ -13,6 +13,7 @@
 #include "rfs_mesh/noise/held_out.h"
 #include "rfs_mesh/noise/noise_field.h"
 #include "rfs_mesh/noise/noise_levels.h"
+#include "rfs_mesh/noise/parts.h"
 #include "rfs_mesh/noise/shared/shared_noise.h"
 #include "rfs_mesh/noise/sites/loud_places.h"
 #include "rfs_mesh/noise/steps/rounding.h"
@@ -306,6 +307,8 @@ NoiseModel measure_noise(const SpatialIndex& index, const Context& context) {
 }
 
 const NoiseModel& known_noise(const SpatialIndex& index, Statistics& whole, const Context& context) {
+  if (whole.noise) return *whole.noise;
+  measure_parts(index, whole, context);
   if (!whole.noise) whole.noise = measure_noise(index, context);
   return *whole.noise;
 }

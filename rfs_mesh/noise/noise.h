@@ -78,7 +78,8 @@ struct NoiseField : NoiseModel {
 NoiseModel measure_noise(const SpatialIndex& index, const Context& context);
 
 /// The noise that `whole` has, or else that of these points, measured and entered: so whoever asks first has
-/// it measured, and all others hear the same.
+/// it measured, and all others hear the same. Of a cloud of parts (parts.h) each is measured by itself, and
+/// the noise of all has what each has at its sites.
 const NoiseModel& known_noise(const SpatialIndex& index, Statistics& whole, const Context& context);
 
 /// The field of a noise that was measured on these points or on a cloud that they are of: at every point the

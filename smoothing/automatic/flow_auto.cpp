@@ -11,6 +11,7 @@
 #include "smoothing/automatic/along_surface/equalize.h"
 #include "smoothing/automatic/along_surface/slide_back.h"
 #include "smoothing/automatic/guide/height_field.h"
+#include "smoothing/automatic/part_by_part.h"
 
 namespace rfsmooth::smoothing {
 
@@ -18,8 +19,9 @@ namespace {
 
 /// Noise of the size `sigma`, that varies over the cloud as `noise` does, times `strength`. Places whose
 /// noise cannot be told from detail stay; so does all of a cloud of which that is true even where points are
-/// densest. A strength above 1 acts everywhere: where less was measured than detail may hide, on that much.
-rfs_mesh::NoiseField scaled(rfs_mesh::NoiseField noise, double sigma, double strength) {
+/// densest: there, or in a denser part of the cloud, `least` apart. A strength above 1 acts everywhere: where
+/// less was measured than detail may hide, on that much.
+rfs_mesh::NoiseField scaled(rfs_mesh::NoiseField noise, double sigma, double strength, double least) {
   const auto of = [&](double s, double hidden) {
     if (strength > 1) return strength * std::max(s, hidden);
     return s > hidden ? strength * s : 0.0;
@@ -30,8 +32,6 @@ rfs_mesh::NoiseField scaled(rfs_mesh::NoiseField noise, double sigma, double str
            (noise.local_spacing.empty() ? noise.spacing : noise.local_spacing[i]);
   };
   const double measured = noise.sigma;
-  const std::vector<double>& spacings = noise.spacing_at_sites;
-  const double least = spacings.empty() ? noise.spacing : *std::min_element(spacings.begin(), spacings.end());
   noise.sigma = of(sigma, rfs_mesh::kNoNoise * least);
   for (std::size_t i = 0; i < noise.local.size(); ++i)
     noise.local[i] = std::max(of(measured > 0 ? noise.local[i] * sigma / measured : sigma, hidden_at(i)),
@@ -39,6 +39,12 @@ rfs_mesh::NoiseField scaled(rfs_mesh::NoiseField noise, double sigma, double str
   std::vector<double>().swap(noise.local_spacing);  // nobody asks any more
   std::vector<double>().swap(noise.local_told);
   return noise;
+}
+
+/// The spacing where points are densest.
+double least_spacing(const NoiseModel& noise) {
+  const std::vector<double>& spacings = noise.spacing_at_sites;
+  return spacings.empty() ? noise.spacing : *std::min_element(spacings.begin(), spacings.end());
 }
 
 /// Why everything stays; none: there is something to smooth. \param sigma as scaled
@@ -104,15 +110,20 @@ NoiseSummary summary_of(const rfs_mesh::NoiseField& noise) {
 
 std::optional<AutomaticFindings> smooth_automatically(Mesh& mesh, const AutomaticOptions& options,
                                                       const Context& context, Connectivity connectivity,
-                                                      Statistics* statistics, LearnedInput* for_training) {
+                                                      Statistics* statistics, LearnedInput* for_training,
+                                                      const NoiseModel* of_all) {
   if (connectivity == Connectivity::used_up) std::vector<Face>().swap(mesh.faces);
   if (mesh.positions.size() < 2) return {};
   Statistics own, &whole = statistics != nullptr ? *statistics : own;
   if (!whole.noise) rfs_mesh::known_noise(rfs_mesh::SpatialIndex(mesh.positions, context), whole, context);
+  if (!whole.parts.empty() && for_training == nullptr)
+    return smooth_part_by_part(mesh, rfs_mesh::spread_noise(*whole.noise, mesh.positions, context), options,
+                               whole, context);
   rfs_mesh::NoiseField noise = rfs_mesh::spread_noise(*whole.noise, mesh.positions, context);
   const NoiseSummary summary = summary_of(noise);
   const double sigma = options.noise ? options.noise->resolve(noise.spacing) : told_noise(noise);
-  noise = scaled(std::move(noise), sigma, options.strength);
+  const double least = least_spacing(of_all != nullptr ? *of_all : noise);
+  noise = scaled(std::move(noise), sigma, options.strength, least);
   AutomaticFindings found;
   found.noise = sigma;
   found.measured = summary;

@@ -2,6 +2,8 @@
 /// (automatic.h), evens the points out along the surface (equalize.h), or, where neighbours share their
 /// noise all over the cloud, puts them back to where they were along it (slide_back.h).
 ///
+/// Where a cloud has parts (rfs_mesh/noise/parts.h), all of this is done with each part by itself.
+///
 /// How far a point may move in a step: at most kNoiseReach (levels.h) times the noise around it, measured or
 /// stated; strength times that where the strength is above one, and AutomaticFindings::tail_times that where
 /// some points are much noisier than the others. Strays, which would go farther still (automatic.h), stay.
@@ -32,13 +34,15 @@ enum class Connectivity { kept, used_up };
 
 /// One step: moves mesh.positions. What was measured and chosen; nothing for fewer than two points, which
 /// stay. `options.iterations` is the caller's loop. `statistics`: what is there is taken, the rest entered.
+/// `of_all`: the noise of the cloud that the mesh is a part of; null: it is all.
 /// O(n log n), about 350 bytes a point. Parallel, the same bits for any number of threads. Thread safe on
 /// distinct meshes.
 std::optional<AutomaticFindings> smooth_automatically(Mesh& mesh, const AutomaticOptions& options,
                                                       const Context& context,
                                                       Connectivity connectivity = Connectivity::kept,
                                                       Statistics* statistics = nullptr,
-                                                      LearnedInput* for_training = nullptr);
+                                                      LearnedInput* for_training = nullptr,
+                                                      const NoiseModel* of_all = nullptr);
 
 /// The same as the steps of a flow, for modifiers and constraints to go around. Each step writes `found`,
 /// the first one alone takes and enters `statistics`; both must outlive the flow.
