@@ -251,7 +251,8 @@ TEST(NoiseLaws, NorIsGroundThatIsNoisy) {
     double sum = 0;
     for (std::size_t i = 0; i < points.size(); ++i) sum += (points[i] - truth[i]).squaredNorm();
     EXPECT_EQ(report.statistics.noise->shared, 1) << noise;
-    EXPECT_LT(std::sqrt(sum / double(points.size())), noise) << noise;  // taken for shared noise it was 7 times
+    EXPECT_LT(std::sqrt(sum / double(points.size())), noise)
+        << noise;  // taken for shared noise it was 7 times
   }
 }
 

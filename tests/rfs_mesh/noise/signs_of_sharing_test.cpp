@@ -24,7 +24,8 @@ TEST(SignsOfSharing, OfOneKindItIsTheNumberOfPoints) {
 TEST(SignsOfSharing, OfNoiseThatIsPartlyTheirOwnItIsTheMean) {
   for (const double k : {30.0, 180.0})
     for (const double own : {0.3, 0.5, 0.6})
-      EXPECT_NEAR(points_sharing(kPatches, left_of(k, own)), own + (1 - own) * k, 0.15 * k) << k << ' ' << own;
+      EXPECT_NEAR(points_sharing(kPatches, left_of(k, own)), own + (1 - own) * k, 0.15 * k)
+          << k << ' ' << own;
 }
 
 TEST(SignsOfSharing, WhatSeesNoHalfTellsByItself) {
