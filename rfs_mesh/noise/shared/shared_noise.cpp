@@ -148,14 +148,14 @@ SharedNoise find_shared_noise(Places& places, const NoiseStart& start, const Dep
                               const Context& context) {
   SharedNoise found;
   const Calm calm = look(places, start, steps, context);
-  if (calm.m.empty()) return found;  // nothing scatters, or too few points to tell
+  if (calm.m.empty()) return found;                    // nothing scatters, or too few points to tell
+  const double of_points = start.sigma * start.sigma;  // what they err by on their own
   // A neighbourhood within one terrace sees nothing of the steps, so the noise may grow steeply. Where what
   // points err by on their own reaches from one step to the next, it does not: ground in whole metres grows
   // as it would without.
-  const bool terraces =
-      steps != nullptr && are_two_depths(start.sigma * start.sigma, rounding_noise(steps->typical()));
+  const bool terraces = steps != nullptr && are_two_depths(of_points, rounding_noise(steps->typical()));
   // What a window from below saw much less of at the same m is the distance of two sheets.
-  if (!terraces && kLouder * kLouder * start.sigma * start.sigma < calm.seen.front()) return found;
+  if (!terraces && kLouder * kLouder * of_points < calm.seen.front()) return found;
   double sill = 0, surely = 0;
   std::size_t at = 0;
   const auto make_sure = [&](std::size_t i, double sure) {
@@ -165,7 +165,6 @@ SharedNoise find_shared_noise(Places& places, const NoiseStart& start, const Dep
   };
   Growths growths(terraces);
   bool held = false;
-  const double normal = start.sigma * start.sigma;
   for (std::size_t i = 0; i < calm.m.size(); ++i) {
     if (!terraces && !hold_slab(calm, i)) {
       if (held) break;
@@ -174,11 +173,11 @@ SharedNoise find_shared_noise(Places& places, const NoiseStart& start, const Dep
     held = true;
     make_sure(i, std::min(calm.steps, calm.seen[i]));
     if (i + 1 == calm.m.size() || calm.m[i + 1] != 2 * calm.m[i] || calm.m[i] < 2 * double(start.m)) continue;
-    if (growths.enter(calm.seen[i], calm.seen[i + 1], normal) && (terraces || surely > 0)) break;
+    if (growths.enter(calm.seen[i], calm.seen[i + 1], of_points) && (terraces || surely > 0)) break;
     if (!growths.counts()) continue;
     const SignsOfSharing &here = calm.signs[i], &next = calm.signs[i + 1];
-    // Within terraces no noise is normal.
-    const double own = terraces ? 0 : normal / calm.seen[i + 1];
+    // Within terraces no noise is normally distributed.
+    const double own = terraces ? 0 : of_points / calm.seen[i + 1];
     if (next.of_two_sheets(own) && calm.two_depths[i + 1] == 0) continue;
     if (!terraces && (next.of_relief() || !next.err_together(calm.m[i + 1]))) continue;
     if (terraces || here.err_together(calm.m[i]))
@@ -188,11 +187,10 @@ SharedNoise find_shared_noise(Places& places, const NoiseStart& start, const Dep
   if (growths.of_ground()) return found;
   // Compared as variances, for both are lower bounds: with the square of kSameNoise, noise that points share
   // beside their own is missed on a cube.
-  if (!(std::max(surely, calm.steps) > kSameNoise * start.sigma * start.sigma)) return found;
+  if (!(std::max(surely, calm.steps) > kSameNoise * of_points)) return found;
   found = {std::sqrt(sill), points_of(calm, at, sill), std::size_t(calm.m[at])};
   // A terrace is no disk: what neighbourhoods leave of it is not known, unless points' own noise blurs it.
-  if (sill > calm.steps && (!terraces || start.sigma * start.sigma > calm.steps))
-    agree(calm, at, sill, found);
+  if (sill > calm.steps && (!terraces || of_points > calm.steps)) agree(calm, at, sill, found);
   return found;
 }
 

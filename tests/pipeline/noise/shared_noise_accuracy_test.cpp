@@ -273,22 +273,27 @@ TEST(NoiseLaws, NorIsGroundInHeightsThatWereRounded) {
   }
 }
 
-// Of a line laser over hills: each line is off by itself, as a whole. Hills between a dozen and forty lines
-// wide leave few neighbourhoods that are wide enough to show it and still flat.
+/// Points on a square grid, the lines of a scanner one after the other: each is off by itself, as a whole.
+template <class Height>
+Positions lines_over(const Height& height, int side, double off, double own, unsigned seed) {
+  std::mt19937_64 engine(seed);
+  std::normal_distribution<double> normal;
+  Positions points;
+  for (int x = 0; x < side; ++x) {
+    const double of_line = off * normal(engine);
+    for (int y = 0; y < side; ++y) points.emplace_back(x, y, height(x, y) + of_line + own * normal(engine));
+  }
+  return points;
+}
+
+// Of a line laser over hills, which between a dozen and forty lines wide leave few neighbourhoods that are
+// wide enough to show that lines are off and still flat.
 TEST(NoiseLaws, LinesThatAreEachOffByThemselvesAreSmoothed) {
-  constexpr int kSide = 90;  // one point a square unit
-  constexpr double kOff = 0.27, kOwn = 0.13;
   const auto hills = [](double x, double y) {
     return 3.6 * std::sin(x / 9) * std::cos(y / 11) + 0.9 * std::sin(x / 2.7 + y / 15);
   };
   for (const unsigned seed : {1U, 2U, 3U}) {
-    std::mt19937_64 engine(seed);
-    std::normal_distribution<double> normal;
-    Positions points;
-    for (int x = 0; x < kSide; ++x) {
-      const double off = kOff * normal(engine);
-      for (int y = 0; y < kSide; ++y) points.emplace_back(x, y, hills(x, y) + off + kOwn * normal(engine));
-    }
+    Positions points = lines_over(hills, 90, 0.27, 0.13, seed);
     const auto error = [&] {
       double sum = 0;
       for (const Eigen::Vector3d& p : points) sum += std::pow(p.z() - hills(p.x(), p.y()), 2);
@@ -304,16 +309,8 @@ TEST(NoiseLaws, LinesThatAreEachOffByThemselvesAreSmoothed) {
 // A wall before a spinning laser with rings as far apart as points: two dozen points are five of them
 // already, and wider neighbourhoods scatter little more.
 TEST(NoiseLaws, RingsThatAreEachOffByThemselvesAreSmoothed) {
-  constexpr int kSide = 100;
-  constexpr double kOff = 0.5, kOwn = 0.17;
   for (const unsigned seed : {1U, 2U, 3U}) {
-    std::mt19937_64 engine(seed);
-    std::normal_distribution<double> normal;
-    Positions points;
-    for (int y = 0; y < kSide; ++y) {
-      const double off = kOff * normal(engine);
-      for (int x = 0; x < kSide; ++x) points.emplace_back(x, y, off + kOwn * normal(engine));
-    }
+    Positions points = lines_over([](double, double) { return 0.0; }, 100, 0.5, 0.17, seed);
     const double raw = rms_height(points, 0);
     const DenoiseReport report = denoise(points);
     EXPECT_NEAR(report.noise, raw, 0.25 * raw) << seed;
