@@ -20,11 +20,12 @@ inline std::vector<Index> sample_rows(std::size_t n, std::size_t most = kSampleO
   return rows;
 }
 
-/// The points in these rows: `most` of all at even steps.
-inline Positions sample(const Positions& all, std::size_t most) {
-  Positions at;
-  for (const Index i : sample_rows(all.size(), most)) at.push_back(all[i]);
-  return at;
+/// The points, or whatever it is, in these rows: `most` of all at even steps.
+template <class T>
+std::vector<T> sample(const std::vector<T>& all, std::size_t most) {
+  std::vector<T> some;
+  for (const Index i : sample_rows(all.size(), most)) some.push_back(all[i]);
+  return some;
 }
 
 /// Those rows of `all` (n x 3). Parallel.

@@ -162,12 +162,17 @@ std::size_t widest_scatter(const SpatialIndex& index) {
   return std::clamp(index.points().size() / kShareOfCloud, kNarrowestPatch, kWidestFit);
 }
 
-std::vector<double> rounding_at(const Places& places, const std::vector<Scatter>& all,
-                                const DepthSteps& steps) {
-  std::vector<double> rounding(all.size());
+std::vector<LocalSteps> steps_at(const Places& places, const DepthSteps* steps) {
+  std::vector<LocalSteps> found(places.size());
+  if (steps == nullptr) return found;
   for_each_index(
-      places.context(), all.size(),
-      [&](std::size_t i) { rounding[i] = steps.sigma(places.at()[i], all[i].normal); }, 64);
+      places.context(), found.size(), [&](std::size_t i) { found[i] = steps->at(places.at()[i]); }, 64);
+  return found;
+}
+
+std::vector<double> rounding_at(const std::vector<LocalSteps>& steps, const std::vector<Scatter>& all) {
+  std::vector<double> rounding;
+  for (std::size_t i = 0; i < all.size(); ++i) rounding.push_back(steps[i].sigma(all[i].normal));
   return rounding;
 }
 
@@ -217,7 +222,8 @@ NoiseStart search_noise(Places& places, const DepthSteps* steps, double rounding
   start.sigma = std::sqrt(mean_variance(all, kCalmPlaces, kCalmDeviate));
   // Of coordinates that are rounded a narrower window holds those alone that are rounded alike.
   const double rounded = kSameNoise * rounding / kScatterWindow;
-  if (steps != nullptr) start.of_steps = std::sqrt(variance_of_steps(rounding_at(places, all, *steps), all));
+  if (steps != nullptr)
+    start.of_steps = std::sqrt(variance_of_steps(rounding_at(steps_at(places, steps), all), all));
   const double sure = std::min(start.sigma, std::max(rounded, start.of_steps));
   start.most = kSameNoise * bound(places, start.m, two_depths(start.of_steps));
   // Lines are no sheets, and a window narrow enough finds some that are exact. Nor are steps normal noise.

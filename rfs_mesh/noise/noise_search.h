@@ -50,9 +50,11 @@ std::size_t widest_scatter(const SpatialIndex& index);
 /// The median distance to the m-th nearest point. \param at places, at least one. O(m) after the index.
 double median_radius(const SpatialIndex& index, const Positions& at, std::size_t m);
 
+/// By place: the steps there. Parallel. \param steps null: depths are not in steps.
+std::vector<LocalSteps> steps_at(const Places& places, const DepthSteps* steps);
+
 /// By place: what depths in steps add by their rounding along the normal of its fit, world units.
-std::vector<double> rounding_at(const Places& places, const std::vector<Scatter>& all,
-                                const DepthSteps& steps);
+std::vector<double> rounding_at(const std::vector<LocalSteps>& steps, const std::vector<Scatter>& all);
 
 /// Variance that steps make sure of at calm places. \param rounding of rounding_at
 double variance_of_steps(const std::vector<double>& rounding, const std::vector<Scatter>& all);

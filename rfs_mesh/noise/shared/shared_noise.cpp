@@ -55,6 +55,7 @@ void enter(const std::vector<Scatter>& all, const std::vector<double>& rounding,
 Calm look(Places& places, const NoiseStart& start, const DepthSteps* steps, const Context& context) {
   Calm calm;
   const SpatialIndex& index = places.index();
+  const std::vector<LocalSteps> steps_there = steps_at(places, steps);
   // Half of what fits take at most: else parts of the cloud are shape.
   const std::size_t last = std::min(widest_scatter(index), index.points().size() / (2 * kShareOfCloud));
   for (std::size_t m = std::max(start.m, start.piece); m <= last; m *= 2) {
@@ -66,9 +67,8 @@ Calm look(Places& places, const NoiseStart& start, const DepthSteps* steps, cons
     if (variances.empty()) continue;
     const double variance = quantile(variances, kCalmPlaces);
     if (!(variance > start.least * start.least)) continue;
-    const std::vector<double> rounding =
-        steps != nullptr ? rounding_at(some, all, *steps) : std::vector<double>(all.size(), 0);
-    if (calm.m.empty() && steps != nullptr) calm.steps = variance_of_steps(rounding, all);
+    const std::vector<double> rounding = rounding_at(sample(steps_there, some.size()), all);
+    if (calm.m.empty()) calm.steps = variance_of_steps(rounding, all);
     enter(all, rounding, kSameNoise * kSameNoise * variance, calm);
     calm.m.push_back(double(m));
     calm.seen.push_back(variance);

@@ -270,8 +270,9 @@ std::vector<SiteView> look_without_windows(Places& places, const SiteGroups& gro
   std::size_t points = kNeighbourhood;
   for (; open.empty() || (points <= kPlateauTo && n >= 2 * points); points *= 2)
     open.emplace_back(points, places.fits(points));
+  const std::vector<LocalSteps> steps_there = steps_at(places, steps);
   if (steps != nullptr)
-    for (OpenFits& fits : open) fits.rounding = rounding_at(places, fits.all, *steps);
+    for (OpenFits& fits : open) fits.rounding = rounding_at(steps_there, fits.all);
   const bool deep = start.fills_nearest();
   const std::vector<Scatter>& few = open.front().all;
   const std::vector<Scatter> wide = deep ? places.fits(start.m) : std::vector<Scatter>();
@@ -294,10 +295,10 @@ std::vector<SiteView> look_without_windows(Places& places, const SiteGroups& gro
   const std::size_t many = open.size() - 1;
   for (; points <= std::min(kWidestView, widest_scatter(places.index())); points *= 2)
     open.push_back(fit_wide(places, points, context));
-  std::vector<double> width(steps != nullptr && plateau ? groups.size() : 0);
-  for_each_index(
-      context, width.size(),
-      [&](std::size_t s) { width[s] = steps->width(places.at()[s], open[many].all[s].normal); }, 64);
+  std::vector<double> width;
+  if (plateau)
+    for (std::size_t s = 0; s < groups.size(); ++s)
+      width.push_back(steps_there[s].width(open[many].all[s].normal));
   if (plateau)
     for_each_index(
         context, groups.size(),

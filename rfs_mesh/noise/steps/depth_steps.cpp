@@ -208,21 +208,11 @@ bool DepthSteps::exceed(const DepthSteps& other) const {
   return typical_ > (1 + kSame) * other.typical_;
 }
 
-double DepthSteps::sigma(const Eigen::Vector3d& at, const Eigen::Vector3d& normal) const {
-  if (on_grid()) return rounding_noise(typical_);
-  const Terraces* const of = terraces_at(at);
-  return of != nullptr ? of->sigma(at, normal) : 0;
-}
-
-double DepthSteps::width(const Eigen::Vector3d& at, const Eigen::Vector3d& normal) const {
-  const Terraces* const of = on_grid() ? nullptr : terraces_at(at);
-  return of != nullptr ? of->width(at, normal) : 0;
-}
-
-const Terraces* DepthSteps::terraces_at(const Eigen::Vector3d& at) const {
-  if (index_ == nullptr) return &terraces_.front();
+LocalSteps DepthSteps::at(const Eigen::Vector3d& place) const {
+  if (on_grid()) return {place, nullptr, typical_};
+  if (index_ == nullptr) return {place, &terraces_.front(), 0};
   std::vector<Neighbor> near;
-  index_->nearest(at, int(std::min(kNeighbourhood, index_->points().size())), near);
+  index_->nearest(place, int(std::min(kNeighbourhood, index_->points().size())), near);
   const Terraces* of = nullptr;
   double most = kLeastPart * double(near.size());
   for (const Terraces& terraces : terraces_) {
@@ -234,7 +224,7 @@ const Terraces* DepthSteps::terraces_at(const Eigen::Vector3d& at) const {
     most = more;
     of = &terraces;
   }
-  return of;
+  return {place, of, 0};
 }
 
 std::optional<DepthSteps> find_depth_steps(const SpatialIndex& index, double rounding, double nearest) {

@@ -23,6 +23,22 @@
 
 namespace rfsmooth::rfs_mesh {
 
+/// The steps around one place.
+struct LocalSteps {
+  Eigen::Vector3d at = Eigen::Vector3d::Zero();
+  const Terraces* terraces = nullptr;  ///< null: there are none, or a grid
+  double grid = 0;                     ///< distance of a grid's points, world units; 0: there is none
+
+  /// Standard deviation along the normal of a surface.
+  double sigma(const Eigen::Vector3d& normal) const {
+    return terraces != nullptr ? terraces->sigma(at, normal) : rounding_noise(grid);
+  }
+  /// Terraces::width; 0 without terraces.
+  double width(const Eigen::Vector3d& normal) const {
+    return terraces != nullptr ? terraces->width(at, normal) : 0;
+  }
+};
+
 /// The steps of a cloud: of one camera or scanner, of several that saw parts of it, or of a grid.
 class DepthSteps {
  public:
@@ -45,18 +61,12 @@ class DepthSteps {
   /// Whether they are larger than another's, by more than files round.
   bool exceed(const DepthSteps& other) const;
 
-  /// Standard deviation along the normal of a surface there: by the first terraces where nine tenths of the
-  /// cloud are on them (O(log steps)); else by those that hold the most of the kNeighbourhood nearest points,
-  /// 0 if none holds a tenth of them beyond chance (O(log n)).
-  double sigma(const Eigen::Vector3d& at, const Eigen::Vector3d& normal) const;
-
-  /// Terraces::width of the same terraces; 0 on a grid.
-  double width(const Eigen::Vector3d& at, const Eigen::Vector3d& normal) const;
+  /// Those of a place: the first terraces where nine tenths of the cloud are on them (O(1)); else those that
+  /// hold the most of the kNeighbourhood nearest points, none if none holds a tenth of them beyond chance
+  /// (O(log n)). Not to be used after this is gone.
+  LocalSteps at(const Eigen::Vector3d& place) const;
 
  private:
-  /// Those that hold the points there; null if none does. Not of a grid.
-  const Terraces* terraces_at(const Eigen::Vector3d& at) const;
-
   double typical_;
   std::vector<Terraces> terraces_;
   const SpatialIndex* index_ = nullptr;  ///< null: nine tenths of the points are on the first

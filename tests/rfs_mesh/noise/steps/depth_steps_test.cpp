@@ -165,11 +165,11 @@ TEST(DepthSteps, OfTwoCamerasAreThoseOfEachWhereItLooked) {
   ASSERT_EQ(steps->terraces().size(), 2);
   EXPECT_NEAR(steps->typical(), 0.01, 1e-5);
   const double rounding = 0.01 / std::sqrt(12.0);
-  EXPECT_NEAR(steps->sigma(of_first, {0, 0, 1}), rounding, 1e-5);
-  EXPECT_NEAR(steps->sigma(of_first, {1, 0, 0}), 0, 1e-7);
-  EXPECT_NEAR(steps->sigma(of_second, kTurn.col(2)), rounding, 1e-5);
-  EXPECT_NEAR(steps->sigma(of_second, kTurn.col(0)), 0, 1e-7);
-  EXPECT_EQ(steps->sigma(beside, {0, 0, 1}), 0);
+  EXPECT_NEAR(steps->at(of_first).sigma({0, 0, 1}), rounding, 1e-5);
+  EXPECT_NEAR(steps->at(of_first).sigma({1, 0, 0}), 0, 1e-7);
+  EXPECT_NEAR(steps->at(of_second).sigma(kTurn.col(2)), rounding, 1e-5);
+  EXPECT_NEAR(steps->at(of_second).sigma(kTurn.col(0)), 0, 1e-7);
+  EXPECT_EQ(steps->at(beside).sigma({0, 0, 1}), 0);
 }
 
 TEST(DepthSteps, AreNotTheProfilesOfALineScanner) {
@@ -227,7 +227,7 @@ TEST(Grid, IsFoundWhereMostAreAsFarFromTheirNearest) {
   EXPECT_TRUE(grid->on_grid());
   EXPECT_NEAR(grid->typical(), 0.05, 1e-6);
   for (const Eigen::Vector3d& normal : {Eigen::Vector3d(0, 0, 1), Eigen::Vector3d(0.6, 0, -0.8)})
-    EXPECT_NEAR(grid->sigma({1, 2, 3}, normal), 0.05 / std::sqrt(12.0), 1e-6);
+    EXPECT_NEAR(grid->at({1, 2, 3}).sigma(normal), 0.05 / std::sqrt(12.0), 1e-6);
 }
 
 // Neighbours of a camera's image are eleven millimetres apart, or twelve, in a file of whole millimetres.
@@ -319,7 +319,7 @@ TEST(DepthSteps, OfTwoScannersAreThoseOfEachWhereItStood) {
   ASSERT_TRUE(steps);
   ASSERT_EQ(steps->terraces().size(), 2);
   for (const Eigen::Vector3d& scanner : {first, second})
-    EXPECT_NEAR(steps->sigma(scanner + 2.1 * ray, ray), 0.01 / std::sqrt(12.0), 1e-4);
+    EXPECT_NEAR(steps->at(scanner + 2.1 * ray).sigma(ray), 0.01 / std::sqrt(12.0), 1e-4);
 }
 
 // Its rings are as far from the points of its axis, and, if evenly spaced, in steps along that.
@@ -365,8 +365,8 @@ TEST(DepthSteps, TheirNoiseIsThatOfRoundingAlongTheNormal) {
   EXPECT_NEAR(steps->sigma(at, slanted), 0.05 / std::sqrt(24.0), 1e-12);
   EXPECT_EQ(steps->sigma(at, {1, 0, 0}), 0);
   const rfs_mesh::DepthSteps grid(0.05);
-  EXPECT_NEAR(grid.sigma(at, slanted), 0.05 / std::sqrt(12.0), 1e-12);
-  EXPECT_EQ(grid.width(at, slanted), 0);
+  EXPECT_NEAR(grid.at(at).sigma(slanted), 0.05 / std::sqrt(12.0), 1e-12);
+  EXPECT_EQ(grid.at(at).width(slanted), 0);
 }
 
 TEST(DepthSteps, TheGapIsThatOfTheDepth) {
