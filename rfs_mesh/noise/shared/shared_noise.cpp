@@ -6,6 +6,7 @@
 #include "base/quantile.h"
 #include "rfs_mesh/levels.h"
 #include "rfs_mesh/noise/noise_levels.h"
+#include "rfs_mesh/noise/shared/growths.h"
 #include "rfs_mesh/noise/shared/signs_of_sharing.h"
 #include "rfs_mesh/noise/steps/terraces.h"
 #include "rfs_mesh/sample.h"
@@ -17,12 +18,6 @@ namespace {
 // Chosen on the laws of tests/bench/quality (six shapes, 10,000 points) and on the raw scans of
 // tests/bench/scans.
 constexpr std::size_t kPointsLooked = 500000;  // at each m: of wide places fewer say as much
-constexpr std::size_t kInARow = 2;             // the least that is a row
-// Of the variance, from m to 2 m: noise that no other shape overtakes grows slower than m.
-constexpr double kMostGrowthOfNoise = 2;
-// The same of ground, whose roughness has no scale of its own: 2^H, H from 0.5 on (Mandelbrot 1982).
-constexpr double kLeastGrowthOfGround = 1.414;
-constexpr double kMostlyOwn = 0.5;  // of a variance
 
 /// What calm places show, by the number of neighbours, ascending.
 struct Calm {
@@ -52,7 +47,7 @@ void enter(const std::vector<Scatter>& all, const std::vector<double>& rounding,
   calm.two_depths.push_back(char(2 * two_depths > count));
 }
 
-Calm look(Places& places, const NoiseStart& start, const DepthSteps* steps, const Context& context) {
+Calm look_at_calm(Places& places, const NoiseStart& start, const DepthSteps* steps, const Context& context) {
   Calm calm;
   const SpatialIndex& index = places.index();
   const std::vector<LocalSteps> steps_there = steps_at(places, steps);
@@ -76,122 +71,139 @@ Calm look(Places& places, const NoiseStart& start, const DepthSteps* steps, cons
   return calm;
 }
 
-/// Whether the balls of the i-th m hold a slab as thick as its points scatter.
-bool hold_slab(const Calm& calm, std::size_t i) {
-  return std::sqrt(calm.seen[i]) < kFlatSlab * calm.radius[i];
-}
-
 /// What is left of a variance at m without the part that grows so with m, by that at 2 m.
 double without_shape(double at_m, double at_2m, double growth) {
   return (growth * at_m - at_2m) / (growth - 1);
 }
 
-/// k of what is seen up to the at-th m if that is so much of sigma^2, `sill`.
-double points_of(const Calm& calm, std::size_t at, double sill) {
-  std::vector<double> left;
-  for (std::size_t i = 0; i <= at; ++i) left.push_back(std::min(1.0, calm.seen[i] / sill));
-  return points_sharing(calm.m, left);
+/// The search through these, from few points to many. By the i-th m: each rule by which one is believed.
+class SharedSearch {
+ public:
+  SharedSearch(const Calm& calm, const NoiseStart& start, const DepthSteps* steps)
+      : calm_(calm),
+        of_points_(start.sigma * start.sigma),
+        of_start_(double(start.m)),
+        terraces_(steps != nullptr && are_two_depths(of_points_, rounding_noise(steps->typical()))) {}
+
+  SharedNoise run();
+
+ private:
+  /// Whether windows from below saw much less at the narrowest m: what is seen without them is the distance
+  /// of two sheets.
+  bool is_of_sheets() const { return kLouder * kLouder * of_points_ < calm_.seen.front(); }
+
+  /// Whether the balls hold a slab as thick as their points scatter. The narrowest may be inside of it; where
+  /// wider ones do not hold it any more, they are full of leaves and twigs.
+  bool holds_slab(std::size_t i) const {
+    return terraces_ || std::sqrt(calm_.seen[i]) < kFlatSlab * calm_.radius[i];
+  }
+
+  /// Whether m is above the one that the search for points' own noise took, and the next is twice that.
+  bool has_growth(std::size_t i) const {
+    return i + 1 < calm_.m.size() && calm_.m[i + 1] == 2 * calm_.m[i] && calm_.m[i] >= 2 * of_start_;
+  }
+
+  /// Whether residuals, beyond the noise that points have of their own, are those of two sheets or of waves
+  /// in rows: a sine has a flatness of 1.5, threads and ripples measured under noise 1.6 to 2.1, noise that
+  /// points share 2.9 and more. Not those at two depths that follow each other, between which noise carries
+  /// the points of one wall. Within terraces no noise is normally distributed.
+  bool is_flat(std::size_t i) const {
+    const double own = terraces_ ? 0 : of_points_ / calm_.seen[i];
+    return calm_.signs[i].of_two_sheets(own) && calm_.two_depths[i] == 0;
+  }
+
+  /// Whether nearest points are off the same way. Loud points among calm ones make the scatter grow, too, but
+  /// each is off by itself. On terraces they are, by the step that they are on.
+  bool errs_together(std::size_t i) const { return terraces_ || calm_.signs[i].err_together(calm_.m[i]); }
+
+  /// Whether residuals lean: noise is as often above as below, stones are round above and end in clefts. Not
+  /// asked on terraces.
+  bool is_relief(std::size_t i) const { return !terraces_ && calm_.signs[i].of_relief(); }
+
+  /// Whether 2 m show noise that neighbours share.
+  bool is_shared(std::size_t i) const { return !is_flat(i + 1) && !is_relief(i + 1) && errs_together(i + 1); }
+
+  /// What is left of the variance at m without shape that grows so to 2 m.
+  double without(double growth, std::size_t i) const {
+    return without_shape(calm_.seen[i], calm_.seen[i + 1], growth);
+  }
+
+  void make_sure(std::size_t i, double variance);
+  void look();
+  double points_of(double sill) const;
+  void agree(SharedNoise& found) const;
+
+  const Calm& calm_;
+  double of_points_;    ///< variance of what points err by on their own
+  double of_start_;     ///< the m of the search for it
+  bool terraces_;       ///< where that reaches from one step to the next, ground grows as without steps
+  double sill_ = 0;     ///< the most that is sure of the variance, once there is such noise
+  std::size_t at_ = 0;  ///< which m tells that
+  double surely_ = 0;   ///< the most that is noise even if shape grows as slowly as it may
+  bool ground_ = false;
+};
+
+void SharedSearch::make_sure(std::size_t i, double variance) {
+  if (variance <= sill_) return;
+  sill_ = variance;
+  at_ = i;
 }
 
-/// Brings sigma and k to all of the noise, if the points of a disk share it. \param sill what the at-th m,
-/// and twice as many, see of sigma^2
-void agree(const Calm& calm, std::size_t at, double sill, SharedNoise& found) {
-  const double m = calm.m[at];
+void SharedSearch::look() {
+  Growths growths(terraces_);
+  std::size_t i = 0;
+  while (i < calm_.m.size() && !holds_slab(i)) ++i;
+  for (; i < calm_.m.size() && holds_slab(i); ++i) {
+    make_sure(i, std::min(calm_.steps, calm_.seen[i]));
+    if (!has_growth(i)) continue;
+    const bool overtaken = growths.enter(calm_.seen[i], calm_.seen[i + 1], of_points_);
+    if (overtaken && (terraces_ || surely_ > 0)) break;
+    if (!growths.counts() || !is_shared(i)) continue;
+    if (errs_together(i)) surely_ = std::max(surely_, without(kLeastGrowthOfShape, i));
+    make_sure(i, without(kGrowthOfSmoothShape, i));
+  }
+  ground_ = growths.of_ground();
+}
+
+/// k of what is seen up to the m that tells, if that is so much of sigma^2.
+double SharedSearch::points_of(double sill) const {
+  std::vector<double> left;
+  for (std::size_t i = 0; i <= at_; ++i) left.push_back(std::min(1.0, calm_.seen[i] / sill));
+  return points_sharing(calm_.m, left);
+}
+
+/// Brings sigma and k to all of the noise, if the points of a disk share it.
+void SharedSearch::agree(SharedNoise& found) const {
+  const double m = calm_.m[at_];
   const auto all = [&](double k) {
-    return sill / without_shape(left_by_quadric(k, m), left_by_quadric(k, 2 * m), kGrowthOfSmoothShape);
+    return sill_ / without_shape(left_by_quadric(k, m), left_by_quadric(k, 2 * m), kGrowthOfSmoothShape);
   };
   // The more share it, the less of it is seen, and the less is seen, the more share it.
-  found.points = greatest_below(points_by_growth(m, calm.seen[at + 1] / calm.seen[at]),
-                                [&](double k) { return points_of(calm, at, all(k)) > k; });
+  found.points = greatest_below(points_by_growth(m, calm_.seen[at_ + 1] / calm_.seen[at_]),
+                                [&](double k) { return points_of(all(k)) > k; });
   found.sigma = std::sqrt(all(found.points));
 }
 
-/// How the variance grows from each m that is looked at to 2 m, one after the other.
-class Growths {
- public:
-  explicit Growths(bool terraces) : terraces_(terraces) {}
-
-  /// Returns whether other shape overtakes what counted until then. \param own the variance that points have
-  /// of their own, about
-  bool enter(double at_m, double at_2m, double own) {
-    const double growth = at_2m / at_m;
-    slow_ = growth > kLeastGrowthOfShape ? 0 : slow_ + 1;
-    if (own < kMostlyOwn * at_m) enter_ground((at_2m - own) / (at_m - own));
-    const bool overtakes = slow_ == 0 && counts_;
-    overtaken_ = overtaken_ || overtakes;
-    fast_ = fast_ || slow_ == 0;
-    // After it grew as shape does, one slow growth may be the end of a bump, and ground never stops growing.
-    const bool stops = !fast_ || (slow_ >= kInARow && (counts_ || growth < kLeastGrowthOfGround));
-    counts_ = terraces_ ? counts_ || slow_ > 0 : slow_ > 0 && stops;
-    return overtakes;
-  }
-
-  /// Whether the last m counts.
-  bool counts() const { return counts_; }
-  /// Whether they are those of ground, which does not stop growing and is not overtaken.
-  bool of_ground() const { return !terraces_ && hills_ >= kInARow && !stopped_ && !overtaken_; }
-
- private:
-  void enter_ground(double growth) {
-    stopped_ = stopped_ || growth < (hills_ == 0 ? kMostGrowthOfNoise : kLeastGrowthOfGround);
-    ++hills_;
-  }
-
-  bool terraces_, counts_ = false, fast_ = false, stopped_ = false, overtaken_ = false;
-  std::size_t slow_ = 0;   ///< growths in a row that noise may have
-  std::size_t hills_ = 0;  ///< growths that ground was looked for in
-};
+SharedNoise SharedSearch::run() {
+  if (!terraces_ && is_of_sheets()) return {};
+  look();
+  if (ground_) return {};
+  // Compared as variances, for both are lower bounds: with the square of kSameNoise, noise that points share
+  // beside their own is missed on a cube.
+  if (!(std::max(surely_, calm_.steps) > kSameNoise * of_points_)) return {};
+  SharedNoise found{std::sqrt(sill_), points_of(sill_), std::size_t(calm_.m[at_])};
+  // A terrace is no disk: what neighbourhoods leave of it is not known, unless points' own noise blurs it.
+  if (sill_ > calm_.steps && (!terraces_ || of_points_ > calm_.steps)) agree(found);
+  return found;
+}
 
 }  // namespace
 
 SharedNoise find_shared_noise(Places& places, const NoiseStart& start, const DepthSteps* steps,
                               const Context& context) {
-  SharedNoise found;
-  const Calm calm = look(places, start, steps, context);
-  if (calm.m.empty()) return found;                    // nothing scatters, or too few points to tell
-  const double of_points = start.sigma * start.sigma;  // what they err by on their own
-  // A neighbourhood within one terrace sees nothing of the steps, so the noise may grow steeply. Where what
-  // points err by on their own reaches from one step to the next, it does not: ground in whole metres grows
-  // as it would without.
-  const bool terraces = steps != nullptr && are_two_depths(of_points, rounding_noise(steps->typical()));
-  // What a window from below saw much less of at the same m is the distance of two sheets.
-  if (!terraces && kLouder * kLouder * of_points < calm.seen.front()) return found;
-  double sill = 0, surely = 0;
-  std::size_t at = 0;
-  const auto make_sure = [&](std::size_t i, double sure) {
-    if (sure <= sill) return;
-    sill = sure;
-    at = i;
-  };
-  Growths growths(terraces);
-  bool held = false;
-  for (std::size_t i = 0; i < calm.m.size(); ++i) {
-    if (!terraces && !hold_slab(calm, i)) {
-      if (held) break;
-      continue;  // the narrowest may be inside of the slab
-    }
-    held = true;
-    make_sure(i, std::min(calm.steps, calm.seen[i]));
-    if (i + 1 == calm.m.size() || calm.m[i + 1] != 2 * calm.m[i] || calm.m[i] < 2 * double(start.m)) continue;
-    if (growths.enter(calm.seen[i], calm.seen[i + 1], of_points) && (terraces || surely > 0)) break;
-    if (!growths.counts()) continue;
-    const SignsOfSharing &here = calm.signs[i], &next = calm.signs[i + 1];
-    // Within terraces no noise is normally distributed.
-    const double own = terraces ? 0 : of_points / calm.seen[i + 1];
-    if (next.of_two_sheets(own) && calm.two_depths[i + 1] == 0) continue;
-    if (!terraces && (next.of_relief() || !next.err_together(calm.m[i + 1]))) continue;
-    if (terraces || here.err_together(calm.m[i]))
-      surely = std::max(surely, without_shape(calm.seen[i], calm.seen[i + 1], kLeastGrowthOfShape));
-    make_sure(i, without_shape(calm.seen[i], calm.seen[i + 1], kGrowthOfSmoothShape));
-  }
-  if (growths.of_ground()) return found;
-  // Compared as variances, for both are lower bounds: with the square of kSameNoise, noise that points share
-  // beside their own is missed on a cube.
-  if (!(std::max(surely, calm.steps) > kSameNoise * of_points)) return found;
-  found = {std::sqrt(sill), points_of(calm, at, sill), std::size_t(calm.m[at])};
-  // A terrace is no disk: what neighbourhoods leave of it is not known, unless points' own noise blurs it.
-  if (sill > calm.steps && (!terraces || of_points > calm.steps)) agree(calm, at, sill, found);
-  return found;
+  const Calm calm = look_at_calm(places, start, steps, context);
+  if (calm.m.empty()) return {};  // nothing scatters, or too few points to tell
+  return SharedSearch(calm, start, steps).run();
 }
 
 }  // namespace rfsmooth::rfs_mesh

@@ -9,42 +9,37 @@
 ///
 ///     S_p(m) = (2^p s^2(m) - s^2(2 m)) / (2^p - 1)
 ///
-/// is at most the noise's variance if shape grows at least so. Such noise is there if
+/// is at most the noise's variance if shape grows at least so. Such noise is there if the largest S with
+/// p = 1.25 is above the square of what search_noise found by more than that is unsure of: bumps and folds of
+/// a statue grow hardly faster, and are no noise. Or if depths in steps (depth_steps.h) make sure of so much.
+/// Its variance is then the largest S with p = 3, or that of the steps as far as it is seen.
 ///
-/// - the largest S with p = 1.25 is above the square of what search_noise found by more than that is unsure
-///   of: bumps and folds of a statue grow hardly faster, and are no noise;
-/// - nearest points lie off the same way there: Scatter::together above that of points on their own, which is
-///   what patches of m points do not follow of it, m / (m + 45), about m as about 2 m. (Loud points among
-///   calm ones make s(m) grow, too.) Or they do so along rows, and those beside them another way: lines of a
-///   scanner that are each off by itself (Scatter::in_rows).
+/// Not every m is believed. Those are
 ///
-/// or if depths in steps (depth_steps.h) make sure of it. Terraces are such steps that points, where calm,
-/// scatter no farther than (are_two_depths). Its variance is then the largest S with p = 3, or that of the
-/// steps as far as it is seen. An m counts from the first growth of s^2, from m to 2 m,
-/// that is less than shape's with p = 1.25, 2.38 times; off terraces, after a faster one, from the second in
-/// a row, since one may be the end of a bump, and only once it is less than 1.41. (Few points follow noise
-/// all of which neighbours share, as of cameras that match windows, and s^2 grows as fast as that of shape at
-/// first.) The first faster growth after an m that counted ends the search (off terraces only once some noise
-/// is sure). Ground, hills upon hills, never stops growing and is not overtaken by other shape: off terraces
-/// there is no noise where s^2, less what points have of their own, doubles and more at first, never
-/// less than 1.41 times later, and never faster than what counts, at two m or more of which less than half is
-/// of points on their own. Neighbourhoods
-/// whose residuals (off terraces: beyond the noise that points have of their own) are flatter than
-/// kFlatnessOfSheets (two_sheets.h) are of two sheets or of waves in rows (a sine has 1.5, threads and
-/// ripples measured under noise 1.6 to 2.1, noise that points share 2.9 and more), and tell nothing; but not
-/// those at two depths that follow each other, between which noise carries the points of one wall. Nor do
-/// those that lean off terraces (Scatter::lean_in_common): noise is as often above as below, stones are round
-/// above and end in clefts. Those that do not hold a slab as thick as they scatter (kFlatSlab) tell nothing
-/// while they are narrow, and wider ones than some that do are the last, too: leaves and twigs fill them. k
-/// is the number for which
+/// - whose balls hold a slab as thick as their points scatter,
+/// - from which on the scatter grows as that of noise does (growths.h),
+/// - with residuals at 2 m that are neither those of two sheets nor of waves in rows,
+/// - nor of stones,
+/// - and with nearest points that are off the same way at 2 m; at m, too, for p = 1.25.
+///
+/// None is believed where all growths are those of ground, or where windows from below saw far less than the
+/// narrowest m without. Each of these rules is a function of SharedSearch (shared_noise.cpp), with its
+/// reason.
+///
+/// Terraces are steps that points, where calm, scatter no farther than (are_two_depths). A neighbourhood
+/// within one sees nothing of the steps, and noise is not normal there: the slab, stones and the nearest
+/// points are not asked for.
+///
+/// How many points share the noise, k, is the number for which
 ///
 ///     s^2(m) = sigma^2 g(k / m)
 ///
 /// at the m that sees half of sigma^2, or at a wider one if it says more: of noise that points share beside
 /// their own, wide patches follow as much as of noise that the mean of both shares. g is what a quadric
 /// through m points leaves of noise that is the mean of independent noise over the k points around each
-/// place, computed for a disk of points and the weights of scatter.h. S itself sees less than all of such
-/// noise,
+/// place, computed for a disk of points and the weights of scatter.h.
+///
+/// S itself sees less than all of such noise,
 ///
 ///     S_3(m) = sigma^2 (2^3 g(k / m) - g(k / 2 m)) / (2^3 - 1),
 ///
