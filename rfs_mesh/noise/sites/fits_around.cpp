@@ -5,6 +5,7 @@
 
 #include "base/quantile.h"
 #include "rfs_mesh/noise/noise_levels.h"
+#include "rfs_mesh/sheets/two_sheets.h"
 
 namespace rfsmooth::rfs_mesh {
 
@@ -27,6 +28,33 @@ FitsAround::FitsAround(const std::vector<Neighbor>& group, const OpenFits& open)
       std::remove_if(saying.begin(), saying.end(), [&](const Scatter* fit) { return fit->variance > loud; }),
       saying.end());
   signs = signs_of(saying);
+}
+
+MomentsAround::MomentsAround(const std::vector<Neighbor>& group, const OpenFits& open)
+    : said(around(group, open.said, kNeighbourhood)), points(open.points) {
+  // Of two dozen normal values, unweighted. Wide fits lean less by chance, but so they do by sheets that the
+  // quadric has bent to: with 6 / points there, too, plates would be taken for layers.
+  constexpr double kLeanByChance = 6 / double(kNeighbourhood);
+  double saying = 0;
+  for (std::size_t k = 0; k < said.size(); ++k) {
+    const Scatter& fit = open.all[group[k].index];
+    if (!says(fit)) continue;
+    freedom += fit.freedom;
+    flatness += fit.flatness;
+    lean += fit.lean - kLeanByChance;
+    middle += fit.middle;
+    ++saying;
+  }
+  for (double* const sum : {&freedom, &flatness, &lean, &middle}) *sum /= saying;
+}
+
+bool MomentsAround::normal() const {
+  return middle > kNormalMiddle / kSameNoise && middle < kNormalMiddle * kSameNoise &&
+         flatness > kFlatnessOfSheets && flatness < 2 * kNormalFlatness - kFlatnessOfSheets;
+}
+
+double MomentsAround::radius() const {
+  return std::sqrt(quantile_of(said, 0.5, &Said::square));
 }
 
 }  // namespace rfsmooth::rfs_mesh

@@ -1,4 +1,7 @@
-/// What the fits without windows around a site show together.
+/// What the fits without windows around a site show together, in two ways. Whether their scatter grows, and
+/// whether points err together, is asked of the typical one among all sites of the group: a few that cross an
+/// edge have no say (FitsAround). Whether they see two sheets or layers is told by moments of residuals,
+/// which scatter far more: there the mean of the two dozen nearest counts (MomentsAround).
 #pragma once
 
 #include <vector>
@@ -9,7 +12,7 @@
 
 namespace rfsmooth::rfs_mesh {
 
-/// Of the fits to so many points.
+/// The typical one of the fits to so many points.
 struct FitsAround {
   FitsAround(const std::vector<Neighbor>& group, const OpenFits& open);
 
@@ -23,6 +26,23 @@ struct FitsAround {
   /// Of those that scatter at most twice as far: across an edge all residuals of a side are alike, and a few
   /// such fits would speak for the others.
   SignsOfSharing signs;
+};
+
+/// The means of the residuals' moments, of the fits to so many points.
+struct MomentsAround {
+  MomentsAround(const std::vector<Neighbor>& group, const OpenFits& open);
+
+  double variance() const { return mean_variance(said, kTypical); }
+  /// Whether the residuals are distributed as normal noise is: those of an edge have more in their middle and
+  /// far out, those of two sheets less.
+  bool normal() const;
+  /// The median of their balls', world units.
+  double radius() const;
+
+  std::vector<Said> said;
+  std::size_t points;
+  double freedom = 0, flatness = 0, middle = 0;  ///< those of Scatter; nan: no fit says a thing
+  double lean = 0;                               ///< the same, beyond chance
 };
 
 }  // namespace rfsmooth::rfs_mesh

@@ -8,6 +8,7 @@
 #include "base/quantile.h"
 #include "rfs_mesh/levels.h"
 #include "rfs_mesh/noise/noise_levels.h"
+#include "rfs_mesh/noise/sites/fits_around.h"
 #include "rfs_mesh/noise/sites/open_fits.h"
 #include "rfs_mesh/noise/sites/shared_around.h"
 #include "rfs_mesh/sheets/two_sheets.h"
@@ -42,42 +43,6 @@ double plateau(double few, double many, double radius) {
   return trust * std::max(few, kSure * many);
 }
 
-/// The fits of the sites nearest to one, and what they say together.
-struct Around {
-  Around(const std::vector<Neighbor>& group, const OpenFits& open)
-      : said(around(group, open.said, kNeighbourhood)), points(open.points) {
-    // Of two dozen normal values, unweighted. Wide fits lean less by chance, but so they do by sheets that
-    // the quadric has bent to: with 6 / points there, too, plates would be taken for layers.
-    constexpr double kLeanByChance = 6 / double(kNeighbourhood);
-    double saying = 0;
-    for (std::size_t k = 0; k < said.size(); ++k) {
-      const Scatter& fit = open.all[group[k].index];
-      if (!says(fit)) continue;
-      freedom += fit.freedom;
-      flatness += fit.flatness;
-      lean += fit.lean - kLeanByChance;
-      middle += fit.middle;
-      ++saying;
-    }
-    for (double* const sum : {&freedom, &flatness, &lean, &middle}) *sum /= saying;
-  }
-
-  double variance() const { return mean_variance(said, kTypical); }
-  /// Whether the residuals are distributed as normal noise is: those of an edge have more in their middle and
-  /// far out, those of two sheets less.
-  bool normal() const {
-    return middle > kNormalMiddle / kSameNoise && middle < kNormalMiddle * kSameNoise &&
-           flatness > kFlatnessOfSheets && flatness < 2 * kNormalFlatness - kFlatnessOfSheets;
-  }
-  /// The median of their balls', world units.
-  double radius() const { return std::sqrt(quantile_of(said, 0.5, &Said::square)); }
-
-  std::vector<Said> said;
-  std::size_t points;
-  double freedom = 0, flatness = 0, lean = 0,
-         middle = 0;  ///< means; lean: beyond chance; nan: no fit says a thing
-};
-
 /// What nearly all of the dozen nearest show, where their balls hold the slab.
 double bound(const std::vector<Neighbor>& group, const std::vector<Scatter>& open) {
   constexpr double kNearlyAll = 0.75;
@@ -87,7 +52,7 @@ double bound(const std::vector<Neighbor>& group, const std::vector<Scatter>& ope
 }
 
 /// What each of two sheets shows by itself, of fits that hold both; world units.
-double noise_of_sheet(const Around& around) {
+double noise_of_sheet(const MomentsAround& around) {
   const double share = share_of_sheet(around.flatness, std::max(0.0, around.lean));
   // The quadric bends to the sheet that happens to have more points here and there, and so spreads what
   // lies between the sheets; by its share of the degrees of freedom.
@@ -98,7 +63,7 @@ double noise_of_sheet(const Around& around) {
 
 /// Whether the fits show two layers that are nearer to each other than their points are, and no sheets.
 /// \param apart NoiseModel::apart
-bool are_layers(const Around& around, double apart) {
+bool are_layers(const MomentsAround& around, double apart) {
   if (!(around.flatness < kNormalFlatness)) return false;
   const double lean = std::max(0.0, around.lean), of_sheet = share_of_sheet(around.flatness, lean);
   if (!(of_sheet < share_of_sheet(kFlatnessOfSheets))) return false;
@@ -143,7 +108,7 @@ struct Sites {
   /// that follow each other; or `floor` if these are layers.
   void look_for_sheets(std::size_t s, const std::vector<OpenFits>& open, SiteView& view,
                        double& middle) const {
-    std::vector<Around> seen;
+    std::vector<MomentsAround> seen;
     for (const OpenFits& fits : open) seen.emplace_back(groups[s], fits);
     const auto grows = [&](std::size_t k) {  // to or from the next, as only shape does
       const std::size_t next = std::min(k + 1, seen.size() - 1);
@@ -221,7 +186,7 @@ void forget_flat_noise(const std::vector<double>& middle, std::vector<SiteView>&
 struct Shown {
   double scatter;  ///< world units
   bool held;       ///< whether their balls hold the slab of noisy points
-  bool normal;     ///< Around::normal
+  bool normal;     ///< MomentsAround::normal
 };
 
 std::vector<Shown> shown_around(const SiteGroups& groups, const OpenFits& open, const Context& context) {
@@ -229,7 +194,7 @@ std::vector<Shown> shown_around(const SiteGroups& groups, const OpenFits& open, 
   for_each_index(
       context, groups.size(),
       [&](std::size_t s) {
-        const Around nearest(groups[s], open);
+        const MomentsAround nearest(groups[s], open);
         const double scatter = std::sqrt(nearest.variance());
         shown[s] = {scatter, scatter < kFlatSlab * nearest.radius(), nearest.normal()};
       },
