@@ -80,6 +80,7 @@ AutomaticFindings smooth_part_by_part(Mesh& mesh, const rfs_mesh::NoiseField& no
                                       const Context& context) {
   std::vector<double> bounds;
   for (std::size_t k = 1; k < whole.parts.size(); ++k) bounds.push_back(whole.parts[k].from);
+  // Not the rows that were measured: that was done before outliers were known, or on all tiles of a cloud.
   const auto rows = rfs_mesh::rows_of_parts(rfs_mesh::SpatialIndex(mesh.positions, context), bounds, context);
   FindingsOfParts found;
   Positions smooth = mesh.positions;
