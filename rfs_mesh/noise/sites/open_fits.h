@@ -16,6 +16,13 @@ struct OpenFits {
   OpenFits(std::size_t count, std::vector<Scatter> fits)
       : points(count), all(std::move(fits)), said(what_they_say(all, kTypicalDeviate)) {}
 
+  /// What they typically scatter by around a site, world units.
+  double scatter_around(const std::vector<Neighbor>& group) const;
+  /// The median radius of their balls there, world units.
+  double radius_around(const std::vector<Neighbor>& group) const;
+  /// What depths in steps add there by their rounding, world units.
+  double rounding_around(const std::vector<Neighbor>& group) const;
+
   std::size_t points;
   std::vector<Scatter> all;
   std::vector<Said> said;

@@ -11,7 +11,7 @@
 #include "rfs_mesh/noise/sites/fits_around.h"
 #include "rfs_mesh/noise/sites/open_fits.h"
 #include "rfs_mesh/noise/sites/shared_around.h"
-#include "rfs_mesh/sheets/two_sheets.h"
+#include "rfs_mesh/noise/sites/sheets_around.h"
 
 namespace rfsmooth::rfs_mesh {
 
@@ -22,9 +22,6 @@ constexpr std::size_t kFarther = 8, kPlateauTo = kFarther * kNeighbourhood,
                       kWidestView = kFarther * kPlateauTo;
 // Scatter::middle above which noise so flat is that of no two sheets: nearly that of an even distribution.
 constexpr double kMiddleOfSheets = 0.25;
-// Coefficients of a quadric.
-constexpr double kOfQuadric = 6;
-
 // Times, from kNeighbourhood to kPlateauTo points: less than this, and scatter is noise; more than that,
 // shape. Chosen on depths in steps and shared noise (noise_accuracy_test.cpp), so that it says nothing on
 // the clean development shapes.
@@ -51,27 +48,6 @@ double bound(const std::vector<Neighbor>& group, const std::vector<Scatter>& ope
   return seen < kFlatSlab * quantile_of(near, 0.5, &Scatter::radius) ? seen : SiteView::kNone;
 }
 
-/// What each of two sheets shows by itself, of fits that hold both; world units.
-double noise_of_sheet(const MomentsAround& around) {
-  const double share = share_of_sheet(around.flatness, std::max(0.0, around.lean));
-  // The quadric bends to the sheet that happens to have more points here and there, and so spreads what
-  // lies between the sheets; by its share of the degrees of freedom.
-  const double spread = (1 - share) * kOfQuadric / (around.freedom + kOfQuadric);
-  const double least = kNarrowestWindow * kNarrowestWindow;
-  return std::sqrt(around.variance() * std::max(least, share - spread));
-}
-
-/// Whether the fits show two layers that are nearer to each other than their points are, and no sheets.
-/// \param apart NoiseModel::apart
-bool are_layers(const MomentsAround& around, double apart) {
-  if (!(around.flatness < kNormalFlatness)) return false;
-  const double lean = std::max(0.0, around.lean), of_sheet = share_of_sheet(around.flatness, lean);
-  if (!(of_sheet < share_of_sheet(kFlatnessOfSheets))) return false;
-  const double radius = around.radius(), square = square_of_point(radius * radius, around.points),
-               nearest = lean > 0 ? square : squared_nearest(square, apart);
-  return squared_gap(of_sheet, lean) * around.variance() < nearest;
-}
-
 /// How many points share their noise where depths in steps are off by `rounding`: 1, or more by a difference.
 ///
 ///     1 + (on_strip - 1) min(1, v) exp(-pi^2 / 3 o) / (1 + o)
@@ -89,85 +65,27 @@ double points_on_step(double on_strip, double scatter, double rounding) {
   return points > kSameNoise ? points : 1;
 }
 
-/// The sites, and the depths in steps that they may have; null: they have none.
-struct Sites {
-  const SiteGroups& groups;
-  const DepthSteps* steps;
-  bool on_lines;
-  double apart;  ///< NoiseModel::apart
-
-  bool on_grid() const { return steps != nullptr && steps->on_grid(); }
-
-  /// What depths in steps add around there by their rounding, world units.
-  double rounding_around(std::size_t s, const OpenFits& fits) const {
-    if (steps == nullptr) return 0;
-    return quantile_of(groups[s], 0.5, [&](const Neighbor& q) { return fits.rounding[q.index]; });
-  }
-
-  /// Sets `sheet`, and `middle` to Scatter::middle, where two sheets are seen, farther apart than two depths
-  /// that follow each other; or `floor` if these are layers.
-  void look_for_sheets(std::size_t s, const std::vector<OpenFits>& open, SiteView& view,
-                       double& middle) const {
-    std::vector<MomentsAround> seen;
-    for (const OpenFits& fits : open) seen.emplace_back(groups[s], fits);
-    const auto grows = [&](std::size_t k) {  // to or from the next, as only shape does
-      const std::size_t next = std::min(k + 1, seen.size() - 1);
-      return next > 0 && seen[next].variance() > kGrowthOfNoise * kGrowthOfNoise * seen[next - 1].variance();
-    };
-    const auto exceeds_rounding = [&](std::size_t k) {
-      const double depths = on_grid() ? 2 : 1;  // with no empty voxel between them there is one sheet
-      return !are_two_depths(seen[k].variance(), depths * rounding_around(s, open[k]));
-    };
-    std::size_t flattest = 0;
-    double flatness = kFlatnessOfSheets;
-    for (std::size_t k = 0; k < seen.size(); ++k) {
-      if (!(seen[k].flatness < flatness) || grows(k)) continue;
-      flattest = k;
-      flatness = seen[k].flatness;
-    }
-    const bool two = flatness < kFlatnessOfSheets;
-    if (two && exceeds_rounding(flattest)) {
-      view.sheet = noise_of_sheet(seen[flattest]);
-      middle = seen[flattest].middle;
-    }
-    if (on_lines) return;
-    const std::size_t k = two && seen[flattest].lean <= 0 ? flattest : 0;
-    if (!are_layers(seen[k], apart) || !exceeds_rounding(k)) return;
-    view.sheet = view.slab = SiteView::kNone;
-    view.floor = std::sqrt(seen[0].variance());
-  }
-
-  /// What the fits around there typically scatter by, world units.
-  double scatter_around(std::size_t s, const OpenFits& fits) const {
-    return std::sqrt(
-        quantile_of(groups[s], kTypical, [&](const Neighbor& q) { return fits.all[q.index].variance; }));
-  }
-
-  /// The median radius of their balls, world units.
-  double radius_around(std::size_t s, const OpenFits& fits) const {
-    return quantile_of(groups[s], 0.5, [&](const Neighbor& q) { return fits.all[q.index].radius; });
-  }
-
-  /// Raises `floor` and sets `told`: what two sheets scatter does not grow, either. Raises `floor` to what
-  /// depths in steps make sure of, too, as far as the widest fits show it: those to fewer points may lie
-  /// within a step. A stack of slices has few depths, too, and none of the scatter; a grid may be exact. Sets
-  /// `shared`, but along lines, which are no disks. \param open from the fewest points to the widest; `many`
-  /// of them to kPlateauTo points. \param width of the strip on one step, at each site
-  void find_floor(std::size_t s, const std::vector<OpenFits>& open, const OpenFits& many,
-                  const std::vector<double>& width, SiteView& view) const {
-    const double less = scatter_around(s, open.front()), seen = scatter_around(s, many);
-    if (view.sheet == SiteView::kNone)
-      view.floor = std::max(view.floor, plateau(less, seen, radius_around(s, open.front())));
-    view.told = seen < kStops * less;
-    if (steps == nullptr || on_grid()) return;
-    const double rounding = rounding_around(s, many);
-    view.floor = std::max(view.floor, std::min(scatter_around(s, open.back()), rounding));
-    if (on_lines) return;
-    const double across = quantile_of(groups[s], 0.5, [&](const Neighbor& q) { return width[q.index]; });
-    const double share = std::min(1.0, across / (2 * radius_around(s, many)));
-    view.shared = points_on_step(double(many.points) * (share * share), seen, rounding);
-  }
-};
+/// Raises `floor` and sets `told`: what two sheets scatter does not grow, either. Raises `floor` to what
+/// steps make sure of, too, as far as the widest fits show it: those to fewer points may lie within a step.
+/// Sets `shared` by them. \param open from the fewest points to the widest; `many` of them to kPlateauTo
+/// points. \param terraces whether depths are in steps. A stack of slices has few depths, too, and none of
+/// the scatter; a grid, which has no terraces, may be exact. \param width of the strip on one step, at each
+/// site; empty: along lines, which are no disks
+void find_floor(const std::vector<Neighbor>& group, const std::vector<OpenFits>& open, const OpenFits& many,
+                bool terraces, const std::vector<double>& width, SiteView& view) {
+  const OpenFits& few = open.front();
+  const double less = few.scatter_around(group), seen = many.scatter_around(group);
+  if (view.sheet == SiteView::kNone)
+    view.floor = std::max(view.floor, plateau(less, seen, few.radius_around(group)));
+  view.told = seen < kStops * less;
+  if (!terraces) return;
+  const double rounding = many.rounding_around(group);
+  view.floor = std::max(view.floor, std::min(open.back().scatter_around(group), rounding));
+  if (width.empty()) return;
+  const double across = quantile_of(group, 0.5, [&](const Neighbor& q) { return width[q.index]; });
+  const double share = std::min(1.0, across / (2 * many.radius_around(group)));
+  view.shared = points_on_step(double(many.points) * (share * share), seen, rounding);
+}
 
 /// Forgets the sheets if it is the noise itself that is flat, and not empty in its middle. \param middle of
 /// each site
@@ -241,7 +159,7 @@ std::vector<SiteView> look_without_windows(Places& places, const SiteGroups& gro
   const bool deep = start.fills_nearest();
   const std::vector<Scatter>& few = open.front().all;
   const std::vector<Scatter> wide = deep ? places.fits(start.m) : std::vector<Scatter>();
-  const Sites sites{groups, steps, start.on_lines, start.apart};
+  const bool on_grid = steps != nullptr && steps->on_grid(), on_terraces = steps != nullptr && !on_grid;
   std::vector<SiteView> views(groups.size());
   std::vector<double> middle(groups.size(), 1);
   for_each_index(
@@ -252,7 +170,12 @@ std::vector<SiteView> look_without_windows(Places& places, const SiteGroups& gro
         view.open = std::sqrt(mean_variance(around(groups[s], open.front().said), kTypical));
         if (!deep) view.slab = view.open;
         view.most = bound(groups[s], deep ? wide : few);
-        sites.look_for_sheets(s, open, view, middle[s]);
+        const SheetsAround sheets = look_for_sheets(groups[s], open, start, on_grid);
+        view.sheet = sheets.sheet;
+        middle[s] = sheets.middle;
+        if (!sheets.layers) return;
+        view.slab = SiteView::kNone;
+        view.floor = *sheets.layers;
       },
       64);
   forget_flat_noise(middle, views);
@@ -261,14 +184,14 @@ std::vector<SiteView> look_without_windows(Places& places, const SiteGroups& gro
   for (; points <= std::min(kWidestView, widest_scatter(places.index())); points *= 2)
     open.push_back(fit_wide(places, points, context));
   std::vector<double> width;
-  if (plateau)
+  if (plateau && on_terraces && !start.on_lines)
     for (std::size_t s = 0; s < groups.size(); ++s)
       width.push_back(steps_there[s].width(open[many].all[s].normal));
   if (plateau)
     for_each_index(
         context, groups.size(),
-        [&](std::size_t s) { sites.find_floor(s, open, open[many], width, views[s]); }, 64);
-  if (plateau && !start.on_lines && !sites.on_grid()) find_shared_around(groups, open, views, context);
+        [&](std::size_t s) { find_floor(groups[s], open, open[many], on_terraces, width, views[s]); }, 64);
+  if (plateau && !start.on_lines && !on_grid) find_shared_around(groups, open, views, context);
   hold_slabs(places, groups, open, views, context);
   return views;
 }

@@ -2,20 +2,8 @@
 /// dozen to four dozen sites around it (SiteGroups). Without a window scatter is more than the noise: edges
 /// and second sheets are in it.
 ///
-/// Two sheets: where both are within a ball, the residuals are flatter than a normal distribution, and their
-/// fourth moment tells the variance of one sheet (share_of_sheet, two_sheets.h). A ball narrower than the
-/// sheets are apart holds hardly any of the second one, a wide one bends away with the surface: those count
-/// that are flattest, unless their scatter grows to the next wider ball (or to the widest) as only shape
-/// does. Not if the residuals fill their middle nearly as an even distribution does: then the noise itself is
-/// flat. Nor if they are as small as those of two depths in steps that follow each other, which look like two
-/// sheets, or on a grid as those of two with one between them: voxels are filled evenly.
-///
-/// Layers: two scans that do not quite meet leave two. Where more points are on one, the residuals lean, too,
-/// and both moments together tell how far apart the layers are. Nearer to each other than the points are to
-/// their neighbours (a square of the cloud's spacing has one point) they cannot both be surfaces, and what is
-/// seen is the noise. Layers with as many points each may be the sides of a plate: these must be nearer than
-/// a point is to its nearest neighbour: half a side of that square where points lie at random, all of it
-/// where the cloud was thinned so that they keep a distance (NoiseModel::apart).
+/// Two sheets, or layers: sheets_around.h. Not if the residuals of the sites that see two sheets fill their
+/// middle nearly as an even distribution does: then the noise itself is flat.
 ///
 /// Bounds: the scatter of nearly all of the dozen nearest sites is one, where their balls hold the slab of
 /// noisy points; what the first of 24, 192 and 1,536 points shows that hold it is one that a wider window
@@ -36,7 +24,7 @@
 /// squarely it faces the camera: as many share their noise as lie on a disk as wide as the strip, as far as
 /// the noise that they had before they were rounded leaves of it. Not along lines, nor on a grid.
 ///
-/// Clouds of fewer than 384 points have neither.
+/// Clouds of fewer than 384 points have neither a floor nor such sharing.
 #pragma once
 
 #include <vector>
