@@ -1,7 +1,7 @@
 /// Outliers: strays and mixed pixels, points with no surface near them.
 ///
-/// They are found on the raw cloud, before anything is connected. r_i is the distance from
-/// point i to its 8th nearest neighbour. A point is an outlier if three tests agree:
+/// They are found on the raw cloud, before anything is connected. r_i is the distance from point i to its 8th
+/// nearest neighbour. A point is an outlier if three tests agree:
 ///
 /// 1. Isolated: r_i is more than twice the lower quartile of r over its 8 neighbours, the usual r there.
 /// 2. Unknown: at most one point that is not isolated has it among its own 8 nearest. (Points of a sparse

@@ -98,8 +98,7 @@ class CloudFile {
   std::optional<std::vector<double>> field(std::string_view name, const Context& context = {}) const;
   /// Sets a field of the points. A field of that name keeps its place and type; else one is appended as
   /// float32. Errors: usage if the present field cannot take the values, or if there is none and the name is
-  /// not one word, as headers ask for. \throw std::invalid_argument if
-  /// there is not one value per point.
+  /// not one word, as headers ask for. \throw std::invalid_argument if there is not one value per point.
   Result<Done> set_field(const std::string& name, const std::vector<double>& values,
                          const Context& context = {});
 

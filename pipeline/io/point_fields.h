@@ -25,8 +25,8 @@ bool has_normals(const Cloud& cloud);
 /// 0xAARRGGBB. O(n).
 std::vector<std::uint32_t> packed_colors(const Cloud& cloud, std::size_t field, const Context& context = {});
 
-/// One colour per point; empty if the cloud has none. Colours in floats are from 0 to 1, or
-/// to 255 or 65535 where one of them is above. O(n).
+/// One colour per point; empty if the cloud has none. Colours in floats are from 0 to 1, or to 255 or 65535
+/// where one of them is above. O(n).
 std::vector<Rgb> colors_of(const Cloud& cloud, const Context& context = {});
 
 /// n x 3; empty if the cloud has no normals. O(n).

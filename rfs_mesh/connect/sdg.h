@@ -26,8 +26,8 @@
 
 namespace rfsmooth::rfs_mesh {
 
-/// What the SDG and the RFS-mesh are built from: positions (the points or their
-/// shadows), the surface at each, the nearest neighbours among them, and the noise that is left in them.
+/// What the SDG and the RFS-mesh are built from: positions (the points or their shadows), the surface at
+/// each, the nearest neighbours among them, and the noise that is left in them.
 struct Terrain {
   const Positions& at;                        ///< n x 3
   const std::vector<LocalSurface>& surfaces;  ///< n; only the normals are read

@@ -1,8 +1,8 @@
 /// What many scatter fits say together: quantiles by area, and the mean without the fits that stand out.
 ///
 /// A scan has most of its points where its surface is nearest to the scanner, so a fit counts by the area it
-/// covers (the square of its ball's radius), up to that of one among
-/// the widest quarter. Thread safe, but for the vectors that are reordered.
+/// covers (the square of its ball's radius), up to that of one among the widest quarter. Thread safe, but for
+/// the vectors that are reordered.
 #pragma once
 
 #include <vector>

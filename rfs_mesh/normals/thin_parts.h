@@ -11,8 +11,7 @@
 ///
 /// points out of the wall; at its rim, or all around a finger, it points away from the middle. (It is the
 /// gradient of the Gaussian density with that c and C. The plain offset turns with the uneven spacing of the
-/// points.) The opposite direction points out of a slit, which is a wall seen
-/// from the solid.
+/// points.) The opposite direction points out of a slit, which is a wall seen from the solid.
 ///
 /// Both are tried where w is off, and kept where they bring w nearer to 1/2 all around:
 ///

@@ -24,9 +24,9 @@ namespace rfsmooth::rfs_mesh {
 /// Turns in place those of the oriented `normals` (n x 3, unit) of `points` (n x 3) whose points lie on the
 /// other sheet; returns the number of turns. `near`: n rows of at least 64 neighbours, so that each of two
 /// sheets has about 30; neighbours of slightly different places, as before smoothing, will do. A point is
-/// left alone unless two neighbours have the opposite normal. O(n k), far
-/// less where no two sheets are near each other; parallel, the same bytes for any number of threads. \throw
-/// std::invalid_argument if the sizes differ.
+/// left alone unless two neighbours have the opposite normal. O(n k), far less where no two sheets are near
+/// each other; parallel, the same bytes for any number of threads. \throw std::invalid_argument if the sizes
+/// differ.
 std::size_t turn_to_own_sheet(const Positions& points, const NeighborTable& near, Positions& normals,
                               const Context& context);
 

@@ -62,9 +62,8 @@ Operator scale_dependent(const Mesh& mesh, const Context& context);
 ///
 /// Desbrun (14), Ohtake (8). Differs from the papers: they take A = the area of the whole one-ring, which
 /// gives H/3 and is what Scheme::printed does; A is the mixed area of Meyer et al. 2002 and L x is H n. More
-/// or fewer than two faces at an
-/// edge contribute one cotangent each; faces with twice their area below 1e-8 of their longest edge squared
-/// are skipped (5.4). Zero at interior vertices of any planar mesh. Unit h^2.
+/// or fewer than two faces at an edge contribute one cotangent each; faces with twice their area below 1e-8
+/// of their longest edge squared are skipped (5.4). Zero at interior vertices of any planar mesh. Unit h^2.
 Operator curvature(const Mesh& mesh, const Adjacency& vertex_faces, const Context& context,
                    Scheme scheme = Scheme::safe);
 

@@ -23,8 +23,8 @@ std::vector<StageShare> denoising_stages(bool normals);
 /// The progress of a run over all its stages and files.
 class Progress {
  public:
-  /// Sets the stages, in order; "write" is added at the end. Other stages take no share: the
-  /// bar stands at the end of the stage before them.
+  /// Sets the stages, in order; "write" is added at the end. Other stages take no share: the bar stands at
+  /// the end of the stage before them.
   void plan(std::vector<StageShare> stages);
   /// From now on stages belong to file `job` of `jobs`.
   void start_job(std::size_t job, std::size_t jobs);

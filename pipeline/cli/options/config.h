@@ -17,9 +17,9 @@ struct Config {
 };
 
 /// Reads `path`: a report (its "options", "input", "output"; of several files the options of the first that
-/// was done, for all have the same) or an object of options. Names are checked
-/// against `command`. \throw Failure: input_unreadable (no JSON; says the byte), usage (another command's
-/// report, or an unknown option, with a suggestion).
+/// was done, for all have the same) or an object of options. Names are checked against `command`. \throw
+/// Failure: input_unreadable (no JSON; says the byte), usage (another command's report, or an unknown option,
+/// with a suggestion).
 Config read_config(const std::string& path, const Command& command);
 
 }  // namespace rfsmooth::cli
