@@ -2,17 +2,24 @@
 /// rings of a laser that are each a little off, where they are near each other.
 ///
 /// Around a site the scatter s(m) about a quadric stops growing where the neighbourhood is wider than such
-/// noise reaches, if it grew at all: 1.26 times from the narrowest that holds the slab, or 1.1 times where
-/// points err alike along rows, of which a narrow ball, too, sees several. What is left of it,
-/// s(2 m) of the first m from which s(4 m) < 1.26 s(m), is noise, all of it (of rows that the narrowest balls
-/// see already more, for wider ones have more of them: 2 s^2(4 m) - s^2(m)), under the conditions that
-/// shared_noise.h asks of m and 2 m for: the ball holds the slab, the nearest points err together, the
-/// residuals are neither of two sheets nor of waves in rows nor of stones. (Shape that a quadric does not
-/// follow makes s grow 8 times from m to 4 m, ground 1.4 times and more.) Fits that scatter twice as far as
-/// what is typical around the site say nothing, for they cross edges. Nothing is found where s^2 grew 2.38
-/// times from some narrower m to its double: bumps have a size, too, beyond which they do not grow. Less than
-/// a tenth of the sites are not believed: scales of a statue. k follows from what the narrower neighbourhoods
-/// see (points_sharing).
+/// noise reaches. Of the m from the narrowest on whose ball holds the slab of noisy points, the first counts
+/// for which
+///
+/// - the ball holds the slab,
+/// - s(2 m) has grown at all: 1.26 times from the narrowest, or 1.1 times where points err alike along rows,
+///   of which a narrow ball, too, sees several,
+/// - it has stopped: s(4 m) <= 1.26 s(m). (Shape that a quadric does not follow makes it grow 8 times, ground
+///   1.4 times and more),
+/// - the nearest points err together,
+/// - and the residuals at 2 m are neither of two sheets nor of waves in rows nor of stones.
+///
+/// Then s(2 m) is noise, all of it. Of rows that the narrowest balls see already it is more, for wider balls
+/// have more of them: 2 s^2(4 m) - s^2(m). k follows from what the narrower neighbourhoods see
+/// (points_sharing).
+///
+/// Nothing is found where s^2 grew 2.38 times from some narrower m to its double: bumps have a size, too,
+/// beyond which they do not grow. Fits that scatter twice as far as what is typical around the site say
+/// nothing, for they cross edges. Less than a tenth of the sites are not believed: scales of a statue.
 #pragma once
 
 #include <vector>
