@@ -17,14 +17,6 @@ namespace {
 constexpr std::size_t kWidest = 4 * kNeighbourhood;              // points of a fit
 constexpr std::size_t kPointsAPlace = kWidest / kSmallestGroup;  // a dozen places have as many
 
-SiteGroups dozens_around(const SpatialIndex& places, const Context& context) {
-  SiteGroups groups(places.points().size());
-  for_each_index(
-      context, groups.size(),
-      [&](std::size_t s) { places.nearest(places.points()[s], int(kSmallestGroup), groups[s]); }, 64);
-  return groups;
-}
-
 /// By site, whether it or one of the dozen nearest is much louder by itself than was found around it; empty:
 /// none is.
 std::vector<char> are_near_loud_ones(const SpatialIndex& index, const NoiseSites& sites,
@@ -33,7 +25,7 @@ std::vector<char> are_near_loud_ones(const SpatialIndex& index, const NoiseSites
   for (std::size_t s = 0; s < loud.size(); ++s)
     loud[s] = char(sites.two_sheets[s] == 0 && sites.open[s] > kLouder * at_sites[s]);
   if (std::find(loud.begin(), loud.end(), 1) == loud.end()) return {};
-  const SiteGroups groups = dozens_around(index, context);
+  const SiteGroups groups = site_groups(index, kSmallestGroup, context);
   std::vector<char> near(loud.size());
   for (std::size_t s = 0; s < near.size(); ++s)
     near[s] = char(std::any_of(groups[s].begin(), groups[s].end(),
@@ -60,7 +52,7 @@ std::vector<double> plain_noise_at(const SpatialIndex& cloud, const SpatialIndex
   std::vector<OpenFits> open;
   for (std::size_t points = kNeighbourhood; points <= kWidest; points *= 2)
     open.emplace_back(points, places.fits(points));
-  const SiteGroups groups = dozens_around(at, context);
+  const SiteGroups groups = site_groups(at, kSmallestGroup, context);
   std::vector<double> noise(groups.size());
   for_each_index(
       context, noise.size(), [&](std::size_t i) { noise[i] = plain_noise(groups[i], open); }, 64);

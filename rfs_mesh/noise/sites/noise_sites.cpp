@@ -38,7 +38,8 @@ class Listener {
       : n_(cloud.points().size()),
         context_(context),
         places_(cloud, at, std::min(n_, 2 * start.m), context),
-        group_(at.size()),
+        group_(site_groups({at, context},
+                           std::clamp(kGroupWork / start.m, kSmallestGroup, 2 * kNeighbourhood), context)),
         narrow_(at.size(), 0),
         fits_(at.size()),
         points_(at.size(), 0),
@@ -52,10 +53,6 @@ class Listener {
         sigma(at.size(), std::max(start.sigma, start.least)),
         floor(at.size(), 0),
         speaks(at.size(), 0) {
-    const SpatialIndex index(at, context);
-    const int group = int(std::clamp(kGroupWork / start.m, kSmallestGroup, 2 * kNeighbourhood));
-    for_each_index(
-        context, at.size(), [&](std::size_t s) { index.nearest(at[s], group, group_[s]); }, 64);
     // The first windows are as wide as what a site makes sure of, and no wider than a sheet.
     views = look_without_windows(places_, group_, start, steps, context);
     std::size_t louder = 0;

@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "base/parallel.h"
 #include "rfs_mesh/search/neighbors.h"
 
 namespace rfsmooth::rfs_mesh {
@@ -35,6 +36,15 @@ struct SiteView {
 
 /// By site: the sites nearest to it, the nearest first.
 using SiteGroups = std::vector<std::vector<Neighbor>>;
+
+/// So many nearest of each, itself included. O(n log n), parallel.
+inline SiteGroups site_groups(const SpatialIndex& sites, std::size_t most, const Context& context) {
+  SiteGroups groups(sites.points().size());
+  for_each_index(
+      context, groups.size(), [&](std::size_t s) { sites.nearest(sites.points()[s], int(most), groups[s]); },
+      64);
+  return groups;
+}
 
 /// The values of the members of a group, or of the `most` nearest of them.
 template <class T>
