@@ -32,4 +32,8 @@ std::string said_of(const nlohmann::json::exception& error) {
   return "a value in it is of another kind than rfsmooth writes";
 }
 
+std::string in_lines(const ordered_json& json) {
+  return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + '\n';
+}
+
 }  // namespace rfsmooth::pipeline::io

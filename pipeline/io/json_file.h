@@ -1,7 +1,8 @@
-/// JSON files of jobs, statistics and options: read as a whole, with errors in plain words.
+/// JSON of jobs, statistics, options and reports: files are read as a whole, with errors in plain words.
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include <nlohmann/json.hpp>
@@ -15,5 +16,15 @@ nlohmann::ordered_json read_json(const std::filesystem::path& path);
 /// What is wrong with JSON that lacks something, or has something of another kind: "the key 'halo' is
 /// missing".
 std::string said_of(const nlohmann::json::exception& error);
+
+/// For people to read: a line for each key, and an end of the line behind all. What is no UTF-8, as names of
+/// files need not be, is replaced.
+std::string in_lines(const nlohmann::ordered_json& json);
+
+/// Null where there is none.
+template <class T>
+nlohmann::ordered_json or_null(const std::optional<T>& value) {
+  return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json();
+}
 
 }  // namespace rfsmooth::pipeline::io

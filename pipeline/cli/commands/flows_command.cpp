@@ -9,6 +9,7 @@
 #include "base/fail.h"
 #include "pipeline/cli/commands/command.h"
 #include "pipeline/cli/options/json_values.h"
+#include "pipeline/io/json_file.h"
 
 namespace rfsmooth::cli {
 
@@ -63,7 +64,7 @@ void print_json() {
     list.push_back(
         {{"name", info.name}, {"summary", info.summary}, {"source", info.source}, {"options", defaults}});
   }
-  fmt::print("{}\n", list.dump(2));
+  fmt::print("{}", pipeline::io::in_lines(list));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <rfsmooth/version.h>
 
 #include "pipeline/io/io.h"
+#include "pipeline/io/json_file.h"
 #include "rfs_mesh/noise/noise_levels.h"
 
 namespace rfsmooth::cli {
@@ -19,7 +20,7 @@ void Report::write(bool any_done) const {
     all.update(files_[0]);
   else
     all["files"] = files_;
-  const std::string text = all.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
+  const std::string text = pipeline::io::in_lines(all);
   if (path_ == "-")
     fmt::print("{}", text);
   else

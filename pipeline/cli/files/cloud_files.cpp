@@ -15,6 +15,7 @@
 #include "pipeline/io/convert/capacity.h"
 #include "pipeline/io/convert/convert.h"
 #include "pipeline/io/formats/las/las.h"
+#include "pipeline/io/json_file.h"
 
 namespace rfsmooth::cli {
 
@@ -200,8 +201,8 @@ ordered_json describe(const io::Cloud& cloud) {
 
 ordered_json bytes_options(const FileOptions& options) {
   ordered_json json;
-  json["format"] = options.format ? ordered_json(*options.format) : ordered_json(nullptr);
-  json["encoding"] = options.encoding ? ordered_json(*options.encoding) : ordered_json(nullptr);
+  json["format"] = io::or_null(options.format);
+  json["encoding"] = io::or_null(options.encoding);
   json["drop-unsupported"] = options.drop_unsupported;
   return json;
 }

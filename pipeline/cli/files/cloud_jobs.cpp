@@ -12,6 +12,7 @@
 #include "pipeline/io/convert/capacity.h"
 #include "pipeline/io/convert/convert.h"
 #include "pipeline/io/formats/las/las_plain.h"
+#include "pipeline/io/json_file.h"
 #include "pipeline/io/stream/atomic_file.h"
 
 namespace rfsmooth::cli {
@@ -110,7 +111,7 @@ void run_one(const Job& job, const JobOptions& options, const OnCloud& on_cloud,
     console.say(fmt::format("{}: has no names: {}", job.output, added));
   if (on_cloud.beside) on_cloud.beside(console);
   console.detail("seconds: " + text_of(stages));
-  entry["threads"] = options.console.threads ? ordered_json(*options.console.threads) : ordered_json(nullptr);
+  entry["threads"] = pipeline::io::or_null(options.console.threads);
   entry["seconds"] = json_of(stages);
 }
 

@@ -16,6 +16,7 @@
 #include "pipeline/cli/options/text_values.h"
 #include "pipeline/cli/own_files.h"
 #include "pipeline/io/io.h"
+#include "pipeline/io/json_file.h"
 #include "pipeline/io/stream/atomic_file.h"
 #include "pipeline/tiles/allowed.h"
 #include "pipeline/tiles/files/row_file.h"
@@ -31,7 +32,6 @@ namespace rfsmooth::cli {
 
 namespace {
 
-using nlohmann::ordered_json;
 using pipeline::tiles::Job;
 
 /// What the plan keeps for all steps.
@@ -171,16 +171,15 @@ void tell_status(const TilesOptions& options, const std::vector<std::string>& ar
   if (arguments.size() != 1) fail(ErrorCode::usage, "rfsmooth tiles status takes JOB");
   const auto s = pipeline::tiles::job_status(pipeline::tiles::open_job(arguments[0]), context);
   if (options.json)
-    fmt::print("{}\n", ordered_json({{"points", s.points},
-                                     {"tiles", s.tiles},
-                                     {"measured", s.measured},
-                                     {"settled", s.settled},
-                                     {"halo", s.halo},
-                                     {"run", s.run},
-                                     {"halo_share", s.halo_share},
-                                     {"seconds", s.seconds},
-                                     {"missing", s.missing}})
-                           .dump(2));
+    fmt::print("{}", pipeline::io::in_lines({{"points", s.points},
+                                             {"tiles", s.tiles},
+                                             {"measured", s.measured},
+                                             {"settled", s.settled},
+                                             {"halo", s.halo},
+                                             {"run", s.run},
+                                             {"halo_share", s.halo_share},
+                                             {"seconds", s.seconds},
+                                             {"missing", s.missing}}));
   else
     fmt::print("{} in {}: {} measured, {}settled, {} run{}\n", counted(s.points, "point"),
                counted(s.tiles, "tile"), s.measured, s.settled ? "" : "not ", s.run,

@@ -98,7 +98,7 @@ ordered_json json_of_settled(const Settled& settled) {
           {"halo_radii", settled.radii},
           {"widest", settled.widest},
           {"noise", report.noise},
-          {"noise_left", report.noise_left ? ordered_json(*report.noise_left) : ordered_json(nullptr)},
+          {"noise_left", io::or_null(report.noise_left)},
           {"noise_measured", json_of(report.measured)},
           {"not_smoothed", json_of(report.not_smoothed)},
           {"guide_strength", report.guide_strength},

@@ -12,6 +12,7 @@
 #include "pipeline/cli/deviation.h"
 #include "pipeline/cli/files/cloud_files.h"
 #include "pipeline/io/io.h"
+#include "pipeline/io/json_file.h"
 #include "pipeline/io/mesh_file.h"
 #include "pipeline/io/point_fields.h"
 
@@ -121,7 +122,7 @@ int run_compare(const CompareCommandOptions& options, const Invocation& typed) {
   ordered_json json = {{"cloud", typed.arguments[0]}, {"truth", typed.arguments[1]}};
   json.update(figures_of(report, deviation));
   if (options.json)
-    fmt::print("{}\n", json.dump(2, ' ', false, ordered_json::error_handler_t::replace));
+    fmt::print("{}", pipeline::io::in_lines(json));
   else
     print_text(report, deviation, json);
   if (!options.files.output) return 0;

@@ -17,6 +17,7 @@
 #include "pipeline/cli/files/memory.h"
 #include "pipeline/denoise_lean.h"
 #include "pipeline/io/formats/las/las_scale.h"
+#include "pipeline/io/json_file.h"
 #include "pipeline/io/point_fields.h"
 #include "pipeline/page/page.h"
 #include "pipeline/page/shown.h"
@@ -195,7 +196,7 @@ void enter(const DenoiseReport& done, const DenoiseCommandOptions& options, orde
   entry["spacing"] = done.spacing;
   entry["noise"] = done.noise;
   entry["noise_measured"] = pipeline::tiles::json_of(done.measured);
-  entry["noise_left"] = done.noise_left ? ordered_json(*done.noise_left) : ordered_json(nullptr);
+  entry["noise_left"] = pipeline::io::or_null(done.noise_left);
   entry["not_smoothed"] = pipeline::tiles::json_of(done.not_smoothed);
   entry["guide_strength"] = done.guide_strength;
   entry["tail_times"] = done.tail_times;

@@ -9,6 +9,7 @@
 #include "pipeline/cli/console/console.h"
 #include "pipeline/cli/console/report.h"
 #include "pipeline/cli/files/cloud_files.h"
+#include "pipeline/io/json_file.h"
 #include "pipeline/tiles/files/statistics_json.h"
 
 namespace rfsmooth::cli {
@@ -107,9 +108,7 @@ int run_info(const InfoCommandOptions& options, const Invocation& typed) {
     all.push_back(done.value());
     return std::nullopt;
   });
-  if (options.json && !all.empty())
-    fmt::print("{}\n",
-               (jobs.size() == 1 ? all[0] : all).dump(2, ' ', false, ordered_json::error_handler_t::replace));
+  if (options.json && !all.empty()) fmt::print("{}", pipeline::io::in_lines(jobs.size() == 1 ? all[0] : all));
   return code;
 }
 
