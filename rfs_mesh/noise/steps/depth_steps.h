@@ -2,15 +2,24 @@
 /// terraces; a laser scanner that tells whole centimetres puts them on shells around itself.
 ///
 /// Terraces are found where a coordinate has less than a tenth as many values as the points that are looked
-/// at, strays and all; or else where a tenth of the points, and so many more than by chance, are as far from
-/// a place at which a scanner stood (scanner_places.h), all at multiples of one distance, or lie level along
-/// some direction (step_directions.h), and others, as of other cameras, lie free between them. Of several
-/// coordinates it is the one with the largest steps: before a wall a camera knows so few depths that the
-/// columns of its image leave few values across, too, other ones at every depth. Where they are the same at
-/// every depth, the points are on a grid of their own, and depth has no steps; unless the others
-/// are what coordinates were rounded to since, as to whole millimetres, or cannot be told from detail.
-/// Where those around a point that are on its step are in a line, they are rings of a lathe's part or
-/// profiles of a line scanner. Other directions do not count whose rounding cannot be told from detail.
+/// at, strays and all. Of several coordinates it is the one with the largest steps: before a wall a camera
+/// knows so few depths that the columns of its image leave few values across, too, other ones at every depth.
+///
+/// Or else they are found where a tenth of the points, and so many more than by chance,
+///
+/// - are as far from a place at which a scanner stood (scanner_places.h), all at multiples of one distance,
+/// - or lie level along some direction (step_directions.h), and others, as of other cameras, lie free between
+///   them.
+///
+/// Of these none count whose rounding cannot be told from detail.
+///
+/// No depths in steps are
+///
+/// - those of a grid of its own, which are the same at every depth; unless they are what coordinates were
+///   rounded to since, as to whole millimetres, or cannot be told from detail,
+/// - and lines: rings of a lathe's part or profiles of a line scanner, where those around a point that are on
+///   its step are in a line.
+///
 /// Between two steps every depth is as likely, so a surface of normal n has noise of at least
 /// |n . ray| gap / sqrt(12) from them.
 #pragma once
