@@ -173,8 +173,7 @@ std::vector<std::size_t> off_fields(const Cloud& cloud) {
 }
 
 void write_off(const Cloud& cloud, Sink& sink, const Context& context) {
-  const std::string header = off_header(cloud);
-  sink.write(header == cloud.original_canonical ? cloud.original_header : header);
+  sink.write(cloud.header(off_header(cloud)));
   std::vector<const Table*> tables = {&cloud.points()};
   if (const Table* faces = cloud.element("face")) tables.push_back(faces);
   write_text_body(tables, cloud.tail, sink, context);

@@ -135,8 +135,7 @@ Cloud read_pcd(const Source& source, const Context& context) {
 void write_pcd(const Cloud& cloud, Encoding encoding, Sink& sink, const Context& context) {
   if (encoding == Encoding::binary_big_endian)
     fail(ErrorCode::usage, "PCD has no big-endian encoding; use ascii, binary or binary_compressed");
-  const std::string header = pcd_header(cloud, encoding);
-  sink.write(header == cloud.original_canonical ? cloud.original_header : header);
+  sink.write(cloud.header(pcd_header(cloud, encoding)));
   if (encoding == Encoding::ascii)
     write_text_rows(cloud.points(), sink, context);
   else if (encoding == Encoding::binary_little_endian)

@@ -83,8 +83,7 @@ Cloud read_ply(const Source& source, const Context& context) {
 }
 
 void write_ply(const Cloud& cloud, Encoding encoding, Sink& sink, const Context& context) {
-  const std::string header = ply_header(cloud, encoding);
-  sink.write(header == cloud.original_canonical ? cloud.original_header : header);
+  sink.write(cloud.header(ply_header(cloud, encoding)));
   const std::string_view tail = encoding == cloud.encoding ? cloud.tail : std::string_view();
   if (encoding == Encoding::ascii) {
     std::vector<const Table*> tables;

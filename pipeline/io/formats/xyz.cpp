@@ -144,8 +144,7 @@ Cloud read_xyz(const Source& source, const Context& context) {
 }
 
 void write_xyz(const Cloud& cloud, Sink& sink, const Context& context) {
-  const std::string header = xyz_header(cloud);
-  sink.write(header == cloud.original_canonical ? cloud.original_header : header);
+  sink.write(cloud.header(xyz_header(cloud)));
   write_text_rows(cloud.points(), sink, context);
   sink.write(cloud.tail);
 }

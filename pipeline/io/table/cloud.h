@@ -64,7 +64,7 @@ struct Cloud {
   // How the file was written, so that an unchanged one comes back the same.
   std::string newline = "\n";
   std::string original_header;     ///< verbatim
-  std::string original_canonical;  ///< as we would write it; if that has not changed, the original is written
+  std::string original_canonical;  ///< as we would write it
   std::string tail;                ///< bytes after the last row
 
   Table& points() { return elements[vertex]; }
@@ -74,6 +74,12 @@ struct Cloud {
 
   /// The element of that name, or null.
   const Table* element(std::string_view name) const;
+
+  /// The header to write, of a text that says the same as `canonical`: the file's own, if that has not
+  /// changed.
+  std::string header(const std::string& canonical) const {
+    return canonical == original_canonical ? original_header : canonical;
+  }
 };
 
 /// The coordinates, n x 3 row-major, as doubles; those of text with all their digits, whatever the type.
