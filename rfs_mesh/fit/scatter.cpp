@@ -88,6 +88,36 @@ double ScatterFit::err_in_rows() const {
   return pairs > 0 ? (along * along + aside * aside) / pairs : 1;
 }
 
+double ScatterFit::lie_beside() const {
+  constexpr double kByChance = 0.125;
+  struct Place {
+    double u, v;
+    bool above;
+  };
+  std::array<Place, kNeighbourhood> places;
+  const std::size_t count = std::min(kNeighbourhood, nearest_.size());
+  double above = 0, disk = 0;  // square of the radius
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t i = nearest_[k].second;
+    places[k] = {u_[i], v_[i], residual_[i] > 0};
+    above += double(places[k].above);
+    disk = std::max(disk, nearest_[k].first);
+  }
+  if (!(above > 0 && above < double(count))) return 1;
+  // Of points at random, so many over an area pi r^2, none lies within r of a place with exp(-their number).
+  const double squares = -std::log(1 - kByChance) * disk, of_above = squares / above,
+               of_below = squares / (double(count) - above);
+  double beside = 0;
+  for (std::size_t k = 0; k < count; ++k) {
+    const Place& p = places[k];
+    const double reach = p.above ? of_below : of_above;
+    beside += double(std::any_of(places.begin(), places.begin() + std::ptrdiff_t(count), [&](const Place& q) {
+      return q.above != p.above && (q.u - p.u) * (q.u - p.u) + (q.v - p.v) * (q.v - p.v) < reach;
+    }));
+  }
+  return beside / (kByChance * double(count));
+}
+
 void ScatterFit::look_at_residuals(Scatter& s) const {
   double weights = 0, second = 0, third = 0, fourth = 0, middle = 0;
   Eigen::Array4d weight = Eigen::Array4d::Zero(), cubes = weight;  // of the quadrants
@@ -251,6 +281,7 @@ Scatter ScatterFit::operator()(const SpatialIndex& index, const Eigen::Vector3d&
       find_nearest();
       s.together = err_together();
       s.in_rows = err_in_rows();
+      s.beside = lie_beside();
       look_at_residuals(s);
     }
     s.variance = r * r * std::max(0.0, squares) / left / (round > 0 ? kInside : 1);

@@ -47,6 +47,11 @@ struct Scatter {
   /// sum's square over the number of pairs. Its mean is 1 where every point errs by itself, more where those
   /// along one direction err the same way and those beside them another. Without window
   double in_rows = 1;
+  /// Of the kNeighbourhood nearest points, the share of those beside which one lies on the other side of the
+  /// quadric, so near along the patch as one would by chance beside an eighth of them; over that eighth. 1 of
+  /// two sheets, and of points at random; 0 where one scan reaches from one side to the other and back from
+  /// row to row, or from point to point. Without window
+  double beside = 1;
   /// Fourth moment of the residuals over the square of the second: 3 of a normal distribution, 1.8 of an even
   /// one, 1 of two sheets. Without window.
   double flatness = kNormalFlatness;
@@ -94,6 +99,7 @@ class ScatterFit {
   void find_nearest();                       ///< sets `nearest_`
   double err_together() const;               ///< Scatter::together of these
   double err_in_rows() const;                ///< Scatter::in_rows of these
+  double lie_beside() const;                 ///< Scatter::beside of these
   void look_at_residuals(Scatter& s) const;  ///< Scatter::flatness to middle
   /// Fills `x_`, `y_` and `z_` with the points of `near_` from the place, over r.
   void scale(const Positions& points, const Eigen::Vector3d& place, double r);

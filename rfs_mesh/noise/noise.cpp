@@ -234,6 +234,14 @@ void enter(LoudPlaces loud, NoiseSites& sites, std::vector<double>& spacing, Noi
   }
 }
 
+/// Sets told_at_sites: 1 at all where most are told, and nowhere if rounding may be all of so little noise.
+void tell(const std::vector<char>& told, double rounding, NoiseModel& noise) {
+  const auto count = std::count(told.begin(), told.end(), 1);
+  if (count == 0 || noise.sigma <= std::min(rounding, kNoNoise * noise.spacing)) return;
+  noise.told_at_sites.assign(told.begin(), told.end());
+  if (2 * std::size_t(count) > told.size()) noise.told_at_sites.assign(told.size(), 1);
+}
+
 /// Fills the model's figures and sites.
 void measure(const SpatialIndex& index, const DepthSteps* steps, double rounding, NoiseModel& noise,
              const Context& context) {
@@ -263,8 +271,7 @@ void measure(const SpatialIndex& index, const DepthSteps* steps, double rounding
   if (!noise.on_grid && noise.piece <= kNarrowestPatch)  // on lines the nearest points tell nothing
     enter(find_loud_places(index, sites, std::move(noise.at_sites), context), sites, spacing, noise);
   noise.sites = std::move(sites.at);
-  if (std::find(sites.told.begin(), sites.told.end(), 1) != sites.told.end())
-    noise.told_at_sites.assign(sites.told.begin(), sites.told.end());
+  tell(sites.told, rounding, noise);
   for (double& shared : sites.shared) shared = std::max(shared, noise.shared);
   if (!is_constant(sites.shared, noise.shared)) noise.shared_at_sites = std::move(sites.shared);
   if (!is_constant(spacing, noise.spacing)) {
@@ -272,7 +279,7 @@ void measure(const SpatialIndex& index, const DepthSteps* steps, double rounding
   } else if (is_constant(noise.at_sites, noise.at_sites.front()) && noise.shared_at_sites.empty()) {
     noise.sites.resize(1);
     noise.at_sites.resize(1);
-    noise.told_at_sites.clear();
+    noise.told_at_sites.resize(is_told(noise) ? 1 : 0);
   }
 }
 

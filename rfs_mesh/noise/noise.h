@@ -39,6 +39,12 @@ inline bool stays(double local, double figure) {
   return local < 2 * kStays * figure;
 }
 
+/// Whether the noise is told from detail all over the cloud, however small it is.
+inline bool is_told(const NoiseModel& noise) {
+  const std::vector<double>& told = noise.told_at_sites;
+  return !told.empty() && *std::min_element(told.begin(), told.end()) == 1;
+}
+
 /// Whether depths in steps lie farther apart along the normals than the noise reaches: layers of points, that
 /// look like sheets.
 inline bool is_of_steps(const NoiseModel& noise) {

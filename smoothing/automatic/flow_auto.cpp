@@ -19,7 +19,8 @@ namespace {
 
 /// Noise of the size `sigma`, that varies over the cloud as `noise` does, times `strength`. Places whose
 /// noise cannot be told from detail stay; so does all of a cloud of which that is true even where points are
-/// densest: there, or in a denser part of the cloud, `least` apart. A strength above 1 acts everywhere: where
+/// densest: there, or in a denser part of the cloud, `least` apart. Noise that most places tell is smoothed
+/// however small. A strength above 1 acts everywhere: where
 /// less was measured than detail may hide, on that much.
 rfs_mesh::NoiseField scaled(rfs_mesh::NoiseField noise, double sigma, double strength, double least) {
   const auto of = [&](double s, double hidden) {
@@ -32,7 +33,7 @@ rfs_mesh::NoiseField scaled(rfs_mesh::NoiseField noise, double sigma, double str
            (noise.local_spacing.empty() ? noise.spacing : noise.local_spacing[i]);
   };
   const double measured = noise.sigma;
-  noise.sigma = of(sigma, rfs_mesh::kNoNoise * least);
+  noise.sigma = of(sigma, rfs_mesh::is_told(noise) ? 0 : rfs_mesh::kNoNoise * least);
   for (std::size_t i = 0; i < noise.local.size(); ++i)
     noise.local[i] = std::max(of(measured > 0 ? noise.local[i] * sigma / measured : sigma, hidden_at(i)),
                               rfs_mesh::kStays * noise.sigma);

@@ -120,8 +120,8 @@ class SharedSearch {
   /// asked on terraces.
   bool is_relief(std::size_t i) const { return !terraces_ && calm_.signs[i].of_relief(); }
 
-  /// Whether 2 m show noise that neighbours share.
-  bool is_shared(std::size_t i) const { return !is_flat(i + 1) && !is_relief(i + 1) && errs_together(i + 1); }
+  /// Whether 2 m, which are not flat, show noise that neighbours share.
+  bool is_shared(std::size_t i) const { return !is_relief(i + 1) && errs_together(i + 1); }
 
   /// What is left of the variance at m without shape that grows so to 2 m.
   double without(double growth, std::size_t i) const {
@@ -134,12 +134,13 @@ class SharedSearch {
   void agree(SharedNoise& found) const;
 
   const Calm& calm_;
-  double of_points_;    ///< variance of what points err by on their own
-  double of_start_;     ///< the m of the search for it
-  bool terraces_;       ///< where that reaches from one step to the next, ground grows as without steps
-  double sill_ = 0;     ///< the most that is sure of the variance, once there is such noise
-  std::size_t at_ = 0;  ///< which m tells that
-  double surely_ = 0;   ///< the most that is noise even if shape grows as slowly as it may
+  double of_points_;     ///< variance of what points err by on their own
+  double of_start_;      ///< the m of the search for it
+  bool terraces_;        ///< where that reaches from one step to the next, ground grows as without steps
+  double sill_ = 0;      ///< the most that is sure of the variance, once there is such noise
+  std::size_t at_ = 0;   ///< which m tells that
+  double surely_ = 0;    ///< the most that is noise even if shape grows as slowly as it may
+  double of_waves_ = 0;  ///< what the widest see that are flat: wider ones see the same waves and some shape
   bool ground_ = false;
 };
 
@@ -158,7 +159,9 @@ void SharedSearch::look() {
     if (!has_growth(i)) continue;
     const bool overtaken = growths.enter(calm_.seen[i], calm_.seen[i + 1], of_points_);
     if (overtaken && (terraces_ || surely_ > 0)) break;
-    if (!growths.counts() || !is_shared(i)) continue;
+    if (!growths.counts()) continue;
+    if (is_flat(i + 1)) of_waves_ = calm_.seen[i + 1];
+    if (is_flat(i + 1) || !is_shared(i)) continue;
     if (errs_together(i)) surely_ = std::max(surely_, without(kLeastGrowthOfShape, i));
     make_sure(i, without(kGrowthOfSmoothShape, i));
   }
@@ -190,7 +193,7 @@ SharedNoise SharedSearch::run() {
   if (ground_) return {};
   // Compared as variances, for both are lower bounds: with the square of kSameNoise, noise that points share
   // beside their own is missed on a cube.
-  if (!(std::max(surely_, calm_.steps) > kSameNoise * of_points_)) return {};
+  if (!(std::max(surely_, calm_.steps) > kSameNoise * std::max(of_points_, of_waves_))) return {};
   SharedNoise found{std::sqrt(sill_), points_of(sill_), std::size_t(calm_.m[at_])};
   // A terrace is no disk: what neighbourhoods leave of it is not known, unless points' own noise blurs it.
   if (sill_ > calm_.steps && (!terraces_ || of_points_ > calm_.steps)) agree(found);

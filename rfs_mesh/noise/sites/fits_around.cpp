@@ -43,9 +43,10 @@ MomentsAround::MomentsAround(const std::vector<Neighbor>& group, const OpenFits&
     flatness += fit.flatness;
     lean += fit.lean - kLeanByChance;
     middle += fit.middle;
+    beside += fit.beside;
     ++saying;
   }
-  for (double* const sum : {&freedom, &flatness, &lean, &middle}) *sum /= saying;
+  for (double* const sum : {&freedom, &flatness, &lean, &middle, &beside}) *sum /= saying;
 }
 
 bool MomentsAround::normal() const {

@@ -41,8 +41,8 @@ struct MomentsAround {
 
   std::vector<Said> said;
   std::size_t points;
-  double freedom = 0, flatness = 0, middle = 0;  ///< those of Scatter; nan: no fit says a thing
-  double lean = 0;                               ///< the same, beyond chance
+  double freedom = 0, flatness = 0, middle = 0, beside = 0;  ///< those of Scatter; nan: no fit says a thing
+  double lean = 0;                                           ///< the same, beyond chance
 };
 
 }  // namespace rfsmooth::rfs_mesh

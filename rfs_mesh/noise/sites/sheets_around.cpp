@@ -25,15 +25,26 @@ double noise_of_sheet(const MomentsAround& around) {
   return std::sqrt(around.variance() * std::max(least, share - spread));
 }
 
+/// Whether two sides are of one scan: beside points of one side are none of the other.
+bool are_of_one_scan(const MomentsAround& around) {
+  constexpr double kHalf = 0.5;
+  return around.beside < kHalf;
+}
+
+/// The square of how near two layers must be, which are then no sheets. \param apart NoiseModel::apart
+double squared_nearest_of_layers(const MomentsAround& around, double lean, double apart) {
+  const double radius = around.radius(), square = square_of_point(radius * radius, around.points);
+  if (are_of_one_scan(around)) return 2 * square;  // which a point of one side has
+  return lean > 0 ? square : squared_nearest(square, apart);
+}
+
 /// Whether the fits show two layers that are nearer to each other than their points are, and no sheets.
 /// \param apart NoiseModel::apart
 bool are_layers(const MomentsAround& around, double apart) {
   if (!(around.flatness < kNormalFlatness)) return false;
   const double lean = std::max(0.0, around.lean), of_sheet = share_of_sheet(around.flatness, lean);
   if (!(of_sheet < share_of_sheet(kFlatnessOfSheets))) return false;
-  const double radius = around.radius(), square = square_of_point(radius * radius, around.points),
-               nearest = lean > 0 ? square : squared_nearest(square, apart);
-  return squared_gap(of_sheet, lean) * around.variance() < nearest;
+  return squared_gap(of_sheet, lean) * around.variance() < squared_nearest_of_layers(around, lean, apart);
 }
 
 /// Whether the scatter grows to the next wider balls, or to the widest, as only shape does.

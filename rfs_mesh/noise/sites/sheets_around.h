@@ -16,6 +16,11 @@
 /// seen is the noise. Layers with as many points each may be the sides of a plate: these must be nearer than
 /// a point is to its nearest neighbour: half a side of that square where points lie at random, all of it
 /// where the cloud was thinned so that they keep a distance (NoiseModel::apart). Lines have no such square.
+///
+/// Nor are the two sides of one scan sheets, whose rows or points lie to one side and the other in turns: two
+/// laser heads, a mirror that swings both ways. Beside a point of one sheet some of the other lie, since each
+/// is scanned by itself; beside one of such rows, none does (Scatter::beside). These are layers where they
+/// are nearer to each other than points of one side are: the square of such a point is twice as large.
 #pragma once
 
 #include <optional>

@@ -1,0 +1,69 @@
+/// What `denoise` makes of one scan whose rows or points lie to two sides, and of two that do.
+#include <cmath>
+#include <functional>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "tests/pipeline/noise/noisy_sphere.h"
+
+using namespace rfsmooth;
+using namespace rfsmooth::noisy;
+
+namespace {
+
+constexpr int kRows = 100;
+
+/// Hills so wide that heights are distances.
+double hills(double x, double y) {
+  return 2 * std::sin(x / 25) * std::cos(y / 30);
+}
+
+double off_hills(const Eigen::Vector3d& p) {
+  return p.z() - hills(p.x(), p.y());
+}
+
+/// A grid of points one apart, with noise; each is off by `offset` of its row and column.
+Positions scan(const std::function<double(int, int)>& offset) {
+  std::mt19937_64 engine(6);
+  std::normal_distribution<double> normal(0, 0.12);
+  Positions points;
+  for (int row = 0; row < kRows; ++row)
+    for (int column = 0; column < kRows; ++column)
+      points.emplace_back(column, row, hills(column, row) + offset(row, column) + normal(engine));
+  return points;
+}
+
+// Two laser heads, or a mirror that swings both ways: no two sheets are scanned so that beside a point of one
+// there is never one of the other.
+TEST(OneScan, WhoseRowsAlternateBecomesOneSurface) {
+  for (const double off : {0.35, 0.45, 0.6}) {
+    const Positions rows = scan([&](int row, int) { return row % 2 == 0 ? off : -off; });
+    EXPECT_LT(rms(denoised(rows), off_hills), 0.2 * rms(rows, off_hills)) << off;
+  }
+}
+
+TEST(OneScan, WhosePointsAlternateBecomesOneSurface) {
+  const Positions points = scan([](int row, int column) { return (row + column) % 2 == 0 ? 0.5 : -0.5; });
+  EXPECT_LT(rms(denoised(points), off_hills), 0.2 * rms(points, off_hills));
+}
+
+// The same offsets of two scans, each a grid of its own, are the sides of a plate.
+TEST(OneScan, OfEitherSideOfAPlateIsKeptApart) {
+  constexpr double kHalf = 0.5;
+  const double turn = 0.4;
+  std::mt19937_64 engine(7);
+  std::normal_distribution<double> normal(0, 0.12);
+  Positions plate;
+  for (int row = 0; row < kRows; ++row)
+    for (int column = 0; column < kRows; ++column) {
+      const double x = 1.4 * column, y = 1.4 * row;
+      plate.emplace_back(x, y, kHalf + normal(engine));
+      plate.emplace_back(std::cos(turn) * x - std::sin(turn) * y, std::sin(turn) * x + std::cos(turn) * y,
+                         -kHalf + normal(engine));
+    }
+  const auto off_plate = [](const Eigen::Vector3d& p) { return std::abs(p.z()) - kHalf; };
+  EXPECT_LT(rms(denoised(plate), off_plate), rms(plate, off_plate));
+}
+
+}  // namespace
