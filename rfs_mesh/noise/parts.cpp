@@ -78,6 +78,18 @@ void append(const std::vector<double>& more, std::vector<double>& all) {
   all.insert(all.end(), more.begin(), more.end());
 }
 
+/// The noise of the points around a denser part. Where it is as wide as the balls of their nearest, they are
+/// strays, which have no surface.
+NoiseModel noise_around(const SpatialIndex& index, const Context& context) {
+  NoiseModel noise = measure_noise(index, context);
+  if (noise.sigma < kFlatSlab * median_radius(index, sample(index.points(), kPlacesOfCloud), kNeighbourhood))
+    return noise;
+  NoiseModel none;
+  none.spacing = noise.spacing;
+  none.apart = noise.apart;
+  return none;
+}
+
 /// The noise of a cloud of parts: at its sites that of each part, and the figures of the largest that has
 /// noise. \param spacing of the cloud
 NoiseModel noise_of_all(const std::vector<Statistics::Part>& parts, const std::vector<NoiseField>& fields,
@@ -135,7 +147,8 @@ void measure_parts(const SpatialIndex& index, Statistics& whole, const Context& 
     const Positions points = at_rows(index.points(), rows[k], context);
     Statistics own;
     own.points = points.size();
-    own.noise = measure_noise(SpatialIndex(points, context), context);
+    const SpatialIndex of_part(points, context);
+    own.noise = k == 0 ? measure_noise(of_part, context) : noise_around(of_part, context);
     fields.push_back(at_places(*own.noise, points, context));
     whole.parts.push_back({from, std::move(own)});
     if (k < bounds.size()) from = bounds[k];
