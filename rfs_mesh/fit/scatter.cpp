@@ -61,20 +61,24 @@ double ScatterFit::err_together() const {
   return double(sum * sum) / double(kRing);
 }
 
-double ScatterFit::err_in_rows() const {
+void ScatterFit::look_at_rows(Scatter& s) const {
   struct Sign {
     double u, v, off;
   };
   std::array<Sign, kNeighbourhood> signs;
   const std::size_t count = std::min(kNeighbourhood, nearest_.size());
-  double mean = 0;
+  double mean = 0, disk = 0;  // square of the radius
   for (std::size_t k = 0; k < count; ++k) {
     const std::size_t i = nearest_[k].second;
     signs[k] = {u_[i], v_[i], residual_[i] > 0 ? 1.0 : -1.0};
     mean += signs[k].off / double(count);
+    disk = std::max(disk, nearest_[k].first);
   }
   const double variance = 1 - mean * mean;
-  if (!(variance > 0)) return 1;
+  if (!(variance > 0)) {
+    s.in_row = s.next_row = 1;
+    return;
+  }
   double along = 0, aside = 0, pairs = 0;
   for (std::size_t k = 0; k < count; ++k)
     for (std::size_t l = 0; l < k; ++l) {
@@ -85,7 +89,21 @@ double ScatterFit::err_in_rows() const {
       aside += alike * 2 * u * v;
       ++pairs;
     }
-  return pairs > 0 ? (along * along + aside * aside) / pairs : 1;
+  if (!(pairs > 0)) return;
+  s.in_rows = (along * along + aside * aside) / pairs;
+  // The rows' direction is half of that angle; x and y are along and across them.
+  const double angle = std::atan2(aside, along) / 2, x = std::cos(angle), y = std::sin(angle);
+  std::array<double, 2> products = {}, counts = {};
+  for (std::size_t k = 0; k < count; ++k)
+    for (std::size_t l = 0; l < k; ++l) {
+      const double across = x * (signs[k].v - signs[l].v) - y * (signs[k].u - signs[l].u);
+      if (4 * across * across >= disk) continue;
+      const std::size_t next = 16 * across * across < disk ? 0 : 1;
+      products[next] += signs[k].off * signs[l].off;
+      ++counts[next];
+    }
+  s.in_row = products[0] / std::max(1.0, counts[0]);
+  s.next_row = products[1] / std::max(1.0, counts[1]);
 }
 
 double ScatterFit::lie_beside() const {
@@ -280,7 +298,7 @@ Scatter ScatterFit::operator()(const SpatialIndex& index, const Eigen::Vector3d&
       find_residuals(c);
       find_nearest();
       s.together = err_together();
-      s.in_rows = err_in_rows();
+      look_at_rows(s);
       s.beside = lie_beside();
       look_at_residuals(s);
     }

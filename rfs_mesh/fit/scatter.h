@@ -47,6 +47,10 @@ struct Scatter {
   /// sum's square over the number of pairs. Its mean is 1 where every point errs by itself, more where those
   /// along one direction err the same way and those beside them another. Without window
   double in_rows = 1;
+  /// Across the direction in which points err most alike: the mean product of the signs of two that are less
+  /// than a quarter of their disk's radius apart, and of two that are that to half of it. Rows that each err
+  /// by themselves are alike in themselves alone, waves are wider. Without window
+  double in_row = 0, next_row = 0;
   /// Of the kNeighbourhood nearest points, the share of those beside which one lies on the other side of the
   /// quadric, so near along the patch as one would by chance beside an eighth of them; over that eighth. 1 of
   /// two sheets, and of points at random; 0 where one scan reaches from one side to the other and back from
@@ -98,7 +102,7 @@ class ScatterFit {
   void find_residuals(const Vector6& c);     ///< from a quadric
   void find_nearest();                       ///< sets `nearest_`
   double err_together() const;               ///< Scatter::together of these
-  double err_in_rows() const;                ///< Scatter::in_rows of these
+  void look_at_rows(Scatter& s) const;       ///< Scatter::in_rows, in_row and next_row of these
   double lie_beside() const;                 ///< Scatter::beside of these
   void look_at_residuals(Scatter& s) const;  ///< Scatter::flatness to middle
   /// Fills `x_`, `y_` and `z_` with the points of `near_` from the place, over r.

@@ -22,6 +22,8 @@ constexpr double kTogether = 0.4;       // above that of points on their own: tw
 // 0.58, 0.75, 0.82, 0.91 for 32, 64, ... 512 on a plane. Of `in_rows` they leave about as much: 0.3, 0.6,
 // 0.8.
 constexpr double kFollows = 45;
+// Of what is alike in a row, in the next: rings of lasers have 0.1 and less, waves of 7 and 8 points 0.6.
+constexpr double kLittle = 0.25;
 constexpr double kFastest = 0.25;         // k / m at which g(k / 2 m) / g(k / m) is greatest
 constexpr std::size_t kDiskPoints = 300;  // of the disk on which g is computed
 
@@ -108,6 +110,10 @@ bool SignsOfSharing::err_in_rows(double m) const {
   return in_rows > m / (m + kFollows) + kTogether;
 }
 
+bool SignsOfSharing::err_row_by_row(double m) const {
+  return err_in_rows(m) && next_row < kLittle * in_row;
+}
+
 bool SignsOfSharing::of_two_sheets(double own) const {
   return flatness_beyond(flatness, own) < kFlatnessOfSheets;
 }
@@ -123,11 +129,13 @@ SignsOfSharing signs_of(const std::vector<const Scatter*>& fits) {
   for (const Scatter* const fit : fits) {
     signs.together += fit->together;
     signs.in_rows += fit->in_rows;
+    signs.in_row += fit->in_row;
+    signs.next_row += fit->next_row;
     flatness.push_back(fit->flatness);
     lean.push_back(fit->lean_in_common);
   }
-  signs.together /= double(fits.size());
-  signs.in_rows /= double(fits.size());
+  for (double* const sum : {&signs.together, &signs.in_rows, &signs.in_row, &signs.next_row})
+    *sum /= double(fits.size());
   signs.flatness = median(flatness);
   signs.lean = median(lean);
   return signs;

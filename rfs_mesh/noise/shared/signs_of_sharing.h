@@ -22,6 +22,8 @@ struct SignsOfSharing {
   double together = 0;
   /// Mean of Scatter::in_rows: the same of lines of a scanner that are each off by itself.
   double in_rows = 0;
+  /// Means of Scatter::in_row and next_row.
+  double in_row = 0, next_row = 0;
   /// Medians of Scatter::flatness and lean_in_common, since that of a few rocks on a sea floor is large.
   double flatness = 0, lean = 0;
 
@@ -30,6 +32,9 @@ struct SignsOfSharing {
   bool err_together(double m) const;
   /// Whether points in a row lie off the same way, beyond what chance and patches of m points make of it.
   bool err_in_rows(double m) const;
+  /// Whether they do and the next row tells little of it, as it would of a wave: rows that each err by
+  /// themselves.
+  bool err_row_by_row(double m) const;
   /// Whether they are as flat as those of two sheets, beyond the noise that points have of their own, `own`
   /// of the variance.
   bool of_two_sheets(double own) const;

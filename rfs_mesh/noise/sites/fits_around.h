@@ -19,6 +19,7 @@ struct FitsAround {
   bool holds_slab() const { return scatter < kFlatSlab * radius; }
   bool in_rows() const { return signs.err_in_rows(points); }
   bool err_together() const { return signs.err_together(points); }
+  bool row_by_row() const { return signs.err_row_by_row(points); }
 
   double points;
   double scatter = 0;  ///< the typical one, world units; 0: no fit says a thing

@@ -12,9 +12,10 @@ namespace rfsmooth::rfs_mesh {
 
 namespace {
 
-/// \param own variance that points have of their own, or more
-bool of_one_smooth_sheet(const FitsAround& fits, double own) {
-  return !fits.signs.of_two_sheets(own / (fits.scatter * fits.scatter)) && !fits.signs.of_relief();
+/// Whether residuals are those of two sheets or of waves. \param own variance that points have of their own,
+/// or more
+bool is_flat(const FitsAround& fits, double own) {
+  return fits.signs.of_two_sheets(own / (fits.scatter * fits.scatter));
 }
 
 /// Whether the fits to m points show rows, and those to the fewest, or to twice as many, do already: a wave
@@ -23,19 +24,32 @@ bool in_narrow_rows(const std::vector<FitsAround>& shown, const FitsAround& at_m
   return at_m.in_rows() && (shown[0].in_rows() || shown[1].in_rows());
 }
 
+/// Whether the variance grows from one to the next as only shape does, if not rows of points.
+bool grows_as_shape(const FitsAround& at_m, const FitsAround& at_2m) {
+  return at_2m.scatter * at_2m.scatter > kLeastGrowthOfShape * at_m.scatter * at_m.scatter;
+}
+
+/// Whether m and 2 m show rows that each err by themselves, and 4 m hardly more, as shape would. A quadric
+/// follows three of them, so that few rows grow as fast as shape at first, and are flat, too: L values about
+/// their mean have a flatness of 3 (L - 1) / (L + 1).
+bool are_rows(const FitsAround& at_m, const FitsAround& at_2m, const FitsAround& at_4m) {
+  return at_m.row_by_row() && at_2m.row_by_row() && !grows_as_shape(at_2m, at_4m);
+}
+
 /// The first of these from which the scatter has stopped growing, and is of noise that neighbours share, if
 /// it never grew as shape does before; or how many there are. \param shown the narrowest holds the slab
 std::size_t stops_at(const std::vector<FitsAround>& shown) {
   const double narrow = shown.front().scatter;
   for (std::size_t i = 0; i + 2 < shown.size(); ++i) {
-    const FitsAround &here = shown[i], &next = shown[i + 1];
+    const FitsAround &here = shown[i], &next = shown[i + 1], &last = shown[i + 2];
     const bool grew = next.scatter > (here.in_rows() ? kSameNoise : kGrowthOfNoise) * narrow;
     // Where the narrowest see several rows, they see their noise, too.
     const double own = in_narrow_rows(shown, here) ? 0 : narrow;
-    if (here.holds_slab() && of_one_smooth_sheet(next, own * own) && grew &&
-        shown[i + 2].scatter <= kGrowthOfNoise * here.scatter && here.err_together())
+    const bool stopped = last.scatter <= kGrowthOfNoise * here.scatter && !is_flat(next, own * own);
+    if (here.holds_slab() && grew && here.err_together() && !next.signs.of_relief() &&
+        (stopped || are_rows(here, next, last)))
       return i;
-    if (next.scatter * next.scatter > kLeastGrowthOfShape * here.scatter * here.scatter) break;
+    if (grows_as_shape(here, next) && !next.row_by_row()) break;
   }
   return shown.size();
 }
@@ -63,7 +77,7 @@ SharedAround look_around(const std::vector<Neighbor>& group, const std::vector<O
   const std::size_t stop = stops_at(shown);
   if (stop == shown.size()) return {};
   double sigma = shown[stop + 1].scatter;
-  if (in_narrow_rows(shown, shown[stop]))
+  if (in_narrow_rows(shown, shown[stop]) || shown[stop].row_by_row())
     sigma = std::sqrt(std::max(sigma * sigma, variance_of_rows(shown[stop], shown[stop + 2])));
   std::vector<double> m, left;
   for (std::size_t i = 0; i <= stop + 1; ++i) {
