@@ -78,12 +78,12 @@ void append(const std::vector<double>& more, std::vector<double>& all) {
   all.insert(all.end(), more.begin(), more.end());
 }
 
-/// The noise of the points around a denser part. Where it is as wide as the balls of their nearest, they are
+/// The noise of the points around a denser part. Where it fills even the widest balls of a fit, they are
 /// strays, which have no surface.
 NoiseModel noise_around(const SpatialIndex& index, const Context& context) {
   NoiseModel noise = measure_noise(index, context);
-  if (noise.sigma < kFlatSlab * median_radius(index, sample(index.points(), kPlacesOfCloud), kNeighbourhood))
-    return noise;
+  const Positions places = sample(index.points(), kPlacesOfCloud);
+  if (noise.sigma < kFlatSlab * median_radius(index, places, widest_scatter(index))) return noise;
   NoiseModel none;
   none.spacing = noise.spacing;
   none.apart = noise.apart;

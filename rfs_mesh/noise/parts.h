@@ -36,8 +36,8 @@ std::vector<std::vector<Index>> rows_of_parts(const SpatialIndex& index, const s
                                               const Context& context);
 
 /// Measures each part of a cloud that has some, and enters them and the noise of all: what each has at its
-/// sites, and the figures of the largest that has noise. Of those around the densest none has noise as wide
-/// as the balls of its nearest points: these are strays, and stay. O(n log n) where there are parts, else
+/// sites, and the figures of the largest that has noise. Those around the densest part that scatter as widely
+/// as the widest balls of a fit are strays, have no noise, and stay. O(n log n) where there are parts, else
 /// O(log n). Parallel, deterministic.
 void measure_parts(const SpatialIndex& index, Statistics& whole, const Context& context);
 

@@ -88,6 +88,25 @@ TEST(TwoSpacings, ASmallThingBeforeALoudAndSparseOneStaysAsGoodAsItWas) {
   EXPECT_LT(boxes.after[1], 0.2 * boxes.before[1]);
 }
 
+// Ghosts of a scanner, all over the space around what it saw. They have no surface to go to.
+TEST(TwoSpacings, StraysAllOverAVolumeStayWhereTheyAre) {
+  constexpr std::size_t kBox = 10000;
+  const Box box{kBox, 0.4, 1, 0};
+  for (const double wide : {10.0, 60.0}) {
+    std::mt19937_64 engine(8);
+    std::uniform_real_distribution<double> uniform(-wide, wide);
+    Positions points = scan_of(box, engine);
+    for (int i = 0; i < 600; ++i) points.emplace_back(uniform(engine), uniform(engine), uniform(engine));
+    const Positions smooth = denoised(points);
+    for (std::size_t i = kBox; i < points.size(); ++i)
+      ASSERT_LT((smooth[i] - points[i]).norm(), 0.1) << i << ' ' << wide;
+    const auto of_box = [&](const Positions& all) {
+      return rms({all.begin(), all.begin() + kBox}, [&](const Eigen::Vector3d& p) { return box.off(p); });
+    };
+    EXPECT_LT(of_box(smooth), 0.4 * of_box(points)) << wide;
+  }
+}
+
 // The statistics tell the parts, and give the same bytes when they are used again.
 TEST(TwoSpacings, StatisticsOfPartsGiveTheBytesOfTheRunAgain) {
   std::mt19937_64 engine(6);

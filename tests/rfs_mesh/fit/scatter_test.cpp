@@ -99,6 +99,50 @@ TEST(Scatter, PointsErrInRowsWhereLinesAreOff) {
   EXPECT_GT(aslant, 5 * alone);
 }
 
+// A wave is wider than what points resolve of it, a line is not.
+TEST(Scatter, NextRowsAreAlikeInWavesAlone) {
+  std::mt19937_64 engine(7);
+  std::normal_distribution<double> normal(0, 0.01);
+  constexpr int kRounds = 200;
+  Scatter lines, waves;
+  for (int round = 0; round < kRounds; ++round) {
+    std::vector<double> off(400);
+    for (double& o : off) o = normal(engine);
+    const auto line = [&](double across) { return off[std::size_t(200 + 25 * across)]; };
+    const double turn = 100 * normal(engine);
+    const Scatter of_line = middle_fit(400, [&](const auto&p) { return line(0.6 * p.x() + 0.8 * p.y()); }),
+                  of_wave = middle_fit(400, [&](const auto&p) { return 0.01 * std::sin(20 * p.x() + turn); });
+    lines.in_row += of_line.in_row / kRounds;
+    lines.next_row += of_line.next_row / kRounds;
+    waves.in_row += of_wave.in_row / kRounds;
+    waves.next_row += of_wave.next_row / kRounds;
+  }
+  EXPECT_GT(lines.in_row, 0.4);
+  EXPECT_NEAR(lines.next_row, 0, 0.1);
+  EXPECT_GT(waves.in_row, 0.4);
+  EXPECT_GT(waves.next_row, 0.5 * waves.in_row);
+}
+
+TEST(Scatter, BesideAPointOfOneSheetLieSomeOfTheOther) {
+  std::mt19937_64 engine(9);
+  std::bernoulli_distribution above;
+  constexpr int kRounds = 200;
+  double sheets = 0;
+  for (int round = 0; round < kRounds; ++round)
+    sheets += middle_fit(100, [&](const auto&) { return above(engine) ? 0.01 : -0.01; }).beside / kRounds;
+  EXPECT_NEAR(sheets, 1, 0.25);
+}
+
+// Rows of a grid that lie to one side and the other in turns: none is beside one of the other side.
+TEST(Scatter, BesideARowIsNoneOfTheOtherSide) {
+  Positions points;
+  for (int i = -20; i <= 20; ++i)
+    for (int j = -20; j <= 20; ++j) points.emplace_back(i, j, i % 2 == 0 ? 0.5 : -0.5);
+  const rfs_mesh::SpatialIndex index(points, {});
+  rfs_mesh::KeptNeighbors kept(0);
+  EXPECT_EQ(rfs_mesh::ScatterFit()(index, Eigen::Vector3d(0.3, 0.2, 0), 100, 0, kept).beside, 0);
+}
+
 TEST(Scatter, VarianceIsThatOffAQuadric) {
   std::mt19937_64 engine(7);
   std::normal_distribution<double> normal(0, 0.01);
