@@ -31,8 +31,8 @@ double variance_inside(double c);
 /// Breadth (Scatter) below which points lie along a line: rings have 0.004 to 0.04, surfaces 0.2 and more.
 constexpr double kLine = 0.1;
 
-/// Scatter::flatness and middle of a normal distribution.
-constexpr double kNormalFlatness = 3, kNormalMiddle = 0.383;
+/// Scatter::flatness and middle of a normal distribution, and flatness of an even one.
+constexpr double kNormalFlatness = 3, kNormalMiddle = 0.383, kEvenFlatness = 1.8;
 
 /// How far the points around one scatter about the quadric through them.
 struct Scatter {

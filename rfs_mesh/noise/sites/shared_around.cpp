@@ -31,9 +31,10 @@ bool grows_as_shape(const FitsAround& at_m, const FitsAround& at_2m) {
 
 /// Whether m and 2 m show rows that each err by themselves, and 4 m hardly more, as shape would. A quadric
 /// follows three of them, so that few rows grow as fast as shape at first, and are flat, too: L values about
-/// their mean have a flatness of 3 (L - 1) / (L + 1).
+/// their mean have a flatness of 3 (L - 1) / (L + 1). Two sheets that were scanned in rows are flatter still.
 bool are_rows(const FitsAround& at_m, const FitsAround& at_2m, const FitsAround& at_4m) {
-  return at_m.row_by_row() && at_2m.row_by_row() && !grows_as_shape(at_2m, at_4m);
+  return at_m.row_by_row() && at_2m.row_by_row() && at_2m.signs.flatness > kEvenFlatness &&
+         !grows_as_shape(at_2m, at_4m);
 }
 
 /// The first of these from which the scatter has stopped growing, and is of noise that neighbours share, if
