@@ -50,8 +50,9 @@ struct NoiseModel {
   /// Mean distance to the nearest neighbour there if points are more than twice as dense as on the mean, else
   /// `spacing`; lengths above 0; empty: they are nowhere.
   std::vector<double> spacing_at_sites;
-  /// 1 where more neighbours show no more scatter, so that it is no detail, however small; else 0; 1 at all
-  /// sites if it is so at most; empty: it is nowhere so.
+  /// 1 where more neighbours show no more scatter, so that it is no detail, however small; else 0; empty: it
+  /// is nowhere so. Where sigma is less than a twentieth of the spacing 1 at all sites, if most show that, or
+  /// empty.
   std::vector<double> told_at_sites;
   /// `shared` there, where parts of the cloud differ in that; at least 1; empty: they do not.
   std::vector<double> shared_at_sites;

@@ -234,12 +234,22 @@ void enter(LoudPlaces loud, NoiseSites& sites, std::vector<double>& spacing, Noi
   }
 }
 
-/// Sets told_at_sites: 1 at all where most are told, and nowhere if rounding may be all of so little noise.
-void tell(const std::vector<char>& told, double rounding, NoiseModel& noise) {
-  const auto count = std::count(told.begin(), told.end(), 1);
-  if (count == 0 || noise.sigma <= std::min(rounding, kNoNoise * noise.spacing)) return;
-  noise.told_at_sites.assign(told.begin(), told.end());
-  if (2 * std::size_t(count) > told.size()) noise.told_at_sites.assign(told.size(), 1);
+/// Whether noise is told from detail at most sites.
+bool is_mostly_told(const NoiseSites& sites) {
+  std::size_t most = 0;
+  for (std::size_t s = 0; s < sites.plain.size(); ++s)
+    most += std::size_t(sites.told[s] != 0 || sites.plain[s] != 0);
+  return 2 * most > sites.plain.size();
+}
+
+/// Sets told_at_sites. So little noise that it may be detail is told at all sites or at none: at all where
+/// most of them tell it and it is more than rounding.
+void tell(const NoiseSites& sites, double rounding, NoiseModel& noise) {
+  const bool little = noise.sigma <= kNoNoise * noise.spacing;
+  if (little && noise.sigma > rounding && is_mostly_told(sites))
+    noise.told_at_sites.assign(sites.told.size(), 1);
+  else if (!little && std::find(sites.told.begin(), sites.told.end(), 1) != sites.told.end())
+    noise.told_at_sites.assign(sites.told.begin(), sites.told.end());
 }
 
 /// Fills the model's figures and sites.
@@ -271,7 +281,7 @@ void measure(const SpatialIndex& index, const DepthSteps* steps, double rounding
   if (!noise.on_grid && noise.piece <= kNarrowestPatch)  // on lines the nearest points tell nothing
     enter(find_loud_places(index, sites, std::move(noise.at_sites), context), sites, spacing, noise);
   noise.sites = std::move(sites.at);
-  tell(sites.told, rounding, noise);
+  tell(sites, rounding, noise);
   for (double& shared : sites.shared) shared = std::max(shared, noise.shared);
   if (!is_constant(sites.shared, noise.shared)) noise.shared_at_sites = std::move(sites.shared);
   if (!is_constant(spacing, noise.spacing)) {

@@ -8,6 +8,7 @@
 
 #include "base/quantile.h"
 #include "rfs_mesh/levels.h"
+#include "rfs_mesh/noise/noise_levels.h"
 #include "rfs_mesh/sheets/two_sheets.h"
 
 namespace rfsmooth::rfs_mesh {
@@ -111,7 +112,7 @@ bool SignsOfSharing::err_in_rows(double m) const {
 }
 
 bool SignsOfSharing::err_row_by_row(double m) const {
-  return err_in_rows(m) && next_row < kLittle * in_row;
+  return in_rows > kLouder * (m / (m + kFollows) + kTogether) && next_row < kLittle * in_row;
 }
 
 bool SignsOfSharing::of_two_sheets(double own) const {

@@ -12,6 +12,10 @@ namespace rfsmooth::rfs_mesh {
 /// Of the variance about a quadric, from m points to 2 m: shape that it does not follow grows at least so.
 constexpr double kLeastGrowthOfShape = 2.38;
 
+/// Whether points in a row lie off the same way, beyond what chance and patches of m points make of it.
+/// \param in_rows mean of Scatter::in_rows
+bool err_in_rows(double in_rows, double m);
+
 /// How the residuals of some fits lie, taken together. Who is about to believe what 2 m points show asks the
 /// fits to 2 m whether they are of two sheets or of relief. Whether they err together a site asks those to m,
 /// a cloud those to 2 m, and those to m before it is sure; it asks neither that nor for relief on terraces,
@@ -32,8 +36,8 @@ struct SignsOfSharing {
   bool err_together(double m) const;
   /// Whether points in a row lie off the same way, beyond what chance and patches of m points make of it.
   bool err_in_rows(double m) const;
-  /// Whether they do and the next row tells little of it, as it would of a wave: rows that each err by
-  /// themselves.
+  /// Whether they do by far, and the next row tells little of it, as it would of a wave: rows that each err
+  /// by themselves.
   bool err_row_by_row(double m) const;
   /// Whether they are as flat as those of two sheets, beyond the noise that points have of their own, `own`
   /// of the variance.

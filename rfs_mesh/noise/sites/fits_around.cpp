@@ -44,9 +44,10 @@ MomentsAround::MomentsAround(const std::vector<Neighbor>& group, const OpenFits&
     lean += fit.lean - kLeanByChance;
     middle += fit.middle;
     beside += fit.beside;
+    in_row += fit.in_row;
     ++saying;
   }
-  for (double* const sum : {&freedom, &flatness, &lean, &middle, &beside}) *sum /= saying;
+  for (double* const sum : {&freedom, &flatness, &lean, &middle, &beside, &in_row}) *sum /= saying;
 }
 
 bool MomentsAround::normal() const {

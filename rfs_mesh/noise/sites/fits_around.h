@@ -37,12 +37,15 @@ struct MomentsAround {
   /// Whether the residuals are distributed as normal noise is: those of an edge have more in their middle and
   /// far out, those of two sheets less.
   bool normal() const;
+  /// Whether points of a row lie to the same side, most of them.
+  bool in_rows() const { return in_row > 0.5; }
   /// The median of their balls', world units.
   double radius() const;
 
   std::vector<Said> said;
   std::size_t points;
   double freedom = 0, flatness = 0, middle = 0, beside = 0;  ///< those of Scatter; nan: no fit says a thing
+  double in_row = 0;                                         ///< the same
   double lean = 0;                                           ///< the same, beyond chance
 };
 

@@ -62,6 +62,7 @@ struct NoiseSites {
   std::vector<double> floor;     ///< least noise, of steps, shared noise or layers, or of each of two sheets
                                  ///< where no fit within windows says a thing; world units; 0: none
   std::vector<char> told;        ///< whether the scatter around it stops growing, and is no detail
+  std::vector<char> plain;       ///< whether plain noise is seen around it, which is no detail either
   std::vector<double> shared;    ///< points that share the noise around it; 1: none
   std::vector<double> per_root;  ///< radius of balls around it over the root of their points, world units
   std::vector<Scatter> fits;     ///< to the m nearest of the site by itself, more where it is far louder

@@ -38,8 +38,9 @@ bool are_rows(const FitsAround& at_m, const FitsAround& at_2m, const FitsAround&
 }
 
 /// The first of these from which the scatter has stopped growing, and is of noise that neighbours share, if
-/// it never grew as shape does before; or how many there are. \param shown the narrowest holds the slab
-std::size_t stops_at(const std::vector<FitsAround>& shown) {
+/// it never grew as shape does before; or how many there are. \param shown the narrowest holds the slab.
+/// \param in_steps whether depths are: terraces are rows, too, and known (depth_steps.h)
+std::size_t stops_at(const std::vector<FitsAround>& shown, bool in_steps) {
   const double narrow = shown.front().scatter;
   for (std::size_t i = 0; i + 2 < shown.size(); ++i) {
     const FitsAround &here = shown[i], &next = shown[i + 1], &last = shown[i + 2];
@@ -48,9 +49,9 @@ std::size_t stops_at(const std::vector<FitsAround>& shown) {
     const double own = in_narrow_rows(shown, here) ? 0 : narrow;
     const bool stopped = last.scatter <= kGrowthOfNoise * here.scatter && !is_flat(next, own * own);
     if (here.holds_slab() && grew && here.err_together() && !next.signs.of_relief() &&
-        (stopped || are_rows(here, next, last)))
+        (stopped || (!in_steps && are_rows(here, next, last))))
       return i;
-    if (grows_as_shape(here, next) && !next.row_by_row()) break;
+    if (grows_as_shape(here, next) && (in_steps || !next.row_by_row())) break;
   }
   return shown.size();
 }
@@ -75,10 +76,11 @@ SharedAround look_around(const std::vector<Neighbor>& group, const std::vector<O
     if (!shown.empty() || (next.scatter > 0 && next.holds_slab())) shown.push_back(next);
   }
   if (shown.empty()) return {};
-  const std::size_t stop = stops_at(shown);
+  const bool in_steps = !open.front().rounding.empty();
+  const std::size_t stop = stops_at(shown, in_steps);
   if (stop == shown.size()) return {};
   double sigma = shown[stop + 1].scatter;
-  if (in_narrow_rows(shown, shown[stop]) || shown[stop].row_by_row())
+  if (in_narrow_rows(shown, shown[stop]) || (!in_steps && shown[stop].row_by_row()))
     sigma = std::sqrt(std::max(sigma * sigma, variance_of_rows(shown[stop], shown[stop + 2])));
   std::vector<double> m, left;
   for (std::size_t i = 0; i <= stop + 1; ++i) {

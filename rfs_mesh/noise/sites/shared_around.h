@@ -16,10 +16,10 @@
 /// Then s(2 m) is noise, all of it. Of rows that the narrowest balls see already it is more, for wider balls
 /// have more of them: 2 s^2(4 m) - s^2(m).
 ///
-/// Of rows that each err by themselves, where the next tells little of one (SignsOfSharing::err_row_by_row),
-/// neither flatness nor a scatter that grows on is asked for or counts against them, since a quadric follows
-/// the first few; only from 2 m to 4 m it must grow less than shape does. k follows from what the narrower
-/// neighbourhoods see (points_sharing).
+/// Of rows that each err by themselves, and are no steps of depths, where the next tells little of one
+/// (SignsOfSharing::err_row_by_row), neither flatness nor a scatter that grows on is asked for or counts
+/// against them, since a quadric follows the first few; only from 2 m to 4 m it must grow less than shape
+/// does. k follows from what the narrower neighbourhoods see (points_sharing).
 ///
 /// Nothing is found where s^2 grew 2.38 times from some narrower m to its double: bumps have a size, too,
 /// beyond which they do not grow. Fits that scatter twice as far as what is typical around the site say

@@ -19,8 +19,9 @@
 ///
 /// Nor are the two sides of one scan sheets, whose rows or points lie to one side and the other in turns: two
 /// laser heads, a mirror that swings both ways. Beside a point of one sheet some of the other lie, since each
-/// is scanned by itself; beside one of such rows, none does (Scatter::beside). These are layers where they
-/// are nearer to each other than points of one side are: the square of such a point is twice as large.
+/// is scanned by itself; beside one of such a scan, none does (Scatter::beside). These are layers where they
+/// are nearer to each other than their points are; where whole rows lie to a side, nearer than the points of
+/// one side are, which have a square twice as large.
 #pragma once
 
 #include <optional>

@@ -31,7 +31,7 @@ struct SiteView {
   double sheet = kNone;  ///< what each of two sheets shows; kNone: there is one
   double floor = 0;      ///< what steps, shared noise or layers make sure of
   double shared = 1;     ///< points that share the noise around it (site_views.h, shared_around.h)
-  bool told = false;     ///< whether the scatter stops growing or is plain noise, and is no detail
+  bool told = false;     ///< whether the scatter stops growing, and is no detail
 };
 
 /// By site: the sites nearest to it, the nearest first.

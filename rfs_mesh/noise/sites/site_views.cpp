@@ -120,7 +120,7 @@ std::vector<Shown> shown_around(const SiteGroups& groups, const OpenFits& open, 
   return shown;
 }
 
-/// Sets `held` and `plain`, which tells it from detail. \param open from kNeighbourhood points on, each of
+/// Sets `held` and `plain`. \param open from kNeighbourhood points on, each of
 /// twice as many
 void hold_slabs(const Places& places, const SiteGroups& groups, const std::vector<OpenFits>& open,
                 std::vector<SiteView>& views, const Context& context) {
@@ -135,10 +135,8 @@ void hold_slabs(const Places& places, const SiteGroups& groups, const std::vecto
       SiteView& view = views[s];
       if (points == holding && !(view.held > 0) && now[s].held) view.held = now[s].scatter;
       if (!before.empty() && !(view.plain > 0) && before[s].held && before[s].normal &&
-          now[s].scatter < kGrowthOfNoise * before[s].scatter) {
+          now[s].scatter < kGrowthOfNoise * before[s].scatter)
         view.plain = before[s].scatter;
-        view.told = true;
-      }
     }
     if (std::all_of(views.begin(), views.end(), [](const SiteView& v) { return v.held > 0 && v.plain > 0; }))
       return;
