@@ -23,8 +23,6 @@ constexpr double kTogether = 0.4;       // above that of points on their own: tw
 // 0.58, 0.75, 0.82, 0.91 for 32, 64, ... 512 on a plane. Of `in_rows` they leave about as much: 0.3, 0.6,
 // 0.8.
 constexpr double kFollows = 45;
-// Of what is alike in a row, in the next: rings of lasers have 0.1 and less, waves of 7 and 8 points 0.6.
-constexpr double kLittle = 0.25;
 constexpr double kFastest = 0.25;         // k / m at which g(k / 2 m) / g(k / m) is greatest
 constexpr std::size_t kDiskPoints = 300;  // of the disk on which g is computed
 

@@ -37,8 +37,8 @@ struct MomentsAround {
   /// Whether the residuals are distributed as normal noise is: those of an edge have more in their middle and
   /// far out, those of two sheets less.
   bool normal() const;
-  /// Whether points of a row lie to the same side, most of them.
-  bool in_rows() const { return in_row > 0.5; }
+  /// Whether points of a row lie to the same side.
+  bool in_rows() const { return in_row > kLittle; }
   /// The median of their balls', world units.
   double radius() const;
 

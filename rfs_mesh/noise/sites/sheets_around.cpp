@@ -27,8 +27,7 @@ double noise_of_sheet(const MomentsAround& around) {
 
 /// Whether two sides are of one scan: beside points of one side are none of the other.
 bool are_of_one_scan(const MomentsAround& around) {
-  constexpr double kFew = 0.2;
-  return around.beside < kFew;
+  return around.beside < kLittle;
 }
 
 /// The square of how near two layers must be, which are then no sheets. \param apart NoiseModel::apart
