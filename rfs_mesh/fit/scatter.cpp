@@ -18,6 +18,7 @@ namespace {
 constexpr double kLeastKept = 0.75;   // of the weight; 3 sigma of half the true sigma keep 0.87
 constexpr double kLeastWithin = 0.2;  // of the weight: what a window of a quarter of sigma keeps
 constexpr double kLeastFlat = 0.5;    // the patch's radius over the ball's, where the window is high
+constexpr double kFarOff = 2.24;      // deviations, beyond which a fortieth of normal residuals lie
 constexpr int kScatterRounds = 3;     // the first without a window
 
 typedef double FourSums __attribute__((vector_size(4 * sizeof(double))));
@@ -137,28 +138,30 @@ double ScatterFit::lie_beside() const {
 }
 
 void ScatterFit::look_at_residuals(Scatter& s) const {
-  double weights = 0, second = 0, third = 0, fourth = 0, middle = 0;
-  Eigen::Array4d weight = Eigen::Array4d::Zero(), cubes = weight;  // of the quadrants
+  double weights = 0, second = 0, third = 0, fourth = 0;
   for (std::size_t i = 0; i < residual_.size(); ++i) {
-    const double e = residual_[i], w = weight_[i], cube = w * e * e * e;
-    const int quadrant = (u_[i] > 0 ? 1 : 0) + (v_[i] > 0 ? 2 : 0);
-    weight[quadrant] += w;
-    cubes[quadrant] += cube;
+    const double e = residual_[i], w = weight_[i];
     weights += w;
     second += w * e * e;
-    third += cube;
+    third += w * e * e * e;
     fourth += w * e * e * e * e;
   }
   if (!(second > 0)) return;
-  for (std::size_t i = 0; i < residual_.size(); ++i) {
-    const double e = 2 * residual_[i];
-    middle += e * e * weights < second ? weight_[i] : 0;
-  }
   s.flatness = fourth * weights / (second * second);
   s.lean = third * third * weights / (second * second * second);
+  const double mean = second / weights, far = kFarOff * std::sqrt(mean);
+  double middle = 0;
+  Eigen::Array4d weight = Eigen::Array4d::Zero(), cubes = weight;  // of the quadrants
+  for (std::size_t i = 0; i < residual_.size(); ++i) {
+    const double e = std::clamp(residual_[i], -far, far), w = weight_[i];
+    const int quadrant = (u_[i] > 0 ? 1 : 0) + (v_[i] > 0 ? 2 : 0);
+    weight[quadrant] += w;
+    cubes[quadrant] += w * e * e * e;
+    middle += 4 * e * e < mean ? w : 0;
+  }
   s.middle = middle / weights;
-  const double pairs = weights * weights - weight.square().sum(), mean = second / weights;
-  if (pairs > 0) s.lean_in_common = (third * third - cubes.square().sum()) / (pairs * mean * mean * mean);
+  const double pairs = weights * weights - weight.square().sum(), all = cubes.sum();
+  if (pairs > 0) s.lean_in_common = (all * all - cubes.square().sum()) / (pairs * mean * mean * mean);
 }
 
 RFSMOOTH_AVX2

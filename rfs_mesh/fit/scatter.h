@@ -62,7 +62,8 @@ struct Scatter {
   double lean = 0;  ///< third moment of the residuals squared, over the cube of the second: 0 of a
                     ///< symmetric distribution. Without window
   /// The same of every two of the patch's quadrants, multiplied with each other: without what of it is
-  /// chance, so that it may be below 0. Without window.
+  /// chance, so that it may be below 0. Residuals beyond those of all but a fortieth of a normal distribution
+  /// count as these: grass above the ground is no lean of all. Without window.
   double lean_in_common = 0;
   /// Share of the weight within half a deviation of the quadric: 0.383 of a normal distribution, 0.289 of an
   /// even one, 0 of two sheets. Without window.
