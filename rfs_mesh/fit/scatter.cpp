@@ -49,43 +49,41 @@ void ScatterFit::find_residuals(const Vector6& c) {
 
 void ScatterFit::find_nearest() {
   // Along the patch, not in space: beside a point far above the others its nearest are above, too.
+  by_distance_.clear();
+  for (std::size_t i = 0; i < u_.size(); ++i) by_distance_.emplace_back(u_[i] * u_[i] + v_[i] * v_[i], i);
+  const auto near = by_distance_.begin() + std::ptrdiff_t(std::min(kNeighbourhood, by_distance_.size()));
+  std::nth_element(by_distance_.begin(), near, by_distance_.end());
+  std::nth_element(by_distance_.begin(), by_distance_.begin() + kRing, near);
   nearest_.clear();
-  for (std::size_t i = 0; i < u_.size(); ++i) nearest_.emplace_back(u_[i] * u_[i] + v_[i] * v_[i], i);
-  const auto near = nearest_.begin() + std::ptrdiff_t(std::min(kNeighbourhood, nearest_.size()));
-  std::nth_element(nearest_.begin(), near, nearest_.end());
-  std::nth_element(nearest_.begin(), nearest_.begin() + kRing, near);
+  disk_ = 0;
+  for (auto of = by_distance_.begin(); of != near; ++of) {
+    const std::size_t i = of->second;
+    nearest_.push_back({u_[i], v_[i], residual_[i] > 0 ? 1.0 : -1.0});
+    disk_ = std::max(disk_, of->first);
+  }
 }
 
 double ScatterFit::err_together() const {
-  int sum = 0;
-  for (std::size_t k = 0; k < kRing; ++k) sum += residual_[nearest_[k].second] > 0 ? 1 : -1;
-  return double(sum * sum) / double(kRing);
+  double sum = 0;
+  for (std::size_t k = 0; k < kRing; ++k) sum += nearest_[k].off;
+  return sum * sum / double(kRing);
 }
 
 void ScatterFit::look_at_rows(Scatter& s) const {
-  struct Sign {
-    double u, v, off;
-  };
-  std::array<Sign, kNeighbourhood> signs;
-  const std::size_t count = std::min(kNeighbourhood, nearest_.size());
-  double mean = 0, disk = 0;  // square of the radius
-  for (std::size_t k = 0; k < count; ++k) {
-    const std::size_t i = nearest_[k].second;
-    signs[k] = {u_[i], v_[i], residual_[i] > 0 ? 1.0 : -1.0};
-    mean += signs[k].off / double(count);
-    disk = std::max(disk, nearest_[k].first);
-  }
+  double mean = 0;
+  for (const Side& p : nearest_) mean += p.off / double(nearest_.size());
   const double variance = 1 - mean * mean;
   if (!(variance > 0)) {
     s.in_row = s.next_row = 1;
     return;
   }
   double along = 0, aside = 0, pairs = 0;
-  for (std::size_t k = 0; k < count; ++k)
+  for (std::size_t k = 0; k < nearest_.size(); ++k)
     for (std::size_t l = 0; l < k; ++l) {
-      const double u = signs[k].u - signs[l].u, v = signs[k].v - signs[l].v, square = u * u + v * v;
+      const Side &p = nearest_[k], &q = nearest_[l];
+      const double u = p.u - q.u, v = p.v - q.v, square = u * u + v * v;
       if (!(square > 0)) continue;
-      const double alike = (signs[k].off - mean) * (signs[l].off - mean) / (variance * square);
+      const double alike = (p.off - mean) * (q.off - mean) / (variance * square);
       along += alike * (u * u - v * v);
       aside += alike * 2 * u * v;
       ++pairs;
@@ -95,12 +93,13 @@ void ScatterFit::look_at_rows(Scatter& s) const {
   // The rows' direction is half of that angle; x and y are along and across them.
   const double angle = std::atan2(aside, along) / 2, x = std::cos(angle), y = std::sin(angle);
   std::array<double, 2> products = {}, counts = {};
-  for (std::size_t k = 0; k < count; ++k)
+  for (std::size_t k = 0; k < nearest_.size(); ++k)
     for (std::size_t l = 0; l < k; ++l) {
-      const double across = x * (signs[k].v - signs[l].v) - y * (signs[k].u - signs[l].u);
-      if (4 * across * across >= disk) continue;
-      const std::size_t next = 16 * across * across < disk ? 0 : 1;
-      products[next] += signs[k].off * signs[l].off;
+      const Side &p = nearest_[k], &q = nearest_[l];
+      const double across = x * (p.v - q.v) - y * (p.u - q.u);
+      if (4 * across * across >= disk_) continue;
+      const std::size_t next = 16 * across * across < disk_ ? 0 : 1;
+      products[next] += p.off * q.off;
       ++counts[next];
     }
   s.in_row = products[0] / std::max(1.0, counts[0]);
@@ -109,32 +108,21 @@ void ScatterFit::look_at_rows(Scatter& s) const {
 
 double ScatterFit::lie_beside() const {
   constexpr double kByChance = 0.125;
-  struct Place {
-    double u, v;
-    bool above;
-  };
-  std::array<Place, kNeighbourhood> places;
-  const std::size_t count = std::min(kNeighbourhood, nearest_.size());
-  double above = 0, disk = 0;  // square of the radius
-  for (std::size_t k = 0; k < count; ++k) {
-    const std::size_t i = nearest_[k].second;
-    places[k] = {u_[i], v_[i], residual_[i] > 0};
-    above += double(places[k].above);
-    disk = std::max(disk, nearest_[k].first);
-  }
-  if (!(above > 0 && above < double(count))) return 1;
+  const auto count = double(nearest_.size());
+  double above = 0;
+  for (const Side& p : nearest_) above += double(p.off > 0);
+  if (!(above > 0 && above < count)) return 1;
   // Of points at random, so many over an area pi r^2, none lies within r of a place with exp(-their number).
-  const double squares = -std::log(1 - kByChance) * disk, of_above = squares / above,
-               of_below = squares / (double(count) - above);
+  const double squares = -std::log(1 - kByChance) * disk_, of_above = squares / above,
+               of_below = squares / (count - above);
   double beside = 0;
-  for (std::size_t k = 0; k < count; ++k) {
-    const Place& p = places[k];
-    const double reach = p.above ? of_below : of_above;
-    beside += double(std::any_of(places.begin(), places.begin() + std::ptrdiff_t(count), [&](const Place& q) {
-      return q.above != p.above && (q.u - p.u) * (q.u - p.u) + (q.v - p.v) * (q.v - p.v) < reach;
+  for (const Side& p : nearest_) {
+    const double reach = p.off > 0 ? of_below : of_above;
+    beside += double(std::any_of(nearest_.begin(), nearest_.end(), [&](const Side& q) {
+      return q.off != p.off && (q.u - p.u) * (q.u - p.u) + (q.v - p.v) * (q.v - p.v) < reach;
     }));
   }
-  return beside / (kByChance * double(count));
+  return beside / (kByChance * count);
 }
 
 void ScatterFit::look_at_residuals(Scatter& s) const {

@@ -101,7 +101,7 @@ class ScatterFit {
   };
 
   void find_residuals(const Vector6& c);     ///< from a quadric
-  void find_nearest();                       ///< sets `nearest_`
+  void find_nearest();                       ///< sets `nearest_` and `disk_`
   double err_together() const;               ///< Scatter::together of these
   void look_at_rows(Scatter& s) const;       ///< Scatter::in_rows, in_row and next_row of these
   double lie_beside() const;                 ///< Scatter::beside of these
@@ -123,9 +123,13 @@ class ScatterFit {
   std::vector<double> x_, y_, z_;  ///< of each point, over the ball's radius; then z_ is along the normal
   std::vector<double> u_, v_;      ///< along the patch, over its radius
   std::vector<double> weight_, residual_;
-  /// Squared distance along the patch, of all points, and which; the kRing nearest are in front, then the
-  /// rest of the kNeighbourhood nearest.
-  std::vector<std::pair<double, std::size_t>> nearest_;
+  /// Where a point lies along the patch, and on which side of the quadric, 1 or -1.
+  struct Side {
+    double u, v, off;
+  };
+  std::vector<std::pair<double, std::size_t>> by_distance_;  ///< squared, along the patch; and which point
+  std::vector<Side> nearest_;  ///< the kNeighbourhood nearest, of which the kRing nearest are in front
+  double disk_ = 0;            ///< squared distance of the farthest of these
 };
 
 }  // namespace rfsmooth::rfs_mesh

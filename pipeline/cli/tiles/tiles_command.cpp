@@ -255,8 +255,7 @@ Command tiles_command() {
       "Smooths a cloud (binary PLY, binary PCD or LAS, one file or many that are one cloud) in tiles, in a "
       "folder JOB. plan cuts it; measure, for every tile, takes a sample; settle finds from it what the "
       "cloud as a whole is like; run, for every tile, smooths it; join writes the files with x, y, z "
-      "replaced "
-      "(many into a folder, also OUT/; a single one also to standard output, -). "
+      "replaced (many into a folder, also OUT/; a single one also to standard output, -). "
       "Tiles are numbered from 0; measure and run may go on in any order, in any number of processes, and "
       "again: what is there complete is not made again. The same inputs give the same bytes. On one machine "
       "'rfsmooth denoise --memory 8G IN OUT' does all of it.";

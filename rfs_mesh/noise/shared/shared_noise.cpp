@@ -160,8 +160,11 @@ void SharedSearch::look() {
     const bool overtaken = growths.enter(calm_.seen[i], calm_.seen[i + 1], of_points_);
     if (overtaken && (terraces_ || surely_ > 0)) break;
     if (!growths.counts()) continue;
-    if (is_flat(i + 1)) of_waves_ = calm_.seen[i + 1];
-    if (is_flat(i + 1) || !is_shared(i)) continue;
+    if (is_flat(i + 1)) {
+      of_waves_ = calm_.seen[i + 1];
+      continue;
+    }
+    if (!is_shared(i)) continue;
     if (errs_together(i)) surely_ = std::max(surely_, without(kLeastGrowthOfShape, i));
     make_sure(i, without(kGrowthOfSmoothShape, i));
   }

@@ -38,7 +38,7 @@ struct MomentsAround {
   /// far out, those of two sheets less.
   bool normal() const;
   /// Whether points of a row lie to the same side.
-  bool in_rows() const { return in_row > kLittle; }
+  bool alike_in_rows() const { return in_row > kLittle; }
   /// The median of their balls', world units.
   double radius() const;
 

@@ -33,7 +33,7 @@ bool are_of_one_scan(const MomentsAround& around) {
 /// The square of how near two layers must be, which are then no sheets. \param apart NoiseModel::apart
 double squared_nearest_of_layers(const MomentsAround& around, double lean, double apart) {
   const double radius = around.radius(), square = square_of_point(radius * radius, around.points);
-  if (are_of_one_scan(around)) return around.in_rows() ? 2 * square : square;
+  if (are_of_one_scan(around)) return around.alike_in_rows() ? 2 * square : square;
   return lean > 0 ? square : squared_nearest(square, apart);
 }
 
