@@ -7,7 +7,7 @@
 #include "base/parallel.h"
 #include "rfs_mesh/levels.h"
 #include "rfs_mesh/noise/noise_levels.h"
-#include "rfs_mesh/noise/sites/fits_around.h"
+#include "rfs_mesh/noise/sites/views/fits_around.h"
 #include "rfs_mesh/sample.h"
 
 namespace rfsmooth::rfs_mesh {

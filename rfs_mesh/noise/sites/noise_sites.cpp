@@ -8,7 +8,7 @@
 #include "base/quantile.h"
 #include "rfs_mesh/levels.h"
 #include "rfs_mesh/noise/noise_levels.h"
-#include "rfs_mesh/noise/sites/site_views.h"
+#include "rfs_mesh/noise/sites/views/site_views.h"
 
 namespace rfsmooth::rfs_mesh {
 

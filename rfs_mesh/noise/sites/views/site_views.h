@@ -30,7 +30,7 @@
 #include <vector>
 
 #include "rfs_mesh/noise/noise_search.h"
-#include "rfs_mesh/noise/sites/site_view.h"
+#include "rfs_mesh/noise/sites/views/site_view.h"
 #include "rfs_mesh/noise/steps/depth_steps.h"
 
 namespace rfsmooth::rfs_mesh {

@@ -1,11 +1,11 @@
-#include "rfs_mesh/noise/sites/sheets_around.h"
+#include "rfs_mesh/noise/sites/views/sheets_around.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "rfs_mesh/levels.h"
 #include "rfs_mesh/noise/noise_levels.h"
-#include "rfs_mesh/noise/sites/fits_around.h"
+#include "rfs_mesh/noise/sites/views/fits_around.h"
 #include "rfs_mesh/sheets/two_sheets.h"
 
 namespace rfsmooth::rfs_mesh {

@@ -1,4 +1,4 @@
-#include "rfs_mesh/noise/sites/site_views.h"
+#include "rfs_mesh/noise/sites/views/site_views.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,10 +8,10 @@
 #include "base/quantile.h"
 #include "rfs_mesh/levels.h"
 #include "rfs_mesh/noise/noise_levels.h"
-#include "rfs_mesh/noise/sites/fits_around.h"
-#include "rfs_mesh/noise/sites/open_fits.h"
-#include "rfs_mesh/noise/sites/shared_around.h"
-#include "rfs_mesh/noise/sites/sheets_around.h"
+#include "rfs_mesh/noise/sites/views/fits_around.h"
+#include "rfs_mesh/noise/sites/views/open_fits.h"
+#include "rfs_mesh/noise/sites/views/shared_around.h"
+#include "rfs_mesh/noise/sites/views/sheets_around.h"
 
 namespace rfsmooth::rfs_mesh {
 

@@ -7,7 +7,7 @@
 
 #include "rfs_mesh/fit/places.h"
 #include "rfs_mesh/noise/scatter_statistics.h"
-#include "rfs_mesh/noise/sites/site_view.h"
+#include "rfs_mesh/noise/sites/views/site_view.h"
 
 namespace rfsmooth::rfs_mesh {
 

@@ -1,4 +1,4 @@
-#include "rfs_mesh/noise/sites/open_fits.h"
+#include "rfs_mesh/noise/sites/views/open_fits.h"
 
 #include <cmath>
 

@@ -28,7 +28,7 @@
 #include <vector>
 
 #include "rfs_mesh/noise/noise_search.h"
-#include "rfs_mesh/noise/sites/open_fits.h"
+#include "rfs_mesh/noise/sites/views/open_fits.h"
 
 namespace rfsmooth::rfs_mesh {
 

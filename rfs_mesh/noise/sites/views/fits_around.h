@@ -8,7 +8,7 @@
 
 #include "rfs_mesh/levels.h"
 #include "rfs_mesh/noise/shared/signs_of_sharing.h"
-#include "rfs_mesh/noise/sites/open_fits.h"
+#include "rfs_mesh/noise/sites/views/open_fits.h"
 
 namespace rfsmooth::rfs_mesh {
 

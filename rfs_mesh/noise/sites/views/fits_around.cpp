@@ -1,4 +1,4 @@
-#include "rfs_mesh/noise/sites/fits_around.h"
+#include "rfs_mesh/noise/sites/views/fits_around.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "rfs_mesh/noise/sites/shared_around.h"
+#include "rfs_mesh/noise/sites/views/shared_around.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include "base/parallel.h"
 #include "rfs_mesh/levels.h"
 #include "rfs_mesh/noise/noise_levels.h"
-#include "rfs_mesh/noise/sites/fits_around.h"
+#include "rfs_mesh/noise/sites/views/fits_around.h"
 
 namespace rfsmooth::rfs_mesh {
 
