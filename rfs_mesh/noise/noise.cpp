@@ -16,6 +16,7 @@
 #include "rfs_mesh/noise/parts.h"
 #include "rfs_mesh/noise/shared/shared_noise.h"
 #include "rfs_mesh/noise/sites/loud_places.h"
+#include "rfs_mesh/noise/sites/loud_shape.h"
 #include "rfs_mesh/noise/steps/rounding.h"
 #include "rfs_mesh/noise/steps/voxels.h"
 #include "rfs_mesh/sample.h"
@@ -162,11 +163,11 @@ std::vector<double> spacing_around(const NoiseSites& sites, double spacing) {
 }
 
 /// The figure, and how much of it shape had, from what the sites say. Of places that have noise, where these
-/// are a tenth of the cloud or more: the rest has nothing to smooth. Where hardly a site speaks, most of the
-/// cloud is rough, and what does speak there is half roughness: the calm fifth of it says the figure,
-/// but no more than the start, which all of the cloud says: in clean clouds the loudest are all that speaks.
-/// Loud places, of wider balls, count more than their area: noise read too small leaves more than noise read
-/// too large takes.
+/// are a tenth of the cloud or more: the rest has nothing to smooth. Where hardly a site speaks of
+/// those that are not known to be shape, most of the cloud is rough, and what does speak there is half
+/// roughness: the calm fifth of it says the figure, but no more than the start, which all of the cloud says:
+/// in clean clouds the loudest are all that speaks. Loud places, of wider balls, count more than their area:
+/// noise read too small leaves more than noise read too large takes.
 void sum_up(const NoiseSites& sites, const std::vector<double>& spacing, const NoiseStart& start,
             NoiseModel& noise) {
   std::vector<Weighed> heard, noisy, shape;
@@ -174,7 +175,7 @@ void sum_up(const NoiseSites& sites, const std::vector<double>& spacing, const N
   double all = 0, saying = 0, loud = 0;
   for (std::size_t s = 0; s < sites.at.size(); ++s) {
     const double sigma = sites.sigma[s], area = areas_of_balls[s];
-    all += area;
+    if (!(sites.volume[s] > 0)) all += area;
     if (!sites.speaks[s]) continue;
     saying += area;
     heard.push_back({sigma, area});
@@ -259,6 +260,7 @@ void measure(const SpatialIndex& index, const DepthSteps* steps, double rounding
   const NoiseStart start = find_start(index, noise.on_grid ? nullptr : steps, rounding, noise, context);
   if (!(start.least > 0)) return;
   NoiseSites sites = listen(index, listening_places(index.points(), start.m), start, steps, context);
+  silence_loud_shape(sites, context);
   // Where windows let a second sheet in nearly everywhere, the calmer fifth, too, hears more than it shows
   // without one or than kernels read; where they do at most places, the figure is more than kernels read.
   bound_sites(calm_fifth(sites), std::max(start.most, kNoNoise * noise.spacing), sites);

@@ -24,6 +24,10 @@ constexpr double kLouder = 2;
 /// Times: so much calmer sites say nothing of a place, and a cloud with such a tenth is not evenly noisy.
 constexpr double kMuchLouder = 3;
 
+/// Of what sheets, rows, waves or noise have: so little is none. Of what is alike in a row the next one of a
+/// laser's rings has 0.1 and less, of waves of 7 and 8 points 0.6.
+inline constexpr double kLittle = 0.25;
+
 /// Of what scatters without a window: the narrowest window that is tried.
 constexpr double kNarrowestWindow = 0.125;
 

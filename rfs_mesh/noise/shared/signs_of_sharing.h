@@ -12,10 +12,6 @@ namespace rfsmooth::rfs_mesh {
 /// Of the variance about a quadric, from m points to 2 m: shape that it does not follow grows at least so.
 constexpr double kLeastGrowthOfShape = 2.38;
 
-/// Of what sheets, rows or waves have: so little is none. Of what is alike in a row the next one of a laser's
-/// rings has 0.1 and less, of waves of 7 and 8 points 0.6.
-constexpr double kLittle = 0.25;
-
 /// How the residuals of some fits lie, taken together. Who is about to believe what 2 m points show asks the
 /// fits to 2 m whether they are of two sheets or of relief. Whether they err together a site asks those to m,
 /// a cloud those to 2 m, and those to m before it is sure; it asks neither that nor for relief on terraces,

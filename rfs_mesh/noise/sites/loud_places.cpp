@@ -34,19 +34,20 @@ std::vector<char> are_near_loud_ones(const SpatialIndex& index, const NoiseSites
 }
 
 /// The noise that points around a place have of their own, as the first fits show it whose balls hold the
-/// slab; 0: none is seen for sure.
-double plain_noise(const std::vector<Neighbor>& group, const std::vector<OpenFits>& open) {
+/// slab; 0: none is seen for sure. \param sparsest of strays; as NoiseSites::per_root
+double plain_noise(const std::vector<Neighbor>& group, const std::vector<OpenFits>& open, double sparsest) {
   for (std::size_t k = 0; k + 1 < open.size(); ++k) {
     const FitsAround here(group, open[k]), next(group, open[k + 1]);
     if (!here.holds_slab()) continue;
-    const bool plain = here.scatter > 0 && next.scatter < kGrowthOfNoise * here.scatter &&
-                       !here.signs.of_two_sheets(0) && !here.err_together();
+    const bool plain = here.radius < sparsest * std::sqrt(here.points) && here.scatter > 0 &&
+                       next.scatter < kGrowthOfNoise * here.scatter && !here.signs.of_two_sheets(0) &&
+                       !here.err_together() && !planes_turn(group, open[k], open[k + 1]);
     return plain ? std::sqrt(mean_variance(around(group, open[k].said), kTypical)) : 0;
   }
   return 0;
 }
 
-std::vector<double> plain_noise_at(const SpatialIndex& cloud, const SpatialIndex& at,
+std::vector<double> plain_noise_at(const SpatialIndex& cloud, const SpatialIndex& at, double sparsest,
                                    const Context& context) {
   Places places(cloud, at.points(), 2 * kNeighbourhood, context);
   std::vector<OpenFits> open;
@@ -55,7 +56,7 @@ std::vector<double> plain_noise_at(const SpatialIndex& cloud, const SpatialIndex
   const SiteGroups groups = site_groups(at, kSmallestGroup, context);
   std::vector<double> noise(groups.size());
   for_each_index(
-      context, noise.size(), [&](std::size_t i) { noise[i] = plain_noise(groups[i], open); }, 64);
+      context, noise.size(), [&](std::size_t i) { noise[i] = plain_noise(groups[i], open, sparsest); }, 64);
   return noise;
 }
 
@@ -81,7 +82,9 @@ LoudPlaces find_loud_places(const SpatialIndex& cloud, const NoiseSites& sites, 
   }
   if (at.size() < kSmallestGroup) return found;
   const SpatialIndex places(at, context);
-  std::vector<double> louder = plain_noise_at(cloud, places, context);
+  // What is ten times as sparse as the cloud where it is sparse is no part of it that a scanner saw alike.
+  const double sparsest = size_where_sparse(sites.per_root) / std::sqrt(kLeastPart);
+  std::vector<double> louder = plain_noise_at(cloud, places, sparsest, context);
   for (std::size_t i = 0; i < at.size(); ++i) {
     if (!(louder[i] > kLouder * found.at_sites[site[i]])) {
       louder[i] = 0;

@@ -312,6 +312,7 @@ NoiseSites listen(const SpatialIndex& index, Positions at, const NoiseStart& sta
     sites.most.push_back(view.most);
     sites.told.push_back(char(view.told));
     sites.plain.push_back(char(view.plain > 0));
+    sites.turned.push_back(char(view.turned));
     sites.shared.push_back(view.shared);
   }
   for (int round = 0; round < 2; ++round) listener.hear(2, false);

@@ -53,8 +53,8 @@ struct NoiseSites {
   std::vector<double> shape;     ///< part of s^2(m) taken off as shape, 0 to 0.6
   std::vector<double> area;      ///< of the surface around it, over that where points are sparse: 0 to 1
   std::vector<char> speaks;      ///< whether sigma is of this place; else it is what came nearest to it
-  std::vector<double> volume;    ///< scatter of points that fill a ball around it as leaves do, world units,
-                                 ///< which was not believed; 0: there was none
+  std::vector<double> volume;    ///< scatter around it that is of no surface, as of leaves, world units, and
+                                 ///< was not believed; 0: there was none
   std::vector<char> full;        ///< whether the site's own fit fills a window as wide as its group has noise
   std::vector<char> two_sheets;  ///< whether these are seen there
   std::vector<double> open;      ///< what the 24 points around it show without a window, world units
@@ -63,6 +63,7 @@ struct NoiseSites {
                                  ///< where no fit within windows says a thing; world units; 0: none
   std::vector<char> told;        ///< whether the scatter around it stops growing, and is no detail
   std::vector<char> plain;       ///< whether plain noise is seen around it, which is no detail either
+  std::vector<char> turned;      ///< SiteView::turned
   std::vector<double> shared;    ///< points that share the noise around it; 1: none
   std::vector<double> per_root;  ///< radius of balls around it over the root of their points, world units
   std::vector<Scatter> fits;     ///< to the m nearest of the site by itself, more where it is far louder

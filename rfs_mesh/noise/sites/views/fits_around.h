@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "rfs_mesh/levels.h"
+#include "rfs_mesh/noise/noise_levels.h"
 #include "rfs_mesh/noise/shared/signs_of_sharing.h"
 #include "rfs_mesh/noise/sites/views/open_fits.h"
 

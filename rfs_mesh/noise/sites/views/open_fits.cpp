@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/quantile.h"
+#include "rfs_mesh/levels.h"
 #include "rfs_mesh/noise/noise_search.h"
 
 namespace rfsmooth::rfs_mesh {
@@ -27,6 +28,13 @@ OpenFits fit_wide(const Places& places, std::size_t points, const Context& conte
   for (const Index nearest : nearest_points(SpatialIndex(some, context), places.at(), context))
     all.push_back(fits[nearest]);
   return {points, std::move(all)};
+}
+
+bool planes_turn(const std::vector<Neighbor>& group, const OpenFits& fits, const OpenFits& wider) {
+  const double cosine = quantile_of(group, 0.5, [&](const Neighbor& q) {
+    return std::abs(fits.all[q.index].normal.dot(wider.all[q.index].normal));
+  });
+  return 1 - cosine * cosine > kThickSlab * kThickSlab;
 }
 
 }  // namespace rfsmooth::rfs_mesh

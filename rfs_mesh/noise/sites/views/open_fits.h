@@ -33,4 +33,8 @@ struct OpenFits {
 /// nearest of these. O(sites). Parallel, deterministic. \param places the sites
 OpenFits fit_wide(const Places& places, std::size_t points, const Context& context);
 
+/// Whether the planes of the fits around a site are not those of fits to more points: turned so far that they
+/// leave even the thickest slab within the ball. A surface has one plane, leaves and branches have any.
+bool planes_turn(const std::vector<Neighbor>& group, const OpenFits& fits, const OpenFits& wider);
+
 }  // namespace rfsmooth::rfs_mesh

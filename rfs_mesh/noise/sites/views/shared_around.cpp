@@ -79,6 +79,8 @@ SharedAround look_around(const std::vector<Neighbor>& group, const std::vector<O
   const bool in_steps = !open.front().rounding.empty();
   const std::size_t stop = stops_at(shown, in_steps);
   if (stop == shown.size()) return {};
+  const std::size_t at_m = open.size() - shown.size() + stop;
+  if (planes_turn(group, open[at_m], open[at_m + 2])) return {};
   double sigma = shown[stop + 1].scatter;
   if (in_narrow_rows(shown, shown[stop]) || (!in_steps && shown[stop].row_by_row()))
     sigma = std::sqrt(std::max(sigma * sigma, variance_of_rows(shown[stop], shown[stop + 2])));

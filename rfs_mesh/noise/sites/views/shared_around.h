@@ -10,6 +10,7 @@
 ///   of which a narrow ball, too, sees several,
 /// - it has stopped: s(4 m) <= 1.26 s(m). (Shape that a quadric does not follow makes it grow 8 times, ground
 ///   1.4 times and more),
+/// - the planes of 4 m points are those of m, as they are of no trees and not of the things of a street,
 /// - the nearest points err together,
 /// - and the residuals at 2 m are neither of two sheets nor of waves in rows nor of stones.
 ///

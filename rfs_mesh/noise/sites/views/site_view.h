@@ -31,7 +31,9 @@ struct SiteView {
   double sheet = kNone;  ///< what each of two sheets shows; kNone: there is one
   double floor = 0;      ///< what steps, shared noise or layers make sure of
   double shared = 1;     ///< points that share the noise around it (site_views.h, shared_around.h)
-  bool told = false;     ///< whether the scatter stops growing, and is no detail
+  bool turned =
+      false;  ///< whether wider balls than the first that holds the slab show other planes: no surface
+  bool told = false;  ///< whether the scatter stops growing, and is no detail
 };
 
 /// By site: the sites nearest to it, the nearest first.

@@ -120,14 +120,16 @@ std::vector<Shown> shown_around(const SiteGroups& groups, const OpenFits& open, 
   return shown;
 }
 
-/// Sets `held` and `plain`. \param open from kNeighbourhood points on, each of
-/// twice as many
+/// Sets `held`, `plain` and `turned`. \param open from kNeighbourhood points on, each of twice as many
+/// \param piece fewer points are on lines, through which any plane goes
 void hold_slabs(const Places& places, const SiteGroups& groups, const std::vector<OpenFits>& open,
-                std::vector<SiteView>& views, const Context& context) {
+                std::size_t piece, std::vector<SiteView>& views, const Context& context) {
   const std::size_t widest = widest_scatter(places.index());
   std::vector<Shown> before;
+  std::vector<char> looked(views.size(), 0);
   std::size_t holding = kNeighbourhood;
-  for (const OpenFits& fits : open) {
+  for (std::size_t k = 0; k < open.size(); ++k) {
+    const OpenFits &fits = open[k], &wider = open[std::min(k + 2, open.size() - 1)];
     const std::size_t points = fits.points;
     if (points > widest) break;
     std::vector<Shown> now = shown_around(groups, fits, context);
@@ -137,6 +139,9 @@ void hold_slabs(const Places& places, const SiteGroups& groups, const std::vecto
       if (!before.empty() && !(view.plain > 0) && before[s].held && before[s].normal &&
           now[s].scatter < kGrowthOfNoise * before[s].scatter)
         view.plain = before[s].scatter;
+      if (looked[s] != 0 || points < piece || !now[s].held) continue;
+      view.turned = planes_turn(groups[s], fits, wider);
+      looked[s] = 1;
     }
     if (std::all_of(views.begin(), views.end(), [](const SiteView& v) { return v.held > 0 && v.plain > 0; }))
       return;
@@ -193,7 +198,7 @@ std::vector<SiteView> look_without_windows(Places& places, const SiteGroups& gro
         context, groups.size(),
         [&](std::size_t s) { find_floor(groups[s], open, open[many], on_terraces, width, views[s]); }, 64);
   if (plateau && !start.on_lines && !on_grid) find_shared_around(groups, open, views, context);
-  hold_slabs(places, groups, open, views, context);
+  hold_slabs(places, groups, open, start.piece, views, context);
   return views;
 }
 
