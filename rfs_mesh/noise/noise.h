@@ -10,6 +10,8 @@
 /// - Depths in steps and noise that neighbours share: they grow, too, but stop growing (site_views.h,
 ///   shared_noise.h, shared_around.h).
 /// - Places that are louder than the rest: their windows open until they hold the scatter (noise_sites.h).
+/// - Trees and whatever has no surface: louder than the noise that others show for sure, with any plane
+///   (loud_shape.h).
 /// - Scans have most points where their surface is nearest: places count by their area.
 ///
 /// The figure is that of the typical place, of those that have noise where a tenth of the cloud has. The
