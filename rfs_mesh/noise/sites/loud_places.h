@@ -5,8 +5,9 @@
 /// Where a site sees no second sheet, and its own fit scatters twice as far as the noise there, the points
 /// around it are looked at more closely, every eighth of them. Its dozen nearest alike say what noise there
 /// is if it is twice what was found, too, and noise that points have of their own: their balls hold the slab
-/// of it, twice as many points show hardly more, which shape would, residuals are not of two sheets, and
-/// nearest points do not err together. Thread safe: no state is kept.
+/// of it, twice as many points show hardly more, which shape would, residuals are not of two sheets,
+/// nearest points do not err together, and twice as many points lie in the same plane. Nor are they ten times
+/// as sparse as the cloud is where it is sparse: those are strays. Thread safe: no state is kept.
 #pragma once
 
 #include <vector>
