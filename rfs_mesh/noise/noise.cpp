@@ -238,8 +238,7 @@ void enter(LoudPlaces loud, NoiseSites& sites, std::vector<double>& spacing, Noi
 /// Whether noise is told from detail at most sites.
 bool is_mostly_told(const NoiseSites& sites) {
   std::size_t most = 0;
-  for (std::size_t s = 0; s < sites.plain.size(); ++s)
-    most += std::size_t(sites.told[s] != 0 || sites.plain[s] != 0);
+  for (std::size_t s = 0; s < sites.plain.size(); ++s) most += std::size_t(sites.tells_noise(s));
   return 2 * most > sites.plain.size();
 }
 

@@ -12,7 +12,7 @@ namespace {
 
 /// Whether what a site shows is noise for sure.
 bool is_sure(const NoiseSites& sites, std::size_t s) {
-  return sites.speaks[s] != 0 && sites.turned[s] == 0 && (sites.told[s] != 0 || sites.plain[s] != 0);
+  return sites.speaks[s] != 0 && sites.turned[s] == 0 && sites.tells_noise(s);
 }
 
 /// The noise that is typical of the sites which show it for sure; 0: they are too few.

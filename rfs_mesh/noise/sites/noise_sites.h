@@ -67,6 +67,9 @@ struct NoiseSites {
   std::vector<double> shared;    ///< points that share the noise around it; 1: none
   std::vector<double> per_root;  ///< radius of balls around it over the root of their points, world units
   std::vector<Scatter> fits;     ///< to the m nearest of the site by itself, more where it is far louder
+
+  /// Whether noise is told from detail at a site, in either way.
+  bool tells_noise(std::size_t s) const { return told[s] != 0 || plain[s] != 0; }
 };
 
 /// Whether points are so close that it is no second sheet beside theirs that makes them so: more than twice

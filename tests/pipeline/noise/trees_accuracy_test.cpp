@@ -1,4 +1,5 @@
 /// What `denoise` makes of trees before a spinning laser: leaves scatter about any quadric, and are no noise.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
